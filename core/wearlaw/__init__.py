@@ -1,0 +1,96 @@
+"""wearlaw: rolling-contact wear, with wear laws and contact models as plugins.
+
+>>> import wearlaw as wl
+>>> from wearlaw import Q
+>>> predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
+>>> predict(normal_force=Q(7.4143, "kN"), creepage=Q(1, "%"), friction_coefficient=0.46).wear_rate
+27.70 µg/m/mm²
+"""
+
+from wearlaw import hertz
+from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
+from wearlaw.errors import (
+    CalibrationWarning,
+    CaseError,
+    CompositionError,
+    ConditionsError,
+    ConfigurationError,
+    InputError,
+    ModelError,
+    OutputError,
+    PluginWarning,
+    RangeWarning,
+    UnitError,
+    UnknownModelError,
+    WearlawError,
+    WearlawWarning,
+)
+from wearlaw.hookspecs import hookimpl
+from wearlaw.models import BreakpointMap, Calibration, Claim, ContactModel, LineContactModel, Scale, WearLaw
+from wearlaw.pipeline import ContactPipeline, PatchMean, Pipeline, patch_mean
+from wearlaw.plugins import contact_model, contact_models, wear_law, wear_laws
+from wearlaw.records import Contact, LineFields, LineProblem
+from wearlaw.result import ContactSolution, Prediction
+from wearlaw.rig import Disc, Material, TwinDisc, steel
+from wearlaw.specification import ContactModelField, WearLawField
+from wearlaw.units import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Array",
+    "BreakpointMap",
+    "Calibration",
+    "CalibrationWarning",
+    "CaseError",
+    "Claim",
+    "CompositionError",
+    "ConditionsError",
+    "Configuration",
+    "ConfigurationError",
+    "Contact",
+    "ContactModel",
+    "ContactModelField",
+    "ContactPipeline",
+    "ContactSolution",
+    "Density",
+    "Disc",
+    "InputError",
+    "Length",
+    "LineContactModel",
+    "LineFields",
+    "LineProblem",
+    "Material",
+    "ModelError",
+    "OutputError",
+    "PatchMean",
+    "Pipeline",
+    "PluginWarning",
+    "Prediction",
+    "Q",
+    "Quantity",
+    "QuantityLike",
+    "RangeWarning",
+    "Scale",
+    "Speed",
+    "Stress",
+    "TwinDisc",
+    "Unit",
+    "UnitError",
+    "UnknownModelError",
+    "WearLaw",
+    "WearLawField",
+    "WearlawError",
+    "WearlawWarning",
+    "contact_model",
+    "contact_models",
+    "hertz",
+    "hookimpl",
+    "parse",
+    "patch_mean",
+    "scalar_si",
+    "steel",
+    "wear_law",
+    "wear_laws",
+]

@@ -1,0 +1,85 @@
+"""The frozen pydantic base of everything that a user configures: models, materials, rigs, pipelines, cases."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pint
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from wearlaw.errors import ConfigurationError, Problem, did_you_mean
+from wearlaw.units import text_of
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
+
+
+class Configuration(BaseModel):
+    """A frozen, hashable, picklable record of settings that names every wrong field when it is made.
+
+    Quantities serialise to text with a unit (``model_dump(mode="json")``), which validates back to an equal
+    record.
+    """
+
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        allow_inf_nan=False,
+        validate_default=True,
+        use_attribute_docstrings=True,
+        ser_json_inf_nan="strings",
+    )
+
+    if not TYPE_CHECKING:  # checkers keep the signature that pydantic derives from the fields
+
+        def __init__(self, **fields: Any) -> None:
+            try:
+                super().__init__(**fields)
+            except ValidationError as error:
+                raise configuration_error(type(self).subject(), type(self), error) from None
+
+    @classmethod
+    def subject(cls) -> str:
+        """Return what messages call this configuration."""
+        return cls.__name__
+
+    def __str__(self) -> str:
+        return repr(self)
+
+    def __repr_args__(self) -> Any:
+        for name, value in super().__repr_args__():
+            yield name, _Text(text_of(value)) if isinstance(value, pint.Quantity) else value
+
+
+class _Text(str):
+    """A text that shows itself without quotes."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def configuration_error(subject: str, model: type[BaseModel], error: ValidationError) -> ConfigurationError:
+    """Return the wearlaw error that says the same as a pydantic error, in the words of the user."""
+    problems: list[Problem] = []
+    for details in error.errors(include_url=False):
+        path = tuple(str(part) for part in details["loc"])
+        cause = details.get("ctx", {}).get("error")
+        if isinstance(cause, ConfigurationError):
+            problems += [Problem(path + inner.path, inner.message) for inner in cause.problems]
+        else:
+            problems.append(Problem(path, _message(details, model)))
+    return ConfigurationError(subject, problems)
+
+
+def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
+    cause = details.get("ctx", {}).get("error")
+    if cause is not None:
+        return str(cause)
+    if details["type"] == "extra_forbidden":
+        known = list(model.model_fields)
+        hint = did_you_mean(str(details["loc"][-1]), known)
+        return f"unknown field;{hint} The fields are: {', '.join(known) or 'none'}"
+    if details["type"] == "missing":
+        return "is missing"
+    message = details["msg"]
+    return f"{message[0].lower()}{message[1:]}, got {details['input']!r}"

@@ -1,0 +1,104 @@
+"""Every exception and warning that wearlaw raises on purpose.
+
+An error says which field is wrong, the value it got, what was expected and how to put it right.
+All of them derive from `WearlawError`; those caused by what the user gave derive from `InputError`,
+which is also a `ValueError`, so that generic code may catch either.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+
+class WearlawError(Exception):
+    """Base of all errors raised by wearlaw."""
+
+
+class InputError(WearlawError, ValueError):
+    """A value given by the user cannot be used."""
+
+
+class UnitError(InputError):
+    """A value without its unit, with the wrong dimension, an unknown unit, or no finite real number."""
+
+
+class ConditionsError(InputError):
+    """The conditions of an operating point are incomplete, contradictory or do not broadcast."""
+
+
+class UnknownModelError(InputError):
+    """No installed plugin provides a model of this name, or more than one does."""
+
+
+class CaseError(InputError):
+    """A case file is missing, is not TOML, or is wrong in one of its fields."""
+
+
+class OutputError(WearlawError, OSError):
+    """Results cannot be written where the user asked for them."""
+
+
+class CompositionError(WearlawError, TypeError):
+    """Stages of a pipeline are in the wrong order or do not fit each other."""
+
+
+class ModelError(WearlawError, RuntimeError):
+    """A contact model or wear law broke its contract: wrong shape, or a value that is not finite."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One wrong field of a configuration: the path to it and what is wrong there."""
+
+    path: tuple[str, ...]
+    message: str
+
+    def __str__(self) -> str:
+        where = ".".join(self.path)
+        return f"{where}: {self.message}" if where else self.message
+
+
+class ConfigurationError(InputError):
+    """A model, material, rig or case has a wrong, missing or unknown field.
+
+    Attributes
+    ----------
+    subject : str
+        What was being configured, such as the name of a model.
+    problems : tuple of Problem
+        Every wrong field with its path, not only the first one.
+    """
+
+    def __init__(self, subject: str, problems: Iterable[Problem]) -> None:
+        self.subject = subject
+        self.problems = tuple(problems)
+        super().__init__(subject, self.problems)
+
+    def __str__(self) -> str:
+        if len(self.problems) == 1:
+            return f"{self.subject}: {self.problems[0]}"
+        return f"{self.subject}:" + "".join(f"\n  {problem}" for problem in self.problems)
+
+
+class WearlawWarning(UserWarning):
+    """Base of all warnings issued by wearlaw."""
+
+
+class CalibrationWarning(WearlawWarning):
+    """A parameter set is used with another contact solution than the one it was fitted for."""
+
+
+class RangeWarning(WearlawWarning):
+    """A model is used outside the range for which its source states it."""
+
+
+class PluginWarning(WearlawWarning):
+    """An installed plugin could not be loaded and is left out."""
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Return " did you mean 'x'?" for the nearest known word, or nothing when none is near."""
+    near = get_close_matches(word, list(known), n=1)
+    return f" did you mean '{near[0]}'?" if near else ""

@@ -1,0 +1,29 @@
+"""The whole extension surface: the hooks that a plugin may implement.
+
+A plugin is a module named in the entry-point group "wearlaw" of its distribution, with functions of these
+names marked `@wearlaw.hookimpl`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import pluggy
+
+if TYPE_CHECKING:
+    from wearlaw.models import ContactModel, WearLaw
+
+PROJECT = "wearlaw"
+hookspec = pluggy.HookspecMarker(PROJECT)
+hookimpl = pluggy.HookimplMarker(PROJECT)
+
+
+@hookspec
+def wearlaw_contact_models() -> Iterable[type[ContactModel]]:  # type: ignore[empty-body]
+    """Return the contact models that the plugin provides."""
+
+
+@hookspec
+def wearlaw_wear_laws() -> Iterable[type[WearLaw]]:  # type: ignore[empty-body]
+    """Return the wear laws that the plugin provides."""

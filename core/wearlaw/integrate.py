@@ -1,0 +1,188 @@
+"""Where the nodes lie, and what a law's rate is on average over the patch.
+
+The only code that sees both a contact model and a wear law. A model that knows its fields in closed form and
+a law that declares its breakpoints are integrated to rounding error: nodes in the slip zone, split where a
+variable crosses a breakpoint. With less known, the integral is as good as can be had, with an error estimate.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.crossings import crossings
+from wearlaw.errors import ModelError
+from wearlaw.models import ContactModel, LineContactModel, Scale, WearLaw, stick_nodes
+from wearlaw.quadrature import join, remainder, zone_nodes
+from wearlaw.records import NODE_VARIABLES, Contact, LineProblem
+
+BLOCK = 1024
+"""Operating points of a block: small enough for its arrays to stay in the cache."""
+
+PANELS_UNDECLARED = 4
+"""Panels of the slip zone for a law that says nothing about where it branches."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactTotals:
+    """The outcome of a contact at each operating point, as SI arrays of the batch shape."""
+
+    tangential_force: Array
+    wear_index: Array
+    patch_area: Array
+    mean_slip: Array
+    slip_area: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WearTotals:
+    """The wear at each operating point, as SI arrays of the batch shape.
+
+    Attributes
+    ----------
+    wear_rate : ndarray
+        Area mean of the law's rate over the patch [kg/m/m²].
+    wear_rate_error : ndarray
+        Estimate of the integration error in it [kg/m/m²].
+    """
+
+    wear_rate: Array
+    wear_rate_error: Array
+
+
+def integrate_contact(model: ContactModel, problem: LineProblem, scale: Scale) -> ContactTotals:
+    """Return the totals of a contact, block by block."""
+    flat = problem.flatten()
+    columns = [_contact_columns(solve(model, flat[block], scale)) for block in _blocks(flat)]
+    return ContactTotals(**_join(columns, problem.batch_shape))
+
+
+def integrate_wear(
+    model: ContactModel, law: WearLaw, problem: LineProblem, scale: Scale
+) -> tuple[ContactTotals, WearTotals]:
+    """Return the totals of a contact and of the wear in it, block by block.
+
+    Raises
+    ------
+    ModelError
+        If the model or the law breaks its contract.
+    """
+    flat = problem.flatten()
+    contact_columns, wear_columns = [], []
+    for block in _blocks(flat):
+        contact, slip_nodes = contact_for(model, law, flat[block], scale)
+        rate = rate_of(law, contact)
+        contact_columns.append(_contact_columns(contact))
+        wear_columns.append({"wear_rate": contact.mean(rate), "wear_rate_error": _error(contact, rate, slip_nodes)})
+    shape = problem.batch_shape
+    return ContactTotals(**_join(contact_columns, shape)), WearTotals(**_join(wear_columns, shape))
+
+
+def solve(model: ContactModel, problem: LineProblem, scale: Scale) -> Contact:
+    """Return the contact of a model on its own nodes, or its patch mean where that is asked for."""
+    contact = model.solve(problem)
+    _check_contact(model, contact, problem)
+    if scale == "patch" and model.scale != "patch":
+        return contact.patch_mean()
+    return contact
+
+
+def contact_for(model: ContactModel, law: WearLaw, problem: LineProblem, scale: Scale) -> tuple[Contact, int | None]:
+    """Return the contact on the nodes that suit a law, and how many of the last ones lie in the slip zone.
+
+    The number is None where the nodes are not those of `zone_nodes`, and 0 for one node a patch.
+    """
+    if scale == "patch":
+        return solve(model, problem, scale), 0
+    if not isinstance(model, LineContactModel):
+        return solve(model, problem, scale), None
+    start, end = model.slip_zone(dataclasses.replace(problem, creepage=np.abs(problem.creepage)))
+    breakpoints = law.breakpoints
+    if breakpoints is None:
+        slipping = zone_nodes(start, end, panels=PANELS_UNDECLARED)
+    else:
+        per_node = {name: values for name, values in breakpoints.items() if name in NODE_VARIABLES}
+        slipping = zone_nodes(start, end, splits=crossings(model, problem, (start, end), per_node))
+    contact = model.at(problem, join(*stick_nodes(problem, start, end), slipping))
+    _check_contact(model, contact, problem)
+    return contact, slipping.x.shape[-1]
+
+
+def rate_of(law: WearLaw, contact: Contact) -> Array:
+    """Return a law's rate at the nodes, or raise a `ModelError` if it is not what a rate must be."""
+    rate = np.asarray(law.rate(contact))
+    if rate.shape != contact.pressure.shape:
+        raise ModelError(
+            f"wear law '{law.name}' returned rates of shape {rate.shape} for nodes of shape"
+            f" {contact.pressure.shape}; it must return one rate a node"
+        )
+    if not np.isfinite(rate).all():
+        raise ModelError(f"wear law '{law.name}' returned a rate that is not finite")
+    return rate
+
+
+def _check_contact(model: ContactModel, contact: Contact, problem: LineProblem) -> None:
+    for name in ("pressure", "traction", "slip", "area", "tangential_force"):
+        if not np.isfinite(getattr(contact, name)).all():
+            raise ModelError(
+                f"contact model '{model.name}' gave a {name.replace('_', ' ')} that is not finite"
+                f" for {_ranges(problem)}"
+            )
+
+
+def _ranges(problem: LineProblem) -> str:
+    creepage, pressure = problem.creepage, problem.max_pressure
+    return (
+        f"creepages from {creepage.min():g} to {creepage.max():g}"
+        f" and maximum pressures from {pressure.min():g} to {pressure.max():g} Pa"
+    )
+
+
+def _error(contact: Contact, rate: Array, slip_nodes: int | None) -> Array:
+    weighted = rate * contact.area
+    if slip_nodes is None:
+        return _halving_error(contact, rate)
+    rounding = np.finfo(np.float64).eps * contact.sum_over_nodes(np.abs(weighted))
+    if slip_nodes == 0:
+        return rounding / contact.patch_area
+    return (remainder(weighted[..., -slip_nodes:]) + rounding) / contact.patch_area
+
+
+def _halving_error(contact: Contact, rate: Array) -> Array:
+    """Return how far the means over every other node lie apart, for nodes of which nothing is known."""
+    axis = contact.rolling_speed.ndim
+    flat_area = contact.area.reshape(*contact.rolling_speed.shape, -1)
+    flat_rate = rate.reshape(flat_area.shape)
+    if flat_area.shape[axis] < 2:
+        return np.abs(contact.mean(rate))
+    means = [
+        (flat_rate[..., part] * flat_area[..., part]).sum(-1) / flat_area[..., part].sum(-1)
+        for part in (slice(0, None, 2), slice(1, None, 2))
+    ]
+    difference: Array = np.abs(means[0] - means[1])
+    return difference
+
+
+def _contact_columns(contact: Contact) -> dict[str, Array]:
+    return {
+        "tangential_force": contact.tangential_force,
+        "wear_index": contact.wear_index,
+        "patch_area": contact.patch_area,
+        "mean_slip": contact.mean_slip,
+        "slip_area": contact.slip_area,
+    }
+
+
+def _blocks(flat: LineProblem) -> Iterator[slice]:
+    points = flat.creepage.size
+    return (slice(first, first + BLOCK) for first in range(0, points, BLOCK))
+
+
+def _join(columns: list[dict[str, Array]], shape: tuple[int, ...]) -> dict[str, Array]:
+    if not columns:
+        raise ValueError("an empty batch has no totals")
+    return {name: np.concatenate([c[name] for c in columns]).reshape(shape) for name in columns[0]}

@@ -1,0 +1,192 @@
+"""What a plugin implements: `ContactModel` or `LineContactModel`, and `WearLaw`.
+
+A model is its configuration: a frozen pydantic record whose fields carry units and whose methods compute.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
+from wearlaw.errors import CompositionError
+from wearlaw.quadrature import Nodes, join, zone_nodes
+from wearlaw.records import Contact, LineFields, LineProblem
+
+Scale: TypeAlias = Literal["patch", "cells"]
+"""Whether a contact holds the means of the whole patch in one node, or resolves it into many."""
+
+Claim: TypeAlias = Literal["traction_bound", "stick", "energy_balance", "saturation", "initial_slope", "similarity"]
+"""An invariant that a contact model keeps unless it declares itself exempt; see `ContactModel.exemptions`."""
+
+BreakpointMap: TypeAlias = Mapping[str, tuple[float, ...]]
+"""Variables of a `Contact` with the SI values at which a law branches."""
+
+
+class Model(Configuration, ABC):
+    """What contact models and wear laws have in common."""
+
+    name: ClassVar[str]
+    """The name under which the model is looked up."""
+
+    source: ClassVar[str]
+    """The literature that the model is taken from."""
+
+    @classmethod
+    def subject(cls) -> str:
+        """Return what messages call this model."""
+        return cls.name
+
+    if not TYPE_CHECKING:  # checkers reject this order by themselves
+
+        def __or__(self, other: object) -> object:
+            raise CompositionError(
+                f"'{self.name}' cannot start a pipeline; begin with a rig, as in"
+                ' wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd")'
+            )
+
+
+class ContactModel(Model):
+    """A theory of the tangential contact: from a contact problem to traction and slip in the patch.
+
+    A subclass that knows its fields at any point in closed form derives from `LineContactModel` instead,
+    which lets the wear be integrated to rounding error.
+    """
+
+    scale: ClassVar[Scale] = "cells"
+
+    uses_measured_traction: ClassVar[bool] = False
+    """Whether the model can use a measured traction coefficient."""
+
+    @abstractmethod
+    def solve(self, problem: LineProblem) -> Contact:
+        """Return the solved contact on nodes of the model's choice, of shape (*batch, nodes)."""
+
+    @property
+    def exemptions(self) -> Mapping[Claim, str]:
+        """The invariants that this model does not keep, each with the reason."""
+        return {}
+
+
+class LineContactModel(ContactModel):
+    """A contact model that knows its fields at any x in closed form, with one slip zone.
+
+    The methods are only called with creepage ≥ 0; `solve` mirrors the result for negative creepage.
+    """
+
+    @abstractmethod
+    def slip_zone(self, problem: LineProblem) -> tuple[Array, Array]:
+        """Return where the slip zone begins and ends [m], each of the batch shape; equal if nothing slips."""
+
+    @abstractmethod
+    def fields(self, problem: LineProblem, x: Array) -> LineFields:
+        """Return the fields at positions `x` [m] of shape (*batch, nodes).
+
+        The arrays of `problem` come with a last axis of length one, so that formulas broadcast against `x`.
+        """
+
+    @abstractmethod
+    def tangential_force_per_width(self, problem: LineProblem) -> Array:
+        """Return T [N/m], of the batch shape."""
+
+    def at(self, problem: LineProblem, nodes: Nodes) -> Contact:
+        """Return the contact on the given nodes, mirrored where the creepage is negative."""
+        sign = np.sign(problem.creepage)
+        forward = dataclasses.replace(problem, creepage=np.abs(problem.creepage))
+        fields = self.fields(forward[..., None], nodes.x)
+        mirrored = dataclasses.replace(
+            fields, traction=sign[..., None] * fields.traction, slip=sign[..., None] * fields.slip
+        )
+        force = sign * self.tangential_force_per_width(forward)
+        return Contact.from_line(problem, mirrored, x=nodes.x, length=nodes.length, force_per_width=force)
+
+    def solve(self, problem: LineProblem) -> Contact:
+        """Return the contact on quadrature nodes of the stick zone and the slip zone."""
+        start, end = self.slip_zone(dataclasses.replace(problem, creepage=np.abs(problem.creepage)))
+        return self.at(problem, join(*stick_nodes(problem, start, end), zone_nodes(start, end)))
+
+
+def stick_nodes(problem: LineProblem, start: Array, end: Array) -> list[Nodes]:
+    """Return the nodes of what lies before and behind the slip zone, if anything does anywhere in the batch."""
+    a = problem.half_width
+    zones = [(-a, start), (end, a)]
+    return [zone_nodes(low, high) for low, high in zones if (low < high).any()]
+
+
+class Calibration(Configuration):
+    """What the parameters of a wear law were fitted to."""
+
+    contact_model: str
+    """Name of the contact model whose solution the wear was related to."""
+    scale: Scale
+    """Whether its patch means or its cells were used."""
+    options: tuple[tuple[str, str], ...] = ()
+    """Settings of that contact model that matter, as pairs of field and value."""
+    geometry: Literal["line", "ellipse"] = "line"
+    """Shape of the contact patch."""
+    materials: str
+    """Materials of the two bodies."""
+    source: str
+    """Literature."""
+
+    def __str__(self) -> str:
+        if self.scale == "patch":
+            return "patch means (the global model)"
+        options = "".join(f", {field}={value!r}" for field, value in self.options)
+        return f"the cells of contact_model({self.contact_model!r}{options})"
+
+    def covers(self, model: ContactModel, scale: Scale) -> bool:
+        """Return whether the parameters were fitted for this contact model at this scale."""
+        if scale != self.scale:
+            return False
+        if scale == "patch":
+            return True
+        return model.name == self.contact_model and all(
+            getattr(model, field, None) == value for field, value in self.options
+        )
+
+
+class WearLaw(Model):
+    """A law of wear: from a solved contact to the wear rate at each of its nodes."""
+
+    scale: ClassVar[Literal["patch", "any"]] = "any"
+    """"patch" where the law is stated for the means of the whole patch only."""
+
+    monotone_in: ClassVar[tuple[str, ...]] = ()
+    """Variables of a `Contact` in which the rate never falls while the others stay as they are."""
+
+    @abstractmethod
+    def rate(self, contact: Contact) -> Array:
+        """Return the mass lost per metre rolled and contact area [kg/m/m²], of the shape of the nodes."""
+
+    @property
+    def breakpoints(self) -> BreakpointMap | None:
+        """The variables in which the law branches, with the SI values where it does.
+
+        {} declares a law that is smooth everywhere; None, the default, that nothing is known.
+        """
+        return None
+
+    @property
+    def jumps(self) -> BreakpointMap:
+        """Those of the breakpoints at which the rate jumps."""
+        return {}
+
+    @property
+    def valid_range(self) -> Mapping[str, tuple[float, float]]:
+        """The stated range of the law: patch means of `Contact` variables with their SI bounds."""
+        return {}
+
+    @property
+    def calibration(self) -> Calibration | None:
+        """What the parameters were fitted to; None where they are not tied to a contact solution."""
+        return None
+
+    def band(self) -> tuple[WearLaw, WearLaw, WearLaw] | None:
+        """Return the laws at the low, middle and high end of published parameter ranges, where there are any."""
+        return None

@@ -1,0 +1,155 @@
+"""Composition: rig | contact model | wear law, with the checks that only the whole allows."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from typing import Generic, TypeVar, Unpack, overload
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
+from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning
+from wearlaw.integrate import ContactTotals, integrate_contact, integrate_wear
+from wearlaw.models import ContactModel, Scale, WearLaw
+from wearlaw.records import UNITS, LineProblem
+from wearlaw.result import ContactSolution, Prediction
+from wearlaw.rig import TwinDisc, TwinDiscConditions
+from wearlaw.specification import ContactModelField, WearLawField
+from wearlaw.units import from_si
+
+RigT = TypeVar("RigT", bound=TwinDisc)
+
+
+class PatchMean(Configuration):
+    """The stage that replaces a resolved contact by its patch means."""
+
+
+def patch_mean() -> PatchMean:
+    """Return the stage that replaces a resolved contact by its patch means, for laws that are stated for them."""
+    return PatchMean()
+
+
+class ContactPipeline(Configuration, Generic[RigT]):
+    """A rig with a contact model: predicts traction and slip, and takes a wear law to predict wear."""
+
+    rig: RigT
+    """The test rig."""
+    contact_model: ContactModelField
+    """The theory of the tangential contact."""
+    use_patch_mean: bool = False
+    """Whether the resolved contact is replaced by its patch means."""
+
+    @property
+    def scale(self) -> Scale:
+        """Whether what comes out are the means of the patch or its cells."""
+        return "patch" if self.use_patch_mean else self.contact_model.scale
+
+    def __repr__(self) -> str:
+        mean = " | patch_mean()" if self.use_patch_mean else ""
+        return f"{self.rig!r} | {self.contact_model!r}{mean}"
+
+    @overload
+    def __or__(self, stage: WearLaw) -> Pipeline[RigT]: ...
+    @overload
+    def __or__(self, stage: PatchMean) -> ContactPipeline[RigT]: ...
+    def __or__(self, stage: WearLaw | PatchMean) -> Pipeline[RigT] | ContactPipeline[RigT]:
+        """Return the pipeline with a wear law, or with the contact's patch means."""
+        if isinstance(stage, PatchMean):
+            return ContactPipeline(rig=self.rig, contact_model=self.contact_model, use_patch_mean=True)
+        if not isinstance(stage, WearLaw):
+            raise CompositionError(f"a contact model is followed by wl.patch_mean() or a wear law, not by {stage!r}")
+        _check_fit(self.contact_model, self.scale, stage)
+        return Pipeline(contact=self, wear_law=stage)
+
+    def __call__(self: ContactPipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> ContactSolution:
+        """Return the contact under the given conditions; see `TwinDisc.problem` for these."""
+        problem = self.rig.problem(**conditions)
+        _check_traction(self.contact_model, problem)
+        self.rig.warn_of_plasticity(problem, stacklevel=2)
+        totals = integrate_contact(self.contact_model, problem, self.scale)
+        return ContactSolution(self.rig, self.contact_model, self.scale, problem, totals)
+
+
+class Pipeline(Configuration, Generic[RigT]):
+    """A rig, a contact model and a wear law: predicts wear.
+
+    A pipeline is frozen: it prints, compares, hashes, pickles, and serialises with
+    ``model_dump_json()`` to what ``Pipeline.model_validate_json(...)`` reads.
+    """
+
+    contact: ContactPipeline[RigT]
+    """The rig with its contact model."""
+    wear_law: WearLawField
+    """The law of wear."""
+
+    def __repr__(self) -> str:
+        return f"{self.contact!r} | {self.wear_law!r}"
+
+    def __call__(self: Pipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> Prediction:
+        """Return the contact and the wear under the given conditions; see `TwinDisc.problem` for these."""
+        rig, model, scale = self.contact.rig, self.contact.contact_model, self.contact.scale
+        problem = rig.problem(**conditions)
+        _check_traction(model, problem)
+        rig.warn_of_plasticity(problem, stacklevel=2)
+        contact, wear = integrate_wear(model, self.wear_law, problem, scale)
+        _warn_of_range(self.wear_law, problem, contact, stacklevel=2)
+        return Prediction(rig, model, scale, problem, contact, self.wear_law, wear)
+
+
+def _check_fit(model: ContactModel, scale: Scale, law: WearLaw) -> None:
+    """Refuse a law that cannot use a contact, and warn of parameters that were fitted for another one."""
+    if law.scale == "patch" and scale != "patch":
+        raise CompositionError(
+            f"wear law '{law.name}' is stated for the means of the whole patch, but contact model '{model.name}'"
+            f' resolves it into cells; put wl.patch_mean() between them, or use wl.contact_model("global")'
+        )
+    calibration = law.calibration
+    if calibration is not None and not calibration.covers(model, scale):
+        used = "its patch means" if scale == "patch" else "its cells"
+        warnings.warn(
+            f"the parameters of wear law '{law.name}' were fitted for {calibration}, but are used with"
+            f" {model!r} and {used}; check them against data, or choose parameters fitted for that contact",
+            CalibrationWarning,
+            stacklevel=3,
+        )
+
+
+def _check_traction(model: ContactModel, problem: LineProblem) -> None:
+    if problem.traction_coefficient is not None and not model.uses_measured_traction:
+        raise ConditionsError(
+            f"traction_coefficient: contact model '{model.name}' computes the traction itself; leave"
+            ' traction_coefficient out, or use wl.contact_model("global")'
+        )
+
+
+def _patch_values(problem: LineProblem, totals: ContactTotals) -> Mapping[str, Array]:
+    """Return the patch means by the names of `Contact`."""
+    creepage = np.abs(problem.creepage)
+    return {
+        "pressure": problem.normal_force / totals.patch_area,
+        "slip": creepage,
+        "slip_speed": creepage * problem.rolling_speed,
+        "wear_index": totals.wear_index,
+        "wear_index_density": totals.wear_index / totals.patch_area,
+    }
+
+
+def _warn_of_range(law: WearLaw, problem: LineProblem, totals: ContactTotals, stacklevel: int) -> None:
+    """Warn once for each variable that leaves the law's stated range anywhere in the batch."""
+    if not law.valid_range:
+        return
+    values = _patch_values(problem, totals)
+    for name, (low, high) in law.valid_range.items():
+        outside = (values[name] < low) | (values[name] > high)
+        if outside.any():
+            bounds = (low, high, values[name].min(), values[name].max())
+            shown = [repr(from_si(bound, UNITS[name])) for bound in bounds]
+            warnings.warn(
+                f"wear law '{law.name}' is stated for a mean {name.replace('_', ' ')} from {shown[0]} to {shown[1]};"
+                f" {outside.sum()} of {outside.size} operating points lie outside, the whole spans {shown[2]} to"
+                f" {shown[3]}",
+                RangeWarning,
+                stacklevel=stacklevel + 1,
+            )

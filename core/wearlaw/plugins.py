@@ -1,0 +1,172 @@
+"""Discovery of plugins and look-up of models by name.
+
+Each entry point is loaded and asked alone, so that a broken plugin is named and left out while all others go
+on working. Two models of one name are an error that names both distributions.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import warnings
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from importlib.metadata import EntryPoint, distributions
+from itertools import chain
+from typing import Any, Generic, TypeVar
+
+import pluggy
+
+from wearlaw import hookspecs
+from wearlaw.errors import PluginWarning, UnknownModelError, did_you_mean
+from wearlaw.models import ContactModel, Model, WearLaw
+
+ModelT = TypeVar("ModelT", bound=Model)
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a plugin comes from."""
+
+    entry_point: str
+    distribution: str
+    version: str
+
+    def __str__(self) -> str:
+        return f"{self.distribution} {self.version} (plugin '{self.entry_point}')"
+
+
+@dataclass(frozen=True)
+class Broken:
+    """A plugin that could not be used, or a part of it, and why."""
+
+    origin: Origin
+    cause: str
+
+    def __str__(self) -> str:
+        return f"{self.origin}: {self.cause}"
+
+
+@dataclass
+class Shelf(Generic[ModelT]):
+    """All installed models of one kind."""
+
+    kind: str
+    base: type[ModelT]
+    providers: dict[str, list[tuple[type[ModelT], Origin]]] = field(default_factory=dict)
+
+    def add(self, model: object, origin: Origin) -> None:
+        """Put a model on the shelf, or raise `TypeError` if it is not one."""
+        if not (inspect.isclass(model) and issubclass(model, self.base)):
+            raise TypeError(f"{model!r} is not a subclass of {self.base.__name__}")
+        if inspect.isabstract(model):
+            missing = ", ".join(sorted(model.__abstractmethods__))
+            raise TypeError(f"{model.__name__} does not implement {missing}")
+        name = getattr(model, "name", None)
+        if not (isinstance(name, str) and name.isidentifier()):
+            raise TypeError(f"the name of {model.__name__} must be an identifier, got {name!r}")
+        self.providers.setdefault(name, []).append((model, origin))
+
+    def classes(self) -> dict[str, type[ModelT]]:
+        """Return the models by name, without those whose name is taken twice."""
+        return {name: found[0][0] for name, found in sorted(self.providers.items()) if len(found) == 1}
+
+    def find(self, name: str, broken: Iterable[Broken]) -> type[ModelT]:
+        """Return the model of a name, or raise an `UnknownModelError` that says what there is."""
+        found = self.providers.get(name, [])
+        if len(found) == 1:
+            return found[0][0]
+        if found:
+            origins = " and ".join(str(origin) for _, origin in found)
+            raise UnknownModelError(f"{self.kind} '{name}' is provided more than once, by {origins}; remove one")
+        names = ", ".join(self.classes()) or "none"
+        message = f"no {self.kind} is called {name!r};{did_you_mean(str(name), self.classes())} Installed: {names}"
+        message += "".join(f"\n  left out: {plugin}" for plugin in broken)
+        raise UnknownModelError(message)
+
+
+@dataclass
+class Installed:
+    """Everything that discovery found."""
+
+    contact_models: Shelf[ContactModel] = field(default_factory=lambda: Shelf("contact model", ContactModel))  # type: ignore[type-abstract]
+    wear_laws: Shelf[WearLaw] = field(default_factory=lambda: Shelf("wear law", WearLaw))  # type: ignore[type-abstract]
+    plugins: list[Origin] = field(default_factory=list)
+    broken: list[Broken] = field(default_factory=list)
+
+
+@functools.cache
+def installed() -> Installed:
+    """Return all installed plugins; they are searched for once in a process."""
+    found = Installed()
+    for entry_point, origin in _entry_points():
+        found.plugins.append(origin)
+        try:
+            _load(entry_point, origin, found)
+        except Exception as error:  # whatever a plugin raises must not stop the others
+            found.broken.append(Broken(origin, f"{type(error).__name__}: {error}"))
+    for plugin in found.broken:
+        warnings.warn(f"left out: {plugin}", PluginWarning, stacklevel=3)
+    return found
+
+
+def contact_models() -> Mapping[str, type[ContactModel]]:
+    """Return the installed contact models by name."""
+    return installed().contact_models.classes()
+
+
+def wear_laws() -> Mapping[str, type[WearLaw]]:
+    """Return the installed wear laws by name."""
+    return installed().wear_laws.classes()
+
+
+def contact_model(name: str, /, **options: Any) -> ContactModel:
+    """Return the installed contact model of a name, with its options.
+
+    Parameters
+    ----------
+    name : str
+        Such as "exact"; `contact_models()` lists all names.
+    **options
+        The model's fields, such as ``bound="elliptic"``; ``wearlaw show NAME`` lists them.
+
+    Raises
+    ------
+    UnknownModelError
+        If no installed plugin provides that model, or more than one does.
+    ConfigurationError
+        If an option is unknown or has a wrong value.
+    """
+    found = installed()
+    return found.contact_models.find(name, found.broken)(**options)
+
+
+def wear_law(name: str, /, **options: Any) -> WearLaw:
+    """Return the installed wear law of a name, with its options.
+
+    Parameters, errors: as for `contact_model`.
+    """
+    found = installed()
+    return found.wear_laws.find(name, found.broken)(**options)
+
+
+def _entry_points() -> list[tuple[EntryPoint, Origin]]:
+    found = {
+        (dist.name, entry_point.name): (entry_point, Origin(entry_point.name, dist.name, dist.version))
+        for dist in distributions()
+        for entry_point in dist.entry_points
+        if entry_point.group == hookspecs.PROJECT
+    }
+    return [found[key] for key in sorted(found)]
+
+
+def _load(entry_point: EntryPoint, origin: Origin, found: Installed) -> None:
+    """Load one plugin with a plugin manager of its own and put its models on the shelves."""
+    manager = pluggy.PluginManager(hookspecs.PROJECT)
+    manager.add_hookspecs(hookspecs)
+    manager.register(entry_point.load(), entry_point.name)
+    manager.check_pending()
+    for model in chain.from_iterable(manager.hook.wearlaw_contact_models()):
+        found.contact_models.add(model, origin)
+    for law in chain.from_iterable(manager.hook.wearlaw_wear_laws()):
+        found.wear_laws.add(law, origin)

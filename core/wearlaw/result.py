@@ -1,0 +1,265 @@
+"""What a pipeline returns: quantities with units, computed from SI totals when asked for."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from wearlaw import integrate
+from wearlaw.arrays import Array
+from wearlaw.errors import InputError
+from wearlaw.integrate import ContactTotals, WearTotals
+from wearlaw.models import ContactModel, LineContactModel, Scale, WearLaw
+from wearlaw.quadrature import uniform_cells
+from wearlaw.records import UNITS, Contact, LineProblem
+from wearlaw.rig import Disc, TwinDisc
+from wearlaw.units import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
+
+if TYPE_CHECKING:
+    import xarray
+
+PROFILE_CELLS = 200
+"""Cells of a profile along the patch."""
+
+
+class ContactSolution:
+    """The contact at one or many operating points.
+
+    Every property has the shape of the broadcast conditions; for one operating point it is a scalar.
+    """
+
+    _summary: ClassVar[tuple[str, ...]] = (
+        "tangential_force", "wear_index", "half_width", "max_pressure", "stick_ratio", "mean_slip",
+    )  # fmt: skip
+
+    def __init__(
+        self, rig: TwinDisc, model: ContactModel, scale: Scale, problem: LineProblem, totals: ContactTotals
+    ) -> None:
+        self.rig = rig
+        self.contact_model = model
+        self.scale: Scale = scale
+        self.problem = problem
+        self._totals = totals
+
+    @property
+    def tangential_force(self) -> Quantity:
+        """T on the whole track width [N], with the sign of the creepage."""
+        return from_si(self._totals.tangential_force, "N")
+
+    @property
+    def traction_coefficient(self) -> Quantity:
+        """T over the normal force [-]."""
+        return from_si(self._totals.tangential_force / self.problem.normal_force, "")
+
+    @property
+    def wear_index(self) -> Quantity:
+        """Tγ [N], the energy dissipated per metre rolled (Tassini et al. 2010, eq. 5)."""
+        return from_si(self._totals.wear_index, "N")
+
+    @property
+    def wear_index_density(self) -> Quantity:
+        """Tγ over the area of the patch [N/mm²]."""
+        return from_si(self._totals.wear_index / self._totals.patch_area, "N/mm^2")
+
+    @property
+    def averaged_wear_index(self) -> Quantity:
+        """The averaged wear index of Tassini et al. 2010, section 3.2.3 [N].
+
+        Mean slip of the slipping part of the patch times the sum of the tractions. It exceeds the energy that is
+        dissipated wherever part of the patch sticks; `wear_index` is the one that is consistent with it.
+        """
+        totals = self._totals
+        slipping = np.divide(
+            totals.mean_slip * totals.patch_area,
+            totals.slip_area,
+            out=np.zeros_like(totals.slip_area),
+            where=totals.slip_area > 0,
+        )
+        return from_si(slipping * np.abs(totals.tangential_force), "N")
+
+    @property
+    def normal_force(self) -> Quantity:
+        """Normal force on the whole track width [N]."""
+        return from_si(self.problem.normal_force, "N")
+
+    @property
+    def normal_force_per_width(self) -> Quantity:
+        """Normal force per unit width, P [N/m]."""
+        return from_si(self.problem.normal_force_per_width, "kN/m")
+
+    @property
+    def creepage(self) -> Quantity:
+        """ξ [-]."""
+        return from_si(self.problem.creepage, "%")
+
+    @property
+    def half_width(self) -> Quantity:
+        """Half the length of the patch in the rolling direction, a [m]."""
+        return from_si(self.problem.half_width, "mm")
+
+    @property
+    def max_pressure(self) -> Quantity:
+        """Hertz's maximum pressure, p0 [Pa]."""
+        return from_si(self.problem.max_pressure, "MPa")
+
+    @property
+    def patch_area(self) -> Quantity:
+        """Area of the patch, 2a × track width [m²]."""
+        return from_si(self._totals.patch_area, "mm^2")
+
+    @property
+    def stick_ratio(self) -> Quantity:
+        """Share of the patch that sticks [-]."""
+        return from_si(1.0 - self._totals.slip_area / self._totals.patch_area, "")
+
+    @property
+    def mean_slip(self) -> Quantity:
+        """Mean magnitude of the relative slip over the whole patch [-]."""
+        return from_si(self._totals.mean_slip, "%")
+
+    @cached_property
+    def contact(self) -> Contact:
+        """The solved contact as SI arrays, on the nodes on which it was integrated."""
+        return integrate.solve(self.contact_model, self.problem, self.scale)
+
+    @cached_property
+    def profile(self) -> xarray.Dataset:
+        """Pressure, traction, traction bound and slip along the patch, labelled and with units."""
+        return self._profile({})
+
+    def _cells(self) -> Contact:
+        """Return the contact on uniform cells where the model can give them, else on its own nodes."""
+        if self.scale == "cells" and isinstance(self.contact_model, LineContactModel):
+            return self.contact_model.at(self.problem, uniform_cells(self.problem.half_width, PROFILE_CELLS))
+        return self.contact
+
+    def _profile(self, more: dict[str, tuple[Array, str]]) -> xarray.Dataset:
+        import xarray
+
+        contact = self._cells()
+        names = ("x", "pressure", "traction", "traction_bound", "slip")
+        columns = {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more}
+        dims = (*(f"point_{axis}" for axis in range(len(self.problem.batch_shape))), "cell")
+        data = {
+            name: xarray.DataArray(from_si(values, unit).magnitude, dims=dims, attrs={"units": unit})
+            for name, (values, unit) in columns.items()
+        }
+        if len(dims) == 1:
+            x = data.pop("x")
+            return xarray.Dataset({k: v.rename(cell="x") for k, v in data.items()}, coords={"x": x.rename(cell="x")})
+        return xarray.Dataset(data).set_coords("x")
+
+    def __repr__(self) -> str:
+        rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in self._summary)
+        return f"{type(self).__name__} of {self._count()}{rows}"
+
+    def _count(self) -> str:
+        size = self.problem.creepage.size
+        return "1 operating point" if size == 1 else f"{size} operating points"
+
+
+class Prediction(ContactSolution):
+    """The contact and the wear at one or many operating points."""
+
+    _summary = ("wear_rate", *ContactSolution._summary)
+
+    def __init__(
+        self,
+        rig: TwinDisc,
+        model: ContactModel,
+        scale: Scale,
+        problem: LineProblem,
+        totals: ContactTotals,
+        law: WearLaw,
+        wear: WearTotals,
+    ) -> None:
+        super().__init__(rig, model, scale, problem, totals)
+        self.wear_law = law
+        self._wear = wear
+
+    @property
+    def wear_rate(self) -> Quantity:
+        """Mass lost per metre rolled and contact area, mean over the patch [kg/m/m²]."""
+        return from_si(self._wear.wear_rate, WEAR_RATE)
+
+    @property
+    def wear_rate_error(self) -> Quantity:
+        """Estimate of the numerical error in `wear_rate` [kg/m/m²]."""
+        return from_si(self._wear.wear_rate_error, WEAR_RATE)
+
+    @cached_property
+    def contact(self) -> Contact:
+        """The solved contact as SI arrays, on the nodes on which the wear was integrated."""
+        flat = self.problem.flatten()
+        contact, _ = integrate.contact_for(self.contact_model, self.wear_law, flat, self.scale)
+        return contact.with_batch(self.problem.batch_shape)
+
+    @cached_property
+    def profile(self) -> xarray.Dataset:
+        """Pressure, traction, traction bound, slip and wear rate along the patch, labelled and with units."""
+        rate = integrate.rate_of(self.wear_law, self._cells())
+        return self._profile({"wear_rate": (rate, WEAR_RATE)})
+
+    def depth_per_distance(self, body: str) -> Quantity:
+        """Return the depth that a body's surface loses per distance rolled [m/m].
+
+        A point of the surface is in contact for 2a of each πD rolled, so this is
+        (wear rate / density) · 2a / (πD).
+
+        Parameters
+        ----------
+        body : str
+            "disc_1" or "disc_2".
+        """
+        share = 2.0 * self.problem.half_width / self._circumference(body)
+        return from_si(self._volume_rate(body) * share, "um/km")
+
+    def profile_area_rate(self, body: str) -> Quantity:
+        """Return the area of a radial section that a body loses per distance rolled [mm²/km].
+
+        This is the measure of the BRR law (Pearce and Sherratt, Wear 144 (1991) 343-351): the depth per distance,
+        times the track width.
+        """
+        section = self._volume_rate(body) * self._totals.patch_area / self._circumference(body)
+        return from_si(section, "mm^2/km")
+
+    def mass_lost(self, over: QuantityLike, body: str) -> Quantity:
+        """Return the mass that a body loses over a distance rolled [kg].
+
+        Parameters
+        ----------
+        over : Quantity or str
+            The distance rolled, such as Q(10, "km").
+        body : str
+            "disc_1" or "disc_2".
+        """
+        self._disc(body)
+        return from_si(self._mass_per_distance() * Unit("km").si(over, "over"), "mg")
+
+    def mass_per_cycle(self, body: str) -> Quantity:
+        """Return the mass that a body loses in one of its revolutions, over πD rolled [kg]."""
+        return from_si(self._mass_per_distance() * self._circumference(body), "ug")
+
+    def _mass_per_distance(self) -> Array:
+        return self._wear.wear_rate * self._totals.patch_area
+
+    def _volume_rate(self, body: str) -> Array:
+        return self._wear.wear_rate / scalar_si(self._disc(body).material.density, "kg/m^3")
+
+    def _disc(self, body: str) -> Disc:
+        return self.rig.body(body)
+
+    def _circumference(self, body: str) -> float:
+        diameter = scalar_si(self._disc(body).diameter, "m")
+        if np.isinf(diameter):
+            raise InputError(f"body: {body} is flat and makes no revolutions; name the other body")
+        return np.pi * diameter
+
+
+def _brief(quantity: Quantity) -> str:
+    """Return a scalar as it is, an array as its range."""
+    if np.ndim(quantity.magnitude) == 0:
+        return repr(quantity)
+    return f"{quantity.min()!r} to {quantity.max()!r}"

@@ -1,0 +1,333 @@
+"""The test rig: materials, discs, and the way from the conditions of a test to a contact problem."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Annotated, Any, Required, TypedDict, Unpack
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from wearlaw import hertz
+from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
+from wearlaw.errors import CompositionError, ConditionsError, InputError, RangeWarning, did_you_mean
+from wearlaw.models import ContactModel
+from wearlaw.records import LineProblem
+from wearlaw.units import (
+    Density,
+    Length,
+    Q,
+    Quantity,
+    QuantityLike,
+    Speed,
+    Stress,
+    Unit,
+    coefficient,
+    from_si,
+    scalar_si,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from wearlaw.pipeline import ContactPipeline
+
+
+class Material(Configuration):
+    """An isotropic elastic material."""
+
+    youngs_modulus: Stress
+    """Young's modulus E [Pa]."""
+    poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5, strict=True)]
+    """Poisson's ratio ν [-]."""
+    density: Density
+    """Mass density ρ [kg/m³]."""
+    elastic_limit: Stress | None = None
+    """Maximum Hertz pressure [Pa] up to which the contact may be taken as elastic; None if not known."""
+
+
+def steel(
+    *,
+    youngs_modulus: QuantityLike = "206.47742 GPa",
+    poisson_ratio: float = 0.28,
+    density: QuantityLike = "7850 kg/m^3",
+    elastic_limit: QuantityLike | None = "1.68 GPa",
+) -> Material:
+    """Return the wheel and rail steel of the twin-disc tests, with any value overridden.
+
+    Parameters
+    ----------
+    youngs_modulus : Quantity or str
+        E [Pa]. Tassini et al. (Wear 268 (2010) 660-667) print neither E nor ν, but 741.43 kN/m for 1500 MPa on
+        discs of 47 mm, which needs E* = 112.0212 GPa; this E gives it with ν = 0.28.
+    poisson_ratio : float
+        ν [-].
+    density : Quantity or str
+        ρ [kg/m³].
+    elastic_limit : Quantity or str, optional
+        Maximum Hertz pressure [Pa] up to which the work-hardened surface stays elastic. An estimate: the
+        hardness 2.625 GPa that the KTH wear map implies, yield at H/2.8 (Tabor, The Hardness of Metals, 1951),
+        first yield in line contact at p0 = 1.79 Y (Johnson, Contact Mechanics, 1985, section 4.4).
+    """
+    return Material(
+        youngs_modulus=youngs_modulus,  # type: ignore[arg-type]
+        poisson_ratio=poisson_ratio,
+        density=density,  # type: ignore[arg-type]
+        elastic_limit=elastic_limit,  # type: ignore[arg-type]
+    )
+
+
+class Disc(Configuration):
+    """A disc of a twin-disc rig."""
+
+    diameter: Annotated[Quantity, Unit("mm", infinite=True)]
+    """Diameter D [m]; infinite for a flat body."""
+    material: Material
+    """What it is made of."""
+
+
+class TwinDiscConditions(TypedDict, total=False):
+    """The conditions of a twin-disc test; arrays broadcast against each other.
+
+    Exactly one of `normal_force` [N], `normal_force_per_width` [N/m] and `max_pressure` [Pa] gives the load.
+    """
+
+    normal_force: QuantityLike
+    normal_force_per_width: QuantityLike
+    max_pressure: QuantityLike
+    creepage: Required[QuantityLike]
+    friction_coefficient: Required[ArrayLike]
+    traction_coefficient: ArrayLike
+
+
+LOADS = {"normal_force": Unit("N"), "normal_force_per_width": Unit("kN/m"), "max_pressure": Unit("MPa")}
+"""The conditions that give the load, with their units."""
+
+CREEPAGE = Unit("", positive=False, limit=1.0)
+"""Creepage is a ratio of magnitude at most 1."""
+
+COEFFICIENTS = ("friction_coefficient", "traction_coefficient")
+"""The conditions that are plain numbers."""
+
+CONDITIONS = (*LOADS, "creepage", *COEFFICIENTS)
+"""All conditions of a twin-disc test."""
+
+
+class TwinDisc(Configuration):
+    """Two discs with parallel axes, pressed together and rolling with slip.
+
+    Disc 1 is the wheel disc, whose wear is predicted; positive creepage means that it is the faster one. The
+    discs' elastic constants enter through E* alone: the coupling of normal and tangential displacement between
+    unlike materials is neglected.
+    """
+
+    disc_1: Disc
+    """The wheel disc."""
+    disc_2: Disc
+    """The rail disc."""
+    track_width: Length
+    """Width of the running track across the rolling direction [m]."""
+    rolling_speed: Speed
+    """Mean of the two discs' surface speeds, V [m/s]."""
+
+    @model_validator(mode="after")
+    def _not_both_flat(self) -> TwinDisc:
+        if np.isinf(self.disc_1.diameter.magnitude) and np.isinf(self.disc_2.diameter.magnitude):
+            raise ValueError("disc_1 and disc_2 are both flat; give at least one of them a finite diameter")
+        return self
+
+    @classmethod
+    def suros(
+        cls,
+        *,
+        diameter: QuantityLike = "47 mm",
+        material: Material | None = None,
+        disc_1: Disc | None = None,
+        disc_2: Disc | None = None,
+        track_width: QuantityLike = "10 mm",
+        rotational_speed: QuantityLike = "400 rpm",
+        rolling_speed: QuantityLike | None = None,
+    ) -> TwinDisc:
+        """Return the rig of the University of Sheffield: steel discs of 47 mm, a 10 mm track, 400 rpm.
+
+        Parameters
+        ----------
+        diameter, material
+            Of both discs, unless `disc_1` or `disc_2` gives that disc whole.
+        disc_1, disc_2 : Disc, optional
+            A disc in place of the standard one.
+        track_width : Quantity or str
+            Width of the running track [m].
+        rotational_speed : Quantity or str
+            Speed of disc 1 [rad/s], from which the rolling speed follows.
+        rolling_speed : Quantity or str, optional
+            Rolling speed V [m/s] in place of the one that follows from `rotational_speed`.
+
+        Notes
+        -----
+        Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478.
+        """
+        standard = Disc(diameter=diameter, material=material or steel())  # type: ignore[arg-type]
+        disc_1, disc_2 = disc_1 or standard, disc_2 or standard
+        if rolling_speed is None:
+            rolling_speed = _surface_speed(disc_1, rotational_speed)
+        return cls(
+            disc_1=disc_1,
+            disc_2=disc_2,
+            track_width=track_width,  # type: ignore[arg-type]
+            rolling_speed=rolling_speed,  # type: ignore[arg-type]
+        )
+
+    def __or__(self, model: ContactModel) -> ContactPipeline[TwinDisc]:
+        """Return the pipeline that solves this rig's contact with a contact model."""
+        from wearlaw.pipeline import ContactPipeline
+
+        if not isinstance(model, ContactModel):
+            raise CompositionError(
+                f"a rig is followed by a contact model, not by {model!r};"
+                ' for example rig | wl.contact_model("exact") | wl.wear_law("usfd")'
+            )
+        return ContactPipeline(rig=self, contact_model=model)
+
+    def problem(self, **conditions: Unpack[TwinDiscConditions]) -> LineProblem:
+        """Return the contact problem that the conditions of a test pose.
+
+        Parameters
+        ----------
+        normal_force, normal_force_per_width, max_pressure : Quantity or str
+            The load, exactly one of them: N [N], P [N/m] or p0 [Pa].
+        creepage : Quantity or str
+            ξ, a ratio or in percent, of magnitude at most 1.
+        friction_coefficient : array_like of float
+            μ [-].
+        traction_coefficient : array_like of float, optional
+            Measured T/N [-], for contact models that can use it.
+
+        Raises
+        ------
+        ConditionsError
+            If conditions are missing, unknown, contradictory or do not broadcast.
+        UnitError
+            If a condition lacks its unit or is out of bounds.
+        """
+        arrays = _condition_arrays(dict(conditions))
+        radius, modulus = self._radius(), self._modulus()
+        width = scalar_si(self.track_width, "m")
+        if "max_pressure" in arrays:
+            per_width = hertz.force_from_max_pressure(arrays["max_pressure"], radius, modulus)
+        elif "normal_force" in arrays:
+            per_width = arrays["normal_force"] / width
+        else:
+            per_width = arrays["normal_force_per_width"]
+        half_width = hertz.half_width(per_width, radius, modulus)
+        shape = arrays["creepage"].shape
+        problem = LineProblem(
+            normal_force_per_width=per_width,
+            half_width=half_width,
+            max_pressure=hertz.max_pressure(per_width, half_width),
+            relative_radius=np.broadcast_to(radius, shape),
+            effective_modulus=np.broadcast_to(modulus, shape),
+            friction_coefficient=arrays["friction_coefficient"],
+            creepage=arrays["creepage"],
+            rolling_speed=np.broadcast_to(scalar_si(self.rolling_speed, "m/s"), shape),
+            track_width=np.broadcast_to(width, shape),
+            density=np.broadcast_to(scalar_si(self.disc_1.material.density, "kg/m^3"), shape),
+            traction_coefficient=arrays.get("traction_coefficient"),
+        )
+        _check_scale(problem)
+        return problem
+
+    def warn_of_plasticity(self, problem: LineProblem, stacklevel: int) -> None:
+        """Warn once if the maximum pressure is beyond the elastic limit of a disc's material."""
+        limits = [
+            scalar_si(disc.material.elastic_limit, "Pa")
+            for disc in (self.disc_1, self.disc_2)
+            if disc.material.elastic_limit is not None
+        ]
+        highest = problem.max_pressure.max()
+        if limits and highest > min(limits):
+            warnings.warn(
+                f"the maximum pressure reaches {from_si(highest, 'MPa')!r}, beyond the material's elastic limit of"
+                f" {from_si(min(limits), 'MPa')!r}; the elastic contact models no longer hold there",
+                RangeWarning,
+                stacklevel=stacklevel + 1,
+            )
+
+    def body(self, name: str) -> Disc:
+        """Return the disc of a name, "disc_1" or "disc_2"."""
+        if name not in ("disc_1", "disc_2"):
+            raise InputError(f"body: this rig has no '{name}'; its bodies are 'disc_1' and 'disc_2'")
+        disc: Disc = getattr(self, name)
+        return disc
+
+    def _radius(self) -> float:
+        return hertz.relative_radius(*(0.5 * scalar_si(d.diameter, "m") for d in (self.disc_1, self.disc_2)))
+
+    def _modulus(self) -> float:
+        first, second = self.disc_1.material, self.disc_2.material
+        return hertz.effective_modulus(
+            scalar_si(first.youngs_modulus, "Pa"),
+            first.poisson_ratio,
+            scalar_si(second.youngs_modulus, "Pa"),
+            second.poisson_ratio,
+        )
+
+
+def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
+    """Return the speed of a disc's surface, ω D/2."""
+    diameter = scalar_si(disc.diameter, "m")
+    if np.isinf(diameter):
+        raise InputError("rolling_speed: a flat disc_1 has no rotational speed; give rolling_speed instead")
+    angular = float(Unit("rpm").si(rotational_speed, "rotational_speed"))
+    return Q(angular * 0.5 * diameter, "m/s")
+
+
+def _condition_arrays(conditions: dict[str, Any]) -> dict[str, Array]:
+    """Return all given conditions as SI arrays of one shape."""
+    for name in conditions:
+        if name not in CONDITIONS:
+            raise ConditionsError(
+                f"{name}: unknown condition;{did_you_mean(name, CONDITIONS)}"
+                f" The conditions are: {', '.join(CONDITIONS)}"
+            )
+    given = {name: value for name, value in conditions.items() if value is not None}
+    loads = [name for name in LOADS if name in given]
+    if len(loads) != 1:
+        raise ConditionsError(
+            f"give exactly one of {', '.join(LOADS)}; got {' and '.join(loads) if loads else 'none of them'}"
+        )
+    for name in ("creepage", "friction_coefficient"):
+        if name not in given:
+            example = 'Q(1, "%")' if name == "creepage" else "0.46"
+            raise ConditionsError(f"{name}: is missing; give {name}={example}")
+    units = {**LOADS, "creepage": CREEPAGE}
+    arrays = {
+        name: units[name].si(value, name) if name in units else coefficient(value, name)
+        for name, value in given.items()
+    }
+    return _broadcast(arrays)
+
+
+def _broadcast(arrays: dict[str, Array]) -> dict[str, Array]:
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        raise ConditionsError(f"the shapes of the conditions do not broadcast: {shapes}") from None
+    if 0 in shape:
+        empty = next(name for name, array in arrays.items() if array.size == 0)
+        raise ConditionsError(f"{empty}: is empty; give at least one value")
+    return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
+
+
+def _check_scale(problem: LineProblem) -> None:
+    """Refuse loads and sizes so far from any contact that floats overflow or lose their precision."""
+    tiny = np.sqrt(np.finfo(np.float64).tiny)
+    for name in ("half_width", "max_pressure"):
+        value = getattr(problem, name)
+        if not (np.isfinite(value) & (value > tiny) & (value < 1.0 / tiny)).all():
+            raise ConditionsError(
+                f"the load gives a {name.replace('_', ' ')} of {value.min():g} to {value.max():g} in SI units,"
+                " which no contact has; check the units of the load and of the rig"
+            )

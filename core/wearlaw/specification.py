@@ -1,0 +1,51 @@
+"""Fields that hold a model: written as a name or a table in a file, an instance in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, PlainSerializer, WithJsonSchema
+
+from wearlaw import plugins
+from wearlaw.errors import InputError
+from wearlaw.models import ContactModel, Model, WearLaw
+
+
+def specification(model: Model) -> dict[str, Any]:
+    """Return a model as a table of its name and fields, from which it can be made again."""
+    return {"model": model.name, **model.model_dump(mode="json", exclude_none=True)}
+
+
+def _maker(look_up: Callable[..., Model]) -> Callable[[Any], Any]:
+    def make(value: Any) -> Any:
+        if isinstance(value, str):
+            return look_up(value)
+        if isinstance(value, dict):
+            options = dict(value)
+            name = options.pop("model", None)
+            if not isinstance(name, str):
+                raise InputError('a model needs its name, as in {model = "exact"}')
+            return look_up(name, **options)
+        return value
+
+    return make
+
+
+_SCHEMA = WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "object", "required": ["model"]}]}, mode="validation")
+
+ContactModelField = Annotated[
+    ContactModel,
+    BeforeValidator(_maker(plugins.contact_model)),
+    PlainSerializer(specification, when_used="json"),
+    _SCHEMA,
+]
+"""A field that takes a contact model, its name, or a table of its name and options."""
+
+WearLawField = Annotated[
+    WearLaw,
+    BeforeValidator(_maker(plugins.wear_law)),
+    PlainSerializer(specification, when_used="json"),
+    _SCHEMA,
+]
+"""A field that takes a wear law, its name, or a table of its name and options."""

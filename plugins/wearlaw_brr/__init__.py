@@ -1,0 +1,85 @@
+"""The wear law of British Rail Research (BRR) as a wearlaw plugin."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+import wearlaw as wl
+from pydantic import Field
+from wearlaw import Array
+
+SectionPerForce = Annotated[wl.Quantity, wl.Unit("mm^3/km/N")]
+Section = Annotated[wl.Quantity, wl.Unit("mm^3/km")]
+Force = Annotated[wl.Quantity, wl.Unit("N")]
+
+
+class BRR(wl.WearLaw):
+    """Area of a radial section lost per distance rolled, times the wheel diameter D, against Tγ.
+
+    mild, Tγ < 100 N: 0.25 Tγ; 100 N ≤ Tγ < 200 N: 25; severe, Tγ ≥ 200 N: 1.19 Tγ - 154, in mm² mm/km.
+
+    Area × πD is the volume lost per distance, so D cancels in the wear rate, which is ρπ/A times the above. At
+    200 N the published law jumps from 25 to 84; the jump is kept.
+    """
+
+    name: ClassVar[str] = "brr"
+    source: ClassVar[str] = (
+        "T. G. Pearce and N. D. Sherratt, Wear 144 (1991) 343-351; Tassini et al., Wear 268 (2010) 660-667, Table 1"
+    )
+    scale: ClassVar[Literal["patch", "any"]] = "patch"
+    monotone_in: ClassVar[tuple[str, ...]] = ("wear_index",)
+
+    mild_slope: SectionPerForce = Field(default="0.25 mm^3/km/N", validate_default=True)
+    """Slope of the mild regime, section × D over Tγ [m³/m/N]."""
+    plateau: Section = Field(default="25 mm^3/km", validate_default=True)
+    """Section × D between the two borders [m³/m]."""
+    severe_slope: SectionPerForce = Field(default="1.19 mm^3/km/N", validate_default=True)
+    """Slope of the severe regime, section × D over Tγ [m³/m/N]."""
+    severe_offset: Section = Field(default="154 mm^3/km", validate_default=True)
+    """What the severe regime takes off from its slope [m³/m]."""
+    mild_limit: Force = Field(default="100 N", validate_default=True)
+    """Tγ at which the plateau begins [N]."""
+    severe_limit: Force = Field(default="200 N", validate_default=True)
+    """Tγ at which the severe regime begins [N]."""
+
+    @cached_property
+    def _si(self) -> tuple[float, float, float, float, float, float]:
+        return (
+            wl.scalar_si(self.mild_slope, "m^2/N"),
+            wl.scalar_si(self.plateau, "m^2"),
+            wl.scalar_si(self.severe_slope, "m^2/N"),
+            wl.scalar_si(self.severe_offset, "m^2"),
+            wl.scalar_si(self.mild_limit, "N"),
+            wl.scalar_si(self.severe_limit, "N"),
+        )
+
+    @property
+    def breakpoints(self) -> wl.BreakpointMap:
+        """The borders of the regimes."""
+        *_, mild, severe = self._si
+        return {"wear_index": (mild, severe)}
+
+    @property
+    def jumps(self) -> wl.BreakpointMap:
+        """The published jump where the severe regime begins."""
+        return {"wear_index": (self._si[-1],)}
+
+    def rate(self, contact: wl.Contact) -> Array:
+        """Return the wear rate of the one node [kg/m/m²]."""
+        mild_slope, plateau, severe_slope, severe_offset, mild_limit, severe_limit = self._si
+        index = contact.wear_index
+        section_times_diameter = np.select(
+            [index < mild_limit, index < severe_limit],
+            [mild_slope * index, plateau],
+            severe_slope * index - severe_offset,
+        )
+        rate = contact.density * np.pi * section_times_diameter / contact.patch_area
+        return np.broadcast_to(contact.per_node(rate), contact.pressure.shape)
+
+
+@wl.hookimpl
+def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
+    """Return the law of this plugin."""
+    return [BRR]

@@ -1,0 +1,60 @@
+"""The global contact model, one cell that holds the patch means, as a wearlaw plugin."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+import wearlaw as wl
+from pydantic import Field
+
+
+class Global(wl.ContactModel):
+    """The patch as one cell: p = P/(2a), s = ξ, q = T/(2a).
+
+    T is the measured one where the conditions hold a traction coefficient; otherwise it is the total of a local
+    model.
+    """
+
+    name: ClassVar[str] = "global"
+    source: ClassVar[str] = "Tassini et al., Wear 268 (2010) 660-667, section 3.1"
+    scale: ClassVar[wl.Scale] = "patch"
+    uses_measured_traction: ClassVar[bool] = True
+
+    total_from: wl.ContactModelField = Field(default="exact", validate_default=True)
+    """The contact model that gives T where no traction coefficient was measured."""
+
+    @property
+    def exemptions(self) -> Mapping[wl.Claim, str]:
+        """The one cell slips at any creepage; the rest follows the model that T is taken from."""
+        stick = "the one cell slips as a whole, with a traction below its bound"
+        kept = ("saturation", "initial_slope")
+        return {"stick": stick, **{c: r for c, r in self.total_from.exemptions.items() if c in kept}}
+
+    def solve(self, problem: wl.LineProblem) -> wl.Contact:
+        """Return the patch means as a contact of one node, of shape (*batch, 1)."""
+        length = 2.0 * problem.half_width
+        pressure = problem.normal_force_per_width / length
+        if problem.traction_coefficient is None:
+            force = self.total_from.solve(problem).tangential_force / problem.track_width
+            bound = problem.friction_coefficient * pressure
+        else:
+            force = np.sign(problem.creepage) * problem.traction_coefficient * problem.normal_force_per_width
+            bound = np.abs(force) / length
+        fields = wl.LineFields(
+            pressure=pressure[..., None],
+            traction=(force / length)[..., None],
+            slip=problem.creepage[..., None],
+            traction_bound=bound[..., None],
+        )
+        centre = np.zeros_like(length)
+        return wl.Contact.from_line(
+            problem, fields, x=centre[..., None], length=length[..., None], force_per_width=force
+        )
+
+
+@wl.hookimpl
+def wearlaw_contact_models() -> list[type[wl.ContactModel]]:
+    """Return the model of this plugin."""
+    return [Global]

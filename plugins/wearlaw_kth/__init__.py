@@ -1,0 +1,118 @@
+"""The wear map of the Royal Institute of Technology, Stockholm (KTH) as a wearlaw plugin."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+import wearlaw as wl
+from pydantic import Field, field_validator
+from wearlaw import Array
+
+Coefficient = Annotated[float, Field(gt=0.0, strict=True)]
+
+
+class Coefficients(wl.Configuration):
+    """The wear coefficient k [-] of V = k N d / H in each field of the wear map."""
+
+    high_pressure: Coefficient
+    """At and above the pressure threshold, at any slip speed."""
+    low_speed: Coefficient
+    """Below the lower slip speed."""
+    mid_speed: Coefficient
+    """From the lower to the upper slip speed."""
+    high_speed: Coefficient
+    """At and above the upper slip speed."""
+
+
+LOW = Coefficients(high_pressure=300e-4, low_speed=1e-4, mid_speed=30e-4, high_speed=1e-4)
+MID = Coefficients(high_pressure=350e-4, low_speed=5.5e-4, mid_speed=35e-4, high_speed=5.5e-4)
+HIGH = Coefficients(high_pressure=400e-4, low_speed=10e-4, mid_speed=40e-4, high_speed=10e-4)
+PUBLISHED: dict[object, Coefficients] = {"low": LOW, "mid": MID, "high": HIGH}
+
+
+class KTH(wl.WearLaw):
+    """Archard's law V = k N d / H with k from a map of pressure and slip speed; at a node, ρ k p s / H.
+
+    k is dimensionless and H the hardness; some sources print V = k N d / (3H), with a k three times as large.
+    Where p equals the pressure threshold, which the published map leaves open, its upper field holds. The
+    density ρ is that of the contact.
+
+    Notes
+    -----
+    Table 2 of Tassini et al. (2010) prints "ṡ ≥ 0.2" in its first row below 2.1 GPa; "ṡ < 0.2" is meant.
+    """
+
+    name: ClassVar[str] = "kth"
+    source: ClassVar[str] = (
+        "T. Jendel, Wear 253 (2002) 89-99; Tassini et al., Wear 268 (2010) 660-667, Table 2 and eq. (15)"
+    )
+
+    coefficient: Literal["low", "mid", "high"] | Coefficients = "mid"
+    """The published k are ranges: take their low end, middle or high end, or your own values."""
+    hardness: wl.Stress = Field(default="2.625 GPa", validate_default=True)
+    """H [Pa]. Not printed in the paper; 2.1 GPa is 0.8 H in the wear map."""
+    pressure_threshold: wl.Stress = Field(default="2.1 GPa", validate_default=True)
+    """Pressure above which the wear is that of seizure [Pa]."""
+    lower_slip_speed: wl.Speed = Field(default="0.2 m/s", validate_default=True)
+    """Slip speed at which severe wear begins [m/s]."""
+    upper_slip_speed: wl.Speed = Field(default="0.7 m/s", validate_default=True)
+    """Slip speed at which severe wear ends [m/s]."""
+
+    @field_validator("coefficient", mode="before")
+    @classmethod
+    def _published_or_own(cls, value: Any) -> Any:
+        if isinstance(value, dict):
+            return Coefficients(**value)
+        if isinstance(value, Coefficients) or value in PUBLISHED:
+            return value
+        fields = ", ".join(Coefficients.model_fields)
+        raise ValueError(f"must be 'low', 'mid', 'high' or your own {fields}, got {value!r}")
+
+    @cached_property
+    def _si(self) -> tuple[float, float, float, float]:
+        return (
+            wl.scalar_si(self.hardness, "Pa"),
+            wl.scalar_si(self.pressure_threshold, "Pa"),
+            wl.scalar_si(self.lower_slip_speed, "m/s"),
+            wl.scalar_si(self.upper_slip_speed, "m/s"),
+        )
+
+    @property
+    def breakpoints(self) -> wl.BreakpointMap:
+        """The borders of the wear map."""
+        _, threshold, lower, upper = self._si
+        return {"pressure": (threshold,), "slip_speed": (lower, upper)}
+
+    @property
+    def jumps(self) -> wl.BreakpointMap:
+        """The rate jumps at every border of the map."""
+        return self.breakpoints
+
+    def band(self) -> tuple[KTH, KTH, KTH]:
+        """Return this law at the low end, middle and high end of k; own values of k have no width."""
+        if isinstance(self.coefficient, Coefficients):
+            return self, self, self
+        low, mid, high = (self.model_copy(update={"coefficient": end}) for end in ("low", "mid", "high"))
+        return low, mid, high
+
+    def rate(self, contact: wl.Contact) -> Array:
+        """Return the wear rate at the nodes [kg/m/m²]."""
+        hardness, threshold, lower, upper = self._si
+        k = self.coefficient if isinstance(self.coefficient, Coefficients) else PUBLISHED[self.coefficient]
+        speed = contact.slip_speed
+        coefficient = np.select(
+            [contact.pressure >= threshold, speed < lower, speed < upper],
+            [k.high_pressure, k.low_speed, k.mid_speed],
+            k.high_speed,
+        )
+        density = contact.per_node(contact.density)
+        rate: Array = density * coefficient * contact.pressure * np.abs(contact.slip) / hardness
+        return rate
+
+
+@wl.hookimpl
+def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
+    """Return the law of this plugin."""
+    return [KTH]

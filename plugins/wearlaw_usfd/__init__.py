@@ -1,0 +1,121 @@
+"""The wear law of the University of Sheffield (USFD) as a wearlaw plugin."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+import wearlaw as wl
+from pydantic import model_validator
+from wearlaw import Array
+
+TASSINI = "Tassini et al., Wear 268 (2010) 660-667"
+MATERIALS = "R8T wheel steel on UIC 60 900A rail steel"
+
+PARAMETERS = {
+    "global": {"m_m": "5.3 ug/m/N", "q_s": "55 ug/m/mm^2", "m_c": "61.9 ug/m/N", "tr_sc": "77.26 N/mm^2"},
+    "exact": {"m_m": "5.3 ug/m/N", "q_s": "55 ug/m/mm^2", "m_c": "83.7 ug/m/N", "tr_sc": "95 N/mm^2"},
+    "fastsim": {"m_m": "5.3 ug/m/N", "q_s": "56.5 ug/m/mm^2", "m_c": "83.7 ug/m/N", "tr_sc": "107 N/mm^2"},
+}
+"""Table 4 of Tassini et al. (2010)."""
+
+CALIBRATIONS = {
+    "global": wl.Calibration(
+        contact_model="global",
+        scale="patch",
+        materials=MATERIALS,
+        source="R. Lewis and R. S. Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478",
+    ),
+    "exact": wl.Calibration(contact_model="exact", scale="cells", materials=MATERIALS, source=f"{TASSINI}, Table 4"),
+    "fastsim": wl.Calibration(
+        contact_model="fastsim",
+        scale="cells",
+        options=(("bound", "parabolic"),),
+        materials=MATERIALS,
+        source=f"{TASSINI}, Table 4",
+    ),
+}
+
+Slope = Annotated[wl.Quantity, wl.Unit("ug/m/N")]
+WearRate = Annotated[wl.Quantity, wl.Unit("ug/m/mm^2")]
+WearIndexDensity = Annotated[wl.Quantity, wl.Unit("N/mm^2")]
+
+
+class USFD(wl.WearLaw):
+    """Wear rate against w = Tγ/A in three regimes, continuous at both borders.
+
+    mild, w < q_s/m_m: m_m w; severe, w < tr_sc: q_s; catastrophic: q_s + m_c (w - tr_sc).
+    """
+
+    name: ClassVar[str] = "usfd"
+    source: ClassVar[str] = f"{TASSINI}, Tables 3 and 4"
+    monotone_in: ClassVar[tuple[str, ...]] = ("wear_index_density",)
+
+    fitted_for: Literal["global", "exact", "fastsim"] = "global"
+    """The contact solution to which the parameters were fitted; it also chooses the published set that gives
+    the parameters which are not given by hand."""
+    m_m: Slope
+    """Slope of the mild regime [kg/m/N]."""
+    q_s: WearRate
+    """Wear rate of the severe regime [kg/m/m²]."""
+    m_c: Slope
+    """Slope of the catastrophic regime [kg/m/N]."""
+    tr_sc: WearIndexDensity
+    """Tγ/A at the transition from the severe to the catastrophic regime [N/m²]."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _published(cls, fields: Any) -> Any:
+        """Fill in the published set where parameters are not given."""
+        if not isinstance(fields, dict):
+            return fields
+        chosen = fields.get("fitted_for", "global")
+        return {**PARAMETERS.get(chosen, PARAMETERS["global"]), **fields} if isinstance(chosen, str) else fields
+
+    @model_validator(mode="after")
+    def _ordered(self) -> USFD:
+        if self.q_s / self.m_m > self.tr_sc:
+            raise ValueError(
+                f"tr_sc must not lie below q_s/m_m = {(self.q_s / self.m_m).to('N/mm^2')!r}, where the severe"
+                f" regime begins; got {self.tr_sc!r}"
+            )
+        return self
+
+    @cached_property
+    def _si(self) -> tuple[float, float, float, float]:
+        return (
+            wl.scalar_si(self.m_m, "kg/m/N"),
+            wl.scalar_si(self.q_s, "kg/m^3"),
+            wl.scalar_si(self.m_c, "kg/m/N"),
+            wl.scalar_si(self.tr_sc, "N/m^2"),
+        )
+
+    @property
+    def breakpoints(self) -> wl.BreakpointMap:
+        """The mild/severe and the severe/catastrophic border."""
+        m_m, q_s, _, tr_sc = self._si
+        return {"wear_index_density": (q_s / m_m, tr_sc)}
+
+    @property
+    def valid_range(self) -> Mapping[str, tuple[float, float]]:
+        """Up to Tγ/A of the tests: 20 % creepage, 1500 MPa, μ = 0.46, which is 0.2 · 0.46 · 1500 MPa · π/4."""
+        return {"wear_index_density": (0.0, 0.2 * 0.46 * 1.5e9 * np.pi / 4.0)}
+
+    @property
+    def calibration(self) -> wl.Calibration:
+        """What the parameters were fitted to."""
+        return CALIBRATIONS[self.fitted_for]
+
+    def rate(self, contact: wl.Contact) -> Array:
+        """Return the wear rate at the nodes [kg/m/m²]."""
+        m_m, q_s, m_c, tr_sc = self._si
+        w = contact.wear_index_density
+        return np.minimum(m_m * w, q_s) + m_c * np.maximum(w - tr_sc, 0.0)
+
+
+@wl.hookimpl
+def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
+    """Return the law of this plugin."""
+    return [USFD]
