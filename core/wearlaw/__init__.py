@@ -35,8 +35,7 @@ from wearlaw.result import ContactSolution, Prediction
 from wearlaw.rig import Disc, Material, TwinDisc, steel
 from wearlaw.specification import ContactModelField, WearLawField
 from wearlaw.units import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
-
-__version__ = "0.1.0"
+from wearlaw.version import __version__
 
 __all__ = [
     "Array",
@@ -83,6 +82,7 @@ __all__ = [
     "WearLawField",
     "WearlawError",
     "WearlawWarning",
+    "__version__",
     "contact_model",
     "contact_models",
     "hertz",

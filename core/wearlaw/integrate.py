@@ -8,7 +8,7 @@ variable crosses a breakpoint. With less known, the integral is as good as can b
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,9 +62,15 @@ def integrate_contact(model: ContactModel, problem: LineProblem, scale: Scale) -
 
 
 def integrate_wear(
-    model: ContactModel, law: WearLaw, problem: LineProblem, scale: Scale
+    model: ContactModel,
+    law: WearLaw,
+    problem: LineProblem,
+    scale: Scale,
+    on_block: Callable[[int], None] | None = None,
 ) -> tuple[ContactTotals, WearTotals]:
     """Return the totals of a contact and of the wear in it, block by block.
+
+    `on_block` is called with the number of operating points of each block when that is done.
 
     Raises
     ------
@@ -78,6 +84,8 @@ def integrate_wear(
         rate = rate_of(law, contact)
         contact_columns.append(_contact_columns(contact))
         wear_columns.append({"wear_rate": contact.mean(rate), "wear_rate_error": _error(contact, rate, slip_nodes)})
+        if on_block is not None:
+            on_block(contact.rolling_speed.size)
     shape = problem.batch_shape
     return ContactTotals(**_join(contact_columns, shape)), WearTotals(**_join(wear_columns, shape))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Generic, TypeVar, Unpack, overload
 
 import numpy as np
@@ -89,12 +89,27 @@ class Pipeline(Configuration, Generic[RigT]):
 
     def __call__(self: Pipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> Prediction:
         """Return the contact and the wear under the given conditions; see `TwinDisc.problem` for these."""
+        return self.predict(self.contact.rig.problem(**conditions), stacklevel=3)
+
+    def predict(
+        self, problem: LineProblem, *, on_block: Callable[[int], None] | None = None, stacklevel: int = 2
+    ) -> Prediction:
+        """Return the contact and the wear for a contact problem that the rig has made.
+
+        Parameters
+        ----------
+        problem : LineProblem
+            From `TwinDisc.problem`.
+        on_block : callable, optional
+            Called with the number of operating points done after each block of them, to show progress.
+        stacklevel : int
+            Which caller warnings name; 2 is the caller of this method.
+        """
         rig, model, scale = self.contact.rig, self.contact.contact_model, self.contact.scale
-        problem = rig.problem(**conditions)
         _check_traction(model, problem)
-        rig.warn_of_plasticity(problem, stacklevel=2)
-        contact, wear = integrate_wear(model, self.wear_law, problem, scale)
-        _warn_of_range(self.wear_law, problem, contact, stacklevel=2)
+        rig.warn_of_plasticity(problem, stacklevel=stacklevel)
+        contact, wear = integrate_wear(model, self.wear_law, problem, scale, on_block)
+        _warn_of_range(self.wear_law, problem, contact, stacklevel=stacklevel)
         return Prediction(rig, model, scale, problem, contact, self.wear_law, wear)
 
 

@@ -67,6 +67,14 @@ class Shelf(Generic[ModelT]):
             raise TypeError(f"the name of {model.__name__} must be an identifier, got {name!r}")
         self.providers.setdefault(name, []).append((model, origin))
 
+    def origin(self, name: str) -> Origin:
+        """Return where the model of a name comes from."""
+        return self.providers[name][0][1]
+
+    def listing(self) -> list[tuple[str, str, Origin]]:
+        """Return kind, name and origin of every model, also of those whose name is taken twice."""
+        return [(self.kind, name, origin) for name, found in sorted(self.providers.items()) for _, origin in found]
+
     def classes(self) -> dict[str, type[ModelT]]:
         """Return the models by name, without those whose name is taken twice."""
         return {name: found[0][0] for name, found in sorted(self.providers.items()) if len(found) == 1}
@@ -79,10 +87,14 @@ class Shelf(Generic[ModelT]):
         if found:
             origins = " and ".join(str(origin) for _, origin in found)
             raise UnknownModelError(f"{self.kind} '{name}' is provided more than once, by {origins}; remove one")
-        names = ", ".join(self.classes()) or "none"
-        message = f"no {self.kind} is called {name!r};{did_you_mean(str(name), self.classes())} Installed: {names}"
-        message += "".join(f"\n  left out: {plugin}" for plugin in broken)
-        raise UnknownModelError(message)
+        raise UnknownModelError(unknown(self.kind, name, self.classes(), broken))
+
+
+def unknown(kind: str, name: str, known: Iterable[str], broken: Iterable[Broken]) -> str:
+    """Return the message that there is no model of a name, with what there is and what was left out."""
+    names = list(known)
+    message = f"no {kind} is called {name!r};{did_you_mean(str(name), names)} Installed: {', '.join(names) or 'none'}"
+    return message + "".join(f"\n  left out: {plugin}" for plugin in broken)
 
 
 @dataclass

@@ -95,6 +95,11 @@ class ContactSolution:
         return from_si(self.problem.creepage, "%")
 
     @property
+    def friction_coefficient(self) -> Quantity:
+        """μ [-]."""
+        return from_si(self.problem.friction_coefficient, "")
+
+    @property
     def half_width(self) -> Quantity:
         """Half the length of the patch in the rolling direction, a [m]."""
         return from_si(self.problem.half_width, "mm")

@@ -98,7 +98,8 @@ class Fastsim(wl.LineContactModel):
             scale = friction * 0.75 * problem.normal_force_per_width / a**3
             return scale * inside, -2.0 * scale * x
         scale = friction * problem.max_pressure / a
-        root = np.sqrt(inside)
+        # At an edge the slope is infinite; x is no finer than rounding there, and q·s keeps its finite limit.
+        root = np.sqrt(np.maximum(inside, 0.25 * np.finfo(np.float64).eps * a**2))
         return scale * root, -scale * x / root
 
 

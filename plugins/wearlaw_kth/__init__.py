@@ -65,7 +65,7 @@ class KTH(wl.WearLaw):
     def _published_or_own(cls, value: Any) -> Any:
         if isinstance(value, dict):
             return Coefficients(**value)
-        if isinstance(value, Coefficients) or value in PUBLISHED:
+        if isinstance(value, Coefficients) or (isinstance(value, str) and value in PUBLISHED):
             return value
         fields = ", ".join(Coefficients.model_fields)
         raise ValueError(f"must be 'low', 'mid', 'high' or your own {fields}, got {value!r}")

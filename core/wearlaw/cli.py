@@ -1,0 +1,175 @@
+"""The command line: it parses, calls the rest of the package, and prints."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from rich import box
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from wearlaw import plugins
+from wearlaw.errors import UnknownModelError, WearlawError
+from wearlaw.version import __version__
+
+if TYPE_CHECKING:
+    import xarray
+
+    from wearlaw.models import Model
+    from wearlaw.study import Study
+
+
+class _Commands(click.Group):
+    """Commands that end with one clear line, not a traceback, when wearlaw raises an error on purpose."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except WearlawError as error:
+            raise click.ClickException(str(error)) from None
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="wearlaw")
+def main() -> None:
+    """Predict rolling-contact wear of wheels and rails.
+
+    \b
+    Begin with:
+      wearlaw run tassini2010               the twin-disc study of Tassini et al. (2010)
+      wearlaw case tassini2010 > my.toml    a copy of its case file, to edit
+      wearlaw run my.toml -o my-results/    your own study
+    """  # noqa: D301  (\b tells click to keep the lines)
+
+
+@main.command()
+@click.argument("case")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-results].")
+@click.option("--overwrite", is_flag=True, help="Replace the results of an earlier run in that folder.")
+def run(case: str, output: Path | None, overwrite: bool) -> None:
+    """Run a study: CASE is a case file, or the name of one that is shipped (tassini2010).
+
+    Every contact model of the case is paired with every wear law. Results are written as results.nc (netCDF),
+    results.csv, figures/*.png and case.toml, the case with every default spelt out.
+    """
+    from wearlaw.case import load_case
+    from wearlaw.output import fresh_folder, write
+    from wearlaw.study import evaluations
+    from wearlaw.study import run as run_case
+
+    loaded = load_case(case)
+    folder = output if output is not None else Path(f"{Path(case).stem}-results")
+    with fresh_folder(folder, overwrite) as fresh:
+        with _progress(evaluations(loaded)) as advance:
+            study = run_case(loaded, advance)
+        names = write(study, fresh)
+    _print_notes(study)
+    for name, sweep in study.sweeps.items():
+        Console().print(_summary(name, sweep))
+    click.echo(f"Results in {folder}:")
+    for name in names:
+        click.echo(f"  {folder / name}")
+
+
+@main.command()
+@click.argument("name")
+def case(name: str) -> None:
+    """Print a case file: NAME is the name of a shipped one (tassini2010), or a path."""
+    from wearlaw.case import case_text
+
+    click.echo(case_text(name), nl=False)
+
+
+@main.command("plugins")
+def list_plugins() -> None:
+    """List the installed contact models and wear laws, and what failed to load."""
+    found = plugins.installed()
+    table = Table("kind", "name", "distribution", "version", box=None, pad_edge=False)
+    for kind, name, origin in [*found.contact_models.listing(), *found.wear_laws.listing()]:
+        table.add_row(kind, name, origin.distribution, origin.version)
+    Console().print(table)
+    for plugin in found.broken:
+        click.echo(f"left out: {plugin}", err=True)
+
+
+@main.command()
+@click.argument("name")
+def show(name: str) -> None:
+    """Explain a model: its fields with units, defaults and sources, its range, and what it declares."""
+    from wearlaw.describe import describe
+
+    click.echo(describe(_model_class(name)))
+
+
+@main.command()
+def schema() -> None:
+    """Print the JSON Schema of a case file with the options of the installed models."""
+    from wearlaw.case import case_schema
+
+    click.echo(json.dumps(case_schema(), indent=2, ensure_ascii=False))
+
+
+def _model_class(name: str) -> type[Model]:
+    """Return the contact model or the wear law of a name."""
+    found = plugins.installed()
+    if name in found.wear_laws.providers:
+        return found.wear_laws.find(name, found.broken)
+    if name in found.contact_models.providers:
+        return found.contact_models.find(name, found.broken)
+    known = [*found.contact_models.classes(), *found.wear_laws.classes()]
+    raise UnknownModelError(plugins.unknown("model", name, known, found.broken))
+
+
+class _progress:  # noqa: N801  (used as a function)
+    """A progress bar on standard error, shown on a terminal while the context lasts."""
+
+    def __init__(self, total: int) -> None:
+        columns = (TextColumn("evaluating"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+        console = Console(stderr=True)
+        self._bar = Progress(*columns, console=console, disable=not console.is_terminal, transient=True)
+        self._task = self._bar.add_task("evaluating", total=total)
+
+    def __enter__(self) -> Callable[[int], None]:
+        self._bar.start()
+        return lambda points: self._bar.advance(self._task, points)
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.stop()
+
+
+def _print_notes(study: Study) -> None:
+    for note in study.notes:
+        click.echo(f"note: {note}", err=True)
+
+
+def _summary(name: str, sweep: xarray.Dataset) -> Table:
+    """Return a short table of wear rates: the pairs at a few values of the sweep's main axis."""
+    from wearlaw.study import along_main_axis, main_axis
+    from wearlaw.variables import label
+
+    axis = main_axis(sweep)
+    line = along_main_axis(sweep)
+    count = line.sizes[axis]
+    chosen = sorted({round(step * (count - 1) / (_COLUMNS - 1)) for step in range(_COLUMNS)})
+    title = f"Sweep '{name}': {label('wear_rate')} by {label(axis)}"
+    table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE, pad_edge=False)
+    table.add_column("", no_wrap=True)
+    for value in line[axis].values[chosen]:
+        table.add_column(f"{value:.4g}", justify="right", no_wrap=True)
+    for pair in line.pair.values:
+        one = line.sel(pair=pair).isel({axis: chosen})
+        rows = {pair: one.wear_rate.values}
+        if (one.wear_rate_high > one.wear_rate_low).any():
+            rows |= {"  low end": one.wear_rate_low.values, "  high end": one.wear_rate_high.values}
+        for head, rates in rows.items():
+            table.add_row(head, *(f"{rate:.4g}" for rate in rates))
+    return table
+
+
+_COLUMNS = 5
+"""Columns of the short table."""

@@ -1,0 +1,99 @@
+"""Describing a model in words, from what its class declares."""
+
+from __future__ import annotations
+
+import inspect
+import textwrap
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import pint
+
+from wearlaw import plugins
+from wearlaw.errors import InputError
+from wearlaw.models import ContactModel, Model, WearLaw
+from wearlaw.records import UNITS
+from wearlaw.units import from_si, text_of
+
+
+def describe(model: type[Model]) -> str:
+    """Return what a user must know of a model: theory, source, fields with defaults, and what it declares."""
+    lines = [_headline(model), "", inspect.getdoc(model) or "", "", *_wrapped("source: ", model.source), "", "fields:"]
+    default = _default(model)
+    lines += [line for name in model.model_fields for line in _field(model, name, default)] or ["  none"]
+    lines += ["", "declares:", *(f"  {text}" for text in _declared(default))]
+    return "\n".join(lines)
+
+
+def _headline(model: type[Model]) -> str:
+    found = plugins.installed()
+    shelf = found.wear_laws if issubclass(model, WearLaw) else found.contact_models
+    return f"{model.name}: a {shelf.kind} of {shelf.origin(model.name)}"
+
+
+def _default(model: type[Model]) -> Model | None:
+    """Return the model with its defaults, or None where fields must be given."""
+    try:
+        return model()
+    except InputError:
+        return None
+
+
+def _field(model: type[Model], name: str, default: Model | None) -> Iterator[str]:
+    value = getattr(default, name, None)
+    yield f"  {name} = {_shown(value)}" if default is not None else f"  {name} (must be given)"
+    choices = _choices(model, name)
+    if choices:
+        yield f"      one of {', '.join(choices)}"
+    yield from _wrapped("      ", model.model_fields[name].description or "")
+
+
+def _shown(value: Any) -> str:
+    return text_of(value) if isinstance(value, pint.Quantity) else repr(value)
+
+
+def _choices(model: type[Model], name: str) -> list[str]:
+    """Return the words that a field may be, from its JSON Schema."""
+    schema = model.model_json_schema()["properties"][name]
+    options: list[Mapping[str, Any]] = [schema, *schema.get("anyOf", [])]
+    return [repr(word) for option in options for word in option.get("enum", [])]
+
+
+def _declared(default: Model | None) -> Iterator[str]:
+    if default is None:
+        yield "what depends on its fields"
+    elif isinstance(default, WearLaw):
+        yield from _of_law(default)
+    elif isinstance(default, ContactModel):
+        yield "scale: the means of the patch" if default.scale == "patch" else "scale: the patch resolved into cells"
+        if default.uses_measured_traction:
+            yield "takes a measured traction_coefficient"
+        yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
+
+
+def _of_law(law: WearLaw) -> Iterator[str]:
+    yield "scale: means of the whole patch only" if law.scale == "patch" else "scale: patch means or cells"
+    if law.calibration is not None:
+        yield f"fitted for: {law.calibration}; {law.calibration.materials}; {law.calibration.source}"
+    if law.monotone_in:
+        yield f"never falls with: {', '.join(law.monotone_in)}"
+    if law.breakpoints is None:
+        yield "branches: not declared"
+    for variable, values in (law.breakpoints or {}).items():
+        yield f"branches in {variable} at {', '.join(_si(variable, value) for value in values)}"
+    for variable, values in law.jumps.items():
+        yield f"jumps in {variable} at {', '.join(_si(variable, value) for value in values)}"
+    for variable, (low, high) in law.valid_range.items():
+        yield f"stated for a mean {variable} from {_si(variable, low)} to {_si(variable, high)}"
+    if law.band() is not None:
+        yield "band: published parameter ranges give a low, a middle and a high law"
+
+
+def _si(variable: str, value: float) -> str:
+    return repr(from_si(value, UNITS[variable]))
+
+
+def _wrapped(prefix: str, text: str) -> list[str]:
+    """Return a text in lines of at most 100 characters, behind a prefix."""
+    indent = " " * (len(prefix) if not prefix.strip() else 2)
+    return textwrap.wrap(" ".join(text.split()), 100, initial_indent=prefix, subsequent_indent=indent)

@@ -1,0 +1,126 @@
+"""Grids of operating points, as a case file describes them: conditions of which some are axes."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, model_validator
+
+from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
+from wearlaw.errors import InputError
+from wearlaw.records import LineProblem
+from wearlaw.rig import CONDITIONS, CREEPAGE, LOADS, TwinDisc
+from wearlaw.units import Q, Unit, coefficient
+
+UNITS: dict[str, Unit] = {**LOADS, "creepage": CREEPAGE}
+"""The conditions that have a unit."""
+
+SI_UNITS = {"normal_force": "N", "normal_force_per_width": "N/m", "max_pressure": "Pa", "creepage": ""}
+"""Their coherent SI units."""
+
+
+class Axis(Configuration):
+    """Values of a condition from one end to the other."""
+
+    start: float | str = Field(alias="from")
+    """First value, with its unit where the condition has one."""
+    stop: float | str = Field(alias="to")
+    """Last value, with its unit."""
+    points: Annotated[int, Field(ge=2, le=10_000_000, strict=True)]
+    """How many values, ends included."""
+    spacing: Literal["log", "linear"] = "linear"
+    """Whether neighbours stand in a constant ratio or at a constant distance."""
+
+    def values(self, name: str) -> Array:
+        """Return the values of the condition `name` in SI."""
+        first, last = float(_si(name, self.start)), float(_si(name, self.stop))
+        if self.spacing == "linear":
+            return np.linspace(first, last, self.points)
+        if first * last <= 0:
+            raise InputError(f"{name}: a log axis cannot touch or cross zero; use spacing = 'linear'")
+        return np.geomspace(first, last, self.points)
+
+
+def _condition(value: Any) -> Any:
+    """Make an axis from a table, and refuse early what is neither that nor a value nor a list of values."""
+    if isinstance(value, dict):
+        return Axis(**value)
+    items = value if isinstance(value, (list, tuple)) else [value]
+    for item in items:
+        if not isinstance(item, (int, float, str, Axis)) or isinstance(item, bool):
+            raise InputError(f"must be a value, a list of values, or a table with from, to and points; got {item!r}")
+    if not items:
+        raise InputError("is empty; give at least one value")
+    return tuple(items) if isinstance(value, (list, tuple)) else value
+
+
+Condition = Annotated[float | str | tuple[float | str, ...] | Axis, BeforeValidator(_condition)]
+"""A value, a list of values, or an axis."""
+
+
+class Grid(Configuration):
+    """Conditions of operating points; those with several values are the axes of a grid.
+
+    Exactly one of `normal_force`, `normal_force_per_width` and `max_pressure` gives the load.
+    """
+
+    normal_force: Condition | None = None
+    """N, with its unit."""
+    normal_force_per_width: Condition | None = None
+    """P, with its unit."""
+    max_pressure: Condition | None = None
+    """p0, with its unit."""
+    creepage: Condition
+    """ξ, in percent or as a ratio: "1 %" or "0.01"."""
+    friction_coefficient: Condition
+    """μ, a plain number."""
+    traction_coefficient: Condition | None = None
+    """Measured T/N, a plain number; for contact models that can use it."""
+
+    @model_validator(mode="after")
+    def _possible(self) -> Grid:
+        """Find what is wrong with the conditions when they are read, not when they are used."""
+        first = {name: values.reshape(-1)[:1] for name, values in self.conditions().items()}
+        TwinDisc.suros().problem(**_with_units(first))
+        return self
+
+    def conditions(self) -> dict[str, Array]:
+        """Return the SI values of each condition that is given, of shape () or (values,)."""
+        given = {name: getattr(self, name) for name in CONDITIONS}
+        return {name: _values(name, value) for name, value in given.items() if value is not None}
+
+    def axes(self) -> dict[str, Array]:
+        """Return the SI values of the conditions that are axes, in the order of the grid."""
+        return {name: values for name, values in self.conditions().items() if values.ndim == 1}
+
+    @property
+    def size(self) -> int:
+        """The number of operating points."""
+        return int(np.prod([values.size for values in self.axes().values()], dtype=np.int64))
+
+    def problem(self, rig: TwinDisc) -> LineProblem:
+        """Return the contact problem at all points of the grid."""
+        axes = list(self.axes())
+        shaped = {
+            name: values.reshape([-1 if axis == name else 1 for axis in axes]) if name in axes else values
+            for name, values in self.conditions().items()
+        }
+        return rig.problem(**_with_units(shaped))
+
+
+def _with_units(conditions: dict[str, Array]) -> Any:
+    return {name: Q(si, SI_UNITS[name]) if name in SI_UNITS else si for name, si in conditions.items()}
+
+
+def _values(name: str, value: Any) -> Array:
+    if isinstance(value, Axis):
+        return value.values(name)
+    if isinstance(value, tuple):
+        return np.array([float(_si(name, item)) for item in value])
+    return _si(name, value)
+
+
+def _si(name: str, value: float | str) -> Array:
+    return UNITS[name].si(value, name) if name in UNITS else coefficient(value, name)

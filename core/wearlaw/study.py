@@ -1,0 +1,255 @@
+"""Running a case: every contact model with every wear law at all operating points, as labelled datasets."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wearlaw import plugins
+from wearlaw.arrays import Array
+from wearlaw.case import Case, labels
+from wearlaw.errors import CompositionError, InputError, WearlawWarning
+from wearlaw.pipeline import Pipeline
+from wearlaw.rig import TwinDisc
+from wearlaw.units import from_si
+from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
+from wearlaw.version import __version__
+
+if TYPE_CHECKING:
+    import xarray
+
+    from wearlaw.grid import Grid
+    from wearlaw.result import ContactSolution, Prediction
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A contact model with a wear law."""
+
+    contact_model: str
+    wear_law: str
+    pipeline: Pipeline[TwinDisc]
+
+    @property
+    def label(self) -> str:
+        """What the pair is called in results."""
+        return f"{self.wear_law} on {self.contact_model}"
+
+
+@dataclass(frozen=True)
+class Study:
+    """The results of a case.
+
+    Attributes
+    ----------
+    case : Case
+        What was run.
+    pairs : tuple of Pair
+        The pairs that were evaluated.
+    sweeps, profiles : dict of str to xarray.Dataset
+        The results by the names that the case gives them.
+    notes : tuple of str
+        What was left out, and every warning, once each.
+    """
+
+    case: Case
+    pairs: tuple[Pair, ...]
+    sweeps: dict[str, xarray.Dataset]
+    profiles: dict[str, xarray.Dataset]
+    notes: tuple[str, ...]
+
+
+@dataclass
+class Notes:
+    """Collects what a reader of the results must know, once each."""
+
+    texts: list[str] = field(default_factory=list)
+
+    def add(self, text: str) -> None:
+        """Add a note that is not there yet."""
+        if text not in self.texts:
+            self.texts.append(text)
+
+    @contextmanager
+    def of(self, subject: str) -> Iterator[None]:
+        """Turn wearlaw's warnings inside the context into notes about a subject."""
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", WearlawWarning)
+            yield
+        for warning in caught:
+            if issubclass(warning.category, WearlawWarning):
+                self.add(f"{subject}: {warning.message}")
+            else:
+                warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+
+
+def run(case: Case, on_block: Callable[[int], None] | None = None) -> Study:
+    """Run a case.
+
+    Parameters
+    ----------
+    case : Case
+        The study to run.
+    on_block : callable, optional
+        Called with the number of evaluations done, `evaluations(case)` in all, to show progress.
+    """
+    notes = Notes()
+    pairs = _pairs(case, notes)
+    sweeps = {name: _sweep(name, grid, case, pairs, notes, on_block) for name, grid in case.sweeps.items()}
+    profiles = {name: _profile(name, grid, case, pairs, notes) for name, grid in case.profiles.items()}
+    for dataset in (*sweeps.values(), *profiles.values()):
+        dataset.attrs.update(title=case.title, provenance=json.dumps(provenance(case)))
+    return Study(case, tuple(pairs), sweeps, profiles, tuple(notes.texts))
+
+
+def evaluations(case: Case) -> int:
+    """Return how many evaluations of a pair at an operating point a case needs."""
+    pipelines = [pair.pipeline for pair in _pairs(case, Notes())]
+    each = sum(1 + len(_band_ends(pipeline)) for pipeline in pipelines)
+    return each * sum(grid.size for grid in case.sweeps.values())
+
+
+def provenance(case: Case) -> dict[str, Any]:
+    """Return what a result came from: versions of wearlaw and of each plugin used, and the case."""
+    found = plugins.installed()
+    used = {model.name: found.contact_models.origin(model.name) for model in case.contact_models}
+    used |= {law.name: found.wear_laws.origin(law.name) for law in case.wear_laws}
+    return {
+        "wearlaw": __version__,
+        "models": {name: f"{origin.distribution} {origin.version}" for name, origin in used.items()},
+        "case": case.model_dump(mode="json", by_alias=True, exclude_none=True),
+    }
+
+
+def _pairs(case: Case, notes: Notes) -> list[Pair]:
+    """Compose all pairs that can be; note those that cannot, and parameters that were fitted for others."""
+    pairs = []
+    for contact_label, model in zip(labels(case.contact_models), case.contact_models, strict=True):
+        for law_label, law in zip(labels(case.wear_laws), case.wear_laws, strict=True):
+            try:
+                with notes.of(f"{law_label} on {contact_label}"):
+                    pairs.append(Pair(contact_label, law_label, case.rig | model | law))
+            except CompositionError as error:
+                notes.add(f"{law_label} on {contact_label} is left out: {error}")
+    if not pairs:
+        raise InputError(
+            "no contact model of the case can be used with any of its wear laws:\n" + "\n".join(notes.texts)
+        )
+    return pairs
+
+
+def _sweep(
+    name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, on_block: Callable[[int], None] | None
+) -> xarray.Dataset:
+    """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
+    import xarray
+
+    problem = grid.problem(case.rig)
+    usable = _usable(name, grid, pairs, notes)
+    rates: list[dict[str, Array]] = []
+    contacts: dict[str, Prediction] = {}
+    for pair in usable:
+        with notes.of(f"sweep '{name}'"):
+            prediction = pair.pipeline.predict(problem, on_block=on_block)
+        rates.append(_rates(pair.pipeline, prediction, on_block))
+        contacts[pair.contact_model] = prediction
+    axes = tuple(grid.axes())
+    first = rates[0]
+    any_contact = next(iter(contacts.values()))
+    variables = {
+        **{v: (("pair", *axes), np.stack([rate[v] for rate in rates])) for v in first},
+        **{v: (("contact_model", *axes), np.stack([_plain(c, v) for c in contacts.values()])) for v in OF_CONTACT},
+        **{v: (axes, _plain(any_contact, v)) for v in OF_POINT if v not in axes},
+    }
+    dataset = xarray.Dataset({v: (dims, values, {"units": UNITS[v]}) for v, (dims, values) in variables.items()})
+    grid_values = {axis: from_si(values, UNITS[axis]).magnitude for axis, values in grid.axes().items()}
+    return dataset.assign_coords(
+        {axis: (axis, values, {"units": UNITS[axis]}) for axis, values in grid_values.items()}
+        | {"pair": [pair.label for pair in usable], "contact_model": list(contacts)}
+        | {"pair_contact_model": ("pair", [pair.contact_model for pair in usable])}
+        | {"pair_wear_law": ("pair", [pair.wear_law for pair in usable])}
+    )
+
+
+def _usable(name: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[Pair]:
+    """Leave out the pairs that have no use for a measured traction coefficient."""
+    if grid.traction_coefficient is None:
+        return pairs
+    usable = [pair for pair in pairs if pair.pipeline.contact.contact_model.uses_measured_traction]
+    for pair in pairs:
+        if pair not in usable:
+            notes.add(f"sweep '{name}': {pair.contact_model} is left out, since it computes the traction itself")
+    if not usable:
+        raise InputError(f'sweeps.{name}: no contact model of the case can use a traction_coefficient; add "global"')
+    return usable
+
+
+def _rates(
+    pipeline: Pipeline[TwinDisc], prediction: Prediction, on_block: Callable[[int], None] | None
+) -> dict[str, Array]:
+    """Return the wear rate, its error, and its ends over the published range of the law's parameters."""
+    rates = {"wear_rate": _plain(prediction, "wear_rate"), "wear_rate_error": _plain(prediction, "wear_rate_error")}
+    ends = []
+    for end in _band_ends(pipeline):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band has given them already
+            ends.append(_plain(end.predict(prediction.problem, on_block=on_block), "wear_rate"))
+    low, high = ends or (rates["wear_rate"], rates["wear_rate"])
+    return {**rates, "wear_rate_low": low, "wear_rate_high": high}
+
+
+def _band_ends(pipeline: Pipeline[TwinDisc]) -> list[Pipeline[TwinDisc]]:
+    """Return the pipeline with the low and the high end of its law's published range, if there is one."""
+    band = pipeline.wear_law.band()
+    return [] if band is None else [pipeline.model_copy(update={"wear_law": law}) for law in (band[0], band[2])]
+
+
+def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes) -> xarray.Dataset:
+    """Return stresses and slip along the patch for each contact model, and the wear rate for each pair."""
+    import xarray
+
+    problem = grid.problem(case.rig)
+    contacts: dict[str, xarray.Dataset] = {}
+    rates: list[xarray.DataArray] = []
+    resolved = [pair for pair in _usable(name, grid, pairs, notes) if pair.pipeline.contact.scale == "cells"]
+    for pair in resolved:
+        with notes.of(f"profile '{name}'"):
+            profile = pair.pipeline.predict(problem).profile
+        contacts[pair.contact_model] = profile.drop_vars("wear_rate")
+        rates.append(profile["wear_rate"])
+    if not resolved:
+        notes.add(f"profile '{name}' is left out: no contact model of the case resolves the patch")
+        return xarray.Dataset()
+    dataset = xarray.concat(list(contacts.values()), xarray.Variable("contact_model", list(contacts)), join="exact")
+    return dataset.assign(wear_rate=xarray.concat(rates, "pair", join="exact")).assign_coords(
+        pair=[pair.label for pair in resolved]
+    )
+
+
+def axes_of(sweep: xarray.Dataset) -> list[str]:
+    """Return the axes of a sweep's grid."""
+    return [str(dim) for dim in sweep.dims if dim not in ("pair", "contact_model")]
+
+
+def main_axis(sweep: xarray.Dataset) -> str:
+    """Return the axis that tables and figures run along: creepage if it is one, else the longest."""
+    axes = axes_of(sweep)
+    return "creepage" if "creepage" in axes or not axes else max(axes, key=lambda axis: sweep.sizes[axis])
+
+
+def along_main_axis(sweep: xarray.Dataset) -> xarray.Dataset:
+    """Return a sweep along its main axis, with the other axes at their middle value."""
+    others = [axis for axis in axes_of(sweep) if axis != main_axis(sweep)]
+    line = sweep.isel({axis: sweep.sizes[axis] // 2 for axis in others})
+    return line if axes_of(line) else line.set_coords("creepage").expand_dims("creepage")
+
+
+def _plain(result: ContactSolution, variable: str) -> Array:
+    """Return a property of a result as plain numbers in the unit of `UNITS`."""
+    return np.asarray(getattr(result, variable).to(UNITS[variable]).magnitude)
