@@ -13,17 +13,19 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
+import pint
 from pydantic import BeforeValidator, Field, model_validator
 
 from wearlaw import plugins
 from wearlaw.arrays import Array
+from wearlaw.conditions import CREEPAGE
 from wearlaw.configuration import Configuration
 from wearlaw.errors import CaseError, ConfigurationError, InputError, did_you_mean
 from wearlaw.grid import Grid
 from wearlaw.models import Model
-from wearlaw.rig import CREEPAGE, Disc, Material, TwinDisc
+from wearlaw.rig import Disc, Material, TwinDisc
 from wearlaw.specification import ContactModelField, WearLawField
-from wearlaw.units import Length, Quantity, Speed, Unit, coefficient, scalar_si
+from wearlaw.units import Length, Quantity, Speed, Unit, coefficient, scalar_si, text_of
 
 
 class Measurement(Configuration):
@@ -53,6 +55,8 @@ class Measurement(Configuration):
             raise ValueError("give either traction_coefficient or frictional_heat")
         if (self.frictional_heat is None) != (self.normal_force is None):
             raise ValueError("normal_force belongs to frictional_heat: give both or none")
+        if not given:
+            raise ValueError("creepage is empty; give at least one test")
         if len(given) != len(self.creepage):
             raise ValueError(f"there are {len(self.creepage)} values of creepage, but {len(given)} measured ones")
         self.points(TwinDisc.suros())
@@ -97,7 +101,18 @@ class Preset(Configuration):
 
 
 def _rig(value: Any) -> Any:
+    if not isinstance(value, (dict, TwinDisc)):
+        raise InputError(f'must be a table, such as {{preset = "suros"}}; got {value!r}')
     return Preset(**value).rig() if isinstance(value, dict) and "preset" in value else value
+
+
+def _models(value: Any) -> Any:
+    if not (isinstance(value, (list, tuple)) and value):
+        raise InputError(f"must be a list of names, or of tables with a name and options; got {value!r}")
+    return value
+
+
+ModelList = (BeforeValidator(_models), Field(json_schema_extra={"minItems": 1}))
 
 
 class Case(Configuration):
@@ -107,9 +122,9 @@ class Case(Configuration):
     """What the study is called in its results."""
     rig: Annotated[TwinDisc, BeforeValidator(_rig)]
     """The test rig; `preset = "suros"` starts from that rig and overrides what else is given."""
-    contact_models: Annotated[tuple[ContactModelField, ...], Field(min_length=1)]
+    contact_models: Annotated[tuple[ContactModelField, ...], *ModelList]
     """The contact models, each a name or a table of its name and options."""
-    wear_laws: Annotated[tuple[WearLawField, ...], Field(min_length=1)]
+    wear_laws: Annotated[tuple[WearLawField, ...], *ModelList]
     """The wear laws, likewise."""
     sweeps: Annotated[dict[str, Grid], Field(min_length=1)]
     """Grids of operating points, each under a name."""
@@ -120,9 +135,10 @@ class Case(Configuration):
 
     @model_validator(mode="after")
     def _consistent(self) -> Case:
-        for name in (*self.sweeps, *self.profiles):
-            if not name.isidentifier():
-                raise ValueError(f"the name '{name}' must be made of letters, digits and underscores")
+        for kind, names in (("sweeps", self.sweeps), ("profiles", self.profiles)):
+            for name in names:
+                if not name.isidentifier():
+                    raise ValueError(f"{kind}: the name '{name}' must be made of letters, digits and underscores")
         for name, profile in self.profiles.items():
             if profile.axes():
                 raise ValueError(f"profiles.{name}: a profile is at one operating point; give each condition one value")
@@ -132,19 +148,30 @@ class Case(Configuration):
 
 
 def labels(models: Sequence[Model]) -> list[str]:
-    """Return a short name for each model: its own, with the options given where several share it."""
-    names = [model.name for model in models]
-    found = [model.name if names.count(model.name) == 1 else _with_options(model) for model in models]
-    for label in found:
-        if found.count(label) > 1:
-            raise InputError(f"the model {label} is listed twice; leave one out, or give them different options")
+    """Return a short name for each model: its own, with the options that tell it from others of that name."""
+    found = []
+    for model in models:
+        namesakes = [other for other in models if other.name == model.name]
+        if sum(other == model for other in namesakes) > 1:
+            raise InputError(f"the model {model.name} is listed twice; leave one out, or give it other options")
+        options = [f"{field}={_shown(getattr(model, field))}" for field in _telling_apart(namesakes)]
+        found.append(f"{model.name}({', '.join(options)})" if options else model.name)
     return found
 
 
-def _with_options(model: Model) -> str:
-    fields = model.model_dump(mode="json")
-    given = [name for name in type(model).model_fields if name in model.model_fields_set]
-    return f"{model.name}({', '.join(f'{name}={fields[name]}' for name in given)})" if given else model.name
+def _telling_apart(models: Sequence[Model]) -> list[str]:
+    """Return the fewest fields, in their order, by which different models of one name differ."""
+    fields: list[str] = []
+    kinds: set[tuple[str, ...]] = {()}
+    for field in type(models[0]).model_fields:
+        finer = {tuple(_shown(getattr(model, name)) for name in (*fields, field)) for model in models}
+        if len(finer) > len(kinds):
+            fields, kinds = [*fields, field], finer
+    return fields
+
+
+def _shown(value: Any) -> str:
+    return text_of(value) if isinstance(value, pint.Quantity) else str(value)
 
 
 def shipped_cases() -> list[str]:
@@ -192,8 +219,8 @@ def case_schema() -> dict[str, Any]:
 
 def _model_schema(name: str, model: type[Model], definitions: dict[str, Any]) -> dict[str, Any]:
     """Return the schema of the table that configures a model; a model's own definitions join the others."""
-    table = model.model_json_schema()
-    definitions.update(table.pop("$defs", {}))
+    table = model.model_json_schema(ref_template=f"#/$defs/{name}.{{model}}")
+    definitions.update({f"{name}.{key}": value for key, value in table.pop("$defs", {}).items()})
     table["properties"] = {"model": {"const": name}, **table.get("properties", {})}
     table["required"] = ["model", *(field for field in table.get("required", []) if not _published(model, field))]
     return table

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import sys
+import warnings
 from collections.abc import Callable
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +17,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from wearlaw import plugins
-from wearlaw.errors import UnknownModelError, WearlawError
+from wearlaw.errors import PluginWarning, UnknownModelError, WearlawError
 from wearlaw.version import __version__
 
 if TYPE_CHECKING:
@@ -45,6 +48,9 @@ def main() -> None:
       wearlaw case tassini2010 > my.toml    a copy of its case file, to edit
       wearlaw run my.toml -o my-results/    your own study
     """  # noqa: D301  (\b tells click to keep the lines)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a pipe or an old terminal may not have Greek letters
 
 
 @main.command()
@@ -82,13 +88,15 @@ def case(name: str) -> None:
     """Print a case file: NAME is the name of a shipped one (tassini2010), or a path."""
     from wearlaw.case import case_text
 
-    click.echo(case_text(name), nl=False)
+    click.echo(case_text(name).encode(), nl=False)  # TOML is UTF-8, whatever the terminal speaks
 
 
 @main.command("plugins")
 def list_plugins() -> None:
     """List the installed contact models and wear laws, and what failed to load."""
-    found = plugins.installed()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PluginWarning)  # what is left out is listed below
+        found = plugins.installed()
     table = Table("kind", "name", "distribution", "version", box=None, pad_edge=False)
     for kind, name, origin in [*found.contact_models.listing(), *found.wear_laws.listing()]:
         table.add_row(kind, name, origin.distribution, origin.version)
@@ -111,7 +119,7 @@ def schema() -> None:
     """Print the JSON Schema of a case file with the options of the installed models."""
     from wearlaw.case import case_schema
 
-    click.echo(json.dumps(case_schema(), indent=2, ensure_ascii=False))
+    click.echo(json.dumps(case_schema(), indent=2, ensure_ascii=False).encode())
 
 
 def _model_class(name: str) -> type[Model]:
@@ -158,7 +166,7 @@ def _summary(name: str, sweep: xarray.Dataset) -> Table:
     chosen = sorted({round(step * (count - 1) / (_COLUMNS - 1)) for step in range(_COLUMNS)})
     title = f"Sweep '{name}': {label('wear_rate')} by {label(axis)}"
     table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE, pad_edge=False)
-    table.add_column("", no_wrap=True)
+    table.add_column("", overflow="fold")
     for value in line[axis].values[chosen]:
         table.add_column(f"{value:.4g}", justify="right", no_wrap=True)
     for pair in line.pair.values:

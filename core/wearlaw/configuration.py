@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import pint
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from wearlaw.errors import ConfigurationError, Problem, did_you_mean
-from wearlaw.units import text_of
+from wearlaw.units import shortened, text_of
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -37,6 +37,22 @@ class Configuration(BaseModel):
                 super().__init__(**fields)
             except ValidationError as error:
                 raise configuration_error(type(self).subject(), type(self), error) from None
+
+        @classmethod
+        def model_validate(cls, obj: Any, **options: Any) -> Self:
+            """Return the record that a table of its fields describes."""
+            try:
+                return super().model_validate(obj, **options)
+            except ValidationError as error:
+                raise configuration_error(cls.subject(), cls, error) from None
+
+        @classmethod
+        def model_validate_json(cls, json_data: str | bytes | bytearray, **options: Any) -> Self:
+            """Return the record that `model_dump_json` wrote."""
+            try:
+                return super().model_validate_json(json_data, **options)
+            except ValidationError as error:
+                raise configuration_error(cls.subject(), cls, error) from None
 
     @classmethod
     def subject(cls) -> str:
@@ -73,7 +89,7 @@ def configuration_error(subject: str, model: type[BaseModel], error: ValidationE
 
 def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
     cause = details.get("ctx", {}).get("error")
-    if cause is not None:
+    if isinstance(cause, Exception):
         return str(cause)
     if details["type"] == "extra_forbidden":
         known = list(model.model_fields)
@@ -82,4 +98,4 @@ def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
     if details["type"] == "missing":
         return "is missing"
     message = details["msg"]
-    return f"{message[0].lower()}{message[1:]}, got {details['input']!r}"
+    return f"{message[0].lower()}{message[1:]}, got {shortened(details['input'])}"

@@ -7,7 +7,6 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import elementwise
 
 from wearlaw.arrays import Array
 from wearlaw.models import LineContactModel
@@ -15,7 +14,13 @@ from wearlaw.quadrature import Nodes, position
 from wearlaw.records import LineProblem
 
 SAMPLES = 32
-"""Intervals of θ that are searched for a crossing."""
+"""Equal intervals of θ that are searched for a crossing."""
+
+END_SAMPLES = 5
+"""How often the first and the last of them are cut again, each time to a quarter next to the end.
+
+A variable is even in θ about an end, so that a maximum close to it would hide in an equal interval.
+"""
 
 CROSSINGS = 2
 """Crossings found for each breakpoint; the variables of a line contact rise, or rise and fall, in x."""
@@ -65,9 +70,9 @@ class _Variable:
 
     def __init__(self, model: LineContactModel, problem: LineProblem, zone: tuple[Array, Array], name: str) -> None:
         self.model, self.problem, self.zone, self.name = model, problem, zone, name
-        self.theta = np.linspace(-1.0, 1.0, SAMPLES + 1) * (0.5 * np.pi - END_GAP)
+        self.theta = _sample_angles()
         points = np.arange(problem.creepage.size)
-        self.samples = self._values(np.broadcast_to(self.theta, (points.size, SAMPLES + 1)), points)
+        self.samples = self._values(np.broadcast_to(self.theta, (points.size, self.theta.size)), points)
 
     def at(self, theta: Array, point: Array) -> Array:
         """Return the variable at one θ for each of the operating points `point`, both of shape (m,)."""
@@ -80,11 +85,20 @@ class _Variable:
         return value
 
 
+def _sample_angles() -> Array:
+    last = 0.5 * np.pi - END_GAP
+    equal = np.linspace(-last, last, SAMPLES + 1)
+    near_end = last - (equal[1] - equal[0]) * 0.25 ** np.arange(1, END_SAMPLES + 1)
+    return np.sort(np.concatenate([equal, near_end, -near_end]))
+
+
 def _crossings_of(variable: _Variable, value: float) -> Array:
     """Return the crossings of one breakpoint, of shape (points, CROSSINGS)."""
     found = np.full((variable.samples.shape[0], CROSSINGS), 0.5 * np.pi)
     for point, column, low, high in (_sign_changes(variable, value), _hidden_humps(variable, value)):
         if point.size:
+            from scipy.optimize import elementwise  # half of the time of `import wearlaw`, so only where it is used
+
             root = elementwise.find_root(
                 lambda theta, who: variable.at(theta, who) - value,
                 (low, high),
@@ -109,14 +123,17 @@ def _sign_changes(variable: _Variable, value: float) -> Brackets:
 def _hidden_humps(variable: _Variable, value: float) -> Brackets:
     """Return the brackets of crossings on both sides of a maximum that lies between two samples."""
     theta, samples = variable.theta, variable.samples
-    top = samples.argmax(axis=-1).clip(1, SAMPLES - 1)
+    top = samples.argmax(axis=-1).clip(1, theta.size - 2)
     points = np.arange(samples.shape[0])
     left, middle, right = (samples[points, top + step] for step in (-1, 0, 1))
-    # A smooth hump exceeds its highest sample by less than that one exceeds its lower neighbour.
-    may_reach = (middle < value) & (value < middle + (middle - np.minimum(left, right)))
+    # A smooth hump exceeds its highest sample by less than four times what that one exceeds its lower neighbour by,
+    # for intervals of which one is no more than four times the next.
+    may_reach = (middle < value) & (value < middle + 4.0 * (middle - np.minimum(left, right)))
     point = points[may_reach & (middle >= np.maximum(left, right))]
     low, high = theta[top[point] - 1], theta[top[point] + 1]
     if point.size:
+        from scipy.optimize import elementwise
+
         peak = elementwise.find_minimum(
             lambda angle, who: -variable.at(angle, who),
             (low, theta[top[point]], high),

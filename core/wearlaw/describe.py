@@ -13,7 +13,7 @@ from wearlaw import plugins
 from wearlaw.errors import InputError
 from wearlaw.models import ContactModel, Model, WearLaw
 from wearlaw.records import UNITS
-from wearlaw.units import from_si, text_of
+from wearlaw.units import from_si
 
 
 def describe(model: type[Model]) -> str:
@@ -49,7 +49,7 @@ def _field(model: type[Model], name: str, default: Model | None) -> Iterator[str
 
 
 def _shown(value: Any) -> str:
-    return text_of(value) if isinstance(value, pint.Quantity) else repr(value)
+    return f"{value:~P}" if isinstance(value, pint.Quantity) else repr(value)
 
 
 def _choices(model: type[Model], name: str) -> list[str]:

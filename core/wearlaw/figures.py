@@ -61,7 +61,8 @@ def wear_rate(study: Study, sweep: xarray.Dataset, x: str) -> Figure:
             one = line.sel(pair=pair)
             model, law = one.pair_contact_model.item(), one.pair_wear_law.item()
             along = _along(one.sel(contact_model=model), x)
-            axes.plot(along, one.wear_rate, label=pair, color=colours[law], linestyle=styles[model])
+            style: Any = {"color": colours[law], "linestyle": styles[model], "marker": _marker(along)}
+            axes.plot(along, one.wear_rate, label=pair, **style)
             if (one.wear_rate_high > one.wear_rate_low).any():
                 axes.fill_between(along, one.wear_rate_low, one.wear_rate_high, color=colours[law], alpha=0.08, lw=0)
         axes.set(xlabel=label(x), ylabel=label("wear_rate"))
@@ -77,16 +78,20 @@ def traction(study: Study, sweep: xarray.Dataset) -> Figure:
     with mpl.rc_context(STYLE):
         figure, axes = _figure(study, sweep)
         for number, model in enumerate(line.contact_model.values):
+            one = line.sel(contact_model=model)
+            along = _along(one, "creepage")
             axes.plot(
-                _along(line, "creepage"),
-                line.traction_coefficient.sel(contact_model=model),
+                along,
+                abs(one.tangential_force) / one.normal_force,
                 label=model,
                 color=PALETTE[number % len(PALETTE)],
                 linestyle=LINES[number % len(LINES)],
+                marker=_marker(along),
             )
         if study.case.measured is not None:
             creepage, measured = study.case.measured.points(study.case.rig)
-            axes.plot(100.0 * creepage, measured, "o", color="black", ms=4, label=study.case.measured.label)
+            label_text = _literal(study.case.measured.label)
+            axes.plot(100.0 * abs(creepage), measured, "o", color="black", ms=4, label=label_text)
         axes.set(xlabel=label("creepage"), ylabel=label("traction_coefficient"), ylim=(0.0, None))
         _log_x(axes)
         axes.legend()
@@ -99,14 +104,15 @@ def along_the_patch(study: Study, name: str) -> Figure:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.4, 6.4), layout="constrained")
         stresses, slip = figure.subplots(2, sharex=True)
-        stresses.set_title(study.case.title)
-        stresses.plot(profile.x, profile.pressure.isel(contact_model=0), color="0.6", label=NAMES["pressure"])
+        stresses.set_title(_literal(study.case.title))
         for number, model in enumerate(profile.contact_model.values):
-            one = profile.sel(contact_model=model)
+            one = profile[["pressure", "traction", "traction_bound", "slip"]].sel(contact_model=model).dropna("x")
+            if number == 0:
+                stresses.plot(one.x, one.pressure, color="0.6", label=NAMES["pressure"])
             colour, style = PALETTE[number % len(PALETTE)], LINES[number % len(LINES)]
-            stresses.plot(profile.x, one.traction, label=f"q, {model}", color=colour, linestyle=style)
-            stresses.plot(profile.x, one.traction_bound, color=colour, linestyle=style, lw=0.6)
-            slip.plot(profile.x, one.slip, label=model, color=colour, linestyle=style)
+            stresses.plot(one.x, one.traction, label=f"q, {model}", color=colour, linestyle=style)
+            stresses.plot(one.x, one.traction_bound, color=colour, linestyle=style, lw=0.6)
+            slip.plot(one.x, one.slip, label=model, color=colour, linestyle=style)
         stresses.set(ylabel="stress [MPa] (thin: bound)")
         slip.set(xlabel=label("x"), ylabel=label("slip"))
         stresses.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
@@ -119,8 +125,20 @@ def _figure(study: Study, sweep: xarray.Dataset) -> tuple[Figure, Axes]:
     axes = figure.subplots()
     fixed = [axis for axis in axes_of(sweep) if axis != main_axis(sweep)]
     at = ", ".join(f"{NAMES[axis]} {along_main_axis(sweep)[axis].item():.4g} {UNITS[axis]}".rstrip() for axis in fixed)
-    axes.set_title(f"{study.case.title}\n{at}" if at else study.case.title)
+    title = _literal(study.case.title)
+    axes.set_title(f"{title}\n{at}" if at else title)
     return figure, axes
+
+
+def _literal(text: str) -> str:
+    """Return a text that matplotlib shows as it is: no formula between dollar signs, no hidden legend entry."""
+    shown = text.replace("$", r"\$")
+    return f" {shown}" if shown.startswith("_") else shown
+
+
+def _marker(along: Array) -> str:
+    """Return the marker of a line; a line of one point would not be seen without."""
+    return "o" if along.size == 1 else ""
 
 
 def _along(line: xarray.Dataset, x: str) -> Array:

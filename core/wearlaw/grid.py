@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from wearlaw.arrays import Array
+from wearlaw.conditions import CONDITIONS, CREEPAGE, LOADS
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError
 from wearlaw.records import LineProblem
-from wearlaw.rig import CONDITIONS, CREEPAGE, LOADS, TwinDisc
+from wearlaw.rig import TwinDisc
 from wearlaw.units import Q, Unit, coefficient
 
 UNITS: dict[str, Unit] = {**LOADS, "creepage": CREEPAGE}
@@ -21,14 +23,31 @@ SI_UNITS = {"normal_force": "N", "normal_force_per_width": "N/m", "max_pressure"
 """Their coherent SI units."""
 
 
+MOST_POINTS = 10_000_000
+"""The largest grid that is taken on."""
+
+
+def _value(value: Any) -> Any:
+    """Refuse early what cannot be one value of a condition."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise InputError(f"must be a value, a list of values, or a table with from, to and points; got {value!r}")
+    if isinstance(value, float) and not np.isfinite(value):
+        raise InputError(f"must be finite, got {value}")
+    return value
+
+
+Value = Annotated[float | str, BeforeValidator(_value)]
+"""One value of a condition."""
+
+
 class Axis(Configuration):
     """Values of a condition from one end to the other."""
 
-    start: float | str = Field(alias="from")
+    start: Value = Field(alias="from")
     """First value, with its unit where the condition has one."""
-    stop: float | str = Field(alias="to")
+    stop: Value = Field(alias="to")
     """Last value, with its unit."""
-    points: Annotated[int, Field(ge=2, le=10_000_000, strict=True)]
+    points: Annotated[int, Field(ge=2, le=MOST_POINTS, strict=True)]
     """How many values, ends included."""
     spacing: Literal["log", "linear"] = "linear"
     """Whether neighbours stand in a constant ratio or at a constant distance."""
@@ -45,15 +64,15 @@ class Axis(Configuration):
 
 def _condition(value: Any) -> Any:
     """Make an axis from a table, and refuse early what is neither that nor a value nor a list of values."""
+    if isinstance(value, Axis):
+        return value
     if isinstance(value, dict):
         return Axis(**value)
-    items = value if isinstance(value, (list, tuple)) else [value]
-    for item in items:
-        if not isinstance(item, (int, float, str, Axis)) or isinstance(item, bool):
-            raise InputError(f"must be a value, a list of values, or a table with from, to and points; got {item!r}")
-    if not items:
+    if not isinstance(value, (list, tuple)):
+        return _value(value)
+    if not value:
         raise InputError("is empty; give at least one value")
-    return tuple(items) if isinstance(value, (list, tuple)) else value
+    return tuple(_value(item) for item in value)
 
 
 Condition = Annotated[float | str | tuple[float | str, ...] | Axis, BeforeValidator(_condition)]
@@ -73,7 +92,7 @@ class Grid(Configuration):
     max_pressure: Condition | None = None
     """p0, with its unit."""
     creepage: Condition
-    """ξ, in percent or as a ratio: "1 %" or "0.01"."""
+    """ξ, in percent or as a ratio: "1 %" or "0.01 dimensionless"."""
     friction_coefficient: Condition
     """μ, a plain number."""
     traction_coefficient: Condition | None = None
@@ -82,8 +101,10 @@ class Grid(Configuration):
     @model_validator(mode="after")
     def _possible(self) -> Grid:
         """Find what is wrong with the conditions when they are read, not when they are used."""
-        first = {name: values.reshape(-1)[:1] for name, values in self.conditions().items()}
-        TwinDisc.suros().problem(**_with_units(first))
+        extremes = {name: np.array([values.min(), values.max()]) for name, values in self.conditions().items()}
+        TwinDisc.suros().problem(**_with_units(extremes))
+        if self.size > MOST_POINTS:
+            raise InputError(f"the axes make a grid of {self.size} points; at most {MOST_POINTS} are possible")
         return self
 
     def conditions(self) -> dict[str, Array]:
@@ -98,7 +119,7 @@ class Grid(Configuration):
     @property
     def size(self) -> int:
         """The number of operating points."""
-        return int(np.prod([values.size for values in self.axes().values()], dtype=np.int64))
+        return math.prod(values.size for values in self.axes().values())
 
     def problem(self, rig: TwinDisc) -> LineProblem:
         """Return the contact problem at all points of the grid."""

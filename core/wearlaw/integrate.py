@@ -80,10 +80,10 @@ def integrate_wear(
     flat = problem.flatten()
     contact_columns, wear_columns = [], []
     for block in _blocks(flat):
-        contact, slip_nodes = contact_for(model, law, flat[block], scale)
+        contact = contact_for(model, law, flat[block], scale)
         rate = rate_of(law, contact)
         contact_columns.append(_contact_columns(contact))
-        wear_columns.append({"wear_rate": contact.mean(rate), "wear_rate_error": _error(contact, rate, slip_nodes)})
+        wear_columns.append({"wear_rate": contact.mean(rate), "wear_rate_error": _error(model, scale, contact, rate)})
         if on_block is not None:
             on_block(contact.rolling_speed.size)
     shape = problem.batch_shape
@@ -99,15 +99,10 @@ def solve(model: ContactModel, problem: LineProblem, scale: Scale) -> Contact:
     return contact
 
 
-def contact_for(model: ContactModel, law: WearLaw, problem: LineProblem, scale: Scale) -> tuple[Contact, int | None]:
-    """Return the contact on the nodes that suit a law, and how many of the last ones lie in the slip zone.
-
-    The number is None where the nodes are not those of `zone_nodes`, and 0 for one node a patch.
-    """
-    if scale == "patch":
-        return solve(model, problem, scale), 0
-    if not isinstance(model, LineContactModel):
-        return solve(model, problem, scale), None
+def contact_for(model: ContactModel, law: WearLaw, problem: LineProblem, scale: Scale) -> Contact:
+    """Return the contact on the nodes that suit a law."""
+    if scale == "patch" or not isinstance(model, LineContactModel):
+        return solve(model, problem, scale)
     start, end = model.slip_zone(dataclasses.replace(problem, creepage=np.abs(problem.creepage)))
     breakpoints = law.breakpoints
     if breakpoints is None:
@@ -117,7 +112,7 @@ def contact_for(model: ContactModel, law: WearLaw, problem: LineProblem, scale: 
         slipping = zone_nodes(start, end, splits=crossings(model, problem, (start, end), per_node))
     contact = model.at(problem, join(*stick_nodes(problem, start, end), slipping))
     _check_contact(model, contact, problem)
-    return contact, slipping.x.shape[-1]
+    return contact
 
 
 def rate_of(law: WearLaw, contact: Contact) -> Array:
@@ -150,29 +145,37 @@ def _ranges(problem: LineProblem) -> str:
     )
 
 
-def _error(contact: Contact, rate: Array, slip_nodes: int | None) -> Array:
+def _error(model: ContactModel, scale: Scale, contact: Contact, rate: Array) -> Array:
+    resolved = scale == "cells"
+    if resolved and not isinstance(model, LineContactModel):
+        return _thinning_error(contact, rate)
     weighted = rate * contact.area
-    if slip_nodes is None:
-        return _halving_error(contact, rate)
-    rounding = np.finfo(np.float64).eps * contact.sum_over_nodes(np.abs(weighted))
-    if slip_nodes == 0:
-        return rounding / contact.patch_area
-    return (remainder(weighted[..., -slip_nodes:]) + rounding) / contact.patch_area
+    # Positions are exact to the rounding of a, so in a short slip zone the rates are that much less exact.
+    slip_area = contact.slip_area
+    shortness = np.divide(contact.patch_area, slip_area, out=np.ones_like(slip_area), where=slip_area > 0)
+    error = np.finfo(np.float64).eps * shortness * contact.sum_over_nodes(np.abs(weighted))
+    if resolved:
+        error = error + remainder(weighted)
+    return error / contact.patch_area
 
 
-def _halving_error(contact: Contact, rate: Array) -> Array:
-    """Return how far the means over every other node lie apart, for nodes of which nothing is known."""
-    axis = contact.rolling_speed.ndim
-    flat_area = contact.area.reshape(*contact.rolling_speed.shape, -1)
-    flat_rate = rate.reshape(flat_area.shape)
-    if flat_area.shape[axis] < 2:
+def _thinning_error(contact: Contact, rate: Array) -> Array:
+    """Return how far the mean moves when nodes are left out, for nodes of which nothing is known.
+
+    The means over every other node show steps that fall between nodes; they agree by symmetry for a rate that
+    vanishes at both ends, where the middle nodes of every three, with the area of the three, still differ.
+    """
+    shape = (*contact.rolling_speed.shape, -1)
+    area, weighted = contact.area.reshape(shape), (rate * contact.area).reshape(shape)
+    if area.shape[-1] < 2:
         return np.abs(contact.mean(rate))
-    means = [
-        (flat_rate[..., part] * flat_area[..., part]).sum(-1) / flat_area[..., part].sum(-1)
-        for part in (slice(0, None, 2), slice(1, None, 2))
-    ]
-    difference: Array = np.abs(means[0] - means[1])
-    return difference
+    halves = [weighted[..., part].sum(-1) / area[..., part].sum(-1) for part in (slice(0, None, 2), slice(1, None, 2))]
+    whole = area.shape[-1] // 3 * 3
+    threes = (*area.shape[:-1], whole // 3, 3)
+    middle = rate.reshape(area.shape)[..., 1:whole:3] * area[..., :whole].reshape(threes).sum(-1)
+    thinned = middle.sum(-1) - weighted[..., :whole].sum(-1)
+    error: Array = np.abs(halves[0] - halves[1]) + np.abs(thinned) / contact.patch_area
+    return error
 
 
 def _contact_columns(contact: Contact) -> dict[str, Array]:

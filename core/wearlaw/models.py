@@ -65,7 +65,7 @@ class ContactModel(Model):
 
     @abstractmethod
     def solve(self, problem: LineProblem) -> Contact:
-        """Return the solved contact on nodes of the model's choice, of shape (*batch, nodes)."""
+        """Return the solved contact on nodes of the model's choice, of shape (batch, nodes)."""
 
     @property
     def exemptions(self) -> Mapping[Claim, str]:
@@ -85,7 +85,7 @@ class LineContactModel(ContactModel):
 
     @abstractmethod
     def fields(self, problem: LineProblem, x: Array) -> LineFields:
-        """Return the fields at positions `x` [m] of shape (*batch, nodes).
+        """Return the fields at positions `x` [m] of shape (batch, nodes).
 
         The arrays of `problem` come with a last axis of length one, so that formulas broadcast against `x`.
         """

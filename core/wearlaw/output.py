@@ -35,28 +35,62 @@ def fresh_folder(folder: Path, overwrite: bool) -> Iterator[Path]:
     OutputError
         At once, if `folder` cannot be written or holds something that is not to be overwritten.
     """
-    if folder.exists() and not folder.is_dir():
-        raise OutputError(f"output: '{folder}' is a file, not a folder; choose another with -o")
-    if folder.is_dir() and any(folder.iterdir()) and not overwrite:
-        raise OutputError(f"output: '{folder}' is not empty; choose another folder with -o, or add --overwrite")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / RESULTS).is_file():
-        raise OutputError(f"output: '{folder}' does not hold results of wearlaw, and will not be overwritten")
+    with _os_errors_of(folder):
+        target = folder.resolve()
+        _check(folder, target, overwrite)
+        nearest = next(parent for parent in target.parents if parent.exists())
+        temporary = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=nearest))
     try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        temporary = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
-    except OSError as error:
-        raise OutputError(
-            f"output: cannot write to '{folder.parent}': {error.strerror}; choose another with -o"
-        ) from None
-    try:
-        inside = temporary / folder.name
-        inside.mkdir()
+        inside = temporary / "results"
+        inside.mkdir()  # by itself, since only the user may enter what mkdtemp makes
         yield inside
-        if folder.exists():
-            folder.rename(temporary / "replaced")
-        inside.rename(folder)
+        with _os_errors_of(folder):
+            _move(inside, target, temporary / "replaced")
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
+
+
+@contextmanager
+def _os_errors_of(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OutputError:
+        raise
+    except OSError as error:
+        raise OutputError(
+            f"output: cannot write to '{folder}': {error.strerror or error}; choose another folder with -o"
+        ) from None
+
+
+def _check(folder: Path, target: Path, overwrite: bool) -> None:
+    if not target.exists():
+        return
+    if not target.is_dir():
+        raise OutputError(f"output: '{folder}' is a file, not a folder; choose another with -o")
+    if Path.cwd().is_relative_to(target):
+        raise OutputError(f"output: '{folder}' is the working folder or above it; choose another folder with -o")
+    if not any(target.iterdir()):
+        return
+    if not (target / RESULTS).is_file():
+        raise OutputError(
+            f"output: '{folder}' does not hold results of wearlaw, and will not be overwritten;"
+            " choose another folder with -o"
+        )
+    if not overwrite:
+        raise OutputError(f"output: '{folder}' is not empty; choose another folder with -o, or add --overwrite")
+
+
+def _move(inside: Path, target: Path, replaced: Path) -> None:
+    """Put new results in the place of old ones, which stay if that fails."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    if target.exists():
+        target.rename(replaced)
+    try:
+        inside.rename(target)
+    except OSError:
+        if replaced.exists():
+            replaced.rename(target)
+        raise
 
 
 def write(study: Study, folder: Path) -> list[str]:
@@ -80,7 +114,7 @@ def write(study: Study, folder: Path) -> list[str]:
             names.append(os.path.join(FIGURES, f"{name}.png"))
             draw().savefig(folder / names[-1], dpi=150)
     except OSError as error:
-        raise OutputError(f"output: cannot write '{names[-1]}': {error.strerror or error}") from None
+        raise OutputError(f"output: cannot write the results: {error.strerror or error}") from None
     return names
 
 

@@ -4,26 +4,34 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping
-from typing import Generic, TypeVar, Unpack, overload
+from typing import TYPE_CHECKING, Generic, TypeVar, Unpack, overload
 
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.conditions import TwinDiscConditions
 from wearlaw.configuration import Configuration
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning
 from wearlaw.integrate import ContactTotals, integrate_contact, integrate_wear
 from wearlaw.models import ContactModel, Scale, WearLaw
 from wearlaw.records import UNITS, LineProblem
 from wearlaw.result import ContactSolution, Prediction
-from wearlaw.rig import TwinDisc, TwinDiscConditions
+from wearlaw.rig import TwinDisc
 from wearlaw.specification import ContactModelField, WearLawField
 from wearlaw.units import from_si
 
 RigT = TypeVar("RigT", bound=TwinDisc)
 
+ORDER = 'the order is rig | wl.contact_model("exact") | wl.patch_mean(), where it is needed, | wl.wear_law("usfd")'
+
 
 class PatchMean(Configuration):
     """The stage that replaces a resolved contact by its patch means."""
+
+    if not TYPE_CHECKING:  # checkers reject this order by themselves
+
+        def __or__(self, other: object) -> object:
+            raise CompositionError(f"wl.patch_mean() cannot start a pipeline; {ORDER}")
 
 
 def patch_mean() -> PatchMean:
@@ -86,6 +94,11 @@ class Pipeline(Configuration, Generic[RigT]):
 
     def __repr__(self) -> str:
         return f"{self.contact!r} | {self.wear_law!r}"
+
+    if not TYPE_CHECKING:  # checkers reject this order by themselves
+
+        def __or__(self, other: object) -> object:
+            raise CompositionError(f"a pipeline ends with its wear law, nothing follows it, not {other!r}; {ORDER}")
 
     def __call__(self: Pipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> Prediction:
         """Return the contact and the wear under the given conditions; see `TwinDisc.problem` for these."""
@@ -159,12 +172,11 @@ def _warn_of_range(law: WearLaw, problem: LineProblem, totals: ContactTotals, st
     for name, (low, high) in law.valid_range.items():
         outside = (values[name] < low) | (values[name] > high)
         if outside.any():
-            bounds = (low, high, values[name].min(), values[name].max())
-            shown = [repr(from_si(bound, UNITS[name])) for bound in bounds]
+            bounds = [repr(from_si(bound, UNITS[name])) for bound in (low, high)]
+            worst = values[name][outside].max() if (values[name] > high).any() else values[name].min()
             warnings.warn(
-                f"wear law '{law.name}' is stated for a mean {name.replace('_', ' ')} from {shown[0]} to {shown[1]};"
-                f" {outside.sum()} of {outside.size} operating points lie outside, the whole spans {shown[2]} to"
-                f" {shown[3]}",
+                f"wear law '{law.name}' is stated for a mean {name.replace('_', ' ')} from {bounds[0]} to {bounds[1]};"
+                f" {outside.sum()} of {outside.size} operating points lie outside, as far as {from_si(worst, UNITS[name])!r}",
                 RangeWarning,
                 stacklevel=stacklevel + 1,
             )

@@ -163,12 +163,13 @@ def wear_law(name: str, /, **options: Any) -> WearLaw:
 
 
 def _entry_points() -> list[tuple[EntryPoint, Origin]]:
-    found = {
-        (dist.name, entry_point.name): (entry_point, Origin(entry_point.name, dist.name, dist.version))
-        for dist in distributions()
-        for entry_point in dist.entry_points
-        if entry_point.group == hookspecs.PROJECT
-    }
+    found: dict[tuple[str, str], tuple[EntryPoint, Origin]] = {}
+    for dist in distributions():
+        for entry_point in dist.entry_points:
+            if entry_point.group == hookspecs.PROJECT:
+                origin = Origin(entry_point.name, dist.name, dist.version)
+                # Of two copies of a distribution, the first on sys.path is the one that is imported.
+                found.setdefault((dist.name, entry_point.name), (entry_point, origin))
     return [found[key] for key in sorted(found)]
 
 
@@ -176,8 +177,11 @@ def _load(entry_point: EntryPoint, origin: Origin, found: Installed) -> None:
     """Load one plugin with a plugin manager of its own and put its models on the shelves."""
     manager = pluggy.PluginManager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)
-    manager.register(entry_point.load(), entry_point.name)
+    plugin = entry_point.load()
+    manager.register(plugin, entry_point.name)
     manager.check_pending()
+    if not manager.get_hookcallers(plugin):
+        raise TypeError("it implements no hook; mark its functions with @wearlaw.hookimpl")
     for model in chain.from_iterable(manager.hook.wearlaw_contact_models()):
         found.contact_models.add(model, origin)
     for law in chain.from_iterable(manager.hook.wearlaw_wear_laws()):

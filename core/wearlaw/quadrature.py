@@ -20,14 +20,14 @@ ORDER = 24
 
 @dataclass(frozen=True, slots=True)
 class Nodes:
-    """Positions `x` with the lengths that they stand for, both of shape (*batch, nodes) [m]."""
+    """Positions `x` with the lengths that they stand for, both of shape (batch, nodes) [m]."""
 
     x: Array
     length: Array
 
 
 def position(start: Array, end: Array, theta: Array) -> Array:
-    """Return x = centre + half·sin θ of a zone; `theta` has the batch axes and one more, (*batch, points)."""
+    """Return x = centre + half·sin θ of a zone; `theta` has the batch axes and one more, (batch, points)."""
     centre, half = 0.5 * (start + end), 0.5 * (end - start)
     x: Array = centre[..., None] + half[..., None] * np.sin(theta)
     return x
@@ -38,9 +38,9 @@ def zone_nodes(start: Array, end: Array, splits: Array | None = None, panels: in
 
     Parameters
     ----------
-    start, end : ndarray, (*batch)
+    start, end : ndarray, (batch)
         Ends of the zone [m]; a zone without length gets nodes without length.
-    splits : ndarray, (*batch, k), optional
+    splits : ndarray, (batch, k), optional
         Values of θ in [-π/2, π/2] at which to begin a new panel, in any order.
     panels : int
         How many equal panels to use where no splits are given.
@@ -48,7 +48,7 @@ def zone_nodes(start: Array, end: Array, splits: Array | None = None, panels: in
     Returns
     -------
     Nodes
-        Of shape (*batch, (k + 1) · ORDER), panel by panel.
+        Of shape (batch, (k + 1) · ORDER), panel by panel.
     """
     quarter_turn = np.full((*start.shape, 1), 0.5 * np.pi)
     if splits is None:

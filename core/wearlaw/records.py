@@ -124,27 +124,27 @@ class Contact:
 
     Attributes
     ----------
-    pressure : ndarray, (*batch, *nodes)
+    pressure : ndarray, (batch, nodes)
         Normal pressure p [Pa].
-    traction : ndarray, (*batch, *nodes)
+    traction : ndarray, (batch, nodes)
         Tangential traction q [Pa], with the sign of the creepage.
-    slip : ndarray, (*batch, *nodes)
+    slip : ndarray, (batch, nodes)
         Relative slip s = slip velocity over rolling speed [-], with the sign of the creepage; zero in stick.
-    traction_bound : ndarray, (*batch, *nodes)
+    traction_bound : ndarray, (batch, nodes)
         The largest magnitude that the model allows for the traction [Pa].
-    area : ndarray, (*batch, *nodes)
+    area : ndarray, (batch, nodes)
         Area of the patch that the node stands for [m²].
-    x : ndarray, (*batch, *nodes)
+    x : ndarray, (batch, nodes)
         Position along the rolling direction, from the leading to the trailing edge [m].
-    rolling_speed : ndarray, (*batch)
+    rolling_speed : ndarray, (batch)
         V [m/s].
-    normal_force : ndarray, (*batch)
+    normal_force : ndarray, (batch)
         N [N].
-    tangential_force : ndarray, (*batch)
+    tangential_force : ndarray, (batch)
         T [N], with the sign of the creepage.
-    wear_index : ndarray, (*batch)
+    wear_index : ndarray, (batch)
         Tγ [N], the energy dissipated per metre rolled.
-    density : ndarray, (*batch)
+    density : ndarray, (batch)
         Mass density of the body whose wear is predicted [kg/m³].
     """
 
@@ -171,10 +171,10 @@ class Contact:
         problem : LineProblem
             The problem that was solved.
         fields : LineFields
-            The solution at the nodes, each of shape (*batch, nodes).
-        x, length : ndarray, (*batch, nodes)
+            The solution at the nodes, each of shape (batch, nodes).
+        x, length : ndarray, (batch, nodes)
             Position of each node and the length that it stands for [m].
-        force_per_width : ndarray, (*batch)
+        force_per_width : ndarray, (batch)
             T [N/m], with the sign of the creepage.
         """
         force = force_per_width * problem.track_width
@@ -194,12 +194,12 @@ class Contact:
 
     @property
     def wear_index_density(self) -> Array:
-        """Energy dissipated per metre rolled and area, q·s [N/m²], of shape (*batch, *nodes)."""
+        """Energy dissipated per metre rolled and area, q·s [N/m²], of shape (batch, nodes)."""
         return self.traction * self.slip
 
     @property
     def slip_speed(self) -> Array:
-        """Magnitude of the slip velocity, |s| V [m/s], of shape (*batch, *nodes)."""
+        """Magnitude of the slip velocity, s V [m/s], of shape (batch, nodes)."""
         return np.abs(self.slip) * self.per_node(self.rolling_speed)
 
     @property
@@ -222,7 +222,7 @@ class Contact:
 
     @property
     def mean_slip(self) -> Array:
-        """Area mean of |s| over the patch, stick included [-], of the batch shape."""
+        """Area mean of the magnitude of the slip over the patch, stick included [-], of the batch shape."""
         return self.mean(np.abs(self.slip))
 
     @property

@@ -198,7 +198,7 @@ class Prediction(ContactSolution):
     def contact(self) -> Contact:
         """The solved contact as SI arrays, on the nodes on which the wear was integrated."""
         flat = self.problem.flatten()
-        contact, _ = integrate.contact_for(self.contact_model, self.wear_law, flat, self.scale)
+        contact = integrate.contact_for(self.contact_model, self.wear_law, flat, self.scale)
         return contact.with_batch(self.problem.batch_shape)
 
     @cached_property

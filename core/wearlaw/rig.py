@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Annotated, Any, Required, TypedDict, Unpack
+from typing import TYPE_CHECKING, Annotated, Unpack
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from wearlaw import hertz
-from wearlaw.arrays import Array
+from wearlaw.conditions import TwinDiscConditions, condition_arrays
 from wearlaw.configuration import Configuration
-from wearlaw.errors import CompositionError, ConditionsError, InputError, RangeWarning, did_you_mean
+from wearlaw.errors import CompositionError, ConditionsError, InputError, RangeWarning
 from wearlaw.models import ContactModel
 from wearlaw.records import LineProblem
 from wearlaw.units import (
@@ -23,14 +23,11 @@ from wearlaw.units import (
     Speed,
     Stress,
     Unit,
-    coefficient,
     from_si,
     scalar_si,
 )
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
     from wearlaw.pipeline import ContactPipeline
 
 
@@ -45,6 +42,17 @@ class Material(Configuration):
     """Mass density ρ [kg/m³]."""
     elastic_limit: Stress | None = None
     """Maximum Hertz pressure [Pa] up to which the contact may be taken as elastic; None if not known."""
+
+    if TYPE_CHECKING:  # checkers do not know that a text is accepted for a quantity
+
+        def __init__(
+            self,
+            *,
+            youngs_modulus: QuantityLike,
+            poisson_ratio: float,
+            density: QuantityLike,
+            elastic_limit: QuantityLike | None = None,
+        ) -> None: ...
 
 
 def steel(
@@ -71,10 +79,10 @@ def steel(
         first yield in line contact at p0 = 1.79 Y (Johnson, Contact Mechanics, 1985, section 4.4).
     """
     return Material(
-        youngs_modulus=youngs_modulus,  # type: ignore[arg-type]
+        youngs_modulus=youngs_modulus,
         poisson_ratio=poisson_ratio,
-        density=density,  # type: ignore[arg-type]
-        elastic_limit=elastic_limit,  # type: ignore[arg-type]
+        density=density,
+        elastic_limit=elastic_limit,
     )
 
 
@@ -86,32 +94,9 @@ class Disc(Configuration):
     material: Material
     """What it is made of."""
 
+    if TYPE_CHECKING:
 
-class TwinDiscConditions(TypedDict, total=False):
-    """The conditions of a twin-disc test; arrays broadcast against each other.
-
-    Exactly one of `normal_force` [N], `normal_force_per_width` [N/m] and `max_pressure` [Pa] gives the load.
-    """
-
-    normal_force: QuantityLike
-    normal_force_per_width: QuantityLike
-    max_pressure: QuantityLike
-    creepage: Required[QuantityLike]
-    friction_coefficient: Required[ArrayLike]
-    traction_coefficient: ArrayLike
-
-
-LOADS = {"normal_force": Unit("N"), "normal_force_per_width": Unit("kN/m"), "max_pressure": Unit("MPa")}
-"""The conditions that give the load, with their units."""
-
-CREEPAGE = Unit("", positive=False, limit=1.0)
-"""Creepage is a ratio of magnitude at most 1."""
-
-COEFFICIENTS = ("friction_coefficient", "traction_coefficient")
-"""The conditions that are plain numbers."""
-
-CONDITIONS = (*LOADS, "creepage", *COEFFICIENTS)
-"""All conditions of a twin-disc test."""
+        def __init__(self, *, diameter: QuantityLike, material: Material) -> None: ...
 
 
 class TwinDisc(Configuration):
@@ -130,6 +115,12 @@ class TwinDisc(Configuration):
     """Width of the running track across the rolling direction [m]."""
     rolling_speed: Speed
     """Mean of the two discs' surface speeds, V [m/s]."""
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self, *, disc_1: Disc, disc_2: Disc, track_width: QuantityLike, rolling_speed: QuantityLike
+        ) -> None: ...
 
     @model_validator(mode="after")
     def _not_both_flat(self) -> TwinDisc:
@@ -168,15 +159,15 @@ class TwinDisc(Configuration):
         -----
         Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478.
         """
-        standard = Disc(diameter=diameter, material=material or steel())  # type: ignore[arg-type]
+        standard = Disc(diameter=diameter, material=material or steel())
         disc_1, disc_2 = disc_1 or standard, disc_2 or standard
         if rolling_speed is None:
             rolling_speed = _surface_speed(disc_1, rotational_speed)
         return cls(
             disc_1=disc_1,
             disc_2=disc_2,
-            track_width=track_width,  # type: ignore[arg-type]
-            rolling_speed=rolling_speed,  # type: ignore[arg-type]
+            track_width=track_width,
+            rolling_speed=rolling_speed,
         )
 
     def __or__(self, model: ContactModel) -> ContactPipeline[TwinDisc]:
@@ -190,6 +181,7 @@ class TwinDisc(Configuration):
             )
         return ContactPipeline(rig=self, contact_model=model)
 
+    @np.errstate(over="ignore", divide="ignore", invalid="ignore")  # `_check_scale` refuses what comes of it
     def problem(self, **conditions: Unpack[TwinDiscConditions]) -> LineProblem:
         """Return the contact problem that the conditions of a test pose.
 
@@ -211,7 +203,7 @@ class TwinDisc(Configuration):
         UnitError
             If a condition lacks its unit or is out of bounds.
         """
-        arrays = _condition_arrays(dict(conditions))
+        arrays = condition_arrays(dict(conditions))
         radius, modulus = self._radius(), self._modulus()
         width = scalar_si(self.track_width, "m")
         if "max_pressure" in arrays:
@@ -281,44 +273,6 @@ def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
         raise InputError("rolling_speed: a flat disc_1 has no rotational speed; give rolling_speed instead")
     angular = float(Unit("rpm").si(rotational_speed, "rotational_speed"))
     return Q(angular * 0.5 * diameter, "m/s")
-
-
-def _condition_arrays(conditions: dict[str, Any]) -> dict[str, Array]:
-    """Return all given conditions as SI arrays of one shape."""
-    for name in conditions:
-        if name not in CONDITIONS:
-            raise ConditionsError(
-                f"{name}: unknown condition;{did_you_mean(name, CONDITIONS)}"
-                f" The conditions are: {', '.join(CONDITIONS)}"
-            )
-    given = {name: value for name, value in conditions.items() if value is not None}
-    loads = [name for name in LOADS if name in given]
-    if len(loads) != 1:
-        raise ConditionsError(
-            f"give exactly one of {', '.join(LOADS)}; got {' and '.join(loads) if loads else 'none of them'}"
-        )
-    for name in ("creepage", "friction_coefficient"):
-        if name not in given:
-            example = 'Q(1, "%")' if name == "creepage" else "0.46"
-            raise ConditionsError(f"{name}: is missing; give {name}={example}")
-    units = {**LOADS, "creepage": CREEPAGE}
-    arrays = {
-        name: units[name].si(value, name) if name in units else coefficient(value, name)
-        for name, value in given.items()
-    }
-    return _broadcast(arrays)
-
-
-def _broadcast(arrays: dict[str, Array]) -> dict[str, Array]:
-    try:
-        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
-    except ValueError:
-        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-        raise ConditionsError(f"the shapes of the conditions do not broadcast: {shapes}") from None
-    if 0 in shape:
-        empty = next(name for name, array in arrays.items() if array.size == 0)
-        raise ConditionsError(f"{empty}: is empty; give at least one value")
-    return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
 
 
 def _check_scale(problem: LineProblem) -> None:

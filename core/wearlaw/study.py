@@ -110,9 +110,12 @@ def run(case: Case, on_block: Callable[[int], None] | None = None) -> Study:
 
 def evaluations(case: Case) -> int:
     """Return how many evaluations of a pair at an operating point a case needs."""
-    pipelines = [pair.pipeline for pair in _pairs(case, Notes())]
-    each = sum(1 + len(_band_ends(pipeline)) for pipeline in pipelines)
-    return each * sum(grid.size for grid in case.sweeps.values())
+    pairs = _pairs(case, Notes())
+    return sum(
+        grid.size * (1 + len(_band_ends(pair.pipeline)))
+        for name, grid in case.sweeps.items()
+        for pair in _usable(f"sweep '{name}'", grid, pairs, Notes())
+    )
 
 
 def provenance(case: Case) -> dict[str, Any]:
@@ -151,7 +154,7 @@ def _sweep(
     import xarray
 
     problem = grid.problem(case.rig)
-    usable = _usable(name, grid, pairs, notes)
+    usable = _usable(f"sweep '{name}'", grid, pairs, notes)
     rates: list[dict[str, Array]] = []
     contacts: dict[str, Prediction] = {}
     for pair in usable:
@@ -164,7 +167,11 @@ def _sweep(
     any_contact = next(iter(contacts.values()))
     variables = {
         **{v: (("pair", *axes), np.stack([rate[v] for rate in rates])) for v in first},
-        **{v: (("contact_model", *axes), np.stack([_plain(c, v) for c in contacts.values()])) for v in OF_CONTACT},
+        **{
+            v: (("contact_model", *axes), np.stack([_plain(c, v) for c in contacts.values()]))
+            for v in OF_CONTACT
+            if v not in axes
+        },
         **{v: (axes, _plain(any_contact, v)) for v in OF_POINT if v not in axes},
     }
     dataset = xarray.Dataset({v: (dims, values, {"units": UNITS[v]}) for v, (dims, values) in variables.items()})
@@ -177,16 +184,16 @@ def _sweep(
     )
 
 
-def _usable(name: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[Pair]:
+def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[Pair]:
     """Leave out the pairs that have no use for a measured traction coefficient."""
     if grid.traction_coefficient is None:
         return pairs
     usable = [pair for pair in pairs if pair.pipeline.contact.contact_model.uses_measured_traction]
     for pair in pairs:
         if pair not in usable:
-            notes.add(f"sweep '{name}': {pair.contact_model} is left out, since it computes the traction itself")
+            notes.add(f"{subject}: {pair.contact_model} is left out, since it computes the traction itself")
     if not usable:
-        raise InputError(f'sweeps.{name}: no contact model of the case can use a traction_coefficient; add "global"')
+        raise InputError(f'{subject}: no contact model of the case can use a traction_coefficient; add "global"')
     return usable
 
 
@@ -217,7 +224,8 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
     problem = grid.problem(case.rig)
     contacts: dict[str, xarray.Dataset] = {}
     rates: list[xarray.DataArray] = []
-    resolved = [pair for pair in _usable(name, grid, pairs, notes) if pair.pipeline.contact.scale == "cells"]
+    usable = _usable(f"profile '{name}'", grid, pairs, notes)
+    resolved = [pair for pair in usable if pair.pipeline.contact.scale == "cells"]
     for pair in resolved:
         with notes.of(f"profile '{name}'"):
             profile = pair.pipeline.predict(problem).profile
@@ -226,8 +234,9 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
     if not resolved:
         notes.add(f"profile '{name}' is left out: no contact model of the case resolves the patch")
         return xarray.Dataset()
-    dataset = xarray.concat(list(contacts.values()), xarray.Variable("contact_model", list(contacts)), join="exact")
-    return dataset.assign(wear_rate=xarray.concat(rates, "pair", join="exact")).assign_coords(
+    # Models with nodes of their own, not on the uniform cells, have no value where only others have a node.
+    dataset = xarray.concat(list(contacts.values()), xarray.Variable("contact_model", list(contacts)), join="outer")
+    return dataset.assign(wear_rate=xarray.concat(rates, "pair", join="outer")).assign_coords(
         pair=[pair.label for pair in resolved]
     )
 

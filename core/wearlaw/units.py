@@ -7,7 +7,6 @@ so that quantities made by other packages and by `pint.set_application_registry`
 
 from __future__ import annotations
 
-import functools
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
@@ -17,8 +16,11 @@ import pint
 from pydantic_core import core_schema
 
 from wearlaw.errors import UnitError
+from wearlaw.registry import application_registry, quantity, si_factor, unit_in_si
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import ArrayLike, NDArray
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 
@@ -28,8 +30,6 @@ else:
 
 QuantityLike: TypeAlias = "Quantity | str"
 """A quantity, or its text such as "47 mm"."""
-
-_SIGNIFICANT_DIGITS = 4
 
 
 def Q(value: ArrayLike, unit: str) -> Quantity:
@@ -52,14 +52,16 @@ def Q(value: ArrayLike, unit: str) -> Quantity:
     UnitError
         If the unit is not known, or the value is no real number.
     """
-    registry = _registry()
-    magnitude: Any = value if type(value) in (int, float) else real_array(value)
-    quantity: Quantity = _quantity_class(registry)(magnitude, _parse_unit(registry, unit))
-    return quantity
+    magnitude: Any = value
+    if type(value) not in (int, float):
+        array = real_array(value)
+        magnitude = float(array) if array.ndim == 0 else array
+    result: Quantity = quantity(magnitude, unit)
+    return result
 
 
 def parse(text: str) -> Quantity:
-    """Return the quantity that a text such as "47 mm" or "1e-3 %" stands for.
+    """Return the quantity that a text such as "47 mm", "1e-3 %" or "0.01 dimensionless" stands for.
 
     Raises
     ------
@@ -67,14 +69,14 @@ def parse(text: str) -> Quantity:
         If the text is not a number followed by a known unit.
     """
     match = _QUANTITY_TEXT.fullmatch(text)
-    if match is None:
+    if match is None or not match["unit"]:
         raise UnitError(f"'{text}' is not a number with a unit")
     return Q(float(match["number"]), match["unit"])
 
 
 def text_of(quantity: Quantity) -> str:
     """Return the text that `parse` reads back to the same scalar quantity, to the last digit."""
-    return f"{float(quantity.magnitude)!r} {quantity.units:~C}".strip()
+    return f"{float(quantity.magnitude)!r} {format(quantity.units, '~C') or 'dimensionless'}"
 
 
 _QUANTITY_TEXT = re.compile(
@@ -129,17 +131,28 @@ class Unit:
     def _checked(self, value: object) -> tuple[Quantity, NDArray[np.float64]]:
         quantity = self._as_quantity(value)
         magnitude = real_array(quantity.magnitude)
-        factor = _si_factor(_registry(), quantity.units, self.unit)
+        try:
+            factor = si_factor(application_registry(), quantity.units, self.unit)
+        except UnitError as error:
+            raise UnitError(f"got {_describe(Q(magnitude, str(quantity.units)))}, {error}") from None
         in_si = magnitude if factor == 1.0 else magnitude * factor
-        if np.isnan(in_si).any():
-            raise UnitError(f"must be a number, got {quantity!r}")
-        if not self.infinite and np.isinf(in_si).any():
-            raise UnitError(f"must be finite, got {quantity!r}")
-        if self.positive and not (in_si > 0).all():
-            raise UnitError(f"must be greater than zero, got {quantity!r}")
-        if (np.abs(in_si) > self.limit * _unit_in_si(self.unit)).any():
-            raise UnitError(f"must not exceed {self.limit:g} {self.unit}".rstrip() + f" in magnitude, got {quantity!r}")
+        for wrong, rule in self._rules(in_si):
+            if wrong.any():
+                first, where = _first(magnitude, wrong)
+                raise UnitError(f"{rule}, got {Q(first, str(quantity.units))!r}{where}")
         return quantity, in_si
+
+    def _rules(self, in_si: NDArray[np.float64]) -> Iterator[tuple[NDArray[np.bool_], str]]:
+        """Return where each rule is broken, and the rule."""
+        yield np.isnan(in_si), "must be a number"
+        if not self.infinite:
+            yield np.isinf(in_si), "must be finite"
+        if self.positive:
+            yield in_si <= 0, "must be greater than zero"
+        yield (
+            np.abs(in_si) > self.limit * unit_in_si(self.unit),
+            f"must not exceed {self.limit:g} {self.unit}".rstrip() + " in magnitude",
+        )
 
     @staticmethod
     def _as_quantity(value: object) -> Quantity:
@@ -148,14 +161,15 @@ class Unit:
         if not isinstance(value, pint.Quantity):
             raise UnitError(f"got {_describe(value)}, which has no unit")
         quantity: Quantity = value
-        if quantity._REGISTRY is not _registry():
+        if quantity._REGISTRY is not application_registry():
             return Q(quantity.magnitude, str(quantity.units))
         return quantity
 
     def _fix(self, name: str) -> str:
         if self.unit == "":
-            return f'give {name} in percent or as a ratio, such as Q(1, "%") or Q(0.01, "")'
-        return f'give {name} in {self.unit} or another unit of that dimension, such as Q(1.0, "{self.unit}")'
+            return f'give {name} in percent or as a ratio, such as Q(1, "%") or "1 %"'
+        unit = self.unit
+        return f'give {name} in {unit} or another unit of that dimension, such as Q(1.0, "{unit}") or "1.0 {unit}"'
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
         return core_schema.no_info_plain_validator_function(
@@ -166,7 +180,8 @@ class Unit:
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, object]:
-        return {"type": "string", "description": f"a number with a unit such as '1.0 {self.unit}'".rstrip()}
+        example = f"1.0 {self.unit or 'dimensionless'}"
+        return {"type": "string", "description": "a number with its unit", "examples": [example]}
 
     def _scalar(self, value: object) -> Quantity:
         try:
@@ -182,6 +197,10 @@ def real_array(value: object) -> NDArray[np.float64]:
     """Return `value` as float64, refusing what is no real number: booleans, complex, text, masked entries."""
     if np.ma.is_masked(value):
         raise UnitError("masked entries have no value")
+    if isinstance(value, pint.Quantity) or (
+        isinstance(value, (list, tuple)) and any(isinstance(entry, pint.Quantity) for entry in value)
+    ):
+        raise UnitError(f"{_describe(value)} has a unit of its own where a plain number is due")
     try:
         array = np.asarray(value)
     except (TypeError, ValueError):
@@ -199,25 +218,25 @@ def coefficient(value: object, name: str) -> NDArray[np.float64]:
     UnitError
         If it has a dimension, or is no positive finite real number.
     """
-    if isinstance(value, pint.Quantity):
-        return Unit("").si(value, name)
     try:
-        array = real_array(value)
+        array = Unit("")._checked(value)[1] if isinstance(value, pint.Quantity) else real_array(value)
+        wrong = ~(np.isfinite(array) & (array > 0))
+        if wrong.any():
+            first, where = _first(array, wrong)
+            raise UnitError(f"must be a positive finite number, got {first:g}{where}")
     except UnitError as error:
         raise UnitError(f"{name}: {error}; give {name} as a plain number, such as 0.46") from None
-    if not (np.isfinite(array) & (array > 0)).all():
-        raise UnitError(f"{name}: must be a positive finite number, got {_describe(value)}")
     return array
 
 
 def scalar_si(quantity: Quantity, unit: str) -> float:
     """Return the SI value of a scalar quantity that has been validated before."""
-    return float(quantity.magnitude) * _si_factor(quantity._REGISTRY, quantity.units, unit)
+    return float(quantity.magnitude) * si_factor(quantity._REGISTRY, quantity.units, unit)
 
 
 def from_si(value: NDArray[np.float64] | float, unit: str) -> Quantity:
     """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
-    scaled = np.asarray(value) / _unit_in_si(unit)
+    scaled = np.asarray(value) / unit_in_si(unit)
     return Q(float(scaled) if scaled.ndim == 0 else scaled, unit)
 
 
@@ -229,76 +248,18 @@ WEAR_RATE = "ug/m/mm^2"
 """The unit in which wear rates are shown: mass lost per metre rolled and contact area."""
 
 
-def _describe(value: object) -> str:
+def _first(values: NDArray[np.float64], wrong: NDArray[np.bool_]) -> tuple[float, str]:
+    """Return the first wrong value and, for an array, where it stands."""
+    where = f" at index {np.argwhere(wrong)[0].tolist()}" if values.ndim else ""
+    return float(values[wrong][0]), where
+
+
+def shortened(value: object) -> str:
+    """Return the repr of a value, cut to a length that fits a message."""
     shown = repr(value)
-    if len(shown) > 60:
-        shown = shown[:57] + "..."
+    return shown if len(shown) <= 60 else shown[:57] + "..."
+
+
+def _describe(value: object) -> str:
     kind = "the bare number " if isinstance(value, (int, float)) and not isinstance(value, bool) else ""
-    return f"{kind}{shown}"
-
-
-def _registry() -> pint.UnitRegistry[Any]:
-    application_registry: Any = pint.application_registry
-    registry: pint.UnitRegistry[Any] = application_registry.get()
-    return registry
-
-
-@functools.lru_cache(maxsize=512)
-def _parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
-    try:
-        return registry.Unit(unit)
-    except pint.UndefinedUnitError:
-        raise UnitError(f"'{unit}' is not a known unit") from None
-    except Exception:  # the registry's expression parser raises errors of many types on malformed text
-        raise UnitError(f"'{unit}' is not a unit") from None
-
-
-@functools.lru_cache(maxsize=512)
-def _si_factor(registry: pint.UnitRegistry[Any], given: pint.Unit, due: str) -> float:
-    """Return the factor from `given` to the coherent SI unit of the dimension of `due`."""
-    due_unit = _parse_unit(registry, due)
-    if given.dimensionality != due_unit.dimensionality:
-        shown = f"'{given:~P}'" if str(given) != "dimensionless" else "no unit"
-        raise UnitError(f"got a value in {shown}, which is not of the dimension of '{due}'")
-    zero, one = (registry.convert(value, given, due_unit) for value in (0.0, 1.0))
-    if zero != 0.0:  # degrees Celsius, decibel
-        raise UnitError(f"'{given:~P}' is not proportional to '{due}'")
-    return float(one) * _unit_in_si(due)
-
-
-def _unit_in_si(unit: str) -> float:
-    return _coherent(_registry(), unit)
-
-
-@functools.lru_cache(maxsize=512)
-def _coherent(registry: pint.UnitRegistry[Any], unit: str) -> float:
-    """Return the factor from a unit to the coherent SI unit of its dimension."""
-    parsed = _parse_unit(registry, unit)
-    in_root_units: Any = registry.get_root_units(parsed)[0]
-    mass_exponent: Any = parsed.dimensionality.get("[mass]", 0)
-    # pint's root unit of mass is the gram; all its other root units are those of SI.
-    return float(in_root_units / 1000.0**mass_exponent)
-
-
-@functools.lru_cache(maxsize=64)
-def _quantity_class(registry: pint.UnitRegistry[Any]) -> type[Any]:
-    """Return the registry's quantity class with a repr that a reader of wear rates can read."""
-
-    class ReadableQuantity(registry.Quantity):  # type: ignore[misc, name-defined]
-        def __repr__(self) -> str:
-            return f"{_digits(self.magnitude)} {self.units:~P}".rstrip()
-
-        def __reduce__(self) -> tuple[Any, ...]:
-            return Q, (self.magnitude, str(self.units))
-
-    return ReadableQuantity
-
-
-def _digits(magnitude: Any) -> str:
-    def one(number: Any) -> str:
-        return f"{number:#.{_SIGNIFICANT_DIGITS}g}".rstrip(".")
-
-    if np.ndim(magnitude) == 0:
-        return one(magnitude) if isinstance(magnitude, (int, float, np.number)) else repr(magnitude)
-    formatter: Any = {"float_kind": one}
-    return np.array2string(np.asarray(magnitude), formatter=formatter)
+    return f"{kind}{shortened(value)}"

@@ -6,13 +6,17 @@ from functools import cached_property
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
+from pydantic import Field, model_validator
+
 import wearlaw as wl
-from pydantic import Field
 from wearlaw import Array
 
 SectionPerForce = Annotated[wl.Quantity, wl.Unit("mm^3/km/N")]
 Section = Annotated[wl.Quantity, wl.Unit("mm^3/km")]
 Force = Annotated[wl.Quantity, wl.Unit("N")]
+
+ROUNDING = 1e-12
+"""Relative difference below which two regimes meet."""
 
 
 class BRR(wl.WearLaw):
@@ -44,6 +48,23 @@ class BRR(wl.WearLaw):
     severe_limit: Force = Field(default="200 N", validate_default=True)
     """Tγ at which the severe regime begins [N]."""
 
+    @model_validator(mode="after")
+    def _never_falls(self) -> BRR:
+        mild_end, plateau, severe_start = self._at_borders
+        if self.severe_limit < self.mild_limit:
+            raise ValueError(
+                f"severe_limit must not lie below mild_limit = {self.mild_limit!r}; got {self.severe_limit!r}"
+            )
+        if mild_end > plateau * (1.0 + ROUNDING) or plateau > severe_start * (1.0 + ROUNDING):
+            raise ValueError("the wear must not fall where a regime begins; check its slope, offset and limit")
+        return self
+
+    @property
+    def _at_borders(self) -> tuple[float, float, float]:
+        """Section × D at the end of the mild regime, on the plateau, and at the start of the severe regime."""
+        mild_slope, plateau, severe_slope, severe_offset, mild_limit, severe_limit = self._si
+        return mild_slope * mild_limit, plateau, severe_slope * severe_limit - severe_offset
+
     @cached_property
     def _si(self) -> tuple[float, float, float, float, float, float]:
         return (
@@ -63,8 +84,11 @@ class BRR(wl.WearLaw):
 
     @property
     def jumps(self) -> wl.BreakpointMap:
-        """The published jump where the severe regime begins."""
-        return {"wear_index": (self._si[-1],)}
+        """Where the severe regime begins, as published; with other parameters, wherever two regimes do not meet."""
+        mild_end, plateau, severe_start = self._at_borders
+        *_, mild_limit, severe_limit = self._si
+        steps = ((mild_limit, plateau - mild_end), (severe_limit, severe_start - plateau))
+        return {"wear_index": tuple(limit for limit, step in steps if step > ROUNDING * plateau)}
 
     def rate(self, contact: wl.Contact) -> Array:
         """Return the wear rate of the one node [kg/m/m²]."""

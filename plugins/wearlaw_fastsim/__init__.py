@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import ClassVar, Literal
 
 import numpy as np
+
 import wearlaw as wl
 from wearlaw import Array
 

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 import numpy as np
-import wearlaw as wl
 from pydantic import Field
+
+import wearlaw as wl
 
 
 class Global(wl.ContactModel):
@@ -33,7 +34,7 @@ class Global(wl.ContactModel):
         return {"stick": stick, **{c: r for c, r in self.total_from.exemptions.items() if c in kept}}
 
     def solve(self, problem: wl.LineProblem) -> wl.Contact:
-        """Return the patch means as a contact of one node, of shape (*batch, 1)."""
+        """Return the patch means as a contact of one node, of shape (batch, 1)."""
         length = 2.0 * problem.half_width
         pressure = problem.normal_force_per_width / length
         if problem.traction_coefficient is None:

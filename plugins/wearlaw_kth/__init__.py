@@ -6,8 +6,9 @@ from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
+from pydantic import Field, field_validator, model_validator
+
 import wearlaw as wl
-from pydantic import Field, field_validator
 from wearlaw import Array
 
 Coefficient = Annotated[float, Field(gt=0.0, strict=True)]
@@ -69,6 +70,15 @@ class KTH(wl.WearLaw):
             return value
         fields = ", ".join(Coefficients.model_fields)
         raise ValueError(f"must be 'low', 'mid', 'high' or your own {fields}, got {value!r}")
+
+    @model_validator(mode="after")
+    def _ordered(self) -> KTH:
+        if self.upper_slip_speed < self.lower_slip_speed:
+            raise ValueError(
+                f"upper_slip_speed must not lie below lower_slip_speed = {self.lower_slip_speed!r};"
+                f" got {self.upper_slip_speed!r}"
+            )
+        return self
 
     @cached_property
     def _si(self) -> tuple[float, float, float, float]:

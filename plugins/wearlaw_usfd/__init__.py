@@ -7,8 +7,9 @@ from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-import wearlaw as wl
 from pydantic import model_validator
+
+import wearlaw as wl
 from wearlaw import Array
 
 TASSINI = "Tassini et al., Wear 268 (2010) 660-667"
@@ -100,8 +101,8 @@ class USFD(wl.WearLaw):
 
     @property
     def valid_range(self) -> Mapping[str, tuple[float, float]]:
-        """Up to Tγ/A of the tests: 20 % creepage, 1500 MPa, μ = 0.46, which is 0.2 · 0.46 · 1500 MPa · π/4."""
-        return {"wear_index_density": (0.0, 0.2 * 0.46 * 1.5e9 * np.pi / 4.0)}
+        """Up to Tγ/A of the tests: 20 % creepage, 1500 MPa and μ = 0.46, or 0.2 · 0.46 · (π/4) 1500 MPa, rounded up."""
+        return {"wear_index_density": (0.0, 108.4e6)}
 
     @property
     def calibration(self) -> wl.Calibration:

@@ -1,0 +1,79 @@
+"""The conditions of a test, as the user gives them: checked, with units, broadcast against each other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Required, TypedDict
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.errors import ConditionsError, did_you_mean
+from wearlaw.units import QuantityLike, Unit, coefficient
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+class TwinDiscConditions(TypedDict, total=False):
+    """The conditions of a twin-disc test; arrays broadcast against each other.
+
+    Exactly one of `normal_force` [N], `normal_force_per_width` [N/m] and `max_pressure` [Pa] gives the load.
+    """
+
+    normal_force: QuantityLike
+    normal_force_per_width: QuantityLike
+    max_pressure: QuantityLike
+    creepage: Required[QuantityLike]
+    friction_coefficient: Required[ArrayLike]
+    traction_coefficient: ArrayLike
+
+
+LOADS = {"normal_force": Unit("N"), "normal_force_per_width": Unit("kN/m"), "max_pressure": Unit("MPa")}
+"""The conditions that give the load, with their units."""
+
+CREEPAGE = Unit("", positive=False, limit=1.0)
+"""Creepage is a ratio of magnitude at most 1."""
+
+COEFFICIENTS = ("friction_coefficient", "traction_coefficient")
+"""The conditions that are plain numbers."""
+
+CONDITIONS = (*LOADS, "creepage", *COEFFICIENTS)
+"""All conditions of a twin-disc test."""
+
+
+def condition_arrays(conditions: dict[str, Any]) -> dict[str, Array]:
+    """Return all given conditions as SI arrays of one shape."""
+    for name in conditions:
+        if name not in CONDITIONS:
+            raise ConditionsError(
+                f"{name}: unknown condition;{did_you_mean(name, CONDITIONS)}"
+                f" The conditions are: {', '.join(CONDITIONS)}"
+            )
+    given = {name: value for name, value in conditions.items() if value is not None}
+    loads = [name for name in LOADS if name in given]
+    if len(loads) != 1:
+        raise ConditionsError(
+            f"give exactly one of {', '.join(LOADS)}; got {' and '.join(loads) if loads else 'none of them'}"
+        )
+    for name in ("creepage", "friction_coefficient"):
+        if name not in given:
+            example = 'Q(1, "%")' if name == "creepage" else "0.46"
+            raise ConditionsError(f"{name}: is missing; give {name}={example}")
+    units = {**LOADS, "creepage": CREEPAGE}
+    arrays = {
+        name: units[name].si(value, name) if name in units else coefficient(value, name)
+        for name, value in given.items()
+    }
+    return _broadcast(arrays)
+
+
+def _broadcast(arrays: dict[str, Array]) -> dict[str, Array]:
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        raise ConditionsError(f"the shapes of the conditions do not broadcast: {shapes}") from None
+    if 0 in shape:
+        empty = next(name for name, array in arrays.items() if array.size == 0)
+        raise ConditionsError(f"{empty}: is empty; give at least one value")
+    return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}

@@ -1,0 +1,91 @@
+"""pint's registry of units: looked up when it is needed, its answers kept, its repr made readable."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+import numpy as np
+import pint
+
+from wearlaw.errors import UnitError
+
+_SIGNIFICANT_DIGITS = 4
+
+
+def application_registry() -> pint.UnitRegistry[Any]:
+    """Return the registry that is in force now, which `pint.set_application_registry` may have changed."""
+    current: Any = pint.application_registry
+    registry: pint.UnitRegistry[Any] = current.get()
+    return registry
+
+
+@functools.lru_cache(maxsize=512)
+def parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
+    """Return the unit of a text, or raise a `UnitError`."""
+    try:
+        return registry.Unit(unit)
+    except pint.UndefinedUnitError:
+        raise UnitError(f"'{unit}' is not a known unit") from None
+    except Exception:  # the registry's expression parser raises errors of many types on malformed text
+        raise UnitError(f"'{unit}' is not a unit") from None
+
+
+@functools.lru_cache(maxsize=512)
+def si_factor(registry: pint.UnitRegistry[Any], given: pint.Unit, due: str) -> float:
+    """Return the factor from `given` to the coherent SI unit of the dimension of `due`."""
+    due_unit = parse_unit(registry, due)
+    if given.dimensionality != due_unit.dimensionality:
+        raise UnitError("which is not " + (f"of the dimension of '{due}'" if due else "a ratio"))
+    zero, one = (registry.convert(value, given, due_unit) for value in (0.0, 1.0))
+    if zero != 0.0:  # degrees Celsius, decibel
+        raise UnitError("whose unit has an offset or is logarithmic; convert it first")
+    return float(one) * unit_in_si(due)
+
+
+def unit_in_si(unit: str) -> float:
+    """Return the factor from a unit to the coherent SI unit of its dimension."""
+    return _coherent(application_registry(), unit)
+
+
+@functools.lru_cache(maxsize=512)
+def _coherent(registry: pint.UnitRegistry[Any], unit: str) -> float:
+    """Return the factor from a unit to the coherent SI unit of its dimension."""
+    parsed = parse_unit(registry, unit)
+    in_root_units: Any = registry.get_root_units(parsed)[0]
+    mass_exponent: Any = parsed.dimensionality.get("[mass]", 0)
+    # pint's root unit of mass is the gram; all its other root units are those of SI.
+    return float(in_root_units / 1000.0**mass_exponent)
+
+
+def quantity(magnitude: Any, unit: str) -> Any:
+    """Return a quantity of the registry that is in force; the magnitude is a float or a float array."""
+    registry = application_registry()
+    return quantity_class(registry)(magnitude, parse_unit(registry, unit))
+
+
+@functools.lru_cache(maxsize=64)
+def quantity_class(registry: pint.UnitRegistry[Any]) -> type[Any]:
+    """Return the registry's quantity class with a repr that a reader of wear rates can read."""
+
+    class ReadableQuantity(registry.Quantity):  # type: ignore[misc, name-defined]
+        def __repr__(self) -> str:
+            return f"{_digits(self.magnitude)} {self.units:~P}".rstrip()
+
+        def __str__(self) -> str:
+            return repr(self)
+
+        def __reduce__(self) -> tuple[Any, ...]:
+            return quantity, (self.magnitude, str(self.units))
+
+    return ReadableQuantity
+
+
+def _digits(magnitude: Any) -> str:
+    def one(number: Any) -> str:
+        return f"{number:#.{_SIGNIFICANT_DIGITS}g}".rstrip(".")
+
+    if np.ndim(magnitude) == 0:
+        return one(magnitude) if isinstance(magnitude, (int, float, np.number)) else repr(magnitude)
+    formatter: Any = {"float_kind": one}
+    return np.array2string(np.asarray(magnitude), formatter=formatter)

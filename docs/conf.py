@@ -1,0 +1,25 @@
+"""Configuration of the documentation build."""
+
+import sys
+from pathlib import Path
+
+import wearlaw
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import pictures
+
+pictures.draw()
+
+project = "wearlaw"
+author = "The wearlaw developers"
+version = release = wearlaw.__version__
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
+myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_heading_anchors = 3
+html_theme = "furo"
+html_title = "wearlaw"
+exclude_patterns = ["_build"]
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+nitpicky = False

@@ -1,0 +1,25 @@
+"""Sessions beyond `.ci/run`: other Python versions, and the oldest dependencies."""
+
+import nox
+
+nox.options.default_venv_backend = "venv"
+nox.options.sessions = ["tests"]
+
+
+@nox.session(python=["3.11", "3.12", "3.13"])
+def tests(session: nox.Session) -> None:
+    session.install("-e", ".[test]")
+    session.run("pytest", *session.posargs)
+
+
+@nox.session(python="3.11")
+def docs(session: nox.Session) -> None:
+    session.install("-e", ".", *nox.project.dependency_groups(nox.project.load_toml(), "docs"))
+    session.run("sphinx-build", "-W", "--keep-going", "-b", "html", "docs", "docs/_build/html")
+
+
+@nox.session(python="3.11")
+def pictures(session: nox.Session) -> None:
+    """Draw the pictures of the README and the documentation anew."""
+    session.install("-e", ".")
+    session.run("python", "docs/pictures.py")

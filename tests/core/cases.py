@@ -1,0 +1,107 @@
+"""Small cases, and models that only tests know, shared by the tests of studies and their results."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+
+import wearlaw as wl
+from wearlaw import Array, plugins
+from wearlaw.case import Case
+
+Table = dict[str, Any]
+"""A case as TOML gives it."""
+
+POINT = {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46}
+SWEEP = {**POINT, "creepage": {"from": "0.1 %", "to": "10 %", "points": 5, "spacing": "log"}}
+
+
+def table(**changes: Any) -> Table:
+    """Return a case of one sweep and one profile as TOML gives it, with some of its fields changed."""
+    fields = {
+        "title": "A small study",
+        "rig": {"preset": "suros"},
+        "contact_models": ["global", "exact"],
+        "wear_laws": ["usfd", "kth", "brr"],
+        "sweeps": {"creepage": SWEEP},
+        "profiles": {"partial_slip": POINT},
+    }
+    return copy.deepcopy({**fields, **changes})
+
+
+def case(**changes: Any) -> Case:
+    return Case(**table(**changes))
+
+
+def changed(path: str, value: Any, start: Table | None = None) -> Table:
+    """Return a case with the field at a dotted path set, or removed where the value is None."""
+    result = table() if start is None else copy.deepcopy(start)
+    *parents, last = path.split(".")
+    inner: Any = result
+    for name in parents:
+        inner = inner.setdefault(name, {}) if isinstance(inner, dict) else inner[int(name)]
+    if value is None:
+        del inner[last]
+    else:
+        inner[last] = value
+    return result
+
+
+def write(path: Path, content: Table) -> Path:
+    path.write_text(tomli_w.dumps(content), encoding="utf-8")
+    return path
+
+
+class Linear(wl.WearLaw):
+    """A law with a field that must be given; it says nothing about where it branches."""
+
+    name = "linear"
+    source = "A test, 1. ed., 2026"
+
+    slope: wl.Length
+    """Wear rate over p s [m], of no meaning."""
+
+    def rate(self, contact: wl.Contact) -> Array:
+        return wl.scalar_si(self.slope, "m") * 1e-12 * contact.pressure * np.abs(contact.slip)
+
+
+class Coarse(wl.ContactModel):
+    """Full slip on seven cells of its own: the least that a contact model must give."""
+
+    name = "coarse"
+    source = "A test, 2. ed., 2026"
+
+    def solve(self, problem: wl.LineProblem) -> wl.Contact:
+        edges = np.linspace(-1.0, 1.0, 8) * problem.half_width[..., None]
+        x = 0.5 * (edges[..., 1:] + edges[..., :-1])
+        pressure = wl.hertz.pressure(x, problem.half_width[..., None], problem.max_pressure[..., None])
+        bound = problem.friction_coefficient[..., None] * pressure
+        fields = wl.LineFields(
+            pressure=pressure,
+            traction=bound * np.sign(problem.creepage[..., None]),
+            slip=problem.creepage[..., None] + np.zeros_like(x),
+            traction_bound=bound,
+        )
+        force = np.sign(problem.creepage) * problem.friction_coefficient * problem.normal_force_per_width
+        return wl.Contact.from_line(problem, fields, x=x, length=np.diff(edges), force_per_width=force)
+
+
+Install = Callable[[type[wl.ContactModel] | type[wl.WearLaw]], None]
+
+
+def installer(monkeypatch: pytest.MonkeyPatch) -> Install:
+    """Return what puts a model among the installed ones until the test ends, as one of the plugin "testing"."""
+    found = plugins.installed()
+    origin = plugins.Origin("testing", "wearlaw-testing", "9.8.7")
+
+    def install(model: type[wl.ContactModel] | type[wl.WearLaw]) -> None:
+        providers: Any = (found.wear_laws if issubclass(model, wl.WearLaw) else found.contact_models).providers
+        monkeypatch.setitem(providers, model.name, [(model, origin)])
+
+    return install

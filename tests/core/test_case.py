@@ -1,0 +1,416 @@
+"""Case files: what is read, what is refused and how that is said, and the schema that says the same."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import jsonschema  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+import tomli_w
+
+import wearlaw as wl
+from tests.core import cases
+from tests.core.cases import Install, case, changed, table
+from wearlaw import plugins
+from wearlaw.case import Case, case_schema, case_text, labels, load_case, shipped_cases
+
+
+def load(tmp_path: Path, content: cases.Table) -> Case:
+    return load_case(str(cases.write(tmp_path / "my.toml", content)))
+
+
+def rewritten(read: Case) -> str:
+    return tomli_w.dumps(read.model_dump(mode="json", by_alias=True, exclude_none=True))
+
+
+@pytest.fixture(scope="module")
+def validator() -> Any:
+    schema = case_schema()
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)
+
+
+@pytest.fixture
+def install(monkeypatch: pytest.MonkeyPatch) -> Install:
+    return cases.installer(monkeypatch)
+
+
+# What is shipped
+
+
+def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:
+    assert shipped_cases() == ["tassini2010"]
+    package = Path(wl.__file__).parent
+    assert case_text("tassini2010") == (package / "cases" / "tassini2010.toml").read_text(encoding="utf-8")
+
+
+def test_the_shipped_case_sweeps_what_section_5_2_of_the_paper_sweeps() -> None:
+    shipped = load_case("tassini2010")
+    creepage, load = shipped.sweeps["creepage"].conditions(), shipped.sweeps["load"].conditions()
+    # Tassini et al., Wear 268 (2010) 660-667, section 5.2: 0.001 to 25 % at 741.43 kN/m; 74.14 to 14829 kN/m at 1 %.
+    np.testing.assert_allclose(creepage["creepage"][[0, -1]], [1e-5, 0.25], rtol=1e-14)
+    assert creepage["normal_force_per_width"] == pytest.approx(741.43e3, rel=1e-14)
+    np.testing.assert_allclose(load["normal_force_per_width"][[0, -1]], [74.14e3, 14829e3], rtol=1e-14)
+    assert load["creepage"] == pytest.approx(0.01, rel=1e-14)
+    assert creepage["friction_coefficient"] == load["friction_coefficient"] == 0.46
+    assert shipped.rig == wl.TwinDisc.suros()
+    assert labels(shipped.contact_models) == ["global", "exact", "fastsim"]
+    assert labels(shipped.wear_laws) == ["usfd", "kth", "brr"]
+    assert shipped.wear_laws[0] == wl.wear_law("usfd", fitted_for="global")
+
+
+def test_the_measured_heat_gives_the_published_traction() -> None:
+    # Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, Table 3: slip [%] and heat [W], 1500 MPa, 400 rpm.
+    slip = np.array([0.2, 0.5, 1.0, 3.0, 7.5, 10.0, 15.0, 20.0])
+    heat = np.array([1.3, 9.2, 25.7, 102.6, 246.0, 327.8, 492.1, 728.4])
+    speed = np.pi * 0.047 * 400.0 / 60.0
+    shipped = load_case("tassini2010")
+    assert shipped.measured is not None
+    creepage, traction = shipped.measured.points(shipped.rig)
+    np.testing.assert_allclose(creepage, slip / 100.0, rtol=1e-14)
+    np.testing.assert_allclose(traction, heat / (slip / 100.0 * speed) / 7414.3, rtol=1e-13)
+    # Half a digit of the printed ones.
+    printed = [0.089, 0.252, 0.352, 0.469, 0.449, 0.449, 0.450, 0.499]
+    np.testing.assert_allclose(traction, printed, rtol=0, atol=5e-4)
+    assert traction[-5:].mean() == pytest.approx(0.463, abs=5e-4)
+    assert "secondary transcription" in shipped.measured.source
+
+
+def test_measured_traction_follows_the_speed_of_the_rig_or_is_given() -> None:
+    tests = {"label": "m", "source": "s", "creepage": ["1 %", "2 %"]}
+    heat = case(measured={**tests, "frictional_heat": ["1 W", "0.002 kW"], "normal_force": "1 kN"})
+    given = case(measured={**tests, "traction_coefficient": [0.2, 0.3]})
+    slow, fast = (wl.TwinDisc.suros(rolling_speed=speed) for speed in ("1 m/s", "4 m/s"))
+    assert heat.measured is not None
+    assert given.measured is not None
+    np.testing.assert_allclose(heat.measured.points(slow)[1], [0.1, 0.1], rtol=1e-14)
+    np.testing.assert_allclose(heat.measured.points(fast)[1], [0.025, 0.025], rtol=1e-14)
+    np.testing.assert_array_equal(given.measured.points(fast)[1], [0.2, 0.3])
+
+
+# What is read is written and read again
+
+STEEL = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "density": "7.8 g/cm^3"}
+RAIL = {**STEEL, "elastic_limit": "1 GPa"}
+OWN_K = {"high_pressure": 0.03, "low_speed": 1e-4, "mid_speed": 1e-3, "high_speed": 2e-4}
+OWN_RIG = {
+    "disc_1": {"diameter": "47 mm", "material": STEEL},
+    "disc_2": {"diameter": "inf mm", "material": RAIL},
+    "track_width": "1 cm",
+    "rolling_speed": "3.6 km/hr",
+}
+ACCEPTED = {
+    "small": table(),
+    "one name": table(contact_models=["exact"], wear_laws=[{"model": "usfd"}], profiles={}),
+    "own rig": table(rig=OWN_RIG),
+    "preset, overridden": table(
+        rig={
+            "preset": "suros",
+            "diameter": "100 mm",
+            "material": STEEL,
+            "track_width": "5 mm",
+            "rolling_speed": "1 m/s",
+        }
+    ),
+    "preset, disc by disc": table(
+        rig={"preset": "suros", "disc_1": OWN_RIG["disc_1"], "disc_2": OWN_RIG["disc_2"], "rotational_speed": "600 rpm"}
+    ),
+    "options": table(
+        contact_models=[
+            {"model": "global", "total_from": {"model": "fastsim", "bound": "elliptic"}},
+            {"model": "global", "total_from": "exact"},
+            {"model": "exact", "slip": "as_printed"},
+            "exact",
+        ],
+        wear_laws=[
+            {"model": "kth", "coefficient": OWN_K, "hardness": "3 GPa"},
+            {"model": "kth", "coefficient": "low"},
+            {"model": "usfd", "fitted_for": "fastsim", "m_c": "70 ug/m/N"},
+        ],
+    ),
+    "all forms of a condition": changed(
+        "sweeps.creepage",
+        {
+            "normal_force": ["1 kN", "2000 N"],
+            "creepage": {"from": "0 %", "to": "1 %", "points": 3},
+            "friction_coefficient": 0.4,
+            "traction_coefficient": [0.1, 0.2],
+        },
+    ),
+    "measured heat": table(
+        measured={
+            "label": "m",
+            "source": "s",
+            "creepage": ["1 %"],
+            "frictional_heat": ["1 W"],
+            "normal_force": "1 kN",
+        }
+    ),
+    "measured traction": table(
+        measured={"label": "m", "source": "s", "creepage": ["1 %"], "traction_coefficient": [1]}
+    ),
+}
+
+
+@pytest.mark.parametrize("content", ACCEPTED.values(), ids=ACCEPTED)
+def test_a_case_written_with_all_its_defaults_reads_back_as_the_same_case(
+    tmp_path: Path, validator: Any, content: cases.Table
+) -> None:
+    read = load(tmp_path, content)
+    text = rewritten(read)
+    (tmp_path / "again.toml").write_text(text, encoding="utf-8")
+    again = load_case(str(tmp_path / "again.toml"))
+    assert again == read
+    assert labels(again.contact_models) == labels(read.contact_models)
+    assert labels(again.wear_laws) == labels(read.wear_laws)
+    assert rewritten(again) == text
+    validator.validate(tomllib.loads(text))
+
+
+@pytest.mark.parametrize("content", ACCEPTED.values(), ids=ACCEPTED)
+def test_the_schema_accepts_what_the_loader_accepts(validator: Any, content: cases.Table) -> None:
+    validator.validate(content)
+
+
+def test_the_shipped_case_keeps_the_schema_and_reads_back_the_same(tmp_path: Path, validator: Any) -> None:
+    shipped = load_case("tassini2010")
+    validator.validate(tomllib.loads(case_text("tassini2010")))
+    assert load(tmp_path, tomllib.loads(rewritten(shipped))) == shipped
+
+
+def test_a_preset_is_the_rig_with_what_is_overridden() -> None:
+    assert case().rig == wl.TwinDisc.suros()
+    material = wl.Material(**STEEL)  # type: ignore[arg-type]
+    rig = Case(**ACCEPTED["preset, overridden"]).rig
+    assert rig == wl.TwinDisc.suros(diameter="100 mm", material=material, track_width="5 mm", rolling_speed="1 m/s")
+    by_disc = Case(**ACCEPTED["preset, disc by disc"]).rig
+    assert by_disc.disc_2 == wl.Disc(diameter="inf mm", material=wl.Material(**RAIL))  # type: ignore[arg-type]
+    assert by_disc.rolling_speed.to("m/s").magnitude == pytest.approx(np.pi * 0.047 * 10.0, rel=1e-14)
+
+
+# Labels
+
+
+@pytest.mark.parametrize(
+    ("laws", "expected"),
+    [
+        (["usfd", "kth"], ["usfd", "kth"]),
+        ([{"model": "usfd", "fitted_for": "exact"}], ["usfd"]),
+        (
+            ["usfd", {"model": "usfd", "fitted_for": "exact"}, "brr"],
+            ["usfd(fitted_for=global)", "usfd(fitted_for=exact)", "brr"],
+        ),
+        (
+            ["usfd", {"model": "usfd", "m_c": "70 ug/m/N"}, {"model": "usfd", "fitted_for": "exact"}],
+            [
+                "usfd(fitted_for=global, m_c=61.9 µg/m/N)",
+                "usfd(fitted_for=global, m_c=70.0 µg/m/N)",
+                "usfd(fitted_for=exact, m_c=83.7 µg/m/N)",
+            ],
+        ),
+    ],
+)
+def test_models_that_share_a_name_are_labelled_by_what_they_differ_in(laws: Any, expected: list[str]) -> None:
+    assert labels(case(wear_laws=laws).wear_laws) == expected
+
+
+@pytest.mark.parametrize(
+    "models",
+    [
+        ["exact", "exact"],
+        ["exact", {"model": "exact"}],
+        ["exact", {"model": "exact", "slip": "consistent"}],
+        ["global", "exact", {"model": "global", "total_from": {"model": "exact"}}],
+    ],
+)
+def test_a_model_listed_twice_is_refused_however_it_is_written(models: Any) -> None:
+    with pytest.raises(wl.ConfigurationError, match="is listed twice; leave one out, or give it other options"):
+        case(contact_models=models)
+
+
+# What is refused
+
+WRONG: list[tuple[str, Any, str]] = [
+    ("title", None, "title: is missing"),
+    ("title", 1, "title: input should be a valid string, got 1"),
+    ("titel", "x", "titel: unknown field; did you mean 'title'?"),
+    ("rig", None, "rig: is missing"),
+    ("rig", "suros", "rig: must be a table, such as {preset = \"suros\"}; got 'suros'"),
+    ("rig", {}, "rig.disc_1: is missing"),
+    ("rig.preset", "sros", "rig.preset: input should be 'suros', got 'sros'"),
+    ("rig.diametre", "47 mm", "rig.diametre: unknown field; did you mean 'diameter'?"),
+    ("rig.diameter", 47, "rig.diameter: got the bare number 47, which has no unit; give it in mm"),
+    ("rig.material", {**STEEL, "poisson_ratio": 0.6}, "rig.material.poisson_ratio: input should be less than or equal"),
+    ("rig.material", {"youngs_modulus": "1 GPa", "poisson_ratio": 0.3}, "rig.material.density: is missing"),
+    ("rig.disc_1", {"diameter": "47 mm", "material": {**STEEL, "E": 1}}, "rig.disc_1.material.E: unknown field"),
+    ("contact_models", None, "contact_models: is missing"),
+    ("contact_models", [], "contact_models: must be a list of names, or of tables with a name and options; got []"),
+    ("contact_models", "exact", "contact_models: must be a list of names, or of tables"),
+    ("contact_models", ["exat"], "contact_models.0: no contact model is called 'exat'; did you mean 'exact'?"),
+    ("contact_models", ["exact", "usfd"], "contact_models.1: no contact model is called 'usfd'"),
+    ("contact_models", [{"slip": "consistent"}], 'contact_models.0: a model needs its name, as in {model = "exact"}'),
+    ("contact_models", [{"model": "exact", "slp": "x"}], "contact_models.0.slp: unknown field; did you mean 'slip'?"),
+    ("contact_models", [{"model": "exact", "slip": "x"}], "contact_models.0.slip: input should be 'consistent' or"),
+    ("contact_models", [3], "contact_models.0: input should be a valid dictionary or instance of ContactModel, got 3"),
+    ("wear_laws", [], "wear_laws: must be a list of names"),
+    ("wear_laws", ["brr", "usdf"], "wear_laws.1: no wear law is called 'usdf'; did you mean 'usfd'?"),
+    ("wear_laws", [{"model": "kth", "coefficient": {"low_speed": 1.0}}], "wear_laws.0.coefficient.mid_speed: is miss"),
+    ("wear_laws", [{"model": "usfd", "m_m": 5.3}], "wear_laws.0.m_m: got the bare number 5.3, which has no unit"),
+    ("sweeps", None, "sweeps: is missing"),
+    ("sweeps", {}, "sweeps: dictionary should have at least 1 item"),
+    ("sweeps.creepage", 1, "sweeps.creepage: input should be a valid dictionary"),
+    ("sweeps.creepage.creepage.points", 1, "sweeps.creepage.creepage.points: input should be greater than or equal"),
+    ("sweeps.creepage.creepage.step", 1, "sweeps.creepage.creepage.step: unknown field"),
+    (
+        "sweeps.creepage.frictioncoefficient",
+        0.4,
+        "sweeps.creepage.frictioncoefficient: unknown field; did you mean 'friction_coefficient'?",
+    ),
+    ("sweeps.creepage.friction_coefficient", True, "sweeps.creepage.friction_coefficient: must be a value"),
+    ("profiles.partial_slip.creepage", None, "profiles.partial_slip.creepage: is missing"),
+    ("measured", {"label": "m", "source": "s"}, "measured.creepage: is missing"),
+]
+"""What both the loader and the schema refuse."""
+
+WRONG_TO_THE_LOADER: list[tuple[str, Any, str]] = [
+    ("rig.diameter", "47 kN", "rig.diameter: got 47.00 kN, which is not of the dimension of 'mm'"),
+    ("rig.diameter", "-1 mm", "rig.diameter: must be greater than zero, got -1.000 mm"),
+    ("rig.diameter", "47 foo", "rig.diameter: 'foo' is not a known unit"),
+    ("sweeps.creepage.max_pressure", "1 kN", "sweeps.creepage: max_pressure: got 1.000 kN, which is not of the dim"),
+    ("sweeps.creepage.creepage", 1, "sweeps.creepage: creepage: got the bare number 1.0, which has no unit"),
+    ("sweeps.creepage.normal_force", "1 N", "sweeps.creepage: give exactly one of normal_force, normal_force_per"),
+    ("sweeps.a b", cases.POINT, "sweeps: the name 'a b' must be made of letters, digits and underscores"),
+    ("profiles.a/b", cases.POINT, "profiles: the name 'a/b' must be made of letters, digits and underscores"),
+    (
+        "profiles.partial_slip.creepage",
+        ["1 %"],
+        "profiles.partial_slip: a profile is at one operating point; give each condition one value",
+    ),
+]
+"""What takes more than a schema to see."""
+
+
+@pytest.mark.parametrize(("path", "value", "message"), WRONG + WRONG_TO_THE_LOADER)
+def test_a_wrong_field_is_named_by_its_path(tmp_path: Path, path: str, value: Any, message: str) -> None:
+    with pytest.raises(wl.CaseError) as refusal:
+        load(tmp_path, changed(path, value))
+    assert str(refusal.value).startswith(f"case '{tmp_path / 'my.toml'}' is wrong in:\n  ")
+    assert f"\n  {message}" in str(refusal.value)
+
+
+@pytest.mark.parametrize(("path", "value", "message"), WRONG)
+def test_the_schema_refuses_what_the_loader_refuses(validator: Any, path: str, value: Any, message: str) -> None:
+    assert not validator.is_valid(changed(path, value)), message
+
+
+def test_every_wrong_field_is_named_once(tmp_path: Path) -> None:
+    content = changed("rig.diameter", 47, changed("contact_models", ["exat"], changed("wear_laws", ["usfd", "kht"])))
+    with pytest.raises(wl.CaseError) as refusal:
+        load(tmp_path, content)
+    where = [line.strip().split(":")[0] for line in str(refusal.value).splitlines()[1:]]
+    assert sorted(where) == ["contact_models.0", "rig.diameter", "wear_laws.1"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({}, "measured: give either traction_coefficient or frictional_heat"),
+        (
+            {"traction_coefficient": [0.1], "frictional_heat": ["1 W"], "normal_force": "1 N"},
+            "measured: give either traction_coefficient or frictional_heat",
+        ),
+        ({"frictional_heat": ["1 W"]}, "measured: normal_force belongs to frictional_heat: give both or none"),
+        (
+            {"traction_coefficient": [0.1], "normal_force": "1 N"},
+            "measured: normal_force belongs to frictional_heat: give both or none",
+        ),
+        (
+            {"traction_coefficient": [0.1, 0.2]},
+            "measured: there are 1 values of creepage, but 2 measured ones",
+        ),
+        ({"creepage": [], "traction_coefficient": []}, "measured: creepage is empty; give at least one test"),
+        ({"creepage": [1], "traction_coefficient": [0.1]}, "measured.creepage.0: input should be a valid string"),
+        ({"creepage": ["1"], "traction_coefficient": [0.1]}, "measured: creepage: '1' is not a number with a unit"),
+        ({"traction_coefficient": [-0.1]}, "measured: traction_coefficient: must be a positive finite number"),
+        ({"frictional_heat": ["1 N"], "normal_force": "1 N"}, "measured: frictional_heat: got 1.000 N"),
+        (
+            {"creepage": ["0 %"], "frictional_heat": ["1 W"], "normal_force": "1 N"},
+            "measured: creepage: traction follows from frictional heat only where the creepage is positive",
+        ),
+    ],
+)
+def test_wrong_measurements_are_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.ConfigurationError) as refusal:
+        case(measured={"label": "m", "source": "s", "creepage": ["1 %"], **changes})
+    assert f"Case: {message}" in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b'title = "no end', "is not valid TOML: "),
+        (b"\xff\xfe\x00\x01", "cannot read the case file"),
+        (b"title,rig\n1,2\n", "is not valid TOML: "),
+        (b"", "is wrong in:\n  title: is missing"),
+    ],
+)
+def test_a_file_that_is_no_case_is_refused(tmp_path: Path, content: bytes, message: str) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_bytes(content)
+    with pytest.raises(wl.CaseError, match=message) as refusal:
+        load_case(str(path))
+    assert str(path) in str(refusal.value)
+
+
+def test_a_missing_file_is_refused_with_the_shipped_case_that_may_be_meant(tmp_path: Path) -> None:
+    with pytest.raises(wl.CaseError, match=r"there is no case file 'tasini2010'; did you mean 'tassini2010'\?"):
+        load_case("tasini2010")
+    with pytest.raises(wl.CaseError, match=r"there is no case file '.*x.toml'; Shipped cases: tassini2010"):
+        load_case(str(tmp_path / "x.toml"))
+
+
+def test_a_folder_is_no_case_file(tmp_path: Path) -> None:
+    with pytest.raises(wl.CaseError, match=f"cannot read the case file '{tmp_path}'"):
+        load_case(str(tmp_path))
+
+
+# The schema and other people's models
+
+
+class OwnCoefficients(wl.Configuration):
+    strength: float
+
+
+class Law(cases.Linear):
+    name = "other"
+    coefficients: OwnCoefficients = OwnCoefficients(strength=1.0)
+
+
+OwnCoefficients.__name__ = OwnCoefficients.__qualname__ = "Coefficients"  # as KTH's
+
+
+def test_the_schema_knows_the_options_of_every_installed_model(install: Install) -> None:
+    install(Law)
+    validator = jsonschema.Draft202012Validator(case_schema())
+
+    def valid(**law: Any) -> bool:
+        return bool(validator.is_valid(table(wear_laws=[law])))
+
+    assert valid(model="other", slope="1 mm")
+    assert not valid(model="other"), "slope must be given"
+    assert valid(model="other", slope="1 mm", coefficients={"strength": 1.0})
+    assert not valid(model="other", slope="1 mm", coefficients=OWN_K)
+    assert valid(model="kth", coefficient=OWN_K)
+    assert not valid(model="kth", coefficient={"strength": 1.0})
+    assert not validator.is_valid(table(contact_models=["other"]))
+
+
+@pytest.mark.parametrize("kind", ["contact_models", "wear_laws"])
+def test_the_schema_accepts_each_installed_model_by_name_and_as_a_table(validator: Any, kind: str) -> None:
+    for name in getattr(plugins, kind)():
+        assert validator.is_valid(table(**{kind: [name]}))
+        assert validator.is_valid(table(**{kind: [{"model": name}]}))
+        assert not validator.is_valid(table(**{kind: [{"model": name, "nonsense": 1}]}))

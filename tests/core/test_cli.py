@@ -1,0 +1,346 @@
+"""The command line, as a user meets it."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray
+from click.testing import CliRunner, Result
+
+import wearlaw as wl
+from tests.core import cases
+from tests.core.cases import changed, table, write
+from wearlaw import plugins
+from wearlaw.case import case_schema, case_text
+from wearlaw.cli import main
+
+
+def wearlaw(*arguments: str, columns: int = 100, charset: str = "utf-8", **env: str) -> Result:
+    return CliRunner(charset=charset, env={"COLUMNS": str(columns), **env}).invoke(main, arguments)
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Work in a folder with a space in its name."""
+    here = tmp_path / "my work"
+    here.mkdir()
+    monkeypatch.chdir(here)
+    return here
+
+
+@pytest.fixture
+def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out what takes most of the time of a small run."""
+    monkeypatch.setattr("wearlaw.figures.figures", lambda _: {})
+
+
+def files(folder: Path) -> set[str]:
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+def assert_refused(result: Result, message: str, exit_code: int = 1) -> None:
+    """One message on standard error, no traceback, nothing on standard output."""
+    assert isinstance(result.exception, SystemExit)
+    assert result.exit_code == exit_code
+    assert message in result.stderr
+    assert result.stdout == ""
+    assert "Traceback" not in result.stderr
+    assert sum(line.startswith("Error: ") for line in result.stderr.splitlines()) == 1
+
+
+# run
+
+
+def test_a_study_is_run_and_its_files_are_listed_as_they_are(folder: Path) -> None:
+    write(folder / "my case.toml", table())
+    result = wearlaw("run", "my case.toml", "-o", "out folder")
+    assert result.exit_code == 0
+    listing = result.stdout.partition("Results in out folder:\n")[2].splitlines()
+    assert {line.strip() for line in listing} == files(folder) - {"my case.toml"}
+    assert len(listing) == 3 + 3 + 1
+    notes = result.stderr.splitlines()
+    assert len(notes) == 2
+    assert notes[0].startswith("note: usfd on exact: the parameters of wear law 'usfd' were fitted for patch means")
+    assert notes[1].startswith("note: brr on exact is left out: ")
+
+
+@pytest.mark.usefixtures("no_figures")
+def test_results_go_into_a_folder_named_after_the_case(folder: Path) -> None:
+    (folder / "cases").mkdir()
+    write(folder / "cases" / "mine.toml", table(wear_laws=["usfd"], contact_models=["global"], profiles={}))
+    assert wearlaw("run", "cases/mine.toml").exit_code == 0
+    assert (folder / "mine-results" / "results.nc").is_file()
+
+
+def rows_of(printed: str) -> dict[str, list[str]]:
+    """Return the cells of the printed table's rows by their heads."""
+    rows = [line.rsplit(maxsplit=5) for line in printed.splitlines() if line.startswith(" ")]
+    return {row[0].strip(): row[1:] for row in rows if len(row) == 6}
+
+
+@pytest.mark.usefixtures("no_figures")
+def test_the_short_table_shows_the_rates_and_the_band(folder: Path) -> None:
+    write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["usfd", "kth"], profiles={}))
+    printed = wearlaw("run", "c.toml").stdout
+    assert "Sweep 'creepage': wear rate [µg/m/mm²] by creepage [%]" in printed
+    rows = rows_of(printed)
+    csv = pd.read_csv("c-results/results.csv").groupby("wear_law")
+    for head, law, column in [
+        ("usfd on exact", "usfd", "wear_rate"),
+        ("kth on exact", "kth", "wear_rate"),
+        ("low end", "kth", "wear_rate_low"),
+        ("high end", "kth", "wear_rate_high"),
+    ]:
+        rates = csv.get_group(law)[f"{column} [ug/m/mm^2]"]
+        assert rows[head] == [f"{rate:.4g}" for rate in rates]
+    assert len(rows) == 4
+
+
+@pytest.mark.usefixtures("no_figures")
+def test_the_short_table_keeps_its_numbers_whole_beside_long_names(folder: Path) -> None:
+    models: list[Any] = [
+        {"model": "fastsim", "bound": bound, "flexibility": "kalker"} for bound in ("parabolic", "elliptic")
+    ]
+    models.append({"model": "global", "total_from": "fastsim"})
+    models.append({"model": "global", "total_from": {"model": "fastsim", "bound": "elliptic"}})
+    write(folder / "c.toml", table(contact_models=models, wear_laws=["kth"], profiles={}))
+    printed = wearlaw("run", "c.toml", columns=80).stdout
+    for rate in pd.read_csv("c-results/results.csv")["wear_rate [ug/m/mm^2]"]:
+        assert f"{rate:.4g}" in printed
+    assert "…" not in printed
+
+
+@pytest.mark.usefixtures("no_figures")
+@pytest.mark.parametrize("creepage", ["0.5 %", "0 %", ["1 %", "2 %"]])
+def test_short_sweeps_have_a_short_table(folder: Path, creepage: Any) -> None:
+    write(folder / "c.toml", table(sweeps={"short": {**cases.POINT, "creepage": creepage}}, wear_laws=["usfd"]))
+    result = wearlaw("run", "c.toml")
+    assert result.exit_code == 0
+    row = next(line for line in result.stdout.splitlines() if line.startswith(" usfd on exact"))
+    rates = pd.read_csv("c-results/results.csv").query("contact_model == 'exact'")["wear_rate [ug/m/mm^2]"]
+    assert row.split()[3:] == [f"{rate:.4g}" for rate in rates]
+
+
+@pytest.mark.usefixtures("no_figures")
+def test_progress_is_shown_on_a_terminal_and_not_elsewhere(folder: Path) -> None:
+    write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["kth"], profiles={}))
+    assert wearlaw("run", "c.toml").stderr == ""
+    on_terminal = wearlaw("run", "c.toml", "--overwrite", FORCE_COLOR="1", TERM="xterm")
+    assert "evaluating" in on_terminal.stderr
+    assert "15/15" in on_terminal.stderr  # 5 points, and the band of KTH
+
+
+def test_the_shipped_study_and_an_edited_copy_of_it_give_equal_results(folder: Path) -> None:
+    """The copy is made and run as from a shell, with every warning an error."""
+    program = Path(sys.executable).parent / "wearlaw"
+    script = f"'{program}' case tassini2010 > 'my case.toml' && '{program}' run 'my case.toml' -o copy"
+    environment = {**os.environ, "PYTHONWARNINGS": "error"}
+    done = subprocess.run(script, shell=True, env=environment, capture_output=True, text=True, encoding="utf-8")
+    assert done.returncode == 0, done.stderr
+    assert (folder / "my case.toml").read_text(encoding="utf-8") == case_text("tassini2010")
+    shipped = wearlaw("run", "tassini2010")
+    assert shipped.exit_code == 0
+    assert shipped.stdout.replace("tassini2010-results", "copy").split() == done.stdout.split()
+    assert shipped.stderr == done.stderr
+    assert files(folder / "tassini2010-results") == files(folder / "copy")
+    for name in ("results.csv", "case.toml"):
+        assert (folder / "copy" / name).read_bytes() == (folder / "tassini2010-results" / name).read_bytes()
+    ours = xarray.open_datatree("tassini2010-results/results.nc", engine="h5netcdf")
+    theirs = xarray.open_datatree("copy/results.nc", engine="h5netcdf")
+    with ours, theirs:
+        xarray.testing.assert_identical(ours, theirs)
+        sweep = ours["sweeps/creepage"].to_dataset()
+        rates = sweep.wear_rate.sel(creepage=25.0, method="nearest")
+        # Half a digit of the converged integrals that tests/test_numbers.py computes anew.
+        for pair, rate in {"usfd on global": 3658.9, "usfd on exact": 3825.0, "usfd on fastsim": 4148.6}.items():
+            np.testing.assert_allclose(rates.sel(pair=pair), rate, rtol=0, atol=0.05)
+        assert dict(sweep.sizes) == {"pair": 7, "contact_model": 3, "creepage": 600}
+        assert ours["sweeps/load"].sizes["normal_force_per_width"] == 300
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (changed("rig.diameter", 47), "rig.diameter: got the bare number 47, which has no unit; give it in mm"),
+        (changed("contact_models", ["exat"]), "contact_models.0: no contact model is called 'exat'; did you mean"),
+        (changed("sweeps.creepage.creepage", 1), "creepage: got the bare number 1.0, which has no unit"),
+        (changed("sweeps.creepage.normal_force", "1 N"), "give exactly one of normal_force, normal_force_per_width"),
+        (changed("sweep", {}), "sweep: unknown field; did you mean 'sweeps'?"),
+        (table(contact_models=["exact"], wear_laws=["brr"]), "no contact model of the case can be used with any of"),
+        (
+            changed("sweeps.creepage.traction_coefficient", 0.1, table(contact_models=["exact"])),
+            "sweep 'creepage': no contact model of the case can use a traction_coefficient",
+        ),
+    ],
+)
+def test_a_wrong_case_is_one_clear_error_and_nothing_is_written(
+    folder: Path, content: cases.Table, message: str
+) -> None:
+    write(folder / "c.toml", content)
+    assert_refused(wearlaw("run", "c.toml", "-o", "new/deep/out"), message)
+    assert [path.name for path in folder.iterdir()] == ["c.toml"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run", "tasini2010"], "there is no case file 'tasini2010'; did you mean 'tassini2010'?"),
+        (["run", "."], "cannot read the case file '.'"),
+        (["run", "taken.txt"], "case 'taken.txt' is not valid TOML"),
+        (["run", "c.toml", "-o", "taken.txt"], "output: 'taken.txt' is a file, not a folder; choose another with -o"),
+        (["run", "c.toml", "-o", "taken.txt/out"], "output: cannot write to 'taken.txt/out'"),
+        (["run", "c.toml", "-o", "/proc/out"], "output: cannot write to '/proc/out'"),
+        (["run", "c.toml", "-o", "full"], "output: 'full' does not hold results of wearlaw"),
+        (["run", "c.toml", "-o", "full", "--overwrite"], "output: 'full' does not hold results of wearlaw"),
+        (["run", "c.toml", "-o", "."], "output: '.' is the working folder"),
+        (["case", "tassini2011"], "there is no case file 'tassini2011'; did you mean 'tassini2010'?"),
+        (["show", "usdf"], "no model is called 'usdf'; did you mean 'usfd'?"),
+    ],
+)
+def test_a_wrong_argument_is_one_clear_error_and_nothing_is_written(
+    folder: Path, arguments: list[str], message: str
+) -> None:
+    write(folder / "c.toml", table())
+    (folder / "taken.txt").write_text("not TOML")
+    (folder / "full").mkdir()
+    (folder / "full" / "thesis.tex").write_text("years of work")
+    before = files(folder)
+    assert_refused(wearlaw(*arguments), message)
+    assert files(folder) == before
+
+
+@pytest.mark.usefixtures("no_figures")
+def test_earlier_results_are_only_replaced_when_asked(folder: Path) -> None:
+    write(folder / "c.toml", table(profiles={}))
+    assert wearlaw("run", "c.toml").exit_code == 0
+    before = {name: (folder / name).stat().st_mtime_ns for name in files(folder)}
+    assert_refused(wearlaw("run", "c.toml"), "'c-results' is not empty; choose another folder with -o, or add --over")
+    assert {name: (folder / name).stat().st_mtime_ns for name in files(folder)} == before
+    write(folder / "c.toml", table(contact_models=["global"], profiles={}))
+    assert wearlaw("run", "c.toml", "--overwrite").exit_code == 0
+    assert set(pd.read_csv("c-results/results.csv")["contact_model"]) == {"global"}
+
+
+@pytest.mark.parametrize("arguments", [["nonsense"], ["run"], ["run", "a", "b"], ["run", "a", "--nonsense"]])
+def test_a_wrong_use_says_where_help_is(arguments: list[str]) -> None:
+    result = wearlaw(*arguments)
+    assert_refused(result, "Try 'main", exit_code=2)
+
+
+# case, schema, show, help
+
+
+@pytest.mark.parametrize("charset", ["utf-8", "cp1252", "ascii"])
+def test_a_case_file_is_printed_byte_for_byte_whatever_the_terminal_speaks(folder: Path, charset: str) -> None:
+    result = wearlaw("case", "tassini2010", charset=charset)
+    assert result.exit_code == 0
+    assert result.stdout_bytes == case_text("tassini2010").encode()
+    assert "×" in case_text("tassini2010"), "something beyond ASCII is needed here"
+    (folder / "own.toml").write_bytes(result.stdout_bytes)
+    assert wearlaw("case", "own.toml").stdout_bytes == result.stdout_bytes
+
+
+def test_the_schema_is_printed_as_json() -> None:
+    result = wearlaw("schema")
+    assert result.exit_code == 0
+    assert json.loads(result.stdout) == case_schema()
+    assert json.loads(result.stdout)["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+
+
+@pytest.mark.parametrize("name", [*wl.contact_models(), *wl.wear_laws()])
+@pytest.mark.parametrize("charset", ["utf-8", "cp1252"])
+def test_every_model_is_explained_also_where_there_are_no_greek_letters(name: str, charset: str) -> None:
+    result = wearlaw("show", name, charset=charset)
+    assert result.exit_code == 0
+    assert result.stdout.startswith(f"{name}: a ")
+    assert "source: " in result.stdout
+    assert "declares:\n  " in result.stdout
+
+
+def test_the_version_is_that_of_the_package() -> None:
+    assert wearlaw("--version").stdout == f"wearlaw, version {wl.__version__}\n"
+
+
+@pytest.mark.parametrize("flag", ["-h", "--help"])
+def test_help_says_how_to_begin_and_every_command_has_its_own(flag: str) -> None:
+    result = wearlaw(flag)
+    assert result.exit_code == 0
+    assert "wearlaw run tassini2010 " in result.stdout
+    assert "wearlaw case tassini2010 > my.toml" in result.stdout
+    for command in ("run", "case", "plugins", "show", "schema"):
+        assert f"\n  {command} " in result.stdout
+        own = wearlaw(command, flag)
+        assert own.exit_code == 0
+        assert own.stdout.startswith(f"Usage: main {command} ")
+    for option in ("-o, --output", "--overwrite"):
+        assert option in wearlaw("run", flag).stdout
+
+
+# plugins
+
+
+@pytest.fixture
+def look_again() -> Iterator[None]:
+    """Search for plugins anew in the test, and again after it."""
+    plugins.installed.cache_clear()
+    yield
+    plugins.installed.cache_clear()
+
+
+def distribution(folder: Path, name: str, module: str) -> None:
+    """Put a distribution of one plugin into a folder."""
+    info = folder / f"{name}-1.2.3.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.2.3\n")
+    (info / "entry_points.txt").write_text(f"[wearlaw]\n{name} = {name}_module\n")
+    (folder / f"{name}_module.py").write_text(module)
+
+
+def test_all_models_are_listed_with_their_distribution_and_version() -> None:
+    result = wearlaw("plugins")
+    assert result.exit_code == 0
+    head, *rows = [line.split() for line in result.stdout.splitlines()]
+    assert head == ["kind", "name", "distribution", "version"]
+    ours = [row for row in rows if row[-2] == "wearlaw"]
+    assert ours == [
+        *(["contact", "model", name, "wearlaw", wl.__version__] for name in ("exact", "fastsim", "global")),
+        *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("brr", "kth", "usfd")),
+    ]
+    assert result.stderr == ""
+
+
+@pytest.mark.usefixtures("look_again")
+def test_what_failed_to_load_is_named_once_with_its_cause(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    distribution(folder, "crumbling", "raise RuntimeError('no licence found')\n")
+    distribution(folder, "misspelt", "import wearlaw as wl\n\n@wl.hookimpl\ndef wearlaw_wear_law(): return []\n")
+    monkeypatch.syspath_prepend(folder)
+    result = wearlaw("plugins")
+    assert result.exit_code == 0
+    assert "usfd" in result.stdout
+    crumbling, misspelt = result.stderr.splitlines()
+    assert crumbling == "left out: crumbling 1.2.3 (plugin 'crumbling'): RuntimeError: no licence found"
+    assert misspelt.startswith("left out: misspelt 1.2.3 (plugin 'misspelt'): ")
+    assert "wearlaw_wear_law" in misspelt
+
+
+@pytest.mark.usefixtures("look_again")
+def test_a_plugin_that_was_left_out_is_named_where_its_model_is_missed(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    distribution(folder, "crumbling", "raise RuntimeError('no licence found')\n")
+    monkeypatch.syspath_prepend(folder)
+    write(folder / "c.toml", table(wear_laws=["crumbling"]))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.PluginWarning)
+        assert_refused(wearlaw("run", "c.toml"), "left out: crumbling 1.2.3 (plugin 'crumbling'): RuntimeError: no lic")
+        assert_refused(wearlaw("show", "crumbling"), "left out: crumbling 1.2.3 (plugin 'crumbling')")

@@ -1,0 +1,119 @@
+"""The frozen base of all settings: what it says of wrong fields, and what it survives."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from collections.abc import Callable
+from typing import Any
+
+import pydantic
+import pytest
+
+import wearlaw as wl
+from wearlaw import Q
+
+STEEL = wl.steel()
+IN_MM = 'give it in mm or another unit of that dimension, such as Q(1.0, "mm") or "1.0 mm"'
+IN_GPA = 'give it in GPa or another unit of that dimension, such as Q(1.0, "GPa") or "1.0 GPa"'
+
+
+def disc(**fields: Any) -> wl.Disc:
+    return wl.Disc(**{"diameter": "47 mm", "material": STEEL, **fields})
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: disc(diameter=47), f"Disc: diameter: got the bare number 47, which has no unit; {IN_MM}"),
+        (lambda: disc(diameter=True), f"Disc: diameter: got True, which has no unit; {IN_MM}"),
+        (lambda: disc(diameter=4j), f"Disc: diameter: got 4j, which has no unit; {IN_MM}"),
+        (lambda: disc(diameter="47"), f"Disc: diameter: '47' is not a number with a unit; {IN_MM}"),
+        (
+            lambda: disc(diameter="47 kN"),
+            f"Disc: diameter: got 47.00 kN, which is not of the dimension of 'mm'; {IN_MM}",
+        ),
+        (lambda: disc(diameter="47 xyz"), f"Disc: diameter: 'xyz' is not a known unit; {IN_MM}"),
+        (lambda: disc(diameter="nan mm"), f"Disc: diameter: must be a number, got nan mm; {IN_MM}"),
+        (lambda: disc(diameter="0 mm"), f"Disc: diameter: must be greater than zero, got 0.000 mm; {IN_MM}"),
+        (lambda: disc(diameter="-4 mm"), f"Disc: diameter: must be greater than zero, got -4.000 mm; {IN_MM}"),
+        (lambda: disc(diameter=Q([1, 2], "mm")), "Disc: diameter: must be one value, got an array of shape (2,)"),
+        (lambda: disc(diametr="4 mm"), "did you mean 'diameter'? The fields are: diameter, material"),
+        (lambda: wl.Disc(diameter="4 mm"), "Disc: material: is missing"),  # type: ignore[call-arg]
+        (lambda: disc(material="steel"), "Disc: material: input should be a valid dictionary or instance of Material"),
+        (lambda: disc(material={**dict(STEEL), "density": 1}), "Disc: material.density: got the bare number 1"),
+        (lambda: wl.steel(youngs_modulus=Q(0, "GPa")), f"must be greater than zero, got 0.000 GPa; {IN_GPA}"),
+        (lambda: wl.steel(youngs_modulus=Q(-1, "GPa")), f"must be greater than zero, got -1.000 GPa; {IN_GPA}"),
+        (lambda: wl.steel(poisson_ratio=0.51), "poisson_ratio: input should be less than or equal to 0.5, got 0.51"),
+        (lambda: wl.steel(poisson_ratio=-0.1), "poisson_ratio: input should be greater than or equal to 0, got -0.1"),
+        (lambda: wl.steel(poisson_ratio=float("nan")), "poisson_ratio: input should be a finite number, got nan"),
+        (lambda: wl.steel(poisson_ratio=True), "poisson_ratio: input should be a valid number, got True"),
+        (lambda: wl.steel(poisson_ratio="0.3"), "poisson_ratio: input should be a valid number, got '0.3'"),  # type: ignore[arg-type]
+        (lambda: wl.steel(density="7850 kg"), "got 7850 kg, which is not of the dimension of 'kg/m^3'"),
+        (lambda: wl.steel(elastic_limit="0 GPa"), f"elastic_limit: must be greater than zero, got 0.000 GPa; {IN_GPA}"),
+    ],
+)
+def test_a_wrong_field_is_named_with_value_unit_and_fix(make: Callable[[], object], message: str) -> None:
+    with pytest.raises(wl.ConfigurationError) as caught:
+        make()
+    assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("ratio", [0, 0.0, 0.5])
+def test_the_ends_of_the_range_of_poissons_ratio_are_allowed(ratio: float) -> None:
+    assert wl.steel(poisson_ratio=ratio).poisson_ratio == ratio
+
+
+def test_all_wrong_fields_are_named_at_once_with_their_paths() -> None:
+    with pytest.raises(wl.ConfigurationError) as caught:
+        wl.TwinDisc.model_validate(
+            {"disc_1": {"diameter": 3, "material": dict(STEEL)}, "disc_2": disc(), "speed": 1, "track_width": "1 mm"}
+        )
+    assert [".".join(problem.path) for problem in caught.value.problems] == [
+        "disc_1.diameter",
+        "rolling_speed",
+        "speed",
+    ]
+
+
+@pytest.mark.parametrize("text", ['{"diameter": ', "[]", "3", '{"diameter": 3}'])
+def test_wrong_json_is_an_error_of_the_package(text: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=r"^Disc: ?"):
+        wl.Disc.model_validate_json(text)
+
+
+def test_a_long_value_is_cut_in_the_message() -> None:
+    with pytest.raises(wl.ConfigurationError) as caught:
+        disc(material="steel" * 1000)
+    assert len(str(caught.value)) < 250
+
+
+def test_equal_lengths_in_other_units_are_equal_and_hash_alike() -> None:
+    assert disc(diameter="47 mm") == disc(diameter=Q(0.047, "m"))
+    assert hash(disc(diameter="47 mm")) == hash(disc(diameter=Q(0.047, "m")))
+    assert disc(diameter="47 mm") != disc(diameter="47.001 mm")
+
+
+def test_a_configuration_is_frozen() -> None:
+    with pytest.raises(pydantic.ValidationError, match="frozen"):
+        disc().diameter = Q(1, "mm")
+
+
+def test_a_configuration_survives_pickle_copy_and_json() -> None:
+    made = disc(diameter="47.000000000000014 mm")
+    assert pickle.loads(pickle.dumps(made)) == made
+    assert copy.deepcopy(made) == made
+    assert wl.Disc.model_validate_json(made.model_dump_json()) == made
+    assert wl.Disc.model_validate(made.model_dump(mode="json")) == made
+
+
+def test_a_configuration_prints_as_text_with_units() -> None:
+    shown = "Disc(diameter=47.0 mm, material=Material(youngs_modulus=206.47742 GPa, poisson_ratio=0.28"
+    assert repr(disc()).startswith(shown)
+    assert str(disc()) == repr(disc())
+
+
+def test_the_schema_describes_a_quantity_as_text_with_its_unit() -> None:
+    diameter = wl.Disc.model_json_schema()["properties"]["diameter"]
+    assert (diameter["type"], diameter["examples"]) == ("string", ["1.0 mm"])
+    assert "flat body" in diameter["description"]

@@ -1,0 +1,150 @@
+"""What `wearlaw show` says of a model: nothing that its class declares may be missing."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+
+import pytest
+
+import wearlaw as wl
+from tests.core import cases
+from wearlaw import plugins
+from wearlaw.describe import describe
+from wearlaw.models import Model
+
+MODELS: dict[str, type[Model]] = {**wl.contact_models(), **wl.wear_laws()}
+
+
+def said(model: type[Model]) -> str:
+    """Return the description with its line breaks undone."""
+    return " ".join(describe(model).split())
+
+
+EXPECTED: dict[str, list[str]] = {
+    "global": [
+        "global: a contact model of wearlaw",
+        "total_from = Exact(slip='consistent')",
+        "scale: the means of the patch",
+        "takes a measured traction_coefficient",
+        "does not keep stick: the one cell slips as a whole",
+    ],
+    "exact": [
+        "exact: a contact model of wearlaw",
+        "slip = 'consistent' one of 'consistent', 'as_printed'",
+        "scale: the patch resolved into cells",
+    ],
+    "fastsim": [
+        "bound = 'parabolic' one of 'parabolic', 'elliptic'",
+        "flexibility = 'line' one of 'line', 'kalker'",
+        "scale: the patch resolved into cells",
+    ],
+    "usfd": [  # Tables 3 and 4 of Tassini et al. (2010)
+        "usfd: a wear law of wearlaw",
+        "fitted_for = 'global' one of 'global', 'exact', 'fastsim'",
+        "m_m = 5.3 µg/m/N",
+        "q_s = 55.0 µg/m/mm²",
+        "m_c = 61.9 µg/m/N",
+        "tr_sc = 77.26 N/mm²",
+        "scale: patch means or cells",
+        "fitted for: patch means (the global model); R8T wheel steel on UIC 60 900A rail steel; R. Lewis",
+        "never falls with: wear_index_density",
+        "branches in wear_index_density at 10.38 N/mm², 77.26 N/mm²",
+        "stated for a mean wear_index_density from 0.000 N/mm² to 108.4 N/mm²",
+    ],
+    "brr": [  # Table 1 of Tassini et al. (2010), times the diameter
+        "mild_slope = 0.25 mm³/km/N",
+        "plateau = 25.0 mm³/km",
+        "severe_slope = 1.19 mm³/km/N",
+        "severe_offset = 154.0 mm³/km",
+        "mild_limit = 100.0 N",
+        "severe_limit = 200.0 N",
+        "scale: means of the whole patch only",
+        "never falls with: wear_index",
+        "branches in wear_index at 100.0 N, 200.0 N",
+        "jumps in wear_index at 200.0 N",
+    ],
+    "kth": [  # Table 2 of Tassini et al. (2010)
+        "coefficient = 'mid' one of 'low', 'mid', 'high'",
+        "hardness = 2.625 GPa",
+        "pressure_threshold = 2.1 GPa",
+        "lower_slip_speed = 0.2 m/s",
+        "upper_slip_speed = 0.7 m/s",
+        "scale: patch means or cells",
+        "branches in pressure at 2100 MPa",
+        "branches in slip_speed at 0.2000 m/s, 0.7000 m/s",
+        "jumps in pressure at 2100 MPa",
+        "jumps in slip_speed at 0.2000 m/s, 0.7000 m/s",
+        "band: published parameter ranges give a low, a middle and a high law",
+    ],
+}
+
+
+def test_there_is_an_expectation_for_every_model_of_the_package() -> None:
+    ours = {
+        name for shelf in (plugins.installed().contact_models, plugins.installed().wear_laws)
+        for name in shelf.classes() if shelf.origin(name).distribution == "wearlaw"
+    }  # fmt: skip
+    assert ours == EXPECTED.keys()
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_defaults_units_and_declarations_are_said(name: str) -> None:
+    text = said(MODELS[name])
+    for expected in EXPECTED[name]:
+        assert expected in text
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_the_theory_the_source_and_every_field_with_its_explanation_are_said(name: str) -> None:
+    model, text = MODELS[name], said(MODELS[name])
+    for expected in (inspect.getdoc(model), f"source: {model.source}"):
+        assert expected is not None
+        assert " ".join(expected.split()) in text
+    for field, info in model.model_fields.items():
+        assert f" {field} = " in text
+        assert info.description
+        assert " ".join(info.description.split()) in text
+
+
+def test_no_line_of_the_fields_is_wider_than_a_screen() -> None:
+    for model in MODELS.values():
+        fields = describe(model).partition("fields:")[2].partition("declares:")[0]
+        assert max(len(line) for line in fields.splitlines()) <= 100
+
+
+class Silent(wl.WearLaw):
+    """Says nothing about itself."""
+
+    name = "silent"
+    source = "none"
+
+    def rate(self, contact: wl.Contact) -> wl.Array:
+        return 0.0 * contact.pressure
+
+
+class Bounded(Silent):
+    """Says all that nothing of the package says."""
+
+    name = "bounded"
+
+    @property
+    def breakpoints(self) -> wl.BreakpointMap:
+        return {}
+
+    @property
+    def valid_range(self) -> Mapping[str, tuple[float, float]]:
+        return {"pressure": (1e6, 2e9)}
+
+
+def test_a_law_that_declares_nothing_or_must_be_given_a_field_is_described(monkeypatch: pytest.MonkeyPatch) -> None:
+    install = cases.installer(monkeypatch)
+    for law in (Silent, Bounded, cases.Linear):
+        install(law)
+    silent = said(Silent)
+    assert silent.startswith("silent: a wear law of wearlaw-testing 9.8.7 (plugin 'testing') Says nothing")
+    assert "fields: none declares: scale: patch means or cells branches: not declared" in silent
+    assert silent.endswith("branches: not declared")
+    assert said(Bounded).endswith("scale: patch means or cells stated for a mean pressure from 1.000 MPa to 2000 MPa")
+    must = said(cases.Linear)
+    assert "slope (must be given) Wear rate over p s [m], of no meaning. declares: what depends on its fields" in must

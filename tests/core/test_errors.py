@@ -1,0 +1,55 @@
+"""What the package's errors have in common."""
+
+from __future__ import annotations
+
+import inspect
+import pickle
+
+import pytest
+
+import wearlaw as wl
+from wearlaw import errors
+from wearlaw.errors import Problem, did_you_mean
+
+CLASSES = [found for _, found in inspect.getmembers(errors, inspect.isclass) if issubclass(found, Exception)]
+
+
+@pytest.mark.parametrize("error", CLASSES)
+def test_every_error_and_warning_has_the_base_of_its_kind_and_is_public(error: type[Exception]) -> None:
+    base = wl.WearlawWarning if issubclass(error, Warning) else wl.WearlawError
+    assert issubclass(error, base)
+    assert getattr(wl, error.__name__) is error
+
+
+@pytest.mark.parametrize(
+    ("error", "builtin"),
+    [
+        (wl.UnitError, ValueError),
+        (wl.ConditionsError, ValueError),
+        (wl.UnknownModelError, ValueError),
+        (wl.CaseError, ValueError),
+        (wl.ConfigurationError, ValueError),
+        (wl.CompositionError, TypeError),
+        (wl.OutputError, OSError),
+        (wl.ModelError, RuntimeError),
+    ],
+)
+def test_generic_code_may_catch_the_builtin_error(error: type[Exception], builtin: type[Exception]) -> None:
+    assert issubclass(error, builtin)
+
+
+def test_a_configuration_error_lists_every_problem_with_its_path() -> None:
+    error = wl.ConfigurationError("TwinDisc", [Problem(("disc_1", "diameter"), "is missing"), Problem((), "is odd")])
+    assert str(error) == "TwinDisc:\n  disc_1.diameter: is missing\n  is odd"
+    assert str(wl.ConfigurationError("Disc", [Problem(("diameter",), "is odd")])) == "Disc: diameter: is odd"
+
+
+def test_a_configuration_error_survives_pickling() -> None:
+    error = wl.ConfigurationError("Disc", [Problem(("diameter",), "is odd")])
+    loaded = pickle.loads(pickle.dumps(error))
+    assert (loaded.subject, loaded.problems, str(loaded)) == (error.subject, error.problems, str(error))
+
+
+def test_did_you_mean_names_the_nearest_word_or_nothing() -> None:
+    assert did_you_mean("exakt", ["fastsim", "exact"]) == " did you mean 'exact'?"
+    assert did_you_mean("zzz", ["fastsim", "exact"]) == ""

@@ -1,0 +1,196 @@
+"""Grids of operating points: every form of a condition, their order, and what is wrong with wrong ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from wearlaw import Q
+from wearlaw.grid import MOST_POINTS, SI_UNITS, UNITS, Grid
+
+RIG = wl.TwinDisc.suros()
+
+
+def grid(**changes: Any) -> Grid:
+    conditions = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46, **changes}
+    return Grid(**{name: value for name, value in conditions.items() if value is not None})
+
+
+@pytest.mark.parametrize(
+    ("creepage", "expected"),
+    [
+        ("1 %", 0.01),
+        ("-0.02 dimensionless", -0.02),
+        (["1 %"], [0.01]),
+        (["3 %", "1 %", "0 %"], [0.03, 0.01, 0.0]),
+        ({"from": "-1 %", "to": "1 %", "points": 5}, [-0.01, -0.005, 0.0, 0.005, 0.01]),
+        ({"from": "1 %", "to": "0 %", "points": 3}, [0.01, 0.005, 0.0]),
+        ({"from": "0.1 %", "to": "10 %", "points": 3, "spacing": "log"}, [0.001, 0.01, 0.1]),
+        ({"from": "-10 %", "to": "-0.1 %", "points": 3, "spacing": "log"}, [-0.1, -0.01, -0.001]),
+        ({"from": "1 %", "to": "1 %", "points": 2, "spacing": "log"}, [0.01, 0.01]),
+    ],
+)
+def test_a_condition_is_a_value_a_list_or_an_axis(creepage: Any, expected: Any) -> None:
+    read = grid(creepage=creepage)
+    np.testing.assert_allclose(read.conditions()["creepage"], expected, rtol=1e-14, atol=0)  # rounding
+    assert read.conditions()["creepage"].shape == np.shape(expected)
+    assert ("creepage" in read.axes()) == isinstance(expected, list)
+    assert read.size == np.size(expected)
+
+
+def test_an_axis_keeps_its_ends_to_the_last_digit() -> None:
+    for spacing in ("log", "linear"):
+        axis = grid(friction_coefficient={"from": 0.1, "to": 0.7, "points": 11, "spacing": spacing})
+        values = axis.conditions()["friction_coefficient"]
+        assert (values[0], values[-1]) == (0.1, 0.7)
+
+
+def test_a_log_axis_has_a_constant_ratio_and_a_linear_one_a_constant_distance() -> None:
+    log, linear = (
+        grid(friction_coefficient={"from": 0.1, "to": 0.8, "points": 4, "spacing": spacing}).conditions()
+        for spacing in ("log", "linear")
+    )
+    np.testing.assert_allclose(np.diff(np.log(log["friction_coefficient"])), np.log(2.0), rtol=1e-14)
+    np.testing.assert_allclose(np.diff(linear["friction_coefficient"]), 0.7 / 3.0, rtol=1e-14)
+
+
+def test_an_axis_is_linear_unless_it_says_log() -> None:
+    ends = {"from": 0.1, "to": 0.4, "points": 4}
+    assert grid(friction_coefficient=ends) == grid(friction_coefficient={**ends, "spacing": "linear"})
+    assert grid(friction_coefficient=ends) != grid(friction_coefficient={**ends, "spacing": "log"})
+
+
+@pytest.mark.parametrize(
+    ("load", "text", "other_unit", "si"),
+    [
+        ("normal_force", "7.4 kN", "7400 N", 7400.0),
+        ("normal_force_per_width", "741 kN/m", "741 N/mm", 741e3),
+        ("max_pressure", "1.5 GPa", "1500 N/mm^2", 1.5e9),
+    ],
+)
+def test_every_load_is_read_with_its_unit(load: str, text: str, other_unit: str, si: float) -> None:
+    for given in (text, other_unit):
+        conditions: dict[str, Any] = {load: given, "creepage": "1 %", "friction_coefficient": 0.46}
+        read = Grid(**conditions)
+        np.testing.assert_allclose(read.conditions()[load], si, rtol=1e-15)
+        direct: Any = {load: Q(si, SI_UNITS[load]), "creepage": Q(1, "%"), "friction_coefficient": 0.46}
+        for field in ("normal_force_per_width", "max_pressure", "half_width", "creepage", "friction_coefficient"):
+            here, there = getattr(read.problem(RIG), field), getattr(RIG.problem(**direct), field)
+            np.testing.assert_allclose(here, there, rtol=1e-15)  # one conversion of units
+
+
+def test_units_of_conditions_agree_with_their_si_units() -> None:
+    assert UNITS.keys() == SI_UNITS.keys()
+    for name, unit in UNITS.items():
+        assert unit.si(Q(0.5, SI_UNITS[name]), name) == 0.5
+
+
+def test_several_axes_make_a_grid_in_the_order_of_the_conditions_whatever_the_order_in_the_file() -> None:
+    conditions: dict[str, Any] = {
+        "friction_coefficient": [0.2, 0.3, 0.4, 0.5],
+        "creepage": ["1 %", "2 %"],
+        "normal_force": {"from": "1 kN", "to": "3 kN", "points": 3},
+    }
+    read = Grid(**conditions)
+    assert list(read.axes()) == ["normal_force", "creepage", "friction_coefficient"]
+    problem = read.problem(RIG)
+    assert problem.batch_shape == (3, 2, 4)
+    assert read.size == 24
+    for index in np.ndindex(3, 2, 4):
+        one = RIG.problem(
+            normal_force=Q(1.0 + index[0], "kN"),
+            creepage=Q(1.0 + index[1], "%"),
+            friction_coefficient=0.2 + 0.1 * index[2],
+        )
+        for field in ("normal_force_per_width", "half_width", "max_pressure", "creepage", "friction_coefficient"):
+            np.testing.assert_allclose(
+                getattr(problem, field)[index], getattr(one, field), rtol=1e-15
+            )  # rounding of 0.2 + 0.1 i
+
+
+def test_a_measured_traction_coefficient_reaches_the_problem_and_may_be_an_axis() -> None:
+    assert grid().problem(RIG).traction_coefficient is None
+    given = grid(traction_coefficient=0.3).problem(RIG).traction_coefficient
+    assert given is not None and given == 0.3  # noqa: PT018  (narrows the type)
+    several = grid(traction_coefficient=[0.1, 0.2], creepage=["1 %", "2 %", "3 %"])
+    assert list(several.axes()) == ["creepage", "traction_coefficient"]
+    assert several.problem(RIG).batch_shape == (3, 2)
+
+
+SHAPE = "must be a value, a list of values, or a table with from, to and points; got "
+CREEPAGE_FIX = "give creepage in percent or as a ratio"
+
+
+@pytest.mark.parametrize(
+    ("condition", "value", "message"),
+    [
+        ("friction_coefficient", True, f"Grid: friction_coefficient: {SHAPE}True"),
+        ("friction_coefficient", [0.4, True], f"Grid: friction_coefficient: {SHAPE}True"),
+        ("friction_coefficient", [[0.4]], f"Grid: friction_coefficient: {SHAPE}[0.4]"),
+        ("friction_coefficient", 1j, f"Grid: friction_coefficient: {SHAPE}1j"),
+        ("friction_coefficient", [], "Grid: friction_coefficient: is empty; give at least one value"),
+        ("friction_coefficient", float("nan"), "Grid: friction_coefficient: must be finite, got nan"),
+        ("friction_coefficient", [0.1, float("inf")], "Grid: friction_coefficient: must be finite, got inf"),
+        ("friction_coefficient", "0.4", "friction_coefficient: '0.4' is not a real number"),
+        ("friction_coefficient", 0, "friction_coefficient: must be a positive finite number, got 0"),
+        ("friction_coefficient", -0.1, "friction_coefficient: must be a positive finite number, got -0.1"),
+        ("traction_coefficient", -0.1, "traction_coefficient: must be a positive finite number, got -0.1"),
+        ("friction_coefficient", None, "Grid: friction_coefficient: is missing"),
+        ("creepage", None, "Grid: creepage: is missing"),
+        ("creepage", 1, f"creepage: got the bare number 1.0, which has no unit; {CREEPAGE_FIX}"),
+        ("creepage", [0.01], f"creepage: got the bare number 0.01, which has no unit; {CREEPAGE_FIX}"),
+        ("creepage", "0.01", f"creepage: '0.01' is not a number with a unit; {CREEPAGE_FIX}"),
+        ("creepage", "1 mm", f"creepage: got 1.000 mm, which is not a ratio; {CREEPAGE_FIX}"),
+        ("creepage", "1 foo", "creepage: 'foo' is not a known unit"),
+        ("creepage", "101 %", "creepage: must not exceed 1 in magnitude, got 101.0 %"),
+        ("creepage", ["1 %", "nan %"], "creepage: must be a number, got nan %"),
+        ("max_pressure", "1 kN", "max_pressure: got 1.000 kN, which is not of the dimension of 'MPa'"),
+        ("max_pressure", "0 MPa", "max_pressure: must be greater than zero"),
+        ("max_pressure", None, "give exactly one of normal_force, normal_force_per_width, max_pressure; got none"),
+        ("normal_force", "1 kN", "give exactly one of normal_force, normal_force_per_width, max_pressure; got norm"),
+        ("max_presure", "1 GPa", "Grid: max_presure: unknown field; did you mean 'max_pressure'?"),
+        ("max_pressure", ["1 MPa", "1e200 MPa"], "which no contact has; check the units of the load"),
+    ],
+)
+def test_a_wrong_condition_is_refused_by_name(condition: str, value: Any, message: str) -> None:
+    with pytest.raises(wl.ConfigurationError) as refusal:
+        grid(**{condition: value})
+    assert message in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"from": "0 %", "spacing": "log"}, "creepage: a log axis cannot touch or cross zero"),
+        ({"from": "-1 %", "spacing": "log"}, "creepage: a log axis cannot touch or cross zero"),
+        ({"to": "0 %", "spacing": "log"}, "creepage: a log axis cannot touch or cross zero"),
+        ({"spacing": "lag"}, "creepage.spacing: input should be 'log' or 'linear', got 'lag'"),
+        ({"points": 1}, "creepage.points: input should be greater than or equal to 2, got 1"),
+        ({"points": 0}, "creepage.points: input should be greater than or equal to 2, got 0"),
+        ({"points": MOST_POINTS + 1}, f"creepage.points: input should be less than or equal to {MOST_POINTS}"),
+        ({"points": 2.0}, "creepage.points: input should be a valid integer, got 2.0"),
+        ({"points": True}, "creepage.points: input should be a valid integer, got True"),
+        ({"points": None}, "creepage.points: is missing"),
+        ({"from": None}, "creepage.from: is missing"),
+        ({"from": True}, f"creepage.from: {SHAPE}True"),
+        ({"to": float("nan")}, "creepage.to: must be finite, got nan"),
+        ({"to": ["2 %"]}, f"creepage.to: {SHAPE}['2 %']"),
+        ({"to": 2}, "creepage: got the bare number 2.0, which has no unit"),
+        ({"to": "200 %"}, "creepage: must not exceed 1 in magnitude, got 200.0 %"),
+        ({"step": 2}, "creepage.step: unknown field"),
+    ],
+)
+def test_a_wrong_axis_is_refused_with_its_path(changes: dict[str, Any], message: str) -> None:
+    axis = {"from": "1 %", "to": "2 %", "points": 3, **changes}
+    with pytest.raises(wl.ConfigurationError) as refusal:
+        grid(creepage={name: value for name, value in axis.items() if value is not None})
+    assert f"Grid: {message}" in str(refusal.value)
+
+
+def test_a_grid_that_is_larger_than_any_memory_is_refused() -> None:
+    axis = {"from": 0.1, "to": 0.2, "points": 4000}
+    with pytest.raises(wl.ConfigurationError, match="the axes make a grid of 16000000 points; at most 10000000"):
+        grid(friction_coefficient=axis, traction_coefficient=axis)

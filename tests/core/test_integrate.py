@@ -1,0 +1,418 @@
+"""Patch means of wear laws against integrals of their own, and what is said of their error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+from pytest import approx
+from scipy import integrate, optimize
+
+import wearlaw as wl
+from tests import reference
+from tests.strategies import EPS, LINE_MODELS
+from wearlaw import Array, Q
+from wearlaw.integrate import BLOCK, integrate_contact, integrate_wear
+from wearlaw.quadrature import uniform_cells
+
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
+
+Solve = Callable[[reference.Point], reference.Solution]
+REFERENCE: dict[str, Solve] = {
+    "exact": reference.exact,
+    "exact-as_printed": lambda p: reference.exact(p, as_printed=True),
+    "fastsim-parabolic-line": reference.parabolic,
+    "fastsim-parabolic-kalker": lambda p: reference.parabolic(p, kalker=True),
+    "fastsim-elliptic-line": reference.elliptic,
+    "fastsim-elliptic-kalker": lambda p: reference.elliptic(p, kalker=True),
+}
+FULL_SLIP = {"line": 1.0, "kalker": 8.0 / (3.0 * math.pi)}
+SPEED = 4.0
+RIG = wl.TwinDisc.suros(rolling_speed=Q(SPEED, "m/s"))
+USFD_GLOBAL = (5.3, 55.0, 61.9, 77.26)
+KTH_MID = (350e-4, 5.5e-4, 35e-4, 5.5e-4)
+MEANS: dict[str, Callable[[reference.Solution], float]] = {
+    "usfd": lambda s: reference.usfd_mean(s, *USFD_GLOBAL),
+    "kth": lambda s: reference.kth_mean(s, KTH_MID),
+}
+
+
+class Points:
+    """Operating points of the rig at random, with the problem that they pose."""
+
+    def __init__(self, seed: int, size: int) -> None:
+        self.random = np.random.default_rng(seed)
+        self.size = size
+        self.pressure = self.random.uniform(0.3e9, 4e9, size)
+        self.friction = self.random.uniform(0.05, 1.0, size)
+        self.creepage = 10.0 ** self.random.uniform(-6.0, 0.0, size)
+
+    def crowd(self) -> Array:
+        """Return factors next to one on both sides."""
+        gap = 10.0 ** self.random.uniform(-12.0, -1.0, self.size)
+        return 1.0 + gap * self.random.choice([-1.0, 1.0], self.size)
+
+    @property
+    def saturation(self) -> Array:
+        """μa/R, with a/R = 2 p0/E*."""
+        return 2.0 * self.friction * self.pressure / float(self.problem.effective_modulus[0])
+
+    @property
+    def problem(self) -> wl.LineProblem:
+        return RIG.problem(
+            max_pressure=Q(self.pressure, "Pa"),
+            creepage=Q(np.minimum(self.creepage, 1.0), ""),
+            friction_coefficient=self.friction,
+        )
+
+    def references(self) -> list[reference.Point]:
+        p = self.problem
+        arrays = (p.normal_force_per_width, p.relative_radius, p.effective_modulus, p.friction_coefficient, p.creepage)
+        return [reference.Point(*(float(a[i]) for a in arrays), speed=SPEED) for i in range(self.size)]
+
+
+def compare(name: str, law: str, points: Points) -> tuple[Array, Array, Array]:
+    """Return the rates, those of the reference and the error estimates [µg/m/mm²]."""
+    _, wear = integrate_wear(LINE_MODELS[name], wl.wear_law(law), points.problem, "cells")
+    want = np.array([MEANS[law](REFERENCE[name](point)) for point in points.references()])
+    return wear.wear_rate * 1e3, want, wear.wear_rate_error * 1e3
+
+
+def accuracy(name: str, points: Points) -> Array:
+    """Return the relative accuracy that a model's means are held to.
+
+    1e-9 for all of them, but that a position in a slip zone of length 2h is exact to EPS·a/h only, which is felt
+    where the zone of the elliptic bound shrinks with the square of creepage; and that Hertz's pressure next to
+    the leading edge costs what GRAZING in test_invariants says.
+    """
+    if "elliptic" not in name:
+        return np.full(points.size, 1e-9)
+    kappa = 0.5 * math.pi * points.creepage / points.saturation
+    return 5e-8 + 8.0 * EPS * (1.0 + 1.0 / kappa**2)
+
+
+@pytest.mark.parametrize("law", MEANS)
+@pytest.mark.parametrize("name", REFERENCE)
+def test_patch_means_meet_their_integral_at_any_creepage(name: str, law: str) -> None:
+    points = Points(seed=1, size=80)
+    got, want, error = compare(name, law, points)
+    assert (np.abs(got - want) <= accuracy(name, points) * want).all()
+    honest = np.abs(got - want) <= error + 1e-12 * want  # the reference itself ends at 1e-13
+    # The estimate does not know how a jump of the rate enlarges the rounding of where it lies in a short zone.
+    assert honest.mean() >= (0.95 if "elliptic" in name and law == "kth" else 1.0)
+
+
+@pytest.mark.parametrize("law", MEANS)
+@pytest.mark.parametrize("name", REFERENCE)
+def test_patch_means_meet_their_integral_next_to_full_slip(name: str, law: str) -> None:
+    points = Points(seed=2, size=80)
+    centre = 1.0 if name.startswith("exact") else 1.5 * FULL_SLIP[name.rpartition("-")[2]]
+    points.creepage = points.saturation * centre * points.crowd()
+    got, want, error = compare(name, law, points)
+    assert (np.abs(got - want) <= accuracy(name, points) * want).all()
+    assert (np.abs(got - want) <= error + 1e-12 * want).all()
+
+
+@pytest.mark.parametrize("name", REFERENCE)
+@pytest.mark.parametrize("border", [55.0 / 5.3, 77.26])
+def test_usfd_means_meet_their_integral_where_a_regime_just_begins(name: str, border: float) -> None:
+    points = Points(seed=3, size=30)
+    points.friction = points.random.uniform(0.4, 1.0, points.size)
+    points.pressure = points.random.uniform(1.5e9, 4e9, points.size)
+    creepages = []
+    for point in points.references():
+
+        def excess(creepage: float, point: reference.Point = point) -> float:
+            at = REFERENCE[name](reference.Point(point.load, point.radius, point.modulus, point.friction, creepage))
+            return float(at.density(min(at.peak, at.border))) / 1e6 - border
+
+        low, high = 1e-7, 1.0
+        creepages.append(optimize.brentq(excess, low, high, xtol=1e-18) if excess(low) < 0.0 else 0.01)
+    points.creepage = np.array(creepages) * points.crowd()
+    got, want, _ = compare(name, "usfd", points)
+    assert (np.abs(got - want) <= accuracy(name, points) * want).all()
+
+
+def jump_condition(points: Points) -> Array:
+    """Return how far the mean of KTH moves with a rounding of the pressure.
+
+    Rounding of p0 by 4 EPS moves the root of p0 √(1-t²) = 2.1 GPa by 4 EPS/t, with t ≈ √(2|p0/2.1 GPa - 1|), and
+    k jumps by 350/5.5 there.
+    """
+    return 350.0 / 5.5 * 8.0 * EPS / np.sqrt(2.0 * np.abs(points.pressure / 2.1e9 - 1.0))
+
+
+@pytest.mark.parametrize("name", REFERENCE)
+@pytest.mark.parametrize("where", ["anywhere", "half the patch slips"])
+def test_kth_means_meet_their_integral_where_the_pressure_just_reaches_its_border(name: str, where: str) -> None:
+    points = Points(seed=4, size=60)
+    points.pressure = 2.1e9 * points.crowd()
+    if where == "half the patch slips":  # so that slip begins next to the maximum of the pressure
+        reduced = 0.5 if name.startswith("exact") else 0.75 if "parabolic" in name else 2.0 / math.pi
+        points.creepage = points.saturation * reduced * FULL_SLIP.get(name.rpartition("-")[2], 1.0) * points.crowd()
+    got, want, _ = compare(name, "kth", points)
+    assert (np.abs(got - want) <= (accuracy(name, points) + jump_condition(points)) * want).all()
+
+
+@pytest.mark.parametrize("name", ["exact", "fastsim-parabolic-line"])
+@pytest.mark.parametrize("speed", [0.2, 0.7])
+def test_kth_means_meet_their_integral_where_the_slip_speed_just_reaches_its_border(name: str, speed: float) -> None:
+    points = Points(seed=5, size=100)
+    # in full slip the slip at the trailing edge is ξ + ξ_full
+    full = points.saturation * (1.0 if name == "exact" else 1.5)
+    points.creepage = np.where(2.0 * full < speed / SPEED, speed / SPEED - full, speed / SPEED + full) * points.crowd()
+    got, want, _ = compare(name, "kth", points)
+    # a slip that just passes its border does so within (gap·a) of an edge, where the pressure is zero
+    assert (np.abs(got - want) <= 1e-9 * want).all()
+
+
+# --- Laws that declare nothing ---------------------------------------------------------------------------------
+
+
+class Smooth(wl.WearLaw):
+    """Rises with the square of q·s."""
+
+    name: ClassVar[str] = "smooth"
+    source: ClassVar[str] = "the tests"
+
+    def rate(self, contact: wl.Contact) -> Array:
+        return (contact.wear_index_density / 1e6) ** 2
+
+
+class Kinked(Smooth):
+    """Rises from a threshold on."""
+
+    name: ClassVar[str] = "kinked"
+    threshold: float = 10.0
+
+    def rate(self, contact: wl.Contact) -> Array:
+        return np.maximum(contact.wear_index_density / 1e6 - self.threshold, 0.0)
+
+
+class Jumping(Kinked):
+    """Ten times as much from a threshold on."""
+
+    name: ClassVar[str] = "jumping"
+
+    def rate(self, contact: wl.Contact) -> Array:
+        w = contact.wear_index_density / 1e6
+        return np.where(w < self.threshold, 0.1 * w, w)
+
+
+class Sticking(Kinked):
+    """Wears by traction, also where nothing slips, from a threshold on."""
+
+    name: ClassVar[str] = "sticking"
+
+    def rate(self, contact: wl.Contact) -> Array:
+        return np.maximum(np.abs(contact.traction) / 1e6 - self.threshold, 0.0)
+
+
+RATES: dict[type[Smooth], Callable[[Array, float], Array]] = {
+    Smooth: lambda w, _: w**2,
+    Kinked: lambda w, threshold: np.maximum(w - threshold, 0.0),
+    Jumping: lambda w, threshold: np.where(w < threshold, 0.1 * w, w),
+}
+
+
+@pytest.mark.parametrize("law_type", RATES, ids=lambda law: law.name)
+@pytest.mark.parametrize("name", ["exact", "fastsim-parabolic-line", "fastsim-elliptic-line"])
+def test_the_error_estimate_of_a_law_that_declares_nothing_is_honest(name: str, law_type: type[Smooth]) -> None:
+    points = Points(seed=6, size=100)
+    points.creepage = 10.0 ** points.random.uniform(-4.0, 0.0, points.size)
+    law: Any = law_type() if law_type is Smooth else law_type(threshold=10.0)  # type: ignore[call-arg]
+    assert law.breakpoints is None
+    _, wear = integrate_wear(LINE_MODELS[name], law, points.problem, "cells")
+    want = []
+    for point in points.references():
+        solution = REFERENCE[name](point)
+        breaks = [] if law_type is Smooth else solution.density_crossings(10e6)
+        want.append(solution.mean(lambda v, s=solution: RATES[law_type](s.density(v) / 1e6, 10.0), breaks))
+    error = np.abs(wear.wear_rate - want)
+    honest = error <= wear.wear_rate_error + 1e-12 * np.array(want)
+    assert honest.mean() >= 0.95
+    # and it is not honest by being useless: in most cases it is below 5 % of the rate
+    assert np.median(wear.wear_rate_error / np.maximum(want, 1e-30)) < 0.05
+    if law_type is Smooth:
+        assert (error <= 1e-6 * np.array(want)).all()
+
+
+def test_the_error_estimate_covers_the_stick_zone() -> None:
+    points = Points(seed=7, size=200)
+    points.creepage = points.saturation * 1.5 * points.random.uniform(0.05, 0.95, points.size)
+    _, wear = integrate_wear(LINE_MODELS["fastsim-parabolic-line"], Sticking(threshold=50.0), points.problem, "cells")
+    want = []
+    for point in points.references():
+        d = point.creepage / (1.5 * point.exact_saturation)
+        top = point.friction * 0.75 * point.load / point.half_width
+
+        # with t = x/a: q = 2 d top (1+t) until the bound top (1-t²) at t = 1 - 2d
+        def rate(t: float, d: float = d, top: float = top) -> float:
+            return 0.5 * max(min(2.0 * d * (1.0 + t), 1.0 - t * t) * top / 1e6 - 50.0, 0.0)
+
+        kinks = [
+            1.0 - 2.0 * d,
+            50e6 / (2.0 * d * top) - 1.0,
+            *(s * math.sqrt(max(1.0 - 50e6 / top, 0.0)) for s in (-1, 1)),
+        ]
+        edges = [-1.0, *sorted(k for k in kinks if -1.0 < k < 1.0), 1.0]
+        want.append(sum(integrate.quad(rate, low, high)[0] for low, high in zip(edges, edges[1:], strict=False)))
+    honest = np.abs(wear.wear_rate - want) <= wear.wear_rate_error + 1e-10 * np.array(want)
+    assert honest.mean() >= 0.95
+    assert wear.wear_rate_error.max() > 0.0
+
+
+def test_breakpoints_that_are_declared_bring_the_error_down() -> None:
+    class Declared(Kinked):
+        @property
+        def breakpoints(self) -> wl.BreakpointMap:
+            return {"wear_index_density": (self.threshold * 1e6,)}
+
+    points = Points(seed=8, size=100)
+    blind, split = (
+        integrate_wear(LINE_MODELS["exact"], law(threshold=10.0), points.problem, "cells")[1]
+        for law in (Kinked, Declared)
+    )
+    worn = split.wear_rate > 0.0
+    assert np.median(split.wear_rate_error[worn] / split.wear_rate[worn]) < 1e-12
+    assert np.median(blind.wear_rate_error[worn] / blind.wear_rate[worn]) > 1e-6
+    assert (
+        np.abs(blind.wear_rate - split.wear_rate) <= 2.0 * blind.wear_rate_error + split.wear_rate_error
+    ).mean() > 0.95
+
+
+# --- Contact models that only solve ----------------------------------------------------------------------------
+
+
+class Celled(wl.ContactModel):
+    """Carter's solution on uniform cells, as a model that knows no closed form would give it."""
+
+    name: ClassVar[str] = "celled"
+    source: ClassVar[str] = "the tests"
+    cells: int = 100
+
+    def solve(self, problem: wl.LineProblem) -> wl.Contact:
+        return LINE_MODELS["exact"].at(problem, uniform_cells(problem.half_width, self.cells))
+
+
+def test_a_model_that_only_solves_works_and_says_how_good_it_is() -> None:
+    points = Points(seed=9, size=200)
+    contact, wear = integrate_wear(Celled(), wl.wear_law("usfd"), points.problem, "cells")
+    want = np.array([MEANS["usfd"](reference.exact(point)) for point in points.references()]) / 1e3
+    # A zone of less than two cells cannot be seen at all.
+    seen = points.creepage / points.saturation > 0.02
+    error = np.abs(wear.wear_rate - want)[seen]
+    assert (error <= wear.wear_rate_error[seen]).mean() >= 0.95
+    assert np.median(wear.wear_rate_error[seen] / want[seen]) < 0.1
+    totals = integrate_contact(LINE_MODELS["exact"], points.problem, "cells")
+    assert contact.tangential_force == approx(totals.tangential_force, rel=4 * EPS)
+
+
+def test_finer_cells_have_a_smaller_error_estimate() -> None:
+    points = Points(seed=10, size=50)
+    points.creepage = points.saturation * points.random.uniform(0.2, 3.0, points.size)
+    coarse, fine = (
+        np.median(integrate_wear(Celled(cells=n), wl.wear_law("usfd"), points.problem, "cells")[1].wear_rate_error)
+        for n in (50, 800)
+    )
+    assert fine < 0.2 * coarse
+
+
+def test_one_cell_alone_says_nothing_of_its_error() -> None:
+    points = Points(seed=11, size=5)
+    _, wear = integrate_wear(Celled(cells=1), wl.wear_law("usfd"), points.problem, "cells")
+    assert (wear.wear_rate_error == np.abs(wear.wear_rate)).all()
+
+
+def test_patch_means_have_no_integration_error() -> None:
+    points = Points(seed=12, size=20)
+    for model, scale in ((wl.contact_model("global"), "patch"), (LINE_MODELS["exact"], "patch"), (Celled(), "patch")):
+        _, wear = integrate_wear(model, wl.wear_law("usfd"), points.problem, scale)  # type: ignore[arg-type]
+        assert (wear.wear_rate_error <= 2.0 * EPS * wear.wear_rate).all()
+
+
+# --- Broken models ---------------------------------------------------------------------------------------------
+
+
+class Broken(Smooth):
+    """Returns what it is told to."""
+
+    name: ClassVar[str] = "broken"
+    fault: str
+
+    def rate(self, contact: wl.Contact) -> Array:
+        rate = np.abs(contact.slip)
+        if self.fault == "shape":
+            return rate.sum(axis=-1)
+        rate[..., -1] = {"nan": np.nan, "infinite": np.inf}[self.fault]
+        return rate
+
+
+@pytest.mark.parametrize(
+    ("fault", "message"),
+    [
+        ("shape", r"wear law 'broken' returned rates of shape \(5,\) for nodes of shape \(5, \d+\)"),
+        ("nan", r"wear law 'broken' returned a rate that is not finite"),
+        ("infinite", r"wear law 'broken' returned a rate that is not finite"),
+    ],
+)
+def test_a_law_that_breaks_its_contract_is_named(fault: str, message: str) -> None:
+    with pytest.raises(wl.ModelError, match=message):
+        integrate_wear(LINE_MODELS["exact"], Broken(fault=fault), Points(seed=13, size=5).problem, "cells")
+
+
+class Nan(Celled):
+    name: ClassVar[str] = "nan"
+    field: str
+
+    def solve(self, problem: wl.LineProblem) -> wl.Contact:
+        contact = super().solve(problem)
+        getattr(contact, self.field)[...] *= np.nan
+        return contact
+
+
+@pytest.mark.parametrize("field", ["pressure", "traction", "slip", "area", "tangential_force"])
+def test_a_contact_model_that_is_not_finite_is_named(field: str) -> None:
+    problem = Points(seed=14, size=5).problem
+    with pytest.raises(wl.ModelError, match=f"'nan' gave a {field.replace('_', ' ')} that is not finite for creepages"):
+        integrate_wear(Nan(field=field), wl.wear_law("usfd"), problem, "cells")
+
+
+# --- Blocks ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("law", ["usfd", "kth"])
+@pytest.mark.parametrize("name", REFERENCE)
+def test_results_do_not_depend_on_the_blocks_they_were_computed_in(name: str, law: str) -> None:
+    points = Points(seed=15, size=2 * BLOCK + 100)
+    problem = points.problem
+    model, wear_law = LINE_MODELS[name], wl.wear_law(law)
+    contact, wear = integrate_wear(model, wear_law, problem, "cells")
+    borders = [0, 1, BLOCK - 1, BLOCK, BLOCK + 1, 2 * BLOCK - 1, 2 * BLOCK, points.size - 1]
+    for index in [*borders, *range(7, points.size, 211)]:
+        contact_alone, wear_alone = integrate_wear(model, wear_law, problem[index : index + 1], "cells")
+        # to rounding, not to the bit: zones without length, which some batches hold, change the order of sums
+        assert wear.wear_rate[index] == approx(wear_alone.wear_rate[0], rel=64 * EPS)
+        for field in ("tangential_force", "wear_index", "patch_area", "mean_slip", "slip_area"):
+            assert getattr(contact, field)[index] == approx(getattr(contact_alone, field)[0], rel=64 * EPS)
+
+
+def test_progress_is_told_block_by_block() -> None:
+    points, told = Points(seed=16, size=BLOCK + 10), []
+    integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), points.problem, "cells", on_block=told.append)
+    assert told == [BLOCK, 10]
+
+
+def test_the_batch_keeps_its_shape() -> None:
+    conditions: dict[str, Any] = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46}
+    creepage = np.geomspace(1e-4, 0.2, 24).reshape(2, 3, 4)
+    problem = RIG.problem(creepage=Q(creepage, ""), **conditions)
+    _, wear = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells")
+    assert wear.wear_rate.shape == wear.wear_rate_error.shape == (2, 3, 4)
+    alone = RIG.problem(creepage=Q(float(creepage[1, 2, 0]), ""), **conditions)
+    _, single = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), alone, "cells")
+    assert single.wear_rate.shape == ()
+    assert float(single.wear_rate) == approx(float(wear.wear_rate[1, 2, 0]), rel=64 * EPS)

@@ -1,0 +1,176 @@
+"""The base classes that a plugin derives from, exercised with models of a few lines."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+import wearlaw as wl
+from wearlaw import Array, Q
+
+RIG = wl.TwinDisc.suros()
+
+
+class Ramp(wl.LineContactModel):
+    """Sticks in the first half of the patch; behind it, slip rises with x."""
+
+    name = "ramp"
+    source = "a test"
+    steepness: float = 1.0
+
+    def slip_zone(self, problem: wl.LineProblem) -> tuple[Array, Array]:
+        return np.zeros_like(problem.half_width), problem.half_width
+
+    def fields(self, problem: wl.LineProblem, x: Array) -> wl.LineFields:
+        assert (problem.creepage >= 0).all()
+        slip = self.steepness * problem.creepage * np.maximum(x, 0.0) / problem.half_width
+        return wl.LineFields(
+            pressure=np.broadcast_to(problem.max_pressure, x.shape),
+            traction=np.broadcast_to(problem.creepage * 1e6, x.shape),
+            slip=slip,
+            traction_bound=np.full_like(x, 1e9),
+        )
+
+    def tangential_force_per_width(self, problem: wl.LineProblem) -> Array:
+        return problem.creepage * 1e6 * 2.0 * problem.half_width
+
+
+class Proportional(wl.WearLaw):
+    name = "proportional"
+    source = "a test"
+
+    def rate(self, contact: wl.Contact) -> Array:
+        return contact.wear_index_density
+
+
+@pytest.mark.parametrize("base", [wl.ContactModel, wl.LineContactModel, wl.WearLaw])
+def test_the_bases_are_abstract(base: type[Any]) -> None:
+    with pytest.raises(TypeError, match="abstract"):
+        base()
+
+
+@pytest.mark.parametrize("creepage", [[0.02], [-0.02], [0.02, -0.02, 0.0]])
+def test_negative_creepage_mirrors_traction_and_slip(creepage: list[float]) -> None:
+    problem = RIG.problem(normal_force="7 kN", creepage=Q(creepage, ""), friction_coefficient=0.4)
+    forward = dataclasses.replace(problem, creepage=np.abs(problem.creepage))
+    mirrored, straight = Ramp().solve(problem), Ramp().solve(forward)
+    sign = np.sign(problem.creepage)
+    np.testing.assert_array_equal(mirrored.traction, sign[:, None] * straight.traction)
+    np.testing.assert_array_equal(mirrored.slip, sign[:, None] * straight.slip)
+    np.testing.assert_array_equal(mirrored.tangential_force, sign * straight.tangential_force)
+    np.testing.assert_array_equal(mirrored.pressure, straight.pressure)
+    np.testing.assert_array_equal(mirrored.wear_index, straight.wear_index)
+
+
+def test_solve_puts_nodes_on_the_whole_patch_and_integrates_the_slip_zone() -> None:
+    problem = RIG.problem(normal_force="7 kN", creepage=Q([0.02, 0.05], ""), friction_coefficient=0.4)
+    contact = Ramp().solve(problem)
+    # ∫ of a ramp over half the patch: a quarter of the creepage on average, half the area slipping. Gauss-Legendre
+    # of 24 nodes in θ integrates sin θ cos θ to rounding, of which 48 terms leave some eps.
+    np.testing.assert_allclose(contact.mean_slip, problem.creepage / 4.0, rtol=1e-14)
+    np.testing.assert_allclose(contact.stick_ratio, 0.5, rtol=1e-14)
+    np.testing.assert_allclose(contact.patch_area, problem.patch_area, rtol=1e-14)
+
+
+def test_an_outside_model_and_law_make_a_pipeline() -> None:
+    predict = RIG | Ramp() | Proportional()
+    result = predict(normal_force="7 kN", creepage=Q([0.02, -0.02], ""), friction_coefficient=0.4)
+    # The law is the local q·s; q is uniform and s is a quarter of the creepage on average.
+    np.testing.assert_allclose(result.wear_rate.to("kg/m^3").magnitude, 0.02e6 * 0.005, rtol=1e-13)
+    np.testing.assert_allclose(result.tangential_force.magnitude[0], -result.tangential_force.magnitude[1])
+
+
+def test_what_a_model_or_law_does_not_declare_has_a_cautious_default() -> None:
+    assert Ramp().scale == "cells"
+    assert not Ramp().uses_measured_traction
+    assert Ramp().exemptions == {}
+    law = Proportional()
+    assert (law.scale, law.breakpoints, law.jumps, law.valid_range) == ("any", None, {}, {})
+    assert law.calibration is None
+    assert law.band() is None
+    assert law.monotone_in == ()
+
+
+@pytest.mark.parametrize("start", [Ramp(), Proportional(), wl.contact_model("exact"), wl.wear_law("usfd")], ids=repr)
+@pytest.mark.parametrize("end", [Proportional(), wl.patch_mean(), 3], ids=repr)
+def test_a_model_cannot_start_a_pipeline(start: Any, end: Any) -> None:
+    with pytest.raises(wl.CompositionError, match=f"'{start.name}' cannot start a pipeline; begin with a rig"):
+        start | end
+
+
+def test_models_of_equal_settings_are_equal() -> None:
+    assert Ramp(steepness=2.0) == Ramp(steepness=2.0)
+    assert hash(Ramp(steepness=2.0)) == hash(Ramp(steepness=2.0))
+    assert Ramp(steepness=2.0) != Ramp()
+    with pytest.raises(ValidationError, match="frozen"):
+        Ramp().steepness = 3.0
+
+
+def test_messages_call_a_model_by_its_name() -> None:
+    with pytest.raises(wl.ConfigurationError, match=r"^ramp: steepnes: unknown field; did you mean 'steepness'\?"):
+        Ramp(steepnes=2.0)  # type: ignore[call-arg]
+
+
+def calibration(**fields: Any) -> wl.Calibration:
+    return wl.Calibration(**{"contact_model": "fastsim", "scale": "cells", "materials": "-", "source": "-", **fields})
+
+
+FASTSIM, ELLIPTIC = wl.contact_model("fastsim"), wl.contact_model("fastsim", bound="elliptic")
+
+
+@pytest.mark.parametrize(
+    ("fitted_for", "model", "scale", "covered"),
+    [
+        (calibration(), FASTSIM, "cells", True),
+        (calibration(), FASTSIM, "patch", False),
+        (calibration(), wl.contact_model("exact"), "cells", False),
+        (calibration(), ELLIPTIC, "cells", True),
+        (calibration(options=(("bound", "parabolic"),)), FASTSIM, "cells", True),
+        (calibration(options=(("bound", "parabolic"),)), ELLIPTIC, "cells", False),
+        (calibration(options=(("no_such_field", "x"),)), FASTSIM, "cells", False),
+        (calibration(scale="patch"), wl.contact_model("global"), "patch", True),
+        (calibration(scale="patch"), wl.contact_model("exact"), "patch", True),
+        (calibration(scale="patch"), wl.contact_model("exact"), "cells", False),
+    ],
+)
+def test_a_calibration_covers_the_contact_it_was_fitted_for(
+    fitted_for: wl.Calibration, model: wl.ContactModel, scale: wl.Scale, covered: bool
+) -> None:
+    assert fitted_for.covers(model, scale) is covered
+
+
+def test_a_calibration_says_what_it_was_fitted_for() -> None:
+    assert str(calibration(scale="patch")) == "patch means (the global model)"
+    assert str(calibration(options=(("bound", "parabolic"),))) == (
+        "the cells of contact_model('fastsim', bound='parabolic')"
+    )
+
+
+@pytest.mark.parametrize("wrong", ["shape", "nan"])
+def test_a_law_that_breaks_its_contract_is_named(wrong: str) -> None:
+    class Wrong(Proportional):
+        name = "wrong"
+
+        def rate(self, contact: wl.Contact) -> Array:
+            return contact.density if wrong == "shape" else contact.pressure * np.nan
+
+    said = r"rates of shape \(1,\) for nodes" if wrong == "shape" else "not finite"
+    with pytest.raises(wl.ModelError, match=f"wear law 'wrong' returned .*{said}"):
+        (RIG | Ramp() | Wrong())(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4)
+
+
+def test_a_contact_model_that_breaks_its_contract_is_named_with_the_conditions() -> None:
+    class Wrong(Ramp):
+        name = "wrong"
+
+        def tangential_force_per_width(self, problem: wl.LineProblem) -> Array:
+            return problem.creepage * np.inf
+
+    with pytest.raises(
+        wl.ModelError, match=r"'wrong' gave a tangential force that is not finite.*creepages from 0\.01"
+    ):
+        (RIG | Wrong())(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4)

@@ -1,0 +1,289 @@
+"""Composition of stages, and the checks that only the whole pipeline allows."""
+
+from __future__ import annotations
+
+import copy
+import inspect
+import pickle
+import subprocess
+import sys
+import warnings
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pydantic
+import pytest
+
+import wearlaw as wl
+from wearlaw import Q
+
+RIG = wl.TwinDisc.suros()
+CONDITIONS: Any = {"normal_force": Q(7.4143, "kN"), "creepage": Q(1, "%"), "friction_coefficient": 0.46}
+EXACT, FASTSIM, GLOBAL = (wl.contact_model(name) for name in ("exact", "fastsim", "global"))
+ELLIPTIC = wl.contact_model("fastsim", bound="elliptic")
+AS_PRINTED = wl.contact_model("exact", slip="as_printed")
+FITTED = {name: wl.wear_law("usfd", fitted_for=name) for name in ("global", "exact", "fastsim")}
+KTH, BRR = wl.wear_law("kth"), wl.wear_law("brr")
+
+
+def following_line() -> int:
+    """Return the number of the line two below the call: the one inside the `with` that follows it."""
+    frame = inspect.currentframe()
+    assert frame is not None
+    assert frame.f_back is not None
+    return frame.f_back.f_lineno + 2
+
+
+def silently(first: Any, *stages: Any) -> Any:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.CalibrationWarning)
+        for stage in stages:
+            first = first | stage
+    return first
+
+
+PIPELINES = [
+    silently(RIG, *stages)
+    for stages in [
+        *product((EXACT, FASTSIM, ELLIPTIC, GLOBAL, AS_PRINTED), (*FITTED.values(), KTH)),
+        *product((EXACT, FASTSIM), (wl.patch_mean(),), (FITTED["global"], KTH, BRR)),
+        (GLOBAL, BRR),
+        (wl.contact_model("global", total_from=ELLIPTIC), wl.wear_law("usfd", m_m="6 ug/m/N")),
+        (
+            GLOBAL,
+            wl.wear_law(
+                "kth", coefficient={"high_pressure": 0.1, "low_speed": 1e-3, "mid_speed": 2e-3, "high_speed": 3e-3}
+            ),
+        ),
+    ]
+]
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "said"),
+    [
+        (RIG, FITTED["global"], "a rig is followed by a contact model, not by USFD"),
+        (RIG, wl.patch_mean(), "a rig is followed by a contact model, not by PatchMean()"),
+        (RIG, 3, "a rig is followed by a contact model, not by 3"),
+        (RIG | EXACT, GLOBAL, "a contact model is followed by wl.patch_mean() or a wear law, not by Global"),
+        (RIG | EXACT, "usfd", "a contact model is followed by wl.patch_mean() or a wear law, not by 'usfd'"),
+        (EXACT, KTH, "'exact' cannot start a pipeline; begin with a rig"),
+        (KTH, EXACT, "'kth' cannot start a pipeline; begin with a rig"),
+        (wl.patch_mean(), KTH, "wl.patch_mean() cannot start a pipeline; the order is rig | "),
+        (RIG | EXACT | KTH, KTH, "a pipeline ends with its wear law, nothing follows it, not KTH"),
+        (RIG | EXACT | KTH, wl.patch_mean(), "a pipeline ends with its wear law, nothing follows it, not PatchMean()"),
+    ],
+)
+def test_stages_in_the_wrong_order_are_refused(left: Any, right: Any, said: str) -> None:
+    with pytest.raises(wl.CompositionError) as caught:
+        left | right
+    assert said in str(caught.value)
+
+
+@pytest.mark.parametrize("model", [EXACT, FASTSIM, ELLIPTIC, AS_PRINTED], ids=repr)
+def test_brr_on_cells_is_refused_with_what_to_add(model: wl.ContactModel) -> None:
+    with pytest.raises(wl.CompositionError) as caught:
+        RIG | model | BRR
+    message = str(caught.value)
+    assert f"wear law 'brr' is stated for the means of the whole patch, but contact model '{model.name}'" in message
+    assert 'put wl.patch_mean() between them, or use wl.contact_model("global")' in message
+
+
+def test_brr_is_accepted_on_patch_means_and_agrees_with_the_global_model() -> None:
+    on_means = (RIG | EXACT | wl.patch_mean() | BRR)(**CONDITIONS).wear_rate
+    on_global = (RIG | GLOBAL | BRR)(**CONDITIONS).wear_rate
+    # Mild regime, Tγ = 32.90 N: 6.165 Tγ µg per metre (π · 0.25 mm³/km/N · 7850 kg/m³) over the patch.
+    mass = np.pi * 0.25e-12 * 7850.0 * (RIG | EXACT)(**CONDITIONS).wear_index.to("N").magnitude
+    area = 2 * 0.31467e-3 * 0.01
+    assert on_means.to("kg/m^3").magnitude == pytest.approx(mass / area, rel=1e-4)  # a printed to 5 digits
+    assert on_means.magnitude == pytest.approx(on_global.magnitude, rel=1e-14)
+
+
+SILENT = [
+    (GLOBAL, None, FITTED["global"]),
+    (wl.contact_model("global", total_from="fastsim"), None, FITTED["global"]),
+    (EXACT, wl.patch_mean(), FITTED["global"]),
+    (FASTSIM, wl.patch_mean(), FITTED["global"]),
+    (EXACT, None, FITTED["exact"]),
+    (FASTSIM, None, FITTED["fastsim"]),
+    (wl.contact_model("fastsim", flexibility="kalker"), None, FITTED["fastsim"]),
+    *[(model, None, KTH) for model in (EXACT, FASTSIM, ELLIPTIC, GLOBAL)],
+    (GLOBAL, None, BRR),
+]
+WARNED = [
+    (EXACT, None, FITTED["global"], "patch means (the global model)", "its cells"),
+    (FASTSIM, None, FITTED["global"], "patch means (the global model)", "its cells"),
+    (GLOBAL, None, FITTED["exact"], "the cells of contact_model('exact')", "its patch means"),
+    (FASTSIM, None, FITTED["exact"], "the cells of contact_model('exact')", "its cells"),
+    (EXACT, wl.patch_mean(), FITTED["exact"], "the cells of contact_model('exact')", "its patch means"),
+    (EXACT, None, FITTED["fastsim"], "the cells of contact_model('fastsim', bound='parabolic')", "its cells"),
+    (ELLIPTIC, None, FITTED["fastsim"], "the cells of contact_model('fastsim', bound='parabolic')", "its cells"),
+    (GLOBAL, None, FITTED["fastsim"], "the cells of contact_model('fastsim', bound='parabolic')", "its patch means"),
+]
+
+
+def contact_pipeline(model: wl.ContactModel, mean: wl.PatchMean | None) -> wl.ContactPipeline[wl.TwinDisc]:
+    return RIG | model if mean is None else RIG | model | mean
+
+
+@pytest.mark.parametrize(("model", "mean", "law"), SILENT)
+def test_parameters_on_the_contact_they_were_fitted_for_give_no_warning(
+    model: wl.ContactModel, mean: wl.PatchMean | None, law: wl.WearLaw
+) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        contact_pipeline(model, mean) | law
+
+
+@pytest.mark.parametrize(("model", "mean", "law", "fitted_for", "used"), WARNED)
+def test_parameters_on_another_contact_give_one_warning_that_names_both(
+    model: wl.ContactModel, mean: wl.PatchMean | None, law: wl.WearLaw, fitted_for: str, used: str
+) -> None:
+    contact = contact_pipeline(model, mean)
+    line = following_line()
+    with pytest.warns(wl.CalibrationWarning) as caught:
+        predict = contact | law
+    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)]
+    assert str(caught[0].message) == (
+        f"the parameters of wear law 'usfd' were fitted for {fitted_for}, but are used with {model!r} and {used};"
+        " check them against data, or choose parameters fitted for that contact"
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        predict(**CONDITIONS)
+        pickle.loads(pickle.dumps(predict))
+        copy.copy(predict)
+        copy.deepcopy(predict)
+        predict.model_copy()
+        wl.Pipeline.model_validate_json(predict.model_dump_json())
+    with pytest.warns(wl.CalibrationWarning) as again:
+        contact | law
+    assert len(again) == 1
+
+
+@pytest.mark.parametrize("size", [1, 7])
+def test_leaving_the_range_of_a_law_is_warned_of_once_a_call_at_the_users_line(size: int) -> None:
+    predict = RIG | GLOBAL | FITTED["global"]
+    creepage = Q(np.linspace(22.0, 25.0, size), "%")
+    line = following_line()
+    with pytest.warns(wl.RangeWarning) as caught:
+        predict(max_pressure=Q(1500, "MPa"), creepage=creepage, friction_coefficient=0.46)
+    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)]
+    message = str(caught[0].message)
+    assert "wear law 'usfd' is stated for a mean wear index density from 0.000 N/mm² to 108.4 N/mm²" in message
+    assert f"{size} of {size} operating points lie outside" in message
+
+
+def test_the_range_warning_counts_the_points_outside() -> None:
+    predict = RIG | GLOBAL | FITTED["global"]
+    with pytest.warns(
+        wl.RangeWarning, match=r"2 of 4 operating points lie outside, the whole spans 54\.19 .* to 135\.5"
+    ):
+        predict(max_pressure="1500 MPa", creepage=Q([10, 19, 22, 25], "%"), friction_coefficient=0.46)
+    predict(max_pressure="1500 MPa", creepage=Q([10, 19], "%"), friction_coefficient=0.46)
+
+
+@pytest.mark.parametrize("law", [FITTED["global"], KTH, BRR], ids=lambda law: law.name)
+@pytest.mark.parametrize("creepage", [0.0, 1e-4, 0.01, -0.01, 0.05, 0.2])
+def test_the_patch_means_of_the_exact_model_wear_as_the_global_model(law: wl.WearLaw, creepage: float) -> None:
+    conditions: Any = {**CONDITIONS, "creepage": Q(creepage, "")}
+    on_means, on_global = (RIG | EXACT | wl.patch_mean() | law)(**conditions), (RIG | GLOBAL | law)(**conditions)
+    # A dozen roundings.
+    assert on_means.wear_rate.magnitude == pytest.approx(on_global.wear_rate.magnitude, rel=32 * np.finfo(float).eps)
+
+
+def test_a_measured_traction_is_used_by_the_global_model_only() -> None:
+    measured: Any = {**CONDITIONS, "traction_coefficient": 0.45}
+    result = (RIG | GLOBAL)(**measured)
+    assert result.tangential_force.to("N").magnitude == pytest.approx(0.45 * 7414.3, rel=1e-15)
+    assert result.traction_coefficient.magnitude == pytest.approx(0.45, rel=1e-15)
+    assert result.wear_index.to("N").magnitude == pytest.approx(0.45 * 7414.3 * 0.01, rel=1e-15)
+    for predict in (RIG | EXACT, RIG | FASTSIM | KTH, RIG | EXACT | wl.patch_mean() | KTH):
+        with pytest.raises(wl.ConditionsError) as caught:
+            predict(**measured)
+        assert "traction_coefficient: contact model '" in str(caught.value)
+        assert 'leave traction_coefficient out, or use wl.contact_model("global")' in str(caught.value)
+
+
+@pytest.mark.parametrize("predict", PIPELINES, ids=lambda predict: repr(predict).partition(" | ")[2][:80])
+def test_a_pipeline_survives_pickle_copy_and_json(predict: wl.Pipeline[wl.TwinDisc]) -> None:
+    read: wl.Pipeline[wl.TwinDisc] = wl.Pipeline.model_validate_json(predict.model_dump_json())
+    copies = [pickle.loads(pickle.dumps(predict)), copy.copy(predict), copy.deepcopy(predict), read]
+    rate = predict(**CONDITIONS).wear_rate
+    for other in copies:
+        assert other == predict
+        assert hash(other) == hash(predict)
+        assert repr(other) == repr(predict)
+        assert other(**CONDITIONS).wear_rate == rate
+
+
+def test_pipelines_of_different_settings_are_different() -> None:
+    assert len(set(PIPELINES)) == len(PIPELINES)
+    assert len({repr(predict) for predict in PIPELINES}) == len(PIPELINES)
+    assert (RIG | EXACT | wl.patch_mean()) != (RIG | EXACT)
+
+
+def test_a_pipeline_prints_its_stages_in_order() -> None:
+    shown = repr(RIG | EXACT | wl.patch_mean() | FITTED["global"])
+    parts = shown.split(" | ")
+    assert [part.partition("(")[0] for part in parts] == ["TwinDisc", "Exact", "patch_mean", "USFD"]
+    assert "track_width=10.0 mm" in shown
+    assert str(RIG | EXACT | KTH) == repr(RIG | EXACT | KTH)
+
+
+@pytest.mark.parametrize("predict", [RIG | EXACT, RIG | EXACT | KTH], ids=["contact", "wear"])
+def test_a_pipeline_is_frozen(predict: Any) -> None:
+    for name in type(predict).model_fields:
+        with pytest.raises(pydantic.ValidationError, match="frozen"):
+            setattr(predict, name, None)
+
+
+def test_a_contact_pipeline_survives_json_too() -> None:
+    contact = RIG | FASTSIM | wl.patch_mean()
+    assert wl.ContactPipeline.model_validate_json(contact.model_dump_json()) == contact
+
+
+def test_wrong_json_is_an_error_of_the_package_with_the_path() -> None:
+    text = (RIG | EXACT | KTH).model_dump_json().replace('"10.0 mm"', '"10.0 kN"').replace('"kth"', '"khh"')
+    with pytest.raises(wl.ConfigurationError) as caught:
+        wl.Pipeline.model_validate_json(text)
+    message = str(caught.value)
+    assert "contact.rig.track_width: got 10.00 kN, which is not of the dimension of 'mm'" in message
+    assert "wear_law: no wear law is called 'khh'; did you mean 'kth'?" in message
+
+
+def test_a_pickled_pipeline_predicts_the_same_in_a_fresh_process() -> None:
+    predict = RIG | GLOBAL | FITTED["global"]
+    code = (
+        "import pickle, sys; predict = pickle.load(sys.stdin.buffer);"
+        "print(predict(normal_force='7.4143 kN', creepage='1 %', friction_coefficient=0.46).wear_rate.magnitude)"
+    )
+    run = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], input=pickle.dumps(predict), capture_output=True, check=False
+    )
+    assert run.returncode == 0, run.stderr.decode()
+    assert float(run.stdout) == predict(**CONDITIONS).wear_rate.magnitude
+
+
+def test_negative_creepage_mirrors_the_force_and_leaves_the_wear() -> None:
+    forward = silently(RIG, EXACT, FITTED["global"])(**CONDITIONS)
+    backward = silently(RIG, EXACT, FITTED["global"])(**{**CONDITIONS, "creepage": Q(-1, "%")})
+    assert backward.tangential_force == -forward.tangential_force
+    assert backward.wear_rate == forward.wear_rate
+    assert backward.wear_index == forward.wear_index
+
+
+@pytest.mark.parametrize("predict", PIPELINES, ids=lambda predict: repr(predict).partition(" | ")[2][:80])
+def test_zero_creepage_gives_zero_wear(predict: wl.Pipeline[wl.TwinDisc]) -> None:
+    result = predict(**{**CONDITIONS, "creepage": Q(0, "%")})
+    assert result.wear_rate.magnitude == 0.0
+    assert result.tangential_force.magnitude == 0.0
+
+
+def test_progress_counts_every_operating_point_once() -> None:
+    done: list[int] = []
+    problem = RIG.problem(normal_force="7 kN", creepage=Q(np.linspace(0.001, 0.01, 2500), ""), friction_coefficient=0.4)
+    (RIG | GLOBAL | KTH).predict(problem, on_block=done.append)
+    assert sum(done) == 2500
+    assert len(done) > 1

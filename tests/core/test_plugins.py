@@ -1,0 +1,246 @@
+"""Discovery and look-up, with distributions that are real folders on `sys.path`."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import textwrap
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+import wearlaw as wl
+from wearlaw import plugins
+
+FIRST_PARTY_MODELS = {"exact", "fastsim", "global"}
+FIRST_PARTY_LAWS = {"brr", "kth", "usfd"}
+
+LAW = """
+    import wearlaw as wl
+
+    class Outside(wl.WearLaw):
+        name = "{name}"
+        source = "a test"
+
+        def rate(self, contact):
+            return 0.0 * contact.pressure
+
+    @wl.hookimpl
+    def wearlaw_wear_laws():
+        return [Outside]
+"""
+
+BROKEN = {
+    "import_that_fails": ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named"),
+    "error_on_import": ("raise RuntimeError('no licence')", "RuntimeError: no licence"),
+    "syntax_error": ("def", "SyntaxError"),
+    "misspelt_hook": (
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_law():\n    return []",
+        "unknown hook 'wearlaw_wear_law'",
+    ),
+    "hook_without_marker": (
+        "def wearlaw_wear_laws():\n    return []",
+        "TypeError: it implements no hook; mark its functions with @wearlaw.hookimpl",
+    ),
+    "hook_that_raises": (
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    raise KeyError('lost')",
+        "KeyError: 'lost'",
+    ),
+    "hook_without_list": (
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    return 3",
+        "TypeError: 'int' object is not iterable",
+    ),
+    "class_that_is_no_model": (
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    return [dict]",
+        "TypeError: <class 'dict'> is not a subclass of WearLaw",
+    ),
+    "instance_in_place_of_a_class": (
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_contact_models():\n    return ['exact']",
+        "TypeError: 'exact' is not a subclass of ContactModel",
+    ),
+    "law_among_the_contact_models": (
+        textwrap.dedent(LAW).format(name="outside").replace("wearlaw_wear_laws", "wearlaw_contact_models"),
+        "is not a subclass of ContactModel",
+    ),
+    "abstract_model": (
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    class Half(wearlaw.WearLaw):\n"
+        "        name = 'half'\n    return [Half]",
+        "TypeError: Half does not implement rate",
+    ),
+    "name_that_is_no_identifier": (
+        textwrap.dedent(LAW).format(name="my law"),
+        "TypeError: the name of Outside must be an identifier, got 'my law'",
+    ),
+    "model_without_name": (
+        textwrap.dedent(LAW).format(name="outside").replace('name = "outside"', "pass"),
+        "TypeError: the name of Outside must be an identifier, got None",
+    ),
+}
+
+
+def write_distribution(folder: Path, name: str, source: str, version: str = "1.0") -> None:
+    """Write an installed distribution with one plugin, a module of the distribution's name."""
+    folder.mkdir(exist_ok=True)
+    (folder / f"{name}.py").write_text(textwrap.dedent(source))
+    info = folder / f"{name}-{version}.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n")
+    (info / "entry_points.txt").write_text(f"[wearlaw]\n{name} = {name}\n")
+
+
+Install = Callable[..., None]
+
+
+@pytest.fixture
+def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
+    known = set(sys.modules)
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def write(name: str, source: str, version: str = "1.0") -> None:
+        write_distribution(tmp_path, name, source, version)
+        importlib.invalidate_caches()
+        plugins.installed.cache_clear()
+
+    plugins.installed.cache_clear()
+    yield write
+    for module in set(sys.modules) - known:
+        if (
+            getattr(sys.modules[module], "__file__", None)
+            and tmp_path in Path(str(sys.modules[module].__file__)).parents
+        ):
+            del sys.modules[module]
+    plugins.installed.cache_clear()
+
+
+def test_the_first_party_plugins_are_found_by_name_in_order() -> None:
+    assert list(wl.contact_models()) == sorted(FIRST_PARTY_MODELS)
+    assert list(wl.wear_laws()) == sorted(FIRST_PARTY_LAWS)
+    assert {origin.distribution for origin in plugins.installed().plugins} == {"wearlaw"}
+    assert not plugins.installed().broken
+
+
+def test_look_ups_return_instances_with_their_options() -> None:
+    model = wl.contact_model("fastsim", bound="elliptic")
+    assert isinstance(model, wl.contact_models()["fastsim"])
+    assert model.model_dump() == {"bound": "elliptic", "flexibility": "line"}
+    assert isinstance(wl.wear_law("brr"), wl.wear_laws()["brr"])
+
+
+def test_an_outside_law_is_found_beside_the_others(install: Install) -> None:
+    install("outside_plugin", LAW.format(name="outside"), version="3.2")
+    assert wl.wear_law("outside").name == "outside"
+    assert set(wl.wear_laws()) == FIRST_PARTY_LAWS | {"outside"}
+    assert str(plugins.installed().wear_laws.origin("outside")) == "outside_plugin 3.2 (plugin 'outside_plugin')"
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_a_broken_plugin_is_warned_of_and_left_out_while_the_others_work(case: str, install: Install) -> None:
+    source, cause = BROKEN[case]
+    install(f"broken_{case}", source)
+    install("working_plugin", LAW.format(name="working"))
+    with pytest.warns(wl.PluginWarning) as caught:
+        laws = wl.wear_laws()
+    assert len(caught) == 1
+    assert str(caught[0].message).startswith(f"left out: broken_{case} 1.0 (plugin 'broken_{case}'): ")
+    assert cause in str(caught[0].message)
+    assert caught[0].filename == __file__
+    assert set(laws) == FIRST_PARTY_LAWS | {"working"}
+    assert set(wl.contact_models()) == FIRST_PARTY_MODELS
+    with pytest.raises(wl.UnknownModelError) as error:
+        wl.wear_law("half")
+    assert f"left out: broken_{case} 1.0" in str(error.value)
+    assert cause in str(error.value)
+
+
+def test_a_broken_plugin_is_warned_of_once_and_then_left_alone(install: Install) -> None:
+    install("broken_plugin", "raise RuntimeError")
+    with pytest.warns(wl.PluginWarning):
+        wl.wear_laws()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        wl.wear_laws()
+        wl.contact_model("exact")
+
+
+def test_every_broken_plugin_is_warned_of(install: Install) -> None:
+    for number in range(3):
+        install(f"broken_{number}", f"raise RuntimeError({number})")
+    with pytest.warns(wl.PluginWarning) as caught:
+        wl.wear_laws()
+    assert [str(warning.message).split()[2] for warning in caught] == ["broken_0", "broken_1", "broken_2"]
+
+
+def test_what_a_plugin_gave_before_it_broke_stays(install: Install) -> None:
+    install("half_broken", LAW.format(name="outside").replace("return [Outside]", "return [Outside, int]"))
+    with pytest.warns(wl.PluginWarning, match="'int'"):
+        assert wl.wear_law("outside").name == "outside"
+
+
+def test_one_name_of_two_distributions_is_an_error_that_names_both(install: Install) -> None:
+    install("one_plugin", LAW.format(name="twin"), version="1.5")
+    install("other_plugin", LAW.format(name="twin"), version="2.5")
+    with pytest.raises(wl.UnknownModelError) as error:
+        wl.wear_law("twin")
+    assert str(error.value) == (
+        "wear law 'twin' is provided more than once, by one_plugin 1.5 (plugin 'one_plugin')"
+        " and other_plugin 2.5 (plugin 'other_plugin'); remove one"
+    )
+    assert "twin" not in wl.wear_laws()
+    assert wl.wear_law("usfd").name == "usfd"
+
+
+def test_an_outside_model_cannot_take_a_first_party_name_silently(install: Install) -> None:
+    install("usurper", LAW.format(name="usfd"))
+    with pytest.raises(wl.UnknownModelError, match=r"by usurper 1\.0 .* and wearlaw "):
+        wl.wear_law("usfd")
+    assert wl.wear_law("brr").name == "brr"
+
+
+def test_plugins_are_loaded_in_the_order_of_their_distributions(install: Install) -> None:
+    for name in ("zebra_plugin", "ant_plugin", "mole_plugin"):
+        install(name, LAW.format(name=name))
+    names = [origin.distribution for origin in plugins.installed().plugins]
+    assert names == sorted(names)
+    assert {"zebra_plugin", "ant_plugin", "mole_plugin"} < set(names)
+
+
+def test_of_two_copies_of_a_distribution_the_first_on_the_path_counts(
+    install: Install, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install("doubled_plugin", LAW.format(name="doubled"), version="2.0")
+    write_distribution(tmp_path / "later", "doubled_plugin", LAW.format(name="doubled"), version="1.0")
+    monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path / "later")])
+    assert str(plugins.installed().wear_laws.origin("doubled")).startswith("doubled_plugin 2.0 ")
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [("exakt", "did you mean 'exact'?"), ("fastim", "did you mean 'fastsim'?"), ("Global", "did you mean 'global'?")],
+)
+def test_an_unknown_contact_model_gets_a_suggestion_and_the_list(name: str, hint: str) -> None:
+    with pytest.raises(wl.UnknownModelError) as error:
+        wl.contact_model(name)
+    assert str(error.value) == f"no contact model is called '{name}'; {hint} Installed: exact, fastsim, global"
+
+
+@pytest.mark.parametrize("name", ["zzzzz", "", 3, None])
+def test_a_name_near_to_none_gets_the_list_only(name: object) -> None:
+    with pytest.raises(wl.UnknownModelError) as error:
+        wl.wear_law(name)  # type: ignore[arg-type]
+    assert str(error.value) == f"no wear law is called {name!r}; Installed: brr, kth, usfd"
+
+
+def test_an_unknown_option_is_named_with_the_fields_there_are() -> None:
+    with pytest.raises(wl.ConfigurationError) as error:
+        wl.contact_model("fastsim", bond="elliptic")
+    assert str(error.value) == (
+        "fastsim: bond: unknown field; did you mean 'bound'? The fields are: bound, flexibility"
+    )
+
+
+def test_a_wrong_option_is_named_with_what_is_allowed() -> None:
+    with pytest.raises(wl.ConfigurationError) as error:
+        wl.contact_model("fastsim", bound="ellipse")
+    assert str(error.value) == "fastsim: bound: input should be 'parabolic' or 'elliptic', got 'ellipse'"

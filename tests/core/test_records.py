@@ -1,0 +1,122 @@
+"""The records that pass between stages."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw.records import NODE_VARIABLES, UNITS
+
+AREA = np.array([[1.0, 2.0, 3.0], [4.0, 4.0, 4.0]])
+SLIP = np.array([[0.0, 0.1, -0.2], [0.0, 0.0, 0.0]])
+
+
+def contact() -> wl.Contact:
+    """Two operating points of three nodes each."""
+    traction = np.array([[1.0, 5.0, -7.0], [0.0, 0.0, 0.0]])
+    force: Array = (traction * AREA).sum(-1)
+    return wl.Contact(
+        pressure=np.full((2, 3), 10.0),
+        traction=traction,
+        slip=SLIP,
+        traction_bound=np.full((2, 3), 8.0),
+        area=AREA,
+        x=np.zeros((2, 3)),
+        rolling_speed=np.array([2.0, 3.0]),
+        normal_force=10.0 * AREA.sum(-1),
+        tangential_force=force,
+        wear_index=np.array([1.3, 0.0]),
+        density=np.array([7850.0, 7850.0]),
+    )
+
+
+def line_problem(shape: tuple[int, ...]) -> wl.LineProblem:
+    names = [field.name for field in dataclasses.fields(wl.LineProblem) if field.name != "traction_coefficient"]
+    size = int(np.prod(shape))
+    arrays = {name: np.arange(size, dtype=float).reshape(shape) + 10 * i for i, name in enumerate(names)}
+    return wl.LineProblem(**arrays)
+
+
+def test_means_are_weighted_with_the_area() -> None:
+    # (1·0 + 2·0.1 + 3·0.2)/6, and nothing slips in the second point.
+    np.testing.assert_allclose(contact().mean_slip, [0.8 / 6.0, 0.0], rtol=1e-15)
+    np.testing.assert_array_equal(contact().patch_area, [6.0, 12.0])
+
+
+def test_the_stick_ratio_is_the_share_of_area_without_slip() -> None:
+    np.testing.assert_allclose(contact().slip_area, [5.0, 0.0], rtol=1e-15)
+    np.testing.assert_allclose(contact().stick_ratio, [1.0 / 6.0, 1.0], rtol=1e-15)
+
+
+def test_node_variables_are_products_of_the_fields() -> None:
+    np.testing.assert_allclose(contact().wear_index_density, [[0.0, 0.5, 1.4], [0.0, 0.0, 0.0]], rtol=1e-15)
+    np.testing.assert_allclose(contact().slip_speed, [[0.0, 0.2, 0.4], [0.0, 0.0, 0.0]], rtol=1e-15)
+
+
+@pytest.mark.parametrize("name", NODE_VARIABLES)
+def test_every_node_variable_has_the_shape_of_the_nodes_and_a_unit(name: str) -> None:
+    assert getattr(contact(), name).shape == (2, 3)
+    assert name in UNITS
+
+
+def test_the_patch_mean_keeps_the_totals_in_one_node() -> None:
+    mean = contact().patch_mean()
+    for name in ("tangential_force", "wear_index", "normal_force", "patch_area", "rolling_speed", "density"):
+        np.testing.assert_array_equal(getattr(mean, name), getattr(contact(), name))
+    assert mean.pressure.shape == (2, 1)
+    # (1·1 + 2·5 - 3·7)/6 = -10/6, and the slip that dissipates 1.3 N with -10 N.
+    np.testing.assert_allclose(mean.traction[:, 0], [-10.0 / 6.0, 0.0], rtol=1e-15)
+    np.testing.assert_allclose(mean.slip[:, 0], [-0.13, 0.0], rtol=1e-15)
+    np.testing.assert_allclose(mean.pressure[:, 0], [10.0, 10.0], rtol=1e-15)
+    np.testing.assert_allclose(mean.traction_bound[:, 0], [8.0, 8.0], rtol=1e-15)
+
+
+def test_with_batch_reshapes_the_batch_and_leaves_the_nodes() -> None:
+    reshaped = contact().with_batch((2, 1))
+    assert reshaped.pressure.shape == (2, 1, 3)
+    assert reshaped.rolling_speed.shape == (2, 1)
+    np.testing.assert_array_equal(reshaped.mean_slip, contact().mean_slip[:, None])
+
+
+def test_per_node_broadcasts_over_the_nodes() -> None:
+    assert contact().per_node(contact().density).shape == (2, 1)
+
+
+def test_a_problem_is_indexed_and_flattened_in_all_its_arrays() -> None:
+    problem = line_problem((2, 3))
+    part, flat = problem[1, ::2], problem.flatten()
+    assert part.batch_shape == (2,)
+    assert flat.batch_shape == (6,)
+    for field in dataclasses.fields(wl.LineProblem):
+        if field.name != "traction_coefficient":
+            np.testing.assert_array_equal(getattr(part, field.name), getattr(problem, field.name)[1, ::2])
+            np.testing.assert_array_equal(getattr(flat, field.name), getattr(problem, field.name).ravel())
+    assert part.traction_coefficient is None
+
+
+def test_a_measured_traction_coefficient_is_indexed_too() -> None:
+    problem = dataclasses.replace(line_problem((4,)), traction_coefficient=np.array([0.1, 0.2, 0.3, 0.4]))
+    part = problem[2:].traction_coefficient
+    assert part is not None
+    np.testing.assert_array_equal(part, [0.3, 0.4])
+
+
+def test_areas_and_forces_of_a_problem_take_the_whole_width() -> None:
+    problem = dataclasses.replace(
+        line_problem((1,)),
+        normal_force_per_width=np.array([7e5]),
+        half_width=np.array([3e-4]),
+        track_width=np.array([0.01]),
+    )
+    np.testing.assert_allclose(problem.normal_force, [7e3], rtol=1e-15)
+    np.testing.assert_allclose(problem.patch_area, [6e-6], rtol=1e-15)
+
+
+@pytest.mark.parametrize("record", [contact(), line_problem((2,))], ids=["Contact", "LineProblem"])
+def test_records_are_frozen(record: object) -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        record.density = np.zeros(2)  # type: ignore[attr-defined]

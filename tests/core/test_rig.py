@@ -1,0 +1,294 @@
+"""The rig: from the conditions of a test to a contact problem."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import wearlaw as wl
+from wearlaw import Q
+
+RIG = wl.TwinDisc.suros()
+EPS = np.finfo(float).eps
+
+
+def following_line() -> int:
+    """Return the number of the line two below the call: the one inside the `with` that follows it."""
+    frame = inspect.currentframe()
+    assert frame is not None
+    assert frame.f_back is not None
+    return frame.f_back.f_lineno + 2
+
+
+def problem(rig: wl.TwinDisc = RIG, **conditions: Any) -> wl.LineProblem:
+    loads = {"normal_force", "normal_force_per_width", "max_pressure"}
+    load = {} if loads & set(conditions) else {"normal_force": "7.4143 kN"}
+    return rig.problem(**{"creepage": "1 %", "friction_coefficient": 0.46, **load, **conditions})
+
+
+def test_the_suros_rig_is_that_of_the_literature() -> None:
+    # Lewis and Dwyer-Joyce (2004): discs of 47 mm, track of 10 mm, 400 rpm; π · 47 mm · 400/min = 0.984 m/s.
+    found = problem()
+    assert found.rolling_speed == pytest.approx(np.pi * 0.047 * 400 / 60, rel=4 * EPS)
+    assert round(float(found.rolling_speed), 3) == 0.984
+    assert found.track_width == pytest.approx(0.010, rel=EPS)
+    assert found.density == 7850.0
+    # 1/R = 1/23.5 mm + 1/23.5 mm.
+    assert found.relative_radius == pytest.approx(0.01175, rel=4 * EPS)
+
+
+def test_the_default_steel_gives_the_load_that_the_paper_prints_for_1500_megapascal() -> None:
+    # Tassini et al. (2010), section 5.2: 741.43 kN/m. It is printed to 5 digits.
+    assert problem(max_pressure="1500 MPa").normal_force_per_width == pytest.approx(741.43e3, abs=5.0)
+    assert problem().effective_modulus == pytest.approx(112.0212e9, abs=5e4)
+
+
+def test_the_effective_modulus_is_that_of_two_springs_in_series() -> None:
+    soft = wl.steel(youngs_modulus="70 GPa", poisson_ratio=0.33)
+    rig = wl.TwinDisc.suros(disc_2=wl.Disc(diameter="100 mm", material=soft))
+    # Two half-spaces in series, each of plane-strain modulus E/(1-ν²), against radii of 23.5 and 50 mm.
+    first, second = 206.47742e9 / (1 - 0.28**2), 70e9 / (1 - 0.33**2)
+    found = problem(rig)
+    assert found.effective_modulus == pytest.approx(first * second / (first + second), rel=8 * EPS)
+    assert found.relative_radius == pytest.approx(23.5e-3 * 50e-3 / 73.5e-3, rel=8 * EPS)
+
+
+def test_the_density_is_that_of_disc_1_whose_wear_is_predicted() -> None:
+    light = wl.Disc(diameter="47 mm", material=wl.steel(density="7000 kg/m^3"))
+    assert problem(wl.TwinDisc.suros(disc_1=light)).density == 7000.0
+    assert problem(wl.TwinDisc.suros(disc_2=light)).density == 7850.0
+
+
+@settings(deadline=None)  # the time of the first call is that of the imports
+@given(
+    force=st.floats(1.0, 1e6),
+    width=st.floats(1e-3, 0.1),
+    diameter=st.floats(1e-3, 10.0),
+    modulus=st.floats(1e9, 1e12),
+)
+def test_the_three_ways_to_give_the_load_agree(force: float, width: float, diameter: float, modulus: float) -> None:
+    material = wl.steel(youngs_modulus=Q(modulus, "Pa"))
+    rig = wl.TwinDisc.suros(diameter=Q(diameter, "m"), track_width=Q(width, "m"), material=material)
+    by_force = problem(rig, normal_force=Q(force, "N"))
+    by_width = problem(rig, normal_force_per_width=Q(force / width, "N/m"))
+    by_pressure = problem(rig, max_pressure=Q(float(by_force.max_pressure), "Pa"))
+    for other in (by_width, by_pressure):
+        # A dozen roundings, some doubled by the square of p0.
+        assert other.normal_force == pytest.approx(force, rel=32 * EPS)
+        assert other.half_width == pytest.approx(by_force.half_width, rel=32 * EPS)
+
+
+def test_the_pressure_carries_the_load() -> None:
+    found = problem()
+    # The area of a half ellipse of axes a and p0.
+    carried = 0.5 * np.pi * found.half_width * found.max_pressure * found.track_width
+    assert carried == pytest.approx(7414.3, rel=8 * EPS)
+    assert found.normal_force == pytest.approx(7414.3, rel=4 * EPS)
+
+
+OVERRIDES: dict[str, tuple[Any, Callable[[wl.TwinDisc], Any], Any]] = {
+    "diameter": ("50 mm", lambda rig: [rig.disc_1.diameter, rig.disc_2.diameter], [Q(50, "mm")] * 2),
+    "material": (
+        wl.steel(poisson_ratio=0.3),
+        lambda rig: [rig.disc_1.material.poisson_ratio, rig.disc_2.material.poisson_ratio],
+        [0.3, 0.3],
+    ),
+    "disc_1": (
+        wl.Disc(diameter="90 mm", material=wl.steel()),
+        lambda rig: [rig.disc_1.diameter, rig.disc_2.diameter],
+        [Q(90, "mm"), Q(47, "mm")],
+    ),
+    "disc_2": (
+        wl.Disc(diameter="90 mm", material=wl.steel()),
+        lambda rig: [rig.disc_1.diameter, rig.disc_2.diameter],
+        [Q(47, "mm"), Q(90, "mm")],
+    ),
+    "track_width": ("12 mm", lambda rig: rig.track_width, Q(12, "mm")),
+    "rolling_speed": ("2 m/s", lambda rig: rig.rolling_speed, Q(2, "m/s")),
+}
+
+
+def test_every_value_of_the_suros_rig_has_a_test_that_overrides_it() -> None:
+    assert {*OVERRIDES, "rotational_speed"} == set(inspect.signature(wl.TwinDisc.suros).parameters)
+
+
+@pytest.mark.parametrize("name", OVERRIDES)
+def test_every_value_of_the_suros_rig_can_be_overridden(name: str) -> None:
+    value, read, expected = OVERRIDES[name]
+    assert read(wl.TwinDisc.suros(**{name: value})) == expected
+
+
+def test_the_rolling_speed_follows_from_the_rotational_speed_and_disc_1() -> None:
+    big = wl.Disc(diameter="94 mm", material=wl.steel())
+    usual = np.pi * 0.047 * 400 / 60
+    assert problem(wl.TwinDisc.suros(rotational_speed="800 rpm")).rolling_speed == pytest.approx(2 * usual, rel=4 * EPS)
+    assert problem(wl.TwinDisc.suros(disc_1=big)).rolling_speed == pytest.approx(2 * usual, rel=4 * EPS)
+    assert problem(wl.TwinDisc.suros(disc_2=big)).rolling_speed == pytest.approx(usual, rel=4 * EPS)
+
+
+@pytest.mark.parametrize("option", ["youngs_modulus", "density", "elastic_limit"])
+def test_every_quantity_of_the_default_steel_can_be_overridden(option: str) -> None:
+    unit = "kg/m^3" if option == "density" else "GPa"
+    values: dict[str, Any] = {option: Q(3.0, unit)}
+    assert getattr(wl.steel(**values), option) == Q(3.0, unit)
+
+
+def test_a_flat_disc_has_the_radius_of_the_other() -> None:
+    flat = wl.Disc(diameter="inf mm", material=wl.steel())
+    assert problem(wl.TwinDisc.suros(disc_2=flat)).relative_radius == pytest.approx(0.0235, rel=4 * EPS)
+    rig = wl.TwinDisc.suros(disc_1=flat, rolling_speed="1 m/s")
+    assert problem(rig).relative_radius == pytest.approx(0.0235, rel=4 * EPS)
+
+
+def test_a_flat_disc_1_needs_its_rolling_speed() -> None:
+    with pytest.raises(wl.InputError, match=r"rolling_speed: a flat disc_1 .* give rolling_speed instead"):
+        wl.TwinDisc.suros(disc_1=wl.Disc(diameter="inf mm", material=wl.steel()))
+
+
+def test_two_flat_discs_are_refused() -> None:
+    with pytest.raises(wl.ConfigurationError, match="disc_1 and disc_2 are both flat; give at least one of them"):
+        wl.TwinDisc.suros(diameter="inf mm", rolling_speed="1 m/s")
+
+
+@pytest.mark.parametrize("value", [400, "400", "0 rpm", "-400 rpm", "nan rpm", "400 mm", True])
+def test_a_wrong_rotational_speed_is_refused(value: Any) -> None:
+    with pytest.raises(wl.UnitError, match=r'^rotational_speed: .* such as Q\(1\.0, "rpm"\) or "1.0 rpm"$'):
+        wl.TwinDisc.suros(rotational_speed=value)
+
+
+@pytest.mark.parametrize("field", ["track_width", "rolling_speed"])
+@pytest.mark.parametrize("value", [10, "0 {}", "-1 {}", "inf {}", "nan {}", "3 kg"])
+def test_a_wrong_width_or_speed_is_refused(field: str, value: Any) -> None:
+    unit = {"track_width": "mm", "rolling_speed": "m/s"}[field]
+    wrong = value.format(unit) if isinstance(value, str) else value
+    values: dict[str, Any] = {field: wrong}
+    with pytest.raises(wl.ConfigurationError, match=rf'^TwinDisc: {field}: .* such as Q\(1\.0, "{unit}"\) or "1.0 {unit}"$'):
+        wl.TwinDisc.suros(**values)
+
+
+WRONG_CONDITIONS: list[tuple[dict[str, Any], type[Exception], list[str]]] = [
+    (
+        {"normal_force": None},
+        wl.ConditionsError,
+        ["normal_force, normal_force_per_width, max_pressure", "none of them"],
+    ),
+    (
+        {"max_pressure": "1 GPa", "normal_force": "1 kN"},
+        wl.ConditionsError,
+        ["exactly one", "normal_force and max_pressure"],
+    ),
+    (
+        {"max_pressure": "1 GPa", "normal_force": "1 kN", "normal_force_per_width": "1 kN/m"},
+        wl.ConditionsError,
+        ["normal_force and normal_force_per_width and max_pressure"],
+    ),
+    ({"creepage": None}, wl.ConditionsError, ["creepage: is missing", 'creepage=Q(1, "%")']),
+    ({"friction_coefficient": None}, wl.ConditionsError, ["friction_coefficient: is missing", "=0.46"]),
+    ({"creepge": "1 %"}, wl.ConditionsError, ["creepge: unknown condition", "did you mean 'creepage'?"]),
+    ({"speed": "1 m/s"}, wl.ConditionsError, ["speed: unknown condition", "The conditions are: normal_force,"]),
+    ({"normal_force": 7000}, wl.UnitError, ["normal_force: got the bare number 7000", 'Q(1.0, "N")']),
+    ({"normal_force": "0 N"}, wl.UnitError, ["normal_force: must be greater than zero, got 0.000 N"]),
+    ({"normal_force": "-5 N"}, wl.UnitError, ["normal_force: must be greater than zero, got -5.000 N"]),
+    ({"normal_force": "inf N"}, wl.UnitError, ["normal_force: must be finite, got inf N"]),
+    ({"normal_force": "5 mm"}, wl.UnitError, ["normal_force: got 5.000 mm, which is not of the dimension of 'N'"]),
+    ({"normal_force_per_width": "5 kN"}, wl.UnitError, ["normal_force_per_width: got 5.000 kN", 'Q(1.0, "kN/m")']),
+    ({"max_pressure": "0 MPa"}, wl.UnitError, ["max_pressure: must be greater than zero", 'Q(1.0, "MPa")']),
+    ({"max_pressure": "5 N"}, wl.UnitError, ["max_pressure: got 5.000 N"]),
+    ({"creepage": 1}, wl.UnitError, ["creepage: got the bare number 1", 'Q(1, "%") or "1 %"']),
+    ({"creepage": "1"}, wl.UnitError, ["creepage: '1' is not a number with a unit", 'Q(1, "%") or "1 %"']),
+    ({"creepage": "101 %"}, wl.UnitError, ["creepage: must not exceed 1 in magnitude, got 101.0 %"]),
+    ({"creepage": Q([0.5, -1.5], "")}, wl.UnitError, ["creepage: must not exceed 1", "got -1.500 at index [1]"]),
+    ({"creepage": Q(np.nan, "%")}, wl.UnitError, ["creepage: must be a number, got nan %"]),
+    ({"creepage": True}, wl.UnitError, ["creepage: got True"]),
+    ({"creepage": "much"}, wl.UnitError, ["creepage: 'much' is not a number with a unit"]),
+    ({"creepage": 1j}, wl.UnitError, ["creepage: got 1j"]),
+    ({"creepage": Q([], "%")}, wl.ConditionsError, ["creepage: is empty; give at least one value"]),
+    ({"friction_coefficient": 0}, wl.UnitError, ["friction_coefficient: must be a positive finite number, got 0"]),
+    ({"friction_coefficient": -0.3}, wl.UnitError, ["friction_coefficient: ", "got -0.3", "such as 0.46"]),
+    ({"friction_coefficient": Q(0.4, "m")}, wl.UnitError, ["friction_coefficient: got 0.4000 m", "such as 0.46"]),
+    ({"friction_coefficient": []}, wl.ConditionsError, ["friction_coefficient: is empty"]),
+    ({"traction_coefficient": -0.3}, wl.UnitError, ["traction_coefficient: ", "got -0.3"]),
+    (
+        {"creepage": Q([0.1, 0.2], ""), "friction_coefficient": [0.1, 0.2, 0.3]},
+        wl.ConditionsError,
+        ["do not broadcast: ", "creepage (2,)", "friction_coefficient (3,)"],
+    ),
+    ({"normal_force": "1e-320 N"}, wl.ConditionsError, ["half width", "which no contact has", "check the units"]),
+    ({"max_pressure": "1e200 Pa"}, wl.ConditionsError, ["which no contact has", "check the units"]),
+]
+
+
+@pytest.mark.parametrize(("conditions", "error", "said"), WRONG_CONDITIONS, ids=lambda value: str(value)[:40])
+def test_wrong_conditions_are_refused_with_name_value_and_fix(
+    conditions: dict[str, Any], error: type[Exception], said: list[str]
+) -> None:
+    given_conditions = {"creepage": "1 %", "friction_coefficient": 0.46, **conditions}
+    if not any(name in conditions for name in ("normal_force", "normal_force_per_width", "max_pressure")):
+        given_conditions["normal_force"] = "7.4143 kN"
+    with pytest.raises(error) as caught:
+        RIG.problem(**given_conditions)
+    assert type(caught.value) is error
+    for words in said:
+        assert words in str(caught.value)
+
+
+def test_conditions_broadcast_against_each_other() -> None:
+    found = problem(
+        normal_force=Q([[1.0], [2.0], [3.0]], "kN"),
+        creepage=Q([1, 2], "%"),
+        friction_coefficient=np.full((4, 1, 1), 0.3),
+    )
+    assert found.batch_shape == (4, 3, 2)
+    for name in ("half_width", "max_pressure", "rolling_speed", "density", "relative_radius", "friction_coefficient"):
+        assert getattr(found, name).shape == (4, 3, 2)
+    np.testing.assert_allclose(found.creepage[0, 0], [0.01, 0.02])
+    np.testing.assert_allclose(found.normal_force[0, :, 0], [1e3, 2e3, 3e3])
+
+
+def test_conditions_are_not_modified() -> None:
+    creepage = np.array([0.1, 0.2])
+    creepage.flags.writeable = False
+    problem(creepage=Q(creepage, ""))
+    assert creepage.tolist() == [0.1, 0.2]
+
+
+@pytest.mark.parametrize("size", [1, 5])
+def test_plasticity_is_warned_of_once_a_call_at_the_users_line(size: int) -> None:
+    contact_pipeline = RIG | wl.contact_model("exact")
+    line = following_line()
+    with pytest.warns(wl.RangeWarning) as caught:
+        contact_pipeline(max_pressure=Q([2500.0] * size, "MPa"), creepage="1 %", friction_coefficient=0.4)
+    assert len(caught) == 1
+    assert (caught[0].filename, caught[0].lineno) == (__file__, line)
+    assert "the maximum pressure reaches 2500 MPa" in str(caught[0].message)
+    assert "elastic limit of 1680 MPa" in str(caught[0].message)
+
+
+def test_plasticity_is_warned_of_at_the_users_line_by_a_whole_pipeline_too() -> None:
+    predict = RIG | wl.contact_model("global") | wl.wear_law("kth")
+    line = following_line()
+    with pytest.warns(wl.RangeWarning) as caught:
+        predict(max_pressure="2500 MPa", creepage="1 %", friction_coefficient=0.4)
+    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)]
+
+
+def test_the_softer_disc_limits_the_pressure() -> None:
+    soft = wl.Disc(diameter="47 mm", material=wl.steel(elastic_limit="1 GPa"))
+    unknown = wl.Disc(diameter="47 mm", material=wl.steel(elastic_limit=None))
+    conditions: Any = {"creepage": "1 %", "friction_coefficient": 0.4}
+    with pytest.warns(wl.RangeWarning, match="elastic limit of 1000 MPa"):
+        (wl.TwinDisc.suros(disc_2=soft) | wl.contact_model("exact"))(max_pressure="1.2 GPa", **conditions)
+    (RIG | wl.contact_model("exact"))(max_pressure="1.68 GPa", **conditions)
+    (wl.TwinDisc.suros(disc_1=unknown, disc_2=unknown) | wl.contact_model("exact"))(max_pressure="9 GPa", **conditions)
+
+
+def test_a_body_that_the_rig_has_not_is_refused() -> None:
+    assert RIG.body("disc_2") is RIG.disc_2
+    with pytest.raises(wl.InputError, match="no 'wheel'; its bodies are 'disc_1' and 'disc_2'"):
+        RIG.body("wheel")

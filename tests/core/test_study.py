@@ -1,0 +1,314 @@
+"""Running a case: what the datasets hold, and what is noted, against predictions made one by one."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import itertools
+import json
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+
+import wearlaw as wl
+from tests.core import cases
+from tests.core.cases import Install, case
+from wearlaw import Array, Q
+from wearlaw.case import Case
+from wearlaw.study import Study, along_main_axis, axes_of, evaluations, main_axis, run
+from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
+
+EPS = float(np.finfo(np.float64).eps)
+MODELS = {"global": wl.contact_model("global"), "exact": wl.contact_model("exact")}
+LAWS = {"usfd": wl.wear_law("usfd"), "kth": wl.wear_law("kth"), "brr": wl.wear_law("brr")}
+LOADS = ["1000 MPa", "1500 MPa"]
+FRICTIONS = [0.3, 0.4, 0.5]
+CREEPAGES = {"from": "-2 %", "to": "5 %", "points": 8}
+LATTICE = {"max_pressure": LOADS, "creepage": CREEPAGES, "friction_coefficient": FRICTIONS}
+
+
+@pytest.fixture
+def install(monkeypatch: pytest.MonkeyPatch) -> Install:
+    return cases.installer(monkeypatch)
+
+
+@pytest.fixture(scope="module")
+def study() -> Study:
+    return run(case(sweeps={"creepage": cases.SWEEP, "lattice": LATTICE}))
+
+
+def direct(model: str, law: wl.WearLaw, **conditions: Any) -> wl.Prediction:
+    """Return the prediction for one point, by the public way."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        return (wl.TwinDisc.suros() | MODELS[model] | law)(**conditions)
+
+
+def lattice_points() -> list[tuple[dict[str, int], dict[str, Any]]]:
+    """Return index and conditions of each point of the lattice."""
+    sizes = {"max_pressure": 2, "creepage": 8, "friction_coefficient": 3}
+    indices = [dict(zip(sizes, index, strict=True)) for index in np.ndindex(*sizes.values())]
+    return [
+        (
+            index,
+            {
+                "max_pressure": LOADS[index["max_pressure"]],
+                "creepage": Q(-2.0 + index["creepage"], "%"),
+                "friction_coefficient": FRICTIONS[index["friction_coefficient"]],
+            },
+        )
+        for index in indices
+    ]
+
+
+def assert_same_rate(value: float, prediction: wl.Prediction) -> None:
+    """Both are the same integral, maybe on other nodes: they may differ by the errors of both, and rounding."""
+    expected = prediction.wear_rate.to(UNITS["wear_rate"]).magnitude
+    error = prediction.wear_rate_error.to(UNITS["wear_rate"]).magnitude
+    assert abs(value - expected) <= 2.0 * error + 16.0 * EPS * expected
+
+
+def test_a_sweep_has_the_axes_of_its_grid_and_one_entry_a_pair_and_a_contact_model(study: Study) -> None:
+    lattice = study.sweeps["lattice"]
+    assert dict(lattice.sizes) == {
+        "pair": 5, "max_pressure": 2, "creepage": 8, "friction_coefficient": 3, "contact_model": 2,
+    }  # fmt: skip
+    assert list(lattice.pair.values) == [
+        "usfd on global", "kth on global", "brr on global", "usfd on exact", "kth on exact",
+    ]  # fmt: skip
+    assert list(lattice.pair_wear_law.values) == ["usfd", "kth", "brr", "usfd", "kth"]
+    assert list(lattice.pair_contact_model.values) == ["global"] * 3 + ["exact"] * 2
+    assert list(lattice.contact_model.values) == ["global", "exact"]
+    axes = ("max_pressure", "creepage", "friction_coefficient")
+    for name in lattice.data_vars:
+        first = {"pair"} if str(name).startswith("wear_rate") else {"contact_model"} if name in OF_CONTACT else set()
+        assert set(lattice[name].dims) == first | set(axes)
+    np.testing.assert_allclose(lattice.max_pressure, [1000.0, 1500.0], rtol=1e-14)
+    np.testing.assert_allclose(lattice.creepage, np.arange(-2.0, 6.0), rtol=1e-14, atol=1e-15)
+    np.testing.assert_allclose(lattice.friction_coefficient, FRICTIONS, rtol=1e-14)
+    for name in (*lattice.data_vars, *axes):
+        assert lattice[name].attrs["units"] == UNITS[str(name)]
+
+
+def test_rates_and_their_bands_are_those_of_direct_predictions(study: Study) -> None:
+    lattice = study.sweeps["lattice"]
+    for pair in lattice.pair.values:
+        law_name, model = pair.split(" on ")
+        law = LAWS[law_name]
+        ends = (
+            {end: wl.wear_law("kth", coefficient=end) for end in ("low", "high")}
+            if law_name == "kth"
+            else {"low": law, "high": law}
+        )
+        for index, conditions in lattice_points():
+            one = lattice.sel(pair=pair).isel(index)
+            assert_same_rate(one.wear_rate.item(), direct(model, law, **conditions))
+            assert_same_rate(one.wear_rate_low.item(), direct(model, ends["low"], **conditions))
+            assert_same_rate(one.wear_rate_high.item(), direct(model, ends["high"], **conditions))
+            assert 0.0 <= one.wear_rate_low <= one.wear_rate <= one.wear_rate_high
+            assert 0.0 <= one.wear_rate_error <= 1e-9 * one.wear_rate + 1e-15
+
+
+def test_totals_and_conditions_are_those_of_direct_predictions(study: Study) -> None:
+    lattice = study.sweeps["lattice"]
+    for model in MODELS:
+        for index, conditions in lattice_points():
+            one = lattice.sel(contact_model=model).isel(index)
+            prediction = direct(model, LAWS["usfd"], **conditions)
+            for name in (*OF_CONTACT, *OF_POINT):
+                expected = getattr(prediction, name).to(UNITS[name]).magnitude
+                # mean_slip and stick_ratio are sums over nodes of a share of at most 1 (100 %).
+                np.testing.assert_allclose(one[name].item(), expected, rtol=1e-12, atol=1e-12, err_msg=name)
+
+
+def test_zero_creepage_is_no_wear_and_opposite_creepage_the_same_wear(study: Study) -> None:
+    lattice = study.sweeps["lattice"]
+    assert (lattice.wear_rate.isel(creepage=2) == 0.0).all()
+    assert (lattice.tangential_force.isel(creepage=2) == 0.0).all()
+    # The axis holds -1 % and 1 % to rounding only.
+    back, ahead = lattice.isel(creepage=1), lattice.isel(creepage=3)
+    np.testing.assert_allclose(back.wear_rate, ahead.wear_rate, rtol=100 * EPS)
+    np.testing.assert_allclose(back.tangential_force, -ahead.tangential_force, rtol=100 * EPS)
+
+
+def test_a_profile_is_that_of_a_direct_prediction(study: Study) -> None:
+    profile = study.profiles["partial_slip"]
+    assert list(profile.contact_model.values) == ["exact"]
+    assert list(profile.pair.values) == ["usfd on exact", "kth on exact"]
+    for law in ("usfd", "kth"):
+        expected = direct("exact", LAWS[law], **cases.POINT).profile
+        np.testing.assert_array_equal(profile.x, expected.x)
+        np.testing.assert_array_equal(profile.wear_rate.sel(pair=f"{law} on exact"), expected.wear_rate)
+        for name in ("pressure", "traction", "traction_bound", "slip"):
+            np.testing.assert_array_equal(profile[name].sel(contact_model="exact"), expected[name])
+            assert profile[name].attrs["units"] == UNITS[name]
+    assert profile.x.attrs["units"] == "mm"
+
+
+def test_what_is_left_out_and_every_warning_is_noted_once(study: Study) -> None:
+    left_out = [note for note in study.notes if "is left out" in note]
+    assert [note.split(":")[0] for note in left_out] == ["brr on exact is left out"]
+    fitted = [note for note in study.notes if "were fitted for" in note]
+    assert [note.split(":")[0] for note in fitted] == ["usfd on exact"]
+    assert len(study.notes) == len(set(study.notes)) == 2
+
+
+def test_a_warning_that_all_pairs_give_is_noted_once_for_each_sweep_or_profile() -> None:
+    hard = {**cases.POINT, "max_pressure": "1700 MPa"}  # beyond 1.68 GPa, the elastic limit
+    sweeps = {"a": hard, "b": hard, "c": cases.POINT}
+    study = run(case(contact_models=["exact", "fastsim"], wear_laws=["kth"], sweeps=sweeps, profiles={"p": hard}))
+    assert [note.split(":")[0] for note in study.notes] == ["sweep 'a'", "sweep 'b'", "profile 'p'"]
+    assert all("elastic limit of 1680 MPa" in note for note in study.notes)
+
+
+class Warns(cases.Linear):
+    name = "warns"
+
+    def rate(self, contact: wl.Contact) -> Array:
+        warnings.warn("from elsewhere", DeprecationWarning, stacklevel=1)
+        return super().rate(contact)
+
+
+def test_warnings_of_others_are_passed_on_and_not_noted(install: Install) -> None:
+    install(Warns)
+    with pytest.warns(DeprecationWarning, match="from elsewhere"):
+        study = run(case(contact_models=["exact"], wear_laws=[{"model": "warns", "slope": "1 m"}], profiles={}))
+    assert study.notes == ()
+
+
+def test_the_provenance_is_the_case_and_the_versions_of_all_that_was_used(install: Install) -> None:
+    install(cases.Linear)
+    ran = case(contact_models=["exact"], wear_laws=["kth", {"model": "linear", "slope": "1 m"}])
+    study = run(ran)
+    version = importlib.metadata.version("wearlaw")
+    for dataset in (*study.sweeps.values(), *study.profiles.values()):
+        assert dataset.attrs["title"] == "A small study"
+        provenance = json.loads(dataset.attrs["provenance"])
+        assert provenance["wearlaw"] == version
+        assert provenance["models"] == {
+            "exact": f"wearlaw {version}",
+            "kth": f"wearlaw {version}",
+            "linear": "wearlaw-testing 9.8.7",
+        }
+        assert Case(**provenance["case"]) == ran
+    assert study.case == ran
+
+
+# Measured traction
+
+MEASURED = {**cases.SWEEP, "traction_coefficient": 0.2}
+
+
+def test_a_sweep_with_measured_traction_is_for_the_models_that_can_use_it() -> None:
+    study = run(case(sweeps={"measured": MEASURED}, profiles={}))
+    sweep = study.sweeps["measured"]
+    assert list(sweep.contact_model.values) == ["global"]
+    assert list(sweep.pair.values) == ["usfd on global", "kth on global", "brr on global"]
+    np.testing.assert_allclose(sweep.traction_coefficient, 0.2, rtol=4 * EPS)
+    np.testing.assert_allclose(sweep.tangential_force.sel(contact_model="global"), 0.2 * sweep.normal_force, rtol=1e-15)
+    assert study.notes.count("sweep 'measured': exact is left out, since it computes the traction itself") == 1
+
+
+def test_measured_traction_may_be_an_axis() -> None:
+    conditions = {**cases.POINT, "creepage": ["1 %", "2 %"], "traction_coefficient": [0.1, 0.2, 0.3]}
+    sweep = run(case(sweeps={"measured": conditions}, profiles={})).sweeps["measured"]
+    assert axes_of(sweep) == ["creepage", "traction_coefficient"]
+    np.testing.assert_array_equal(sweep.traction_coefficient, [0.1, 0.2, 0.3])
+    for (i, creepage), (j, traction) in itertools.product(enumerate(["1 %", "2 %"]), enumerate([0.1, 0.2, 0.3])):
+        one = {**cases.POINT, "creepage": creepage, "traction_coefficient": traction}
+        found = sweep.wear_rate.sel(pair="usfd on global")[i, j].item()
+        assert_same_rate(found, direct("global", LAWS["usfd"], **one))
+
+
+@pytest.mark.parametrize("kind", ["sweep", "profile"])
+def test_measured_traction_that_no_model_can_use_is_refused(kind: str) -> None:
+    wrong = {f"{kind}s": {"x": {**cases.POINT, "traction_coefficient": 0.2}}}
+    with pytest.raises(wl.InputError, match=f"^{kind} 'x': no contact model of the case can use a traction_coeff"):
+        run(case(contact_models=["exact"], **wrong))
+
+
+def test_a_profile_that_no_model_resolves_is_left_out_and_noted() -> None:
+    study = run(case(contact_models=["global"]))
+    assert study.notes == ("profile 'partial_slip' is left out: no contact model of the case resolves the patch",)
+    assert not study.profiles["partial_slip"]
+
+
+def test_a_case_of_which_no_pair_can_be_is_refused_and_says_why() -> None:
+    impossible = case(contact_models=["exact"], wear_laws=["brr"])
+    for what in (run, evaluations):
+        with pytest.raises(
+            wl.InputError, match="no contact model of the case can be used with any of its wear laws"
+        ) as no:
+            what(impossible)
+        assert "brr on exact is left out" in str(no.value)
+
+
+# Progress
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        # global: usfd 1, kth 3 for its band, brr 1; exact: usfd 1, kth 3.
+        ({}, 5 * 9),
+        ({"sweeps": {"a": LATTICE, "b": cases.POINT}}, (48 + 1) * 9),
+        ({"sweeps": {"a": LATTICE, "b": MEASURED}}, 48 * 9 + 5 * 5),
+        ({"wear_laws": ["usfd"], "contact_models": ["exact"]}, 5),
+        ({"sweeps": {"long": {**cases.POINT, "creepage": {"from": "0 %", "to": "9 %", "points": 2500}}}}, 2500 * 9),
+    ],
+)
+def test_progress_sums_to_the_announced_evaluations(changes: dict[str, Any], expected: int) -> None:
+    ran = case(**changes)
+    blocks: list[int] = []
+    run(ran, blocks.append)
+    assert sum(blocks) == evaluations(ran) == expected
+
+
+def test_long_work_reports_progress_in_several_blocks() -> None:
+    sweep = {**cases.POINT, "creepage": {"from": "0 %", "to": "9 %", "points": 5000}}
+    blocks: list[int] = []
+    run(case(contact_models=["exact"], wear_laws=["kth"], sweeps={"long": sweep}, profiles={}), blocks.append)
+    assert max(blocks) < 5000 / 2
+
+
+# Shapes
+
+
+def test_one_operating_point_is_a_sweep_without_axes() -> None:
+    sweep = run(case(sweeps={"point": cases.POINT}, profiles={})).sweeps["point"]
+    assert axes_of(sweep) == []
+    assert sweep.wear_rate.dims == ("pair",)
+    assert_same_rate(sweep.wear_rate.sel(pair="kth on exact").item(), direct("exact", LAWS["kth"], **cases.POINT))
+    assert main_axis(sweep) == "creepage"
+    line = along_main_axis(sweep)
+    assert line.wear_rate.sel(pair="kth on exact").dims == ("creepage",)
+    assert line.creepage.values == pytest.approx([0.5], rel=1e-14)
+
+
+def test_tables_and_figures_run_along_creepage_or_else_the_longest_axis_at_the_middle_of_the_others() -> None:
+    loads, frictions = ["500 MPa", "1000 MPa", "1500 MPa"], [0.2, 0.3, 0.4, 0.5]
+    sweeps = {
+        "a": {**cases.POINT, "creepage": ["1 %", "2 %"], "friction_coefficient": frictions},
+        "b": {**cases.POINT, "max_pressure": loads, "friction_coefficient": frictions},
+    }
+    study = run(case(contact_models=["global"], wear_laws=["usfd"], profiles={}, sweeps=sweeps))
+    assert [main_axis(study.sweeps[name]) for name in "ab"] == ["creepage", "friction_coefficient"]
+    by_creepage, by_friction = (along_main_axis(study.sweeps[name]) for name in "ab")
+    assert by_creepage.friction_coefficient == 0.4
+    xarray.testing.assert_equal(by_creepage.wear_rate, study.sweeps["a"].wear_rate[:, :, 2])
+    assert by_friction.max_pressure == pytest.approx(1000.0, rel=1e-14)
+    xarray.testing.assert_equal(by_friction.wear_rate, study.sweeps["b"].wear_rate[:, 1, :])
+
+
+def test_a_model_with_nodes_of_its_own_has_its_profile_beside_those_on_uniform_cells(install: Install) -> None:
+    install(cases.Coarse)
+    study = run(case(contact_models=["exact", "coarse"], wear_laws=["kth"]))
+    profile = study.profiles["partial_slip"]
+    coarse = profile.sel(contact_model="coarse", pair="kth on coarse").dropna("x")
+    exact = profile.sel(contact_model="exact", pair="kth on exact").dropna("x")
+    assert coarse.sizes["x"] == 7
+    np.testing.assert_array_equal(exact.traction, direct("exact", LAWS["kth"], **cases.POINT).profile.traction)
+    np.testing.assert_allclose(coarse.traction, 0.46 * coarse.pressure, rtol=1e-14)
+    np.testing.assert_allclose(coarse.slip, 0.5, rtol=1e-14)

@@ -1,0 +1,125 @@
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pytest import approx
+
+import wearlaw as wl
+from tests.plugins.laws import around, contact_of
+from tests.strategies import EPS
+
+BRR = wl.wear_law("brr")
+
+
+def rate(law: wl.WearLaw, wear_index: float, *, nodes: int = 1, density: float = 7850.0) -> float:
+    """Return the rate [kg/m/m²] of Tγ [N] on a patch of 1 mm² a node."""
+    contact = contact_of(pressure=np.ones(nodes), density=density)
+    rates = law.rate(dataclasses.replace(contact, wear_index=np.array(wear_index)))
+    assert rates.shape == (nodes,)
+    assert (rates == rates[0]).all()
+    return float(rates[0])
+
+
+def section(wear_index: float) -> float:
+    """Return D times the section lost [mm²·mm/km], Table 1 of Tassini et al. 2010."""
+    if wear_index < 100.0:
+        return 0.25 * wear_index
+    return 25.0 if wear_index < 200.0 else 1.19 * wear_index - 154.0
+
+
+@given(st.floats(0.0, 2000.0))
+def test_the_rate_is_the_section_of_table_1_around_the_wheel(wear_index: float) -> None:
+    # area × πD is the volume per km rolled; mm³/km × kg/m³ is 1e-12 kg/m, on 1e-6 m²
+    expected = 7850.0 * math.pi * section(wear_index) * 1e-12 / 1e-6
+    assert rate(BRR, wear_index) == approx(expected, rel=32 * EPS, abs=1e-300)
+
+
+def test_the_borders_belong_to_the_upper_regimes() -> None:
+    below, at = (rate(BRR, float(w)) for w in around(100.0))
+    assert at == approx(below, rel=8 * EPS)
+    below, at = (rate(BRR, float(w)) for w in around(200.0))
+    assert at / below == approx(84.0 / 25.0, rel=64 * EPS)
+
+
+def test_only_the_published_jump_is_declared() -> None:
+    assert BRR.breakpoints == {"wear_index": approx((100.0, 200.0), rel=2 * EPS)}
+    assert BRR.jumps == {"wear_index": approx((200.0,), rel=2 * EPS)}
+
+
+@given(st.lists(st.floats(0.0, 2000.0), min_size=2, max_size=20))
+def test_the_rate_never_falls_with_the_wear_index(values: list[float]) -> None:
+    assert BRR.monotone_in == ("wear_index",)
+    rates = [rate(BRR, w) for w in sorted(values)]
+    assert all(later >= earlier for earlier, later in zip(rates, rates[1:], strict=False))
+
+
+def test_the_rate_is_per_patch_area_and_of_the_density_of_the_contact() -> None:
+    assert rate(BRR, 300.0, nodes=4) == approx(rate(BRR, 300.0) / 4.0, rel=8 * EPS)
+    assert rate(BRR, 300.0, density=3925.0) == approx(rate(BRR, 300.0) / 2.0, rel=8 * EPS)
+
+
+def test_the_law_is_of_the_patch_only_and_refused_on_cells() -> None:
+    assert BRR.scale == "patch"
+    rig = wl.TwinDisc.suros()
+    for name in ("exact", "fastsim"):
+        with pytest.raises(wl.CompositionError, match=rf"'brr'.*'{name}'.*wl\.patch_mean\(\).*\"global\""):
+            rig | wl.contact_model(name) | BRR  # type: ignore[unused-ignore]
+
+
+def test_the_law_takes_the_means_of_a_local_model() -> None:
+    rig = wl.TwinDisc.suros()
+    conditions: dict[str, Any] = {"normal_force": "7.4143 kN", "creepage": "1 %", "friction_coefficient": 0.46}
+    means = (rig | wl.contact_model("exact") | wl.patch_mean() | BRR)(**conditions)
+    one_cell = (rig | wl.contact_model("global") | BRR)(**conditions)
+    assert means.wear_rate.m == approx(one_cell.wear_rate.m, rel=64 * EPS)
+
+
+def test_parameters_of_your_own_move_the_law() -> None:
+    law = wl.wear_law("brr", severe_limit="160 N", mild_slope="0.2 mm^3/km/N")
+    assert rate(law, 10.0) == approx(7850.0 * math.pi * 2.0 * 1e-6, rel=32 * EPS)
+    assert rate(law, 159.0) == approx(7850.0 * math.pi * 25.0 * 1e-6, rel=32 * EPS)
+    assert rate(law, 161.0) == approx(7850.0 * math.pi * (1.19 * 161.0 - 154.0) * 1e-6, rel=64 * EPS)
+
+
+@pytest.mark.parametrize(
+    ("options", "jumps"),
+    [
+        ({}, [200.0]),
+        ({"plateau": "30 mm^3/km"}, [100.0, 200.0]),
+        ({"plateau": "84 mm^3/km", "mild_slope": "0.84 mm^3/km/N"}, []),
+        ({"mild_limit": "80 N", "mild_slope": "0.3125 mm^3/km/N"}, [200.0]),
+    ],
+)
+def test_the_declared_jumps_are_where_the_rate_jumps(options: dict[str, str], jumps: list[float]) -> None:
+    law = wl.wear_law("brr", **options)
+    assert law.breakpoints is not None
+    found = []
+    for border in law.breakpoints["wear_index"]:
+        below, at = (rate(law, float(w)) for w in around(border))
+        if at - below > 1e-9 * at:
+            found.append(border)
+    assert found == approx(jumps, rel=2 * EPS)
+    assert law.jumps["wear_index"] == approx(tuple(jumps), rel=2 * EPS)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"mild_limit": 100}, r"brr: mild_limit: .*100"),
+        ({"mild_limit": "100 m"}, r"mild_limit: got 100\.0 m.*'N'"),
+        ({"plateau": "-25 mm^3/km"}, r"plateau: must be greater than zero"),
+        ({"mild_limit": "300 N"}, r"severe_limit must not lie below mild_limit"),
+        ({"severe_limit": "140 N"}, r"the wear must not fall where a regime begins"),
+        ({"mild_slope": "0.3 mm^3/km/N"}, r"the wear must not fall where a regime begins"),
+        ({"plato": "25 mm^3/km"}, r"unknown field; did you mean 'plateau'"),
+    ],
+)
+def test_a_wrong_value_is_one_clear_error(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=message):
+        wl.wear_law("brr", **options)

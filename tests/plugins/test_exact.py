@@ -1,0 +1,146 @@
+from __future__ import annotations
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from pytest import approx
+from scipy import integrate
+
+import wearlaw as wl
+from tests.strategies import EPS, line_problems, log_uniform, saturation_creepage, with_creepage
+from wearlaw import Q
+
+EXACT = wl.contact_model("exact")
+PRINTED = wl.contact_model("exact", slip="as_printed")
+SUROS = wl.TwinDisc.suros()
+
+
+def problem_at(percent: float) -> wl.LineProblem:
+    return SUROS.problem(normal_force="7.4143 kN", creepage=Q(percent, "%"), friction_coefficient=0.46)
+
+
+def fields_at(model: wl.ContactModel, problem: wl.LineProblem, x: float) -> wl.LineFields:
+    assert isinstance(model, wl.LineContactModel)
+    return model.fields(problem[..., None], np.array([x]))
+
+
+def literal(problem: wl.LineProblem, x: float) -> tuple[float, float]:
+    """Return traction and slip as the corrected eqs. (7) and (8) of Tassini et al. write them, to 60 digits."""
+    with mpmath.workdps(60):
+        a, p0, radius = (
+            mpmath.mpf(float(v)) for v in (problem.half_width, problem.max_pressure, problem.relative_radius)
+        )
+        friction, creepage, x_mp = (mpmath.mpf(float(v)) for v in (problem.friction_coefficient, problem.creepage, x))
+        k = friction / radius
+        c = a - creepage / k
+        carter = friction * p0 * mpmath.sqrt(1 - (x_mp / a) ** 2)
+        if c <= 0:
+            return float(carter), float(creepage + k * x_mp)
+        if x_mp <= -a + 2 * c:
+            return float(carter - c / a * friction * p0 * mpmath.sqrt(1 - ((x_mp + a - c) / c) ** 2)), 0.0
+        return float(carter), float(k * mpmath.sqrt((x_mp + a - c) ** 2 - c**2))
+
+
+@given(problem=line_problems(), where=log_uniform(1e-3, 1.0))
+def test_the_fields_are_the_corrected_equations_7_and_8(problem: wl.LineProblem, where: float) -> None:
+    x = float(problem.half_width) * (2.0 * where - 1.0) * (1.0 - 1e-6)
+    traction, slip = literal(problem, x)
+    fields = fields_at(EXACT, problem, x)
+    # a - x and the distance from the border are exact to EPS·a; as a share of μp0 and of 2μa/R a square root of
+    # them is no worse than √EPS there, and x keeps 1e-6 a away from the edges.
+    border = float(problem.half_width) * (1.0 - 2.0 * min(float(problem.creepage) / saturation_creepage(problem), 1.0))
+    distance = max(abs(x - border) / float(problem.half_width), 4 * EPS)
+    condition = 16 * EPS / math.sqrt(distance)
+    assert float(fields.traction[0]) == approx(traction, abs=condition * float(fields.traction_bound.max() + traction))
+    assert float(fields.slip[0]) == approx(slip, abs=2.0 * condition * max(saturation_creepage(problem), slip))
+
+
+@pytest.mark.parametrize("percent", [1e-4, 0.1, 0.5, 1.0, 1.2, 2.0, 25.0])
+def test_the_total_is_the_integral_of_the_traction(percent: float) -> None:
+    problem = problem_at(percent)
+    a = float(problem.half_width)
+    start, end = (float(v) for v in EXACT.slip_zone(problem))  # type: ignore[attr-defined]
+
+    def over(low: float, high: float) -> float:
+        if high <= low:
+            return 0.0
+        # x = middle + half·sin θ takes the square roots out of both ends
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        return integrate.quad(
+            lambda t: literal(problem, middle + half * math.sin(t))[0] * half * math.cos(t),
+            -0.5 * math.pi, 0.5 * math.pi, epsrel=1e-9, limit=400,
+        )[0]  # fmt: skip
+
+    total = over(-a, start) + over(start, end)
+    contact = EXACT.solve(problem)
+    assert float(contact.tangential_force / problem.track_width) == approx(total, rel=1e-8)
+
+
+@pytest.mark.parametrize("percent", [0.1, 1.0, 1.2, 2.0])
+def test_the_slip_leaves_the_surfaces_together_in_stick(percent: float) -> None:
+    """The displacement gradient of the tractions on two half planes must be the creepage wherever nothing slips.
+
+    s = ξ - (2/πE*) ⨍ q(t)/(x-t) dt·(sign by the leading edge at -a), Johnson eq. (8.24) with x reversed.
+    """
+    problem = problem_at(percent)
+    a, modulus = float(problem.half_width), float(problem.effective_modulus)
+    for position in (-0.9, -0.4, 0.05, 0.6, 0.93):
+        x = position * a
+        points = [float(v) for v in EXACT.slip_zone(problem)]  # type: ignore[attr-defined]
+        principal, _ = integrate.quad(
+            lambda t: float(fields_at(EXACT, problem, t).traction[0]), -a, a, weight="cauchy", wvar=x, limit=2000
+        )
+        assert points[0] < points[1]
+        slip = float(problem.creepage) - 2.0 / (math.pi * modulus) * principal
+        assert slip == approx(float(fields_at(EXACT, problem, x).slip[0]), abs=2e-6 * float(problem.creepage))
+
+
+def test_the_printed_slip_is_creepage_plus_k_x_in_the_whole_slip_zone() -> None:
+    problem = problem_at(0.5)
+    a, k = float(problem.half_width), 0.46 / 0.01175
+    start = float(PRINTED.slip_zone(problem)[0])  # type: ignore[attr-defined]
+    for x in (start + 1e-3 * a, 0.5 * a, 0.99 * a):
+        assert float(fields_at(PRINTED, problem, x).slip[0]) == approx(0.005 + k * x, rel=8 * EPS)
+    assert float(fields_at(PRINTED, problem, start - 1e-3 * a).slip[0]) == 0.0
+    # the step at the border is ξ_sat - ξ
+    assert float(fields_at(PRINTED, problem, start + 1e-9 * a).slip[0]) == approx(
+        saturation_creepage(problem) - 0.005, rel=1e-5
+    )
+
+
+def test_both_slips_have_the_same_tractions_and_total() -> None:
+    problem = problem_at(0.5)
+    one, two = EXACT.solve(problem), PRINTED.solve(problem)
+    assert (one.traction == two.traction).all()
+    assert one.tangential_force == two.tangential_force
+
+
+@given(problem=line_problems())
+def test_the_stick_ratio_is_one_less_the_reduced_creepage(problem: wl.LineProblem) -> None:
+    contact = EXACT.solve(problem)
+    expected = max(1.0 - float(problem.creepage) / saturation_creepage(problem), 0.0)
+    assert float(contact.stick_ratio) == approx(expected, abs=64 * EPS)
+
+
+def test_slip_begins_continuously_at_the_end_of_the_stick_zone() -> None:
+    problem = problem_at(0.5)
+    a = float(problem.half_width)
+    border = float(EXACT.slip_zone(problem)[0])  # type: ignore[attr-defined]
+    slips = [float(fields_at(EXACT, problem, border + gap * a).slip[0]) for gap in (1e-4, 1e-8, 1e-12)]
+    assert slips[0] == approx(100.0 * slips[1], rel=1e-3)  # a square root
+    assert slips[2] < 1e-5 * saturation_creepage(problem)
+
+
+def test_small_creepages_lose_no_digits() -> None:
+    problem = with_creepage(problem_at(1.0), 1e-7)
+    d = 1e-7 / saturation_creepage(problem)
+    expected = 0.46 * 7414.3 * d * (2.0 - d)
+    assert float(EXACT.solve(problem).tangential_force) == approx(expected, rel=16 * EPS)
+
+
+def test_a_wrong_slip_is_refused_by_name() -> None:
+    with pytest.raises(wl.ConfigurationError, match="slip.*'consistent' or 'as_printed'"):
+        wl.contact_model("exact", slip="printed")

@@ -1,0 +1,90 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pytest import approx
+
+import wearlaw as wl
+from tests.strategies import EPS, LINE_MODELS, line_problems, log_uniform, saturation_creepage, with_creepage
+from wearlaw import Q
+
+SUROS = wl.TwinDisc.suros()
+CONDITIONS = {"normal_force": Q(7.4143, "kN"), "friction_coefficient": 0.46}
+
+
+@given(problem=line_problems())
+def test_the_one_cell_holds_the_patch_means(problem: wl.LineProblem) -> None:
+    contact = wl.contact_model("global").solve(problem)
+    area = float(2.0 * problem.half_width * problem.track_width)
+    assert contact.pressure.shape == (1,)
+    assert float(contact.area[0]) == approx(area, rel=4 * EPS)
+    # p = (π/4) p0
+    assert float(contact.pressure[0]) == approx(0.25 * math.pi * float(problem.max_pressure), rel=16 * EPS)
+    assert float(contact.slip[0]) == float(problem.creepage)
+    assert float(contact.traction[0]) * area == approx(float(contact.tangential_force), rel=4 * EPS)
+
+
+@given(problem=line_problems())
+def test_the_total_is_that_of_carter_by_default(problem: wl.LineProblem) -> None:
+    reduced = min(float(problem.creepage) / saturation_creepage(problem), 1.0)
+    # d (2-d), as 1-(1-d)² without its rounding at small d
+    expected = float(problem.friction_coefficient * problem.normal_force) * reduced * (2.0 - reduced)
+    assert float(wl.contact_model("global").solve(problem).tangential_force) == approx(expected, rel=16 * EPS)
+
+
+@pytest.mark.parametrize("name", LINE_MODELS)
+@given(problem=line_problems())
+def test_the_total_is_that_of_the_model_it_is_taken_from(name: str, problem: wl.LineProblem) -> None:
+    model = LINE_MODELS[name]
+    contact = wl.contact_model("global", total_from=model).solve(problem)
+    assert float(contact.tangential_force) == approx(float(model.solve(problem).tangential_force), rel=4 * EPS)
+
+
+@given(problem=line_problems(), coefficient=log_uniform(1e-3, 1.0), sign=st.sampled_from([-1.0, 0.0, 1.0]))
+def test_a_measured_traction_coefficient_takes_the_place_of_the_theory(
+    problem: wl.LineProblem, coefficient: float, sign: float
+) -> None:
+    import dataclasses
+
+    measured = dataclasses.replace(
+        with_creepage(problem, sign * float(problem.creepage)), traction_coefficient=np.array(coefficient)
+    )
+    contact = wl.contact_model("global").solve(measured)
+    force = sign * coefficient * float(problem.normal_force)
+    assert float(contact.tangential_force) == approx(force, rel=4 * EPS)
+    assert float(contact.wear_index) == approx(
+        coefficient * float(problem.normal_force * abs(measured.creepage)), rel=8 * EPS
+    )
+    assert abs(float(contact.traction[0])) <= float(contact.traction_bound[0]) * (1.0 + 4 * EPS)
+
+
+def test_the_patch_means_of_a_local_model_are_the_global_contact() -> None:
+    conditions = {"creepage": Q([-2.0, -0.5, 0.0, 0.5, 2.0], "%"), **CONDITIONS}
+    means = (SUROS | wl.contact_model("fastsim") | wl.patch_mean())(**conditions).contact  # type: ignore[arg-type]
+    one_cell = (SUROS | wl.contact_model("global", total_from="fastsim"))(**conditions).contact  # type: ignore[arg-type]
+    for field in ("pressure", "traction", "slip", "area", "tangential_force", "wear_index"):
+        # the means sum the nodes of the patch
+        assert getattr(means, field) == approx(getattr(one_cell, field), rel=64 * EPS), field
+
+
+def test_a_local_model_refuses_a_measured_traction_coefficient() -> None:
+    with pytest.raises(wl.ConditionsError, match=r"traction_coefficient.*'exact' computes the traction itself"):
+        (SUROS | wl.contact_model("exact"))(creepage=Q(1, "%"), traction_coefficient=0.4, **CONDITIONS)  # type: ignore[arg-type]
+
+
+def test_the_exemptions_follow_the_model_that_the_total_is_from() -> None:
+    kalker = wl.contact_model("fastsim", bound="elliptic", flexibility="kalker")
+    assert set(wl.contact_model("global").exemptions) == {"stick"}
+    assert set(wl.contact_model("global", total_from=kalker).exemptions) == {"stick", "saturation", "initial_slope"}
+    # the energy of the one cell is balanced whatever slip the inner model prints
+    printed = wl.contact_model("global", total_from=wl.contact_model("exact", slip="as_printed"))
+    assert set(printed.exemptions) == {"stick"}
+
+
+def test_an_unknown_model_for_the_total_is_refused_by_name() -> None:
+    with pytest.raises(wl.ConfigurationError, match=r"total_from: no contact model is called 'exakt'.*'exact'"):
+        wl.contact_model("global", total_from="exakt")

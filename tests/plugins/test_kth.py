@@ -1,0 +1,136 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pytest import approx
+
+import wearlaw as wl
+from tests.plugins.laws import around, contact_of
+from tests.strategies import EPS
+from wearlaw import Q
+
+# Tassini et al. 2010, Table 2, k: p ≥ 2.1 GPa; slip speed below 0.2 m/s; to 0.7 m/s; above
+TABLE_2 = {
+    "low": (300e-4, 1e-4, 30e-4, 1e-4),
+    "high": (400e-4, 10e-4, 40e-4, 10e-4),
+}
+TABLE_2["mid"] = tuple(0.5 * (low + high) for low, high in zip(TABLE_2["low"], TABLE_2["high"], strict=True))  # type: ignore[assignment]
+OWN = {"high_pressure": 0.05, "low_speed": 2e-4, "mid_speed": 5e-3, "high_speed": 3e-4}
+every_coefficient = pytest.mark.parametrize("coefficient", ["low", "mid", "high"])
+
+
+def kth(coefficient: Any = "mid", **options: Any) -> wl.WearLaw:
+    return wl.wear_law("kth", coefficient=coefficient, **options)
+
+
+def field_of(pressure: float, speed: float) -> int:
+    if pressure >= 2.1e9:
+        return 0
+    return 1 if speed < 0.2 else 2 if speed < 0.7 else 3
+
+
+@every_coefficient
+@given(pressure=st.floats(0.0, 4e9), slip=st.floats(0.0, 1.0))
+def test_the_rate_is_archards_law_with_the_k_of_the_map(coefficient: str, pressure: float, slip: float) -> None:
+    rate = float(kth(coefficient).rate(contact_of(pressure=pressure, slip=slip))[0])
+    # ρ k p s / H with H = 2.1 GPa / 0.8
+    expected = 7850.0 * TABLE_2[coefficient][field_of(pressure, slip)] * pressure * slip / (2.1e9 / 0.8)
+    assert rate == approx(expected, rel=16 * EPS, abs=1e-290)  # the least floats have fewer digits
+
+
+def test_the_density_is_that_of_the_contact_and_the_hardness_a_field() -> None:
+    rate = float(kth().rate(contact_of())[0])
+    assert float(kth().rate(contact_of(density=15700.0))[0]) == approx(2.0 * rate, rel=4 * EPS)
+    assert float(kth(hardness="5.25 GPa").rate(contact_of())[0]) == approx(0.5 * rate, rel=4 * EPS)
+
+
+def test_the_sign_of_the_slip_does_not_matter() -> None:
+    slips = np.array([0.05, 0.3, 0.9])
+    assert (kth().rate(contact_of(slip=-slips)) == kth().rate(contact_of(slip=slips))).all()
+
+
+@pytest.mark.parametrize(("variable", "borders"), [("pressure", (2.1e9,)), ("slip_speed", (0.2, 0.7))])
+def test_every_declared_border_is_a_jump(variable: str, borders: tuple[float, ...]) -> None:
+    law = kth()
+    assert law.breakpoints is not None
+    assert set(law.breakpoints) == {"pressure", "slip_speed"}
+    assert law.breakpoints[variable] == approx(borders, rel=2 * EPS)
+    assert law.jumps == law.breakpoints
+    for border in law.breakpoints[variable]:
+        # the contact rolls at 1 m/s, so slip and slip speed are one
+        given_values: Any = {"pressure" if variable == "pressure" else "slip": around(border)}
+        below, at = law.rate(contact_of(**given_values))
+        assert abs(at / below - 1.0) > 0.5
+
+
+def test_the_band_is_the_published_range_of_this_instance() -> None:
+    law = kth("high", hardness="3 GPa")
+    low, mid, high = law.band()  # type: ignore[misc]
+    assert high == law
+    assert [law_.coefficient for law_ in (low, mid, high)] == ["low", "mid", "high"]  # type: ignore[attr-defined]
+    rates = [float(law_.rate(contact_of(slip=0.1))[0]) for law_ in (low, mid, high)]
+    assert rates == approx([7850.0 * k * 1e9 * 0.1 / 3e9 for k in (1e-4, 5.5e-4, 10e-4)], rel=16 * EPS)
+
+
+def test_coefficients_of_your_own_have_no_band() -> None:
+    law = kth(OWN)
+    assert law.band() == (law, law, law)
+    for pressure, slip, name in (
+        (3e9, 0.1, "high_pressure"),
+        (1e9, 0.1, "low_speed"),
+        (1e9, 0.3, "mid_speed"),
+        (1e9, 0.9, "high_speed"),
+    ):
+        got = float(law.rate(contact_of(pressure=pressure, slip=slip))[0])
+        assert got == approx(7850.0 * OWN[name] * pressure * slip / 2.625e9, rel=16 * EPS)
+
+
+def test_coefficients_of_your_own_survive_a_round_trip() -> None:
+    law = kth(OWN)
+    assert kth(**law.model_dump(mode="json")) == law
+
+
+def test_borders_of_your_own_move_the_jumps() -> None:
+    law = kth(pressure_threshold="1 GPa", lower_slip_speed="10 cm/s", upper_slip_speed=Q(0.5, "m/s"))
+    assert law.jumps["pressure"] == approx((1e9,), rel=2 * EPS)
+    assert law.jumps["slip_speed"] == approx((0.1, 0.5), rel=2 * EPS)
+    below, at = law.rate(contact_of(pressure=around(1e9), slip=0.05))
+    assert at / below == approx(350.0 / 5.5, rel=1e-12)
+
+
+def test_the_law_claims_no_calibration_no_range_and_no_monotony() -> None:
+    law = kth()
+    assert law.calibration is None
+    assert law.valid_range == {}
+    assert law.monotone_in == ()
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"coefficient": "middle"}, r"kth: coefficient: must be 'low', 'mid', 'high' or your own .*got 'middle'"),
+        ({"coefficient": 1e-3}, r"coefficient: must be 'low', 'mid', 'high' or your own .*got 0\.001"),
+        ({"coefficient": None}, r"coefficient: must be 'low'"),
+        ({"coefficient": ["low"]}, r"coefficient: must be 'low'"),
+        ({"coefficient": {**OWN, "low_speed": -1e-4}}, r"coefficient\.low_speed: .*greater than 0.*-0\.0001"),
+        ({"coefficient": {**OWN, "low_speed": "1e-4"}}, r"coefficient\.low_speed: "),
+        ({"coefficient": {"low_speed": 1e-4}}, r"coefficient\.high_pressure: is missing"),
+        ({"hardness": "0 GPa"}, r"hardness: must be greater than zero"),
+        ({"hardness": 2.6}, r"hardness: .*2\.6"),
+        ({"pressure_threshold": "2.1 kg"}, r"pressure_threshold: got 2\.100 kg.*'GPa'"),
+        ({"lower_slip_speed": "inf m/s"}, r"lower_slip_speed: must be finite"),
+        ({"upper_slip_speeds": "1 m/s"}, r"unknown field; did you mean 'upper_slip_speed'"),
+    ],
+)
+def test_a_wrong_value_is_one_clear_error(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=message):
+        wl.wear_law("kth", **options)
+
+
+def test_borders_of_slip_speed_in_the_wrong_order_are_refused() -> None:
+    with pytest.raises(wl.ConfigurationError, match=r"upper_slip_speed must not lie below lower_slip_speed"):
+        wl.wear_law("kth", lower_slip_speed="0.8 m/s")

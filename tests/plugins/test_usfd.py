@@ -1,0 +1,146 @@
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pytest import approx
+
+import wearlaw as wl
+from tests.plugins.laws import around, contact_of
+from tests.strategies import EPS
+from wearlaw import Q
+
+# Tassini et al. 2010, Table 4: m_m, q_s, m_c, tr_sc in µg/m/N, µg/m/mm², µg/m/N, N/mm²
+TABLE_4 = {
+    "global": (5.3, 55.0, 61.9, 77.26),
+    "exact": (5.3, 55.0, 83.7, 95.0),
+    "fastsim": (5.3, 56.5, 83.7, 107.0),
+}
+every_set = pytest.mark.parametrize("fitted_for", TABLE_4)
+
+
+def rate(law: wl.WearLaw, w: float) -> float:
+    """Return the rate [µg/m/mm²] of w = Tγ/A [N/mm²]."""
+    return float(law.rate(contact_of(traction=w * 1e8, slip=0.01))[0]) * 1e3
+
+
+@every_set
+def test_the_parameters_are_those_of_table_4(fitted_for: str) -> None:
+    law: Any = wl.wear_law("usfd", fitted_for=fitted_for)
+    units = ("ug/m/N", "ug/m/mm^2", "ug/m/N", "N/mm^2")
+    got = [getattr(law, field).m_as(unit) for field, unit in zip(("m_m", "q_s", "m_c", "tr_sc"), units, strict=True)]
+    assert got == approx(TABLE_4[fitted_for], rel=4 * EPS)
+
+
+def test_the_global_set_is_the_default() -> None:
+    assert wl.wear_law("usfd") == wl.wear_law("usfd", fitted_for="global")
+
+
+@every_set
+@given(w=st.floats(0.0, 500.0))
+def test_the_rate_is_that_of_tables_3_and_4(fitted_for: str, w: float) -> None:
+    m_m, q_s, m_c, tr_sc = TABLE_4[fitted_for]
+    expected = m_m * w if w < q_s / m_m else q_s if w < tr_sc else m_c * w - (m_c * tr_sc - q_s)
+    # the last branch is a difference of numbers of size m_c·tr_sc
+    assert rate(wl.wear_law("usfd", fitted_for=fitted_for), w) == approx(
+        expected, rel=8 * EPS, abs=8 * EPS * m_c * (w + tr_sc)
+    )
+
+
+@every_set
+def test_the_rate_is_continuous_at_both_borders(fitted_for: str) -> None:
+    law = wl.wear_law("usfd", fitted_for=fitted_for)
+    breakpoints = law.breakpoints
+    assert breakpoints is not None
+    assert not law.jumps
+    m_m, q_s, _, tr_sc = TABLE_4[fitted_for]
+    assert breakpoints["wear_index_density"] == approx((q_s / m_m * 1e6, tr_sc * 1e6), rel=4 * EPS)
+    for border in breakpoints["wear_index_density"]:
+        below, at = law.rate(contact_of(traction=around(border), slip=1.0))
+        assert at == approx(below, rel=64 * EPS)
+        assert at * 1e3 == approx(q_s, rel=64 * EPS)
+        # and it bends there: the slopes on the two sides differ
+        left, middle, right = (float(law.rate(contact_of(traction=border * f, slip=1.0))[0]) for f in (0.99, 1.0, 1.01))
+        assert abs((right - middle) - (middle - left)) > 0.005 * q_s * 1e-3
+
+
+def test_the_mild_regime_ends_at_ten_and_a_bit() -> None:
+    assert rate(wl.wear_law("usfd"), 10.0) == approx(53.0, rel=8 * EPS)
+    assert rate(wl.wear_law("usfd"), 11.0) == approx(55.0, rel=8 * EPS)
+    assert rate(wl.wear_law("usfd"), 78.26) == approx(55.0 + 61.9, rel=1e-12)
+
+
+def test_the_sign_of_slip_and_traction_together_does_not_matter() -> None:
+    law = wl.wear_law("usfd")
+    assert law.rate(contact_of(traction=-3e8, slip=-0.1)) == law.rate(contact_of(traction=3e8, slip=0.1))
+
+
+@every_set
+@given(st.lists(st.floats(0.0, 300.0), min_size=2, max_size=30))
+def test_the_rate_never_falls_with_the_wear_index_density(fitted_for: str, values: list[float]) -> None:
+    law = wl.wear_law("usfd", fitted_for=fitted_for)
+    assert law.monotone_in == ("wear_index_density",)
+    rates = law.rate(contact_of(traction=np.sort(values) * 1e6, slip=1.0))
+    assert (np.diff(rates) >= 0.0).all()
+
+
+def test_parameters_of_your_own_take_the_place_of_published_ones() -> None:
+    law: Any = wl.wear_law("usfd", m_m="6 ug/m/N", tr_sc=Q(8e7, "Pa"))
+    assert rate(law, 5.0) == approx(30.0, rel=8 * EPS)
+    assert rate(law, 81.0) == approx(55.0 + 61.9, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"m_m": 5.3}, r"usfd: m_m: .*5\.3"),
+        ({"m_m": "5.3 N"}, r"usfd: m_m: got 5\.300 N.*'ug/m/N'"),
+        ({"q_s": "-1 ug/m/mm^2"}, r"q_s: must be greater than zero"),
+        ({"m_c": "nan ug/m/N"}, r"m_c: "),
+        ({"tr_sc": "5 N/mm^2"}, r"tr_sc must not lie below q_s/m_m.*10\.38 N/mm².*got 5\.000 N/mm²"),
+        ({"fitted_for": "brr"}, r"fitted_for: .*'global', 'exact' or 'fastsim'"),
+        ({"fitted_for": 3}, r"fitted_for: "),
+        ({"mm": "5.3 ug/m/N"}, r"mm: unknown field; did you mean 'm_m'\?"),
+    ],
+)
+def test_a_wrong_parameter_is_one_clear_error(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=message):
+        wl.wear_law("usfd", **options)
+
+
+def fits(fitted_for: str, contact: wl.ContactPipeline[wl.TwinDisc]) -> bool:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        contact | wl.wear_law("usfd", fitted_for=fitted_for)  # type: ignore[unused-ignore]
+    assert len(caught) <= 1
+    assert all(issubclass(w.category, wl.CalibrationWarning) for w in caught)
+    return not caught
+
+
+def test_each_set_fits_the_contact_it_was_fitted_for_and_no_other() -> None:
+    rig = wl.TwinDisc.suros()
+    contacts = {
+        "global": rig | wl.contact_model("global"),
+        "means": rig | wl.contact_model("exact") | wl.patch_mean(),
+        "exact": rig | wl.contact_model("exact"),
+        "fastsim": rig | wl.contact_model("fastsim"),
+        "elliptic": rig | wl.contact_model("fastsim", bound="elliptic"),
+    }
+    fitting = {(s, c) for s in TABLE_4 for c, contact in contacts.items() if fits(s, contact)}
+    assert fitting == {("global", "global"), ("global", "means"), ("exact", "exact"), ("fastsim", "fastsim")}
+
+
+def test_the_range_is_that_of_the_tests_up_to_twenty_percent_creepage() -> None:
+    predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
+    conditions: dict[str, Any] = {"max_pressure": Q(1500, "MPa"), "friction_coefficient": 0.46}
+    low, high = wl.wear_law("usfd").valid_range["wear_index_density"]
+    assert low == 0.0
+    # 20 % · 0.46 · the mean of 1500 MPa, to the four digits that a message shows
+    assert high == approx(0.2 * 0.46 * 1.5e9 * np.pi / 4.0, rel=2e-4)
+    predict(creepage=Q(20.0, "%"), **conditions)  # inside: a warning would be an error here
+    with pytest.warns(wl.RangeWarning, match=r"1 of 2 operating points"):
+        predict(creepage=Q([20.0, 20.1], "%"), **conditions)

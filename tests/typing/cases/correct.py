@@ -1,0 +1,49 @@
+"""What a user types, and the types that checkers see."""
+
+from __future__ import annotations
+
+from typing import assert_type
+
+import numpy as np
+
+import wearlaw as wl
+from wearlaw import Q
+
+rig = wl.TwinDisc.suros()
+assert_type(rig, wl.TwinDisc)
+assert_type(wl.contact_model("fastsim", bound="elliptic"), wl.ContactModel)
+assert_type(wl.wear_law("usfd", fitted_for="exact"), wl.WearLaw)
+assert_type(rig | wl.contact_model("exact"), wl.ContactPipeline[wl.TwinDisc])
+assert_type(rig | wl.contact_model("exact") | wl.patch_mean(), wl.ContactPipeline[wl.TwinDisc])
+assert_type(rig | wl.contact_model("exact") | wl.patch_mean() | wl.wear_law("brr"), wl.Pipeline[wl.TwinDisc])
+
+predict = rig | wl.contact_model("exact") | wl.wear_law("usfd")
+assert_type(predict, wl.Pipeline[wl.TwinDisc])
+
+result = predict(normal_force=Q(7.4143, "kN"), creepage=Q(1, "%"), friction_coefficient=0.46)
+assert_type(result, wl.Prediction)
+assert_type(result.wear_rate, wl.Quantity)
+assert_type(result.tangential_force, wl.Quantity)
+assert_type(result.averaged_wear_index, wl.Quantity)
+assert_type(result.contact, wl.Contact)
+assert_type(result.contact.pressure, wl.Array)
+assert_type(result.depth_per_distance("disc_1"), wl.Quantity)
+assert_type(result.mass_lost(over=Q(10, "km"), body="disc_1"), wl.Quantity)
+assert_type(result.mass_lost(over="10 km", body="disc_1"), wl.Quantity)
+assert_type(result.profile_area_rate("disc_1"), wl.Quantity)
+
+predict(max_pressure=Q(1500, "MPa"), creepage=Q(np.geomspace(1e-5, 0.25, 500), ""), friction_coefficient=0.46)
+predict(normal_force_per_width="741 kN/m", creepage="1 %", friction_coefficient=np.array([0.3, 0.4]))
+predict(normal_force="7 kN", creepage="1 %", friction_coefficient=[0.3, 0.4], traction_coefficient=0.45)
+
+contact = rig | wl.contact_model("exact")
+assert_type(contact(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4), wl.ContactSolution)
+
+wl.TwinDisc(
+    disc_1=wl.Disc(diameter=Q(47, "mm"), material=wl.steel()),
+    disc_2=wl.Disc(diameter="47 mm", material=wl.steel(poisson_ratio=0.3, youngs_modulus="210 GPa")),
+    track_width=Q(10, "mm"),
+    rolling_speed=Q(1, "m/s"),
+)
+wl.TwinDisc.suros(diameter="50 mm", track_width=Q(8, "mm"), rotational_speed="300 rpm")
+assert_type(wl.parse("47 mm"), wl.Quantity)

@@ -1,0 +1,45 @@
+"""Mistakes that checkers catch before the program runs."""
+
+# ruff: noqa: B018
+
+from __future__ import annotations
+
+import wearlaw as wl
+from wearlaw import Q
+
+rig = wl.TwinDisc.suros()
+model = wl.contact_model("exact")
+law = wl.wear_law("usfd")
+predict = rig | model | law
+
+rig | law  # expect-error
+rig | wl.patch_mean()  # expect-error
+model | law  # expect-error
+law | model  # expect-error
+wl.patch_mean() | law  # expect-error
+rig | model | model  # expect-error
+rig | model | "usfd"  # expect-error
+predict | law  # expect-error
+predict | wl.patch_mean()  # expect-error
+
+wl.Disc(diameter=0.047, material=wl.steel())  # expect-error
+wl.Disc(diameter="47 mm")  # expect-error
+wl.Disc(diameter="47 mm", material="steel")  # expect-error
+wl.TwinDisc.suros(track_width=0.01)  # expect-error
+wl.steel(youngs_modulus=210e9)  # expect-error
+wl.steel(poison_ratio=0.3)  # expect-error
+Q("47", 3)  # expect-error
+
+predict(normal_force=Q(7, "kN"), creepage=0.01, friction_coefficient=0.4)  # expect-error
+predict(normal_force=7000, creepage="1 %", friction_coefficient=0.4)  # expect-error
+predict(normal_force="7 kN", friction_coefficient=0.4)  # expect-error
+predict(normal_force="7 kN", creepage="1 %")  # expect-error
+predict(normal_force="7 kN", creepge="1 %", friction_coefficient=0.4)  # expect-error
+predict("7 kN", creepage="1 %", friction_coefficient=0.4)  # expect-error
+(rig | model)(normal_force="7 kN", friction_coefficient=0.4)  # expect-error
+
+result = predict(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4)
+result.wear  # expect-error
+result.mass_lost(over=10, body="disc_1")  # expect-error
+result.depth_per_distance()  # expect-error
+(rig | model)(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4).wear_rate  # expect-error
