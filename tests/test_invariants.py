@@ -19,7 +19,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pytest import approx
 
 import wearlaw as wl
 from tests.strategies import (
@@ -80,7 +79,7 @@ def test_the_bound_is_the_friction_coefficient_times_the_pressure(name: str, pro
     for contact in solutions(name, problem):
         # a node that lies within rounding of an edge keeps a bound of √EPS/2, where the pressure may be zero
         edge = math.sqrt(EPS) * float(problem.friction_coefficient * problem.max_pressure)
-        assert contact.traction_bound == approx(
+        assert contact.traction_bound == pytest.approx(
             problem.friction_coefficient * contact.pressure, rel=16 * EPS, abs=edge if "elliptic" in name else 0.0
         )
 
@@ -90,7 +89,7 @@ def test_the_bound_is_the_friction_coefficient_times_the_pressure(name: str, pro
 def test_the_bound_carries_friction_times_the_load(name: str, problem: wl.LineProblem) -> None:
     contact = MODELS[name].solve(problem)
     total = float(contact.sum_over_nodes(contact.traction_bound * contact.area))
-    assert total == approx(float(problem.friction_coefficient * problem.normal_force), rel=GRAZING)
+    assert total == pytest.approx(float(problem.friction_coefficient * problem.normal_force), rel=GRAZING)
 
 
 @pytest.mark.parametrize("name", claiming("stick"))
@@ -123,10 +122,10 @@ def test_slip_dissipates_the_energy_that_the_creepage_feeds_in(name: str, proble
     contact = MODELS[name].solve(problem)
     dissipated = float(contact.sum_over_nodes(contact.wear_index_density * contact.area))
     quadrature = 0.0 if name in SMOOTH_DISSIPATION else GRAZING
-    assert dissipated == approx(
+    assert dissipated == pytest.approx(
         float(contact.tangential_force * problem.creepage), rel=quadrature + 64.0 * EPS / slip_share(contact)
     )
-    assert contact.wear_index == approx(contact.tangential_force * problem.creepage, rel=EPS)
+    assert contact.wear_index == pytest.approx(contact.tangential_force * problem.creepage, rel=EPS)
 
 
 CONVERGENCE_ORDER = {"exact": 1.5, "fastsim-parabolic-line": 1.0, "fastsim-elliptic-line": 1.0}
@@ -147,7 +146,7 @@ def test_the_dissipation_in_uniform_cells_converges_in_its_order(name: str) -> N
         dissipated = contact.sum_over_nodes(contact.wear_index_density * contact.area)
         errors.append(np.abs(dissipated / contact.wear_index - 1.0).mean())
     slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
-    assert slope == approx(CONVERGENCE_ORDER[name], abs=0.1)
+    assert slope == pytest.approx(CONVERGENCE_ORDER[name], abs=0.1)
     assert errors[-1] < 2e-3
 
 
@@ -161,7 +160,7 @@ def test_everything_passes_continuously_into_full_slip(name: str, problem: wl.Li
     model = MODELS[name]
     below, above = (model.solve(with_creepage(problem, full * (1.0 + side))) for side in (-gap, gap))
     limit = float(problem.friction_coefficient * problem.normal_force)
-    assert float(above.tangential_force) == approx(limit, rel=4 * EPS)
+    assert float(above.tangential_force) == pytest.approx(limit, rel=4 * EPS)
     # Carter lacks gap² of μP, FASTSIM gap³.
     assert limit * (1.0 - 1.01 * gap**2 - 8 * EPS) <= float(below.tangential_force) <= limit * (1.0 + 4 * EPS)
     if not isinstance(model, wl.LineContactModel):
@@ -173,7 +172,7 @@ def test_everything_passes_continuously_into_full_slip(name: str, problem: wl.Li
     # What sticks is a·2·gap long at the leading edge, where the traction is at most that of its end; the slip of
     # Carter, k √(y(y-2c)) with y = a + x and c = gap·a, differs by at most 2 k c from k (y + c).
     bound = float(above.traction_bound.max())
-    assert above.traction == approx(above.traction_bound, rel=4 * EPS)
+    assert above.traction == pytest.approx(above.traction_bound, rel=4 * EPS)
     assert np.abs(above.traction - below.traction).max() <= 4.0 * bound * math.sqrt(gap)
     assert np.abs(above.slip - below.slip).max() <= 4.0 * full * gap + 8 * EPS * full
 
@@ -183,8 +182,8 @@ def test_everything_passes_continuously_into_full_slip(name: str, problem: wl.Li
 def test_the_mean_slip_is_the_creepage_in_full_slip(name: str, problem: wl.LineProblem, excess: float) -> None:
     creepage = FULL_SLIP[name] * saturation_creepage(problem) * (1.0 + excess)
     contact = MODELS[name].solve(with_creepage(problem, creepage))
-    assert float(contact.mean_slip) == approx(creepage, rel=64 * EPS)
-    assert float(contact.stick_ratio) == approx(0.0, abs=64 * EPS)
+    assert float(contact.mean_slip) == pytest.approx(creepage, rel=64 * EPS)
+    assert float(contact.stick_ratio) == pytest.approx(0.0, abs=64 * EPS)
 
 
 @pytest.mark.parametrize("name", claiming("saturation", FULL_SLIP))
@@ -193,7 +192,7 @@ def test_the_mean_slip_is_continuous_at_full_slip(name: str, problem: wl.LinePro
     full = FULL_SLIP[name] * saturation_creepage(problem)
     contact = MODELS[name].solve(with_creepage(problem, full * (1.0 - gap)))
     # 2 gap of slip at most is missing on the 2 gap a that stick and in what slips; √ near the border: GRAZING
-    assert float(contact.mean_slip) == approx(full, rel=4.0 * gap + GRAZING)
+    assert float(contact.mean_slip) == pytest.approx(full, rel=4.0 * gap + GRAZING)
 
 
 # --- Total traction --------------------------------------------------------------------------------------------
@@ -224,7 +223,7 @@ def test_the_share_of_the_limit_depends_on_the_reduced_creepage_alone(
         float(MODELS[name].solve(p).tangential_force / (p.friction_coefficient * p.normal_force))
         for p in (problem, alike)
     ]
-    assert shares[0] == approx(shares[1], rel=32 * EPS)
+    assert shares[0] == pytest.approx(shares[1], rel=32 * EPS)
 
 
 @pytest.mark.parametrize("name", claiming("initial_slope"))
@@ -236,7 +235,7 @@ def test_traction_begins_with_the_slope_of_the_elastic_half_space(
     force = float(MODELS[name].solve(with_creepage(problem, creepage)).tangential_force / problem.track_width)
     slope = float(0.5 * math.pi * problem.effective_modulus * problem.half_width)
     # the next term of T is of relative size d/2 (Carter), 2d/3 (parabola), d² (ellipse)
-    assert force / creepage == approx(slope, rel=reduced + 16 * EPS)
+    assert force / creepage == pytest.approx(slope, rel=reduced + 16 * EPS)
 
 
 @given(problem=line_problems(), reduced=log_uniform(3.0, 1e3))
@@ -245,7 +244,7 @@ def test_exact_and_elliptic_fastsim_approach_the_same_traction(problem: wl.LineP
     nodes = uniform_cells(problem.half_width, 500)
     exact, fastsim = (LINE_MODELS[name].at(at, nodes) for name in ("exact", "fastsim-elliptic-line"))
     slipping = fastsim.slip != 0.0
-    assert fastsim.traction[slipping] == approx(exact.traction[slipping], rel=16 * EPS)
+    assert fastsim.traction[slipping] == pytest.approx(exact.traction[slipping], rel=16 * EPS)
     # 1 - (2/π)(atan κ + κ/(1+κ²)) < (4/3π)/κ³, and κ = (π/2) ξ/ξ_sat
     kappa = 0.5 * math.pi * reduced
     missing = 1.0 - float(fastsim.tangential_force / exact.tangential_force)
@@ -260,12 +259,12 @@ def test_exact_and_elliptic_fastsim_approach_the_same_traction(problem: wl.LineP
 @given(problem=line_problems())
 def test_nodes_stand_for_the_whole_patch_and_its_load(name: str, problem: wl.LineProblem) -> None:
     contact = MODELS[name].solve(problem)
-    assert float(contact.patch_area) == approx(float(problem.patch_area), rel=64 * EPS)
+    assert float(contact.patch_area) == pytest.approx(float(problem.patch_area), rel=64 * EPS)
     load = float(contact.sum_over_nodes(contact.pressure * contact.area))
-    assert load == approx(float(problem.normal_force), rel=GRAZING)
+    assert load == pytest.approx(float(problem.normal_force), rel=GRAZING)
     traction = float(contact.sum_over_nodes(contact.traction * contact.area))
     limit = float(problem.friction_coefficient * problem.normal_force)
-    assert traction == approx(float(contact.tangential_force), abs=GRAZING * limit)
+    assert traction == pytest.approx(float(contact.tangential_force), abs=GRAZING * limit)
 
 
 # --- Wear ------------------------------------------------------------------------------------------------------
@@ -323,32 +322,32 @@ def test_the_exemptions_are_those_that_are_shown_to_be_needed_here(name: str) ->
 def test_the_printed_slip_dissipates_three_times_what_is_fed_in() -> None:
     contact = suros("exact-as_printed", 0.1)
     dissipated = float(contact.sum_over_nodes(contact.wear_index_density * contact.area))
-    assert dissipated / float(contact.wear_index) == approx(3.0, abs=0.05)
+    assert dissipated / float(contact.wear_index) == pytest.approx(3.0, abs=0.05)
 
 
 def test_the_printed_slip_is_that_of_full_slip_above_saturation() -> None:
-    assert suros("exact-as_printed", 2.0).slip == approx(suros("exact", 2.0).slip, rel=4 * EPS)
+    assert suros("exact-as_printed", 2.0).slip == pytest.approx(suros("exact", 2.0).slip, rel=4 * EPS)
 
 
 @pytest.mark.parametrize(("percent", "missing"), [(2.0, 2.2e-2), (20.0, 2.6e-5)])
 @pytest.mark.parametrize("name", ["fastsim-elliptic-line", "global-of-elliptic"])
 def test_the_elliptic_bound_never_lets_the_whole_patch_slip(name: str, percent: float, missing: float) -> None:
     contact = suros(name, percent)
-    assert 1.0 - float(contact.tangential_force) / (0.46 * 7414.3) == approx(missing, rel=0.03)
+    assert 1.0 - float(contact.tangential_force) / (0.46 * 7414.3) == pytest.approx(missing, rel=0.03)
 
 
 @pytest.mark.parametrize("name", exempt("initial_slope"))
 def test_the_flexibility_of_a_long_ellipse_has_another_initial_slope(name: str) -> None:
     contact, exact = suros(name, 1e-5), suros("exact", 1e-5)
     # L = 4a/(πE*) over 32a/(3π²E*)
-    assert float(contact.tangential_force / exact.tangential_force) == approx(3.0 * math.pi / 8.0, rel=1e-5)
+    assert float(contact.tangential_force / exact.tangential_force) == pytest.approx(3.0 * math.pi / 8.0, rel=1e-5)
 
 
 @pytest.mark.parametrize("name", exempt("stick"))
 def test_the_one_cell_slips_below_its_bound(name: str) -> None:
     contact = suros(name, 0.1)
     assert float(contact.traction[0]) < 0.2 * float(contact.traction_bound[0])
-    assert float(contact.slip[0]) == approx(0.001, rel=EPS)
+    assert float(contact.slip[0]) == pytest.approx(0.001, rel=EPS)
 
 
 def test_a_batch_keeps_the_invariants_point_by_point() -> None:
@@ -363,4 +362,4 @@ def test_a_batch_keeps_the_invariants_point_by_point() -> None:
             alone = model.solve(problem[index])
             for field in ("tangential_force", "wear_index", "patch_area", "mean_slip"):
                 # the nodes of a batch may hold zones without length, which change the order of a sum
-                assert getattr(together, field)[index] == approx(getattr(alone, field), rel=16 * EPS)
+                assert getattr(together, field)[index] == pytest.approx(getattr(alone, field), rel=16 * EPS)

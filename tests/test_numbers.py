@@ -7,13 +7,13 @@ by an integral that the test computes on its own (tests/reference.py).
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
-from pytest import approx
 from scipy import integrate, optimize
 
 import wearlaw as wl
@@ -63,7 +63,7 @@ def point(percent: float) -> reference.Point:
 def printed(text: str) -> Any:
     """Return what a number that was rounded to its printed digits may have been."""
     decimals = len(text.partition(".")[2])
-    return approx(float(text), abs=0.5 * 10.0**-decimals if decimals else 1e-14)
+    return pytest.approx(float(text), abs=0.5 * 10.0**-decimals if decimals else 1e-14)
 
 
 def usfd(contact_model: str, percent: float, **options: str) -> wl.Prediction:
@@ -116,15 +116,15 @@ def test_the_creepage_table_meets_an_integral_of_its_own(
     solution, got = solve(point(percent)), usfd(contact_model, percent, **options)
     # Both integrals end at rounding: 1e-13 is what the reference is asked for, and 1e-12 leaves room for a
     # zone of 0.05 half widths at 0.1 %, in which positions are exact to 20 roundings.
-    assert got.tangential_force.m == approx(solution.force * 0.01, rel=1e-14)
-    assert got.wear_rate.m == approx(reference.usfd_mean(solution, 5.3, 55.0, 61.9, 77.26), rel=1e-12)
+    assert got.tangential_force.m == pytest.approx(solution.force * 0.01, rel=1e-14)
+    assert got.wear_rate.m == pytest.approx(reference.usfd_mean(solution, 5.3, 55.0, 61.9, 77.26), rel=1e-12)
 
 
 @pytest.mark.parametrize("percent", [row[0] for row in TABLE])
 def test_the_global_column_is_the_law_of_the_mean_wear_index(percent: float) -> None:
     w = reference.exact(point(percent)).force * 10e-3 * percent / 100.0 / AREA
-    assert usfd("global", percent).wear_index_density.m == approx(w, rel=1e-14)
-    assert usfd("global", percent).wear_rate.m == approx(usfd_rate(w), rel=1e-13)
+    assert usfd("global", percent).wear_index_density.m == pytest.approx(w, rel=1e-14)
+    assert usfd("global", percent).wear_rate.m == pytest.approx(usfd_rate(w), rel=1e-13)
 
 
 def test_the_reference_meets_a_second_integral_in_another_variable() -> None:
@@ -138,8 +138,8 @@ def test_the_reference_meets_a_second_integral_in_another_variable() -> None:
     solution = reference.exact(point(15))
     breaks = [math.acos(v - 1.0) for w in (55.0 / 5.3, 77.26) for v in solution.density_crossings(w * 1e6)]
     edges = [0.0, *sorted(breaks), math.pi]
-    total = sum(integrate.quad(rate, low, high, epsrel=1e-13)[0] for low, high in zip(edges, edges[1:], strict=False))
-    assert reference.usfd_mean(solution, 5.3, 55.0, 61.9, 77.26) == approx(total, rel=1e-13)
+    total = sum(integrate.quad(rate, low, high, epsrel=1e-13)[0] for low, high in itertools.pairwise(edges))
+    assert reference.usfd_mean(solution, 5.3, 55.0, 61.9, 77.26) == pytest.approx(total, rel=1e-13)
 
 
 def test_lengths_areas_and_saturation_creepages_are_the_printed_ones() -> None:
@@ -161,9 +161,11 @@ def test_lengths_areas_and_saturation_creepages_are_the_printed_ones() -> None:
 
 def test_the_load_and_the_maximum_pressure_of_the_paper_go_together() -> None:
     contact = RIG | wl.contact_model("exact")
-    other = {"creepage": Q(1, "%"), "friction_coefficient": FRICTION}
+    other: dict[str, Any] = {"creepage": Q(1, "%"), "friction_coefficient": FRICTION}
     assert contact(max_pressure=Q(1500, "MPa"), **other).normal_force_per_width.to("kN/m").m == printed("741.43")
-    assert contact(normal_force_per_width="741.43 kN/m", **other).max_pressure.to("MPa").m == approx(1500.0, rel=1e-5)
+    assert contact(normal_force_per_width="741.43 kN/m", **other).max_pressure.to("MPa").m == pytest.approx(
+        1500.0, rel=1e-5
+    )
 
 
 # --- BRR -------------------------------------------------------------------------------------------------------
@@ -192,8 +194,8 @@ def test_brr_gives_its_rates_on_the_patch_of_the_paper(wear_index: float, expect
     [(50.0, 0.25 * 50.0), (99.9, 0.25 * 99.9), (150.0, 25.0), (199.9, 25.0), (700.0, 1.19 * 700.0 - 154.0)],
 )
 def test_brr_predicts_the_section_loss_of_table_1(wear_index: float, section: float) -> None:
-    assert brr(wear_index).wear_index.m == approx(wear_index, rel=1e-14)
-    assert brr(wear_index).profile_area_rate("disc_1").m_as("mm^2/km") == approx(section / 47.0, rel=1e-13)
+    assert brr(wear_index).wear_index.m == pytest.approx(wear_index, rel=1e-14)
+    assert brr(wear_index).profile_area_rate("disc_1").m_as("mm^2/km") == pytest.approx(section / 47.0, rel=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -202,7 +204,7 @@ def test_brr_predicts_the_section_loss_of_table_1(wear_index: float, section: fl
 def test_brr_loses_the_mass_that_the_section_loss_means(wear_index: float, mass: float) -> None:
     # ρ π times Table 1, in µg per metre rolled; the coefficients are rounded to four digits.
     lost = brr(wear_index).mass_lost(over="1 m", body="disc_1")
-    assert lost.m_as("ug") == approx(mass, rel=3e-4)
+    assert lost.m_as("ug") == pytest.approx(mass, rel=3e-4)
 
 
 def test_brr_is_a_law_of_the_disc_diameter_in_section_but_not_in_mass() -> None:
@@ -212,13 +214,13 @@ def test_brr_is_a_law_of_the_disc_diameter_in_section_but_not_in_mass() -> None:
     )
     conditions: dict[str, Any] = {"creepage": Q(1, "%"), "traction_coefficient": 0.5, **CONDITIONS}
     one, two = small(**conditions), large(**conditions)
-    assert one.mass_lost("1 km", "disc_1").m == approx(two.mass_lost("1 km", "disc_1").m, rel=1e-14)
-    assert one.profile_area_rate("disc_1").m == approx(2.0 * two.profile_area_rate("disc_1").m, rel=1e-14)
+    assert one.mass_lost("1 km", "disc_1").m == pytest.approx(two.mass_lost("1 km", "disc_1").m, rel=1e-14)
+    assert one.profile_area_rate("disc_1").m == pytest.approx(2.0 * two.profile_area_rate("disc_1").m, rel=1e-14)
 
 
 def test_brr_meets_usfd_at_797_newtons() -> None:
     def difference(wear_index: float) -> float:
-        law_rates = []
+        law_rates: list[float] = []
         for name in ("brr", "usfd"):
             pipeline = RIG | wl.contact_model("global") | wl.wear_law(name)
             # 20 % creepage, so that Tγ/A moves through the catastrophic regime with T
@@ -232,8 +234,8 @@ def test_brr_meets_usfd_at_797_newtons() -> None:
     slope, offset = density * math.pi * 1.19, density * math.pi * 154.0
     by_hand = ((61.9 * 77.26 - 55.0) * AREA - offset) / (61.9 - slope)
     root = optimize.brentq(difference, 500.0, 1000.0, xtol=1e-9)
-    assert root == approx(797.0, abs=0.5)
-    assert root == approx(by_hand, rel=1e-9)
+    assert root == pytest.approx(797.0, abs=0.5)
+    assert root == pytest.approx(by_hand, rel=1e-9)
     assert difference(796.0) > 0.0 > difference(798.0)
     assert all(difference(wear_index) > 0.0 for wear_index in np.linspace(201.0, 796.0, 20))
 
@@ -253,7 +255,7 @@ def test_kth_gives_its_rates_at_one_percent(coefficient: str, expected: str) -> 
     got = pipeline(creepage=Q(1, "%"), **CONDITIONS).wear_rate.m
     mean_pressure = 7414.3 / (AREA * 1e-6)
     assert got == printed(expected)
-    assert got == approx(7850.0 * K[coefficient][1] * mean_pressure * 0.01 / 2.625e9 * 1e3, rel=1e-14)
+    assert got == pytest.approx(7850.0 * K[coefficient][1] * mean_pressure * 0.01 / 2.625e9 * 1e3, rel=1e-14)
 
 
 @pytest.mark.parametrize("coefficient", ["low", "mid", "high"])
@@ -286,7 +288,7 @@ def test_kth_takes_the_right_field_on_both_sides_of_every_border(
     )
     rate = float(wl.wear_law("kth", coefficient=coefficient).rate(contact)[0])
     expected = 7850.0 * K[coefficient][field] * pressure * slip_speed / 2.625e9
-    assert rate == approx(expected, rel=1e-14)
+    assert rate == pytest.approx(expected, rel=1e-14)
 
 
 @pytest.mark.parametrize("percent", [row[0] for row in TABLE])
@@ -298,7 +300,7 @@ def test_kth_on_cells_meets_an_integral_of_its_own(
     got = pipeline(creepage=Q(percent, "%"), **CONDITIONS).wear_rate.m
     speed = 400.0 * 2.0 * math.pi / 60.0 * 0.0235
     solution = solve(dataclasses.replace(point(percent), speed=speed))
-    assert got == approx(reference.kth_mean(solution, K["mid"]), rel=1e-12)
+    assert got == pytest.approx(reference.kth_mean(solution, K["mid"]), rel=1e-12)
 
 
 # --- Thresholds of section 5.2 ---------------------------------------------------------------------------------
@@ -313,7 +315,7 @@ def test_severe_wear_by_slip_speed_begins_above_20_percent_creepage() -> None:
     assert border == printed("20.3")
     kth = RIG | wl.contact_model("global") | wl.wear_law("kth")
     below, above = (kth(creepage=Q(border + d, "%"), **CONDITIONS).wear_rate.m for d in (-1e-6, 1e-6))
-    assert above / below == approx(35.0 / 5.5, rel=1e-6)
+    assert above / below == pytest.approx(35.0 / 5.5, rel=1e-6)
 
 
 def test_seizure_begins_at_a_mean_pressure_of_2356_kilonewtons_per_metre() -> None:
@@ -329,10 +331,10 @@ def test_seizure_begins_at_a_mean_pressure_of_2356_kilonewtons_per_metre() -> No
         return bool(above > 1.01 * below)
 
     mean = math.pi * (4.0 / math.pi * 2.1e9) ** 2 * RADIUS / MODULUS / 1e3
-    assert mean == approx(2356.0, abs=0.5)
+    assert mean == pytest.approx(2356.0, abs=0.5)
     assert jumps_at(mean, "global")
     maximum = math.pi * 2.1e9**2 * RADIUS / MODULUS / 1e3
-    assert maximum == approx(1453.0, abs=0.5)
+    assert maximum == pytest.approx(1453.0, abs=0.5)
     assert not jumps_at(maximum, "global")
 
 
@@ -351,8 +353,8 @@ def test_the_three_laws_stand_to_each_other_as_section_5_1_1_says() -> None:
     assert all(rates(w, "brr") > rates(w, "usfd") for w in severe)
     assert all(rates(w, "kth", coefficient="high") > rates(w, "usfd") for w in severe)
     crossing = optimize.brentq(lambda w: rates(w, "kth", coefficient="mid") - rates(w, "usfd"), 70.0, 200.0)
-    assert crossing == approx(97.0, abs=0.5)
+    assert crossing == pytest.approx(97.0, abs=0.5)
     # mild: "close" is within a factor of 1.6 of USFD for BRR (6.165 against 5.3 per N) and KTH's mid range
     for w in (45.0, 50.0, 60.0):
-        assert rates(w, "brr") == approx(6.165 / 5.3 * rates(w, "usfd"), rel=3e-4)
+        assert rates(w, "brr") == pytest.approx(6.165 / 5.3 * rates(w, "usfd"), rel=3e-4)
         assert rates(w, "kth", coefficient="low") < rates(w, "usfd")

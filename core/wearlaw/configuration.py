@@ -32,7 +32,7 @@ class Configuration(BaseModel):
 
     if not TYPE_CHECKING:  # checkers keep the signature that pydantic derives from the fields
 
-        def __init__(self, **fields: Any) -> None:
+        def __init__(self, /, **fields: Any) -> None:
             try:
                 super().__init__(**fields)
             except ValidationError as error:
@@ -92,7 +92,7 @@ def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
     if isinstance(cause, Exception):
         return str(cause)
     if details["type"] == "extra_forbidden":
-        known = list(model.model_fields)
+        known = [field.alias or name for name, field in model.model_fields.items()]
         hint = did_you_mean(str(details["loc"][-1]), known)
         return f"unknown field;{hint} The fields are: {', '.join(known) or 'none'}"
     if details["type"] == "missing":

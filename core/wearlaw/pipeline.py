@@ -172,11 +172,11 @@ def _warn_of_range(law: WearLaw, problem: LineProblem, totals: ContactTotals, st
     for name, (low, high) in law.valid_range.items():
         outside = (values[name] < low) | (values[name] > high)
         if outside.any():
-            bounds = [repr(from_si(bound, UNITS[name])) for bound in (low, high)]
-            worst = values[name][outside].max() if (values[name] > high).any() else values[name].min()
+            farthest = values[name].max() if (values[name] > high).any() else values[name].min()
+            shown = [repr(from_si(value, UNITS[name])) for value in (low, high, farthest)]
             warnings.warn(
-                f"wear law '{law.name}' is stated for a mean {name.replace('_', ' ')} from {bounds[0]} to {bounds[1]};"
-                f" {outside.sum()} of {outside.size} operating points lie outside, as far as {from_si(worst, UNITS[name])!r}",
+                f"wear law '{law.name}' is stated for a mean {name.replace('_', ' ')} from {shown[0]} to {shown[1]};"
+                f" {outside.sum()} of {outside.size} operating points lie outside, as far as {shown[2]}",
                 RangeWarning,
                 stacklevel=stacklevel + 1,
             )

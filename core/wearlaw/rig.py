@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from wearlaw import hertz
 from wearlaw.conditions import TwinDiscConditions, condition_arrays
 from wearlaw.configuration import Configuration
-from wearlaw.errors import CompositionError, ConditionsError, InputError, RangeWarning
+from wearlaw.errors import CompositionError, ConditionsError, InputError, RangeWarning, UnitError
 from wearlaw.models import ContactModel
 from wearlaw.records import LineProblem
 from wearlaw.units import (
@@ -24,6 +24,7 @@ from wearlaw.units import (
     Stress,
     Unit,
     from_si,
+    parse,
     scalar_si,
 )
 
@@ -137,7 +138,7 @@ class TwinDisc(Configuration):
         disc_1: Disc | None = None,
         disc_2: Disc | None = None,
         track_width: QuantityLike = "10 mm",
-        rotational_speed: QuantityLike = "400 rpm",
+        rotational_speed: QuantityLike | None = None,
         rolling_speed: QuantityLike | None = None,
     ) -> TwinDisc:
         """Return the rig of the University of Sheffield: steel discs of 47 mm, a 10 mm track, 400 rpm.
@@ -162,7 +163,9 @@ class TwinDisc(Configuration):
         standard = Disc(diameter=diameter, material=material or steel())
         disc_1, disc_2 = disc_1 or standard, disc_2 or standard
         if rolling_speed is None:
-            rolling_speed = _surface_speed(disc_1, rotational_speed)
+            rolling_speed = _surface_speed(disc_1, "400 rpm" if rotational_speed is None else rotational_speed)
+        elif rotational_speed is not None:
+            raise InputError("rolling_speed: follows from rotational_speed; give one of the two")
         return cls(
             disc_1=disc_1,
             disc_2=disc_2,
@@ -272,6 +275,12 @@ def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
     if np.isinf(diameter):
         raise InputError("rolling_speed: a flat disc_1 has no rotational speed; give rolling_speed instead")
     angular = float(Unit("rpm").si(rotational_speed, "rotational_speed"))
+    unit = str((parse(rotational_speed) if isinstance(rotational_speed, str) else rotational_speed).units)
+    if not any(angle in unit for angle in ("radian", "degree", "turn", "revolutions")):
+        raise UnitError(
+            f"rotational_speed: got a value in '{unit}', which does not say whether it counts revolutions or radians;"
+            ' give it in rpm or rad/s, such as "400 rpm"'
+        )
     return Q(angular * 0.5 * diameter, "m/s")
 
 

@@ -15,6 +15,7 @@ from wearlaw import plugins
 from wearlaw.arrays import Array
 from wearlaw.case import Case, labels
 from wearlaw.errors import CompositionError, InputError, WearlawWarning
+from wearlaw.models import ContactModel
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
 from wearlaw.units import from_si
@@ -121,13 +122,27 @@ def evaluations(case: Case) -> int:
 def provenance(case: Case) -> dict[str, Any]:
     """Return what a result came from: versions of wearlaw and of each plugin used, and the case."""
     found = plugins.installed()
-    used = {model.name: found.contact_models.origin(model.name) for model in case.contact_models}
-    used |= {law.name: found.wear_laws.origin(law.name) for law in case.wear_laws}
+    contact_models = {nested.name for model in case.contact_models for nested in _with_nested(model)}
+    origins = {
+        "contact_models": {name: found.contact_models.origin(name) for name in sorted(contact_models)},
+        "wear_laws": {name: found.wear_laws.origin(name) for name in sorted({law.name for law in case.wear_laws})},
+    }
     return {
         "wearlaw": __version__,
-        "models": {name: f"{origin.distribution} {origin.version}" for name, origin in used.items()},
+        **{
+            kind: {name: f"{origin.distribution} {origin.version}" for name, origin in models.items()}
+            for kind, models in origins.items()
+        },
         "case": case.model_dump(mode="json", by_alias=True, exclude_none=True),
     }
+
+
+def _with_nested(model: ContactModel) -> Iterator[ContactModel]:
+    """Give a contact model and those that its fields hold, such as the one that gives the global model its total."""
+    yield model
+    for _, value in model:
+        if isinstance(value, ContactModel):
+            yield from _with_nested(value)
 
 
 def _pairs(case: Case, notes: Notes) -> list[Pair]:

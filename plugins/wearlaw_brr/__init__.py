@@ -36,13 +36,13 @@ class BRR(wl.WearLaw):
     monotone_in: ClassVar[tuple[str, ...]] = ("wear_index",)
 
     mild_slope: SectionPerForce = Field(default="0.25 mm^3/km/N", validate_default=True)
-    """Slope of the mild regime, section × D over Tγ [m³/m/N]."""
+    """Slope of the mild regime, section × D over Tγ [mm³/km/N]."""
     plateau: Section = Field(default="25 mm^3/km", validate_default=True)
-    """Section × D between the two borders [m³/m]."""
+    """Section × D between the two borders [mm³/km]."""
     severe_slope: SectionPerForce = Field(default="1.19 mm^3/km/N", validate_default=True)
-    """Slope of the severe regime, section × D over Tγ [m³/m/N]."""
+    """Slope of the severe regime, section × D over Tγ [mm³/km/N]."""
     severe_offset: Section = Field(default="154 mm^3/km", validate_default=True)
-    """What the severe regime takes off from its slope [m³/m]."""
+    """What the severe regime takes off from its slope [mm³/km]."""
     mild_limit: Force = Field(default="100 N", validate_default=True)
     """Tγ at which the plateau begins [N]."""
     severe_limit: Force = Field(default="200 N", validate_default=True)

@@ -58,13 +58,13 @@ class USFD(wl.WearLaw):
     """The contact solution to which the parameters were fitted; it also chooses the published set that gives
     the parameters which are not given by hand."""
     m_m: Slope
-    """Slope of the mild regime [kg/m/N]."""
+    """Slope of the mild regime [µg/m/N]."""
     q_s: WearRate
-    """Wear rate of the severe regime [kg/m/m²]."""
+    """Wear rate of the severe regime [µg/m/mm²]."""
     m_c: Slope
-    """Slope of the catastrophic regime [kg/m/N]."""
+    """Slope of the catastrophic regime [µg/m/N]."""
     tr_sc: WearIndexDensity
-    """Tγ/A at the transition from the severe to the catastrophic regime [N/m²]."""
+    """Tγ/A at the transition from the severe to the catastrophic regime [N/mm²]."""
 
     @model_validator(mode="before")
     @classmethod

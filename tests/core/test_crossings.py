@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pytest import approx
 
 import wearlaw as wl
 from tests.strategies import EPS, LINE_MODELS, line_problems, log_uniform, saturation_creepage, with_creepage
@@ -59,7 +58,7 @@ def test_the_pressure_is_crossed_at_the_root_of_hertz(problem: wl.LineProblem, s
     root = float(problem.half_width) * math.sqrt((1.0 - share) * (1.0 + share))
     # a relative rounding of p moves x by p / |p'| of it, a²/x - x
     tolerance = 16 * EPS * (float(problem.half_width) ** 2 / root)
-    assert x[0] == approx([-root, root], abs=tolerance)
+    assert x[0] == pytest.approx([-root, root], abs=tolerance)
 
 
 @given(problem=line_problems(), share=st.floats(0.01, 0.99))
@@ -69,7 +68,9 @@ def test_the_slip_speed_is_crossed_at_the_root_of_the_slip(problem: wl.LineProbl
     full = one(with_creepage(problem, reduced * saturation))
     speed = (reduced - 1.0 + 2.0 * share) * saturation * float(problem.rolling_speed)
     theta, x = find("exact", full, {"slip_speed": (speed,)})
-    assert x[0, 0] == approx(float(problem.half_width) * (2.0 * share - 1.0), abs=32 * EPS * float(problem.half_width))
+    assert x[0, 0] == pytest.approx(
+        float(problem.half_width) * (2.0 * share - 1.0), abs=32 * EPS * float(problem.half_width)
+    )
     assert theta[0, 1] == NONE  # a rising variable is crossed once
 
 
@@ -86,7 +87,7 @@ def test_at_every_crossing_the_variable_has_its_breakpoint(name: str, reduced: f
     theta, x = find(name, problem, {"wear_index_density": (breakpoint_,)})
     found = theta[0] < NONE
     at = model.fields(problem[..., None], x[:, found])
-    assert (at.traction * at.slip)[0] == approx(np.full(found.sum(), breakpoint_), rel=1e-9)
+    assert (at.traction * at.slip)[0] == pytest.approx(np.full(found.sum(), breakpoint_), rel=1e-9)
     # and there are as many as changes of sign on a grid of 500
     changes = int(np.diff(np.signbit(values - breakpoint_)).sum())
     assert found.sum() >= changes
@@ -99,7 +100,7 @@ def test_a_hump_between_two_samples_is_found(gap: float) -> None:
     _, x = find("exact", problem, {"pressure": (2.1e9,)})
     root = float(problem.half_width[0]) * math.sqrt(1.0 - (2.1e9 / float(problem.max_pressure[0])) ** 2)
     # p0 itself is exact to a few EPS, which the root feels as EPS/√(2 gap)
-    assert x[0] == approx([-root, root], abs=32 * EPS / math.sqrt(2.0 * gap) * float(problem.half_width[0]))
+    assert x[0] == pytest.approx([-root, root], abs=32 * EPS / math.sqrt(2.0 * gap) * float(problem.half_width[0]))
 
 
 @given(gap=log_uniform(1e-10, 1e-3))
@@ -119,7 +120,7 @@ def test_a_hump_next_to_the_start_of_the_zone_is_found(name: str, half: float, g
     start = float(LINE_MODELS[name].slip_zone(slipping)[0][0])
     _, x = find(name, slipping, {"pressure": (2.1e9,)})
     crossed = [v for v in (-root, root) if v > start]
-    assert x[0, : len(crossed)] == approx(crossed, abs=64 * EPS / math.sqrt(2.0 * gap) * a)
+    assert x[0, : len(crossed)] == pytest.approx(crossed, abs=64 * EPS / math.sqrt(2.0 * gap) * a)
 
 
 def test_negative_creepage_is_crossed_where_positive_is() -> None:

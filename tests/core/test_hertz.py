@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pytest import approx
 from scipy import integrate
 
 from tests.strategies import EPS, log_uniform
@@ -14,7 +13,7 @@ from wearlaw import hertz
 
 
 def test_the_relative_radius_of_equal_discs_is_half_of_theirs() -> None:
-    assert hertz.relative_radius(0.0235, 0.0235) == approx(0.01175, rel=EPS)
+    assert hertz.relative_radius(0.0235, 0.0235) == pytest.approx(0.01175, rel=EPS)
 
 
 def test_a_flat_body_leaves_the_radius_of_the_other() -> None:
@@ -24,18 +23,18 @@ def test_a_flat_body_leaves_the_radius_of_the_other() -> None:
 
 @given(log_uniform(1e-3, 10.0), log_uniform(1e-3, 10.0))
 def test_the_relative_radius_is_that_of_the_sum_of_the_curvatures(first: float, second: float) -> None:
-    assert hertz.relative_radius(first, second) == approx(first * second / (first + second), rel=4 * EPS)
+    assert hertz.relative_radius(first, second) == pytest.approx(first * second / (first + second), rel=4 * EPS)
 
 
 def test_the_effective_modulus_of_the_rig_is_the_one_the_paper_needs() -> None:
     # 741.43 kN/m for 1500 MPa on discs of 47 mm (Tassini et al. 2010, section 5.2) asks for 112.0212 GPa.
     for modulus, ratio in ((206.47742e9, 0.28), (203.87853e9, 0.30)):
-        assert hertz.effective_modulus(modulus, ratio, modulus, ratio) / 1e9 == approx(112.0212, abs=5e-5)
+        assert hertz.effective_modulus(modulus, ratio, modulus, ratio) / 1e9 == pytest.approx(112.0212, abs=5e-5)
 
 
 def test_a_rigid_body_leaves_the_plane_strain_modulus_of_the_other() -> None:
-    assert hertz.effective_modulus(200e9, 0.3, math.inf, 0.3) == approx(200e9 / 0.91, rel=2 * EPS)
-    assert hertz.effective_modulus(math.inf, 0.0, 200e9, 0.3) == approx(200e9 / 0.91, rel=2 * EPS)
+    assert hertz.effective_modulus(200e9, 0.3, math.inf, 0.3) == pytest.approx(200e9 / 0.91, rel=2 * EPS)
+    assert hertz.effective_modulus(math.inf, 0.0, 200e9, 0.3) == pytest.approx(200e9 / 0.91, rel=2 * EPS)
 
 
 @given(log_uniform(1e-3, 10.0), log_uniform(1e9, 1e12), log_uniform(1e-5, 3e-2))
@@ -43,9 +42,9 @@ def test_load_half_width_and_maximum_pressure_go_round(radius: float, modulus: f
     pressure = np.array(ratio * modulus)
     load = hertz.force_from_max_pressure(pressure, radius, modulus)
     width = hertz.half_width(load, radius, modulus)
-    assert hertz.max_pressure(load, width) == approx(float(pressure), rel=8 * EPS)
+    assert hertz.max_pressure(load, width) == pytest.approx(float(pressure), rel=8 * EPS)
     # a = 2 p0 R / E* (Johnson, section 4.2c)
-    assert width == approx(2.0 * float(pressure) * radius / modulus, rel=8 * EPS)
+    assert width == pytest.approx(2.0 * float(pressure) * radius / modulus, rel=8 * EPS)
 
 
 @given(log_uniform(1e-6, 1.0), log_uniform(1e3, 1e10))
@@ -53,7 +52,7 @@ def test_the_pressure_carries_the_load(half_width: float, max_pressure: float) -
     a, p0 = np.array(half_width), np.array(max_pressure)
     load, _ = integrate.quad(lambda x: float(hertz.pressure(np.array(x), a, p0)), -half_width, half_width, epsrel=1e-10)
     # P = π a p0 / 2; QUADPACK's estimate next to the square roots at the edges is far above its error
-    assert load == approx(0.5 * math.pi * half_width * max_pressure, rel=1e-9)
+    assert load == pytest.approx(0.5 * math.pi * half_width * max_pressure, rel=1e-9)
 
 
 def test_the_pressure_deforms_the_bodies_into_each_other() -> None:
@@ -68,7 +67,7 @@ def test_the_pressure_deforms_the_bodies_into_each_other() -> None:
             lambda s: float(hertz.pressure(np.array(s), a, p0)), -float(a), float(a), weight="cauchy", wvar=x
         )
         # ∫ p/(s-x) ds = -(∫ p/(x-s) ds)
-        assert -2.0 / (math.pi * modulus) * -value == approx(-x / radius, rel=1e-6)
+        assert -2.0 / (math.pi * modulus) * -value == pytest.approx(-x / radius, rel=1e-6)
 
 
 def test_the_pressure_is_zero_outside_and_at_the_edges() -> None:
@@ -81,7 +80,7 @@ def test_the_pressure_keeps_its_digits_next_to_an_edge(gap: float) -> None:
     x = 1.0 - gap
     # the gap that the float x leaves is exact; √(1-x²) = √(gap (2-gap))
     left = 1.0 - x
-    assert float(hertz.pressure(np.array(x), np.array(1.0), np.array(1.0))) == approx(
+    assert float(hertz.pressure(np.array(x), np.array(1.0), np.array(1.0))) == pytest.approx(
         math.sqrt(left * (2.0 - left)), rel=4 * EPS
     )
 
@@ -89,4 +88,4 @@ def test_the_pressure_keeps_its_digits_next_to_an_edge(gap: float) -> None:
 @pytest.mark.parametrize("factor", [4.0, 100.0])
 def test_load_enters_as_its_square_root(factor: float) -> None:
     one, more = (hertz.half_width(np.array(load), 0.1, 1e11) for load in (1e5, factor * 1e5))
-    assert more / one == approx(math.sqrt(factor), rel=4 * EPS)
+    assert more / one == pytest.approx(math.sqrt(factor), rel=4 * EPS)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
 import math
 from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
 import pytest
-from pytest import approx
 from scipy import integrate, optimize
 
 import wearlaw as wl
@@ -53,12 +54,14 @@ class Points:
     def crowd(self) -> Array:
         """Return factors next to one on both sides."""
         gap = 10.0 ** self.random.uniform(-12.0, -1.0, self.size)
-        return 1.0 + gap * self.random.choice([-1.0, 1.0], self.size)
+        crowded: Array = 1.0 + gap * self.random.choice([-1.0, 1.0], self.size)
+        return crowded
 
     @property
     def saturation(self) -> Array:
         """μa/R, with a/R = 2 p0/E*."""
-        return 2.0 * self.friction * self.pressure / float(self.problem.effective_modulus[0])
+        saturation: Array = 2.0 * self.friction * self.pressure / float(self.problem.effective_modulus[0])
+        return saturation
 
     @property
     def problem(self) -> wl.LineProblem:
@@ -71,7 +74,8 @@ class Points:
     def references(self) -> list[reference.Point]:
         p = self.problem
         arrays = (p.normal_force_per_width, p.relative_radius, p.effective_modulus, p.friction_coefficient, p.creepage)
-        return [reference.Point(*(float(a[i]) for a in arrays), speed=SPEED) for i in range(self.size)]
+        columns = [array.tolist() for array in arrays]
+        return [reference.Point(*values, SPEED) for values in zip(*columns, strict=True)]
 
 
 def compare(name: str, law: str, points: Points) -> tuple[Array, Array, Array]:
@@ -218,6 +222,10 @@ RATES: dict[type[Smooth], Callable[[Array, float], Array]] = {
 }
 
 
+def rate_of_density(law: type[Smooth], solution: reference.Solution, v: Array) -> Array:
+    return RATES[law](solution.density(v) / 1e6, 10.0)
+
+
 @pytest.mark.parametrize("law_type", RATES, ids=lambda law: law.name)
 @pytest.mark.parametrize("name", ["exact", "fastsim-parabolic-line", "fastsim-elliptic-line"])
 def test_the_error_estimate_of_a_law_that_declares_nothing_is_honest(name: str, law_type: type[Smooth]) -> None:
@@ -230,7 +238,7 @@ def test_the_error_estimate_of_a_law_that_declares_nothing_is_honest(name: str, 
     for point in points.references():
         solution = REFERENCE[name](point)
         breaks = [] if law_type is Smooth else solution.density_crossings(10e6)
-        want.append(solution.mean(lambda v, s=solution: RATES[law_type](s.density(v) / 1e6, 10.0), breaks))
+        want.append(solution.mean(functools.partial(rate_of_density, law_type, solution), breaks))
     error = np.abs(wear.wear_rate - want)
     honest = error <= wear.wear_rate_error + 1e-12 * np.array(want)
     assert honest.mean() >= 0.95
@@ -259,7 +267,7 @@ def test_the_error_estimate_covers_the_stick_zone() -> None:
             *(s * math.sqrt(max(1.0 - 50e6 / top, 0.0)) for s in (-1, 1)),
         ]
         edges = [-1.0, *sorted(k for k in kinks if -1.0 < k < 1.0), 1.0]
-        want.append(sum(integrate.quad(rate, low, high)[0] for low, high in zip(edges, edges[1:], strict=False)))
+        want.append(sum(integrate.quad(rate, low, high)[0] for low, high in itertools.pairwise(edges)))
     honest = np.abs(wear.wear_rate - want) <= wear.wear_rate_error + 1e-10 * np.array(want)
     assert honest.mean() >= 0.95
     assert wear.wear_rate_error.max() > 0.0
@@ -308,7 +316,7 @@ def test_a_model_that_only_solves_works_and_says_how_good_it_is() -> None:
     assert (error <= wear.wear_rate_error[seen]).mean() >= 0.95
     assert np.median(wear.wear_rate_error[seen] / want[seen]) < 0.1
     totals = integrate_contact(LINE_MODELS["exact"], points.problem, "cells")
-    assert contact.tangential_force == approx(totals.tangential_force, rel=4 * EPS)
+    assert contact.tangential_force == pytest.approx(totals.tangential_force, rel=4 * EPS)
 
 
 def test_finer_cells_have_a_smaller_error_estimate() -> None:
@@ -346,7 +354,7 @@ class Broken(Smooth):
     def rate(self, contact: wl.Contact) -> Array:
         rate = np.abs(contact.slip)
         if self.fault == "shape":
-            return rate.sum(axis=-1)
+            return np.zeros(rate.shape[:-1])
         rate[..., -1] = {"nan": np.nan, "infinite": np.inf}[self.fault]
         return rate
 
@@ -395,13 +403,14 @@ def test_results_do_not_depend_on_the_blocks_they_were_computed_in(name: str, la
     for index in [*borders, *range(7, points.size, 211)]:
         contact_alone, wear_alone = integrate_wear(model, wear_law, problem[index : index + 1], "cells")
         # to rounding, not to the bit: zones without length, which some batches hold, change the order of sums
-        assert wear.wear_rate[index] == approx(wear_alone.wear_rate[0], rel=64 * EPS)
+        assert wear.wear_rate[index] == pytest.approx(wear_alone.wear_rate[0], rel=64 * EPS)
         for field in ("tangential_force", "wear_index", "patch_area", "mean_slip", "slip_area"):
-            assert getattr(contact, field)[index] == approx(getattr(contact_alone, field)[0], rel=64 * EPS)
+            assert getattr(contact, field)[index] == pytest.approx(getattr(contact_alone, field)[0], rel=64 * EPS)
 
 
 def test_progress_is_told_block_by_block() -> None:
-    points, told = Points(seed=16, size=BLOCK + 10), []
+    told: list[int] = []
+    points = Points(seed=16, size=BLOCK + 10)
     integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), points.problem, "cells", on_block=told.append)
     assert told == [BLOCK, 10]
 
@@ -415,4 +424,4 @@ def test_the_batch_keeps_its_shape() -> None:
     alone = RIG.problem(creepage=Q(float(creepage[1, 2, 0]), ""), **conditions)
     _, single = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), alone, "cells")
     assert single.wear_rate.shape == ()
-    assert float(single.wear_rate) == approx(float(wear.wear_rate[1, 2, 0]), rel=64 * EPS)
+    assert float(single.wear_rate) == pytest.approx(float(wear.wear_rate[1, 2, 0]), rel=64 * EPS)

@@ -162,13 +162,32 @@ def test_a_wrong_rotational_speed_is_refused(value: Any) -> None:
         wl.TwinDisc.suros(rotational_speed=value)
 
 
+@pytest.mark.parametrize("value", ["10 Hz", Q(7, "1/s")])
+def test_a_rotational_speed_must_say_what_it_counts(value: Any) -> None:
+    with pytest.raises(wl.UnitError, match=r"rotational_speed: .* revolutions or radians; give it in rpm or rad/s"):
+        wl.TwinDisc.suros(rotational_speed=value)
+
+
+@pytest.mark.parametrize("value", ["41.887902047863905 rad/s", "400 rpm", "2400 deg/s", "6.666666666666667 turn/s"])
+def test_a_rotational_speed_may_count_any_angle(value: str) -> None:
+    speed = problem(wl.TwinDisc.suros(rotational_speed=value)).rolling_speed
+    assert speed == pytest.approx(np.pi * 0.047 * 400 / 60, rel=8 * EPS)
+
+
+def test_rolling_and_rotational_speed_together_are_refused() -> None:
+    with pytest.raises(wl.InputError, match="rolling_speed: follows from rotational_speed; give one of the two"):
+        wl.TwinDisc.suros(rotational_speed="400 rpm", rolling_speed="1 m/s")
+
+
 @pytest.mark.parametrize("field", ["track_width", "rolling_speed"])
 @pytest.mark.parametrize("value", [10, "0 {}", "-1 {}", "inf {}", "nan {}", "3 kg"])
 def test_a_wrong_width_or_speed_is_refused(field: str, value: Any) -> None:
     unit = {"track_width": "mm", "rolling_speed": "m/s"}[field]
     wrong = value.format(unit) if isinstance(value, str) else value
     values: dict[str, Any] = {field: wrong}
-    with pytest.raises(wl.ConfigurationError, match=rf'^TwinDisc: {field}: .* such as Q\(1\.0, "{unit}"\) or "1.0 {unit}"$'):
+    with pytest.raises(
+        wl.ConfigurationError, match=rf'^TwinDisc: {field}: .* such as Q\(1\.0, "{unit}"\) or "1.0 {unit}"$'
+    ):
         wl.TwinDisc.suros(**values)
 
 

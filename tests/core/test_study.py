@@ -180,18 +180,15 @@ def test_warnings_of_others_are_passed_on_and_not_noted(install: Install) -> Non
 
 def test_the_provenance_is_the_case_and_the_versions_of_all_that_was_used(install: Install) -> None:
     install(cases.Linear)
-    ran = case(contact_models=["exact"], wear_laws=["kth", {"model": "linear", "slope": "1 m"}])
+    ran = case(contact_models=["global"], wear_laws=["kth", {"model": "linear", "slope": "1 m"}])
     study = run(ran)
     version = importlib.metadata.version("wearlaw")
     for dataset in (*study.sweeps.values(), *study.profiles.values()):
         assert dataset.attrs["title"] == "A small study"
         provenance = json.loads(dataset.attrs["provenance"])
         assert provenance["wearlaw"] == version
-        assert provenance["models"] == {
-            "exact": f"wearlaw {version}",
-            "kth": f"wearlaw {version}",
-            "linear": "wearlaw-testing 9.8.7",
-        }
+        assert provenance["contact_models"] == {"exact": f"wearlaw {version}", "global": f"wearlaw {version}"}
+        assert provenance["wear_laws"] == {"kth": f"wearlaw {version}", "linear": "wearlaw-testing 9.8.7"}
         assert Case(**provenance["case"]) == ran
     assert study.case == ran
 

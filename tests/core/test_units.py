@@ -157,7 +157,9 @@ def test_wrong_length_is_refused_with_field_value_unit_and_fix(value: Any, said:
     message = str(caught.value)
     assert message.startswith("track_width: ")
     assert said in message
-    assert message.endswith('give track_width in mm or another unit of that dimension, such as Q(1.0, "mm") or "1.0 mm"')
+    assert message.endswith(
+        'give track_width in mm or another unit of that dimension, such as Q(1.0, "mm") or "1.0 mm"'
+    )
     assert len(message) < 250
 
 

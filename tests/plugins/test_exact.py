@@ -2,11 +2,10 @@ from __future__ import annotations
 
 import math
 
-import mpmath
+import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 from hypothesis import given
-from pytest import approx
 from scipy import integrate
 
 import wearlaw as wl
@@ -54,8 +53,10 @@ def test_the_fields_are_the_corrected_equations_7_and_8(problem: wl.LineProblem,
     border = float(problem.half_width) * (1.0 - 2.0 * min(float(problem.creepage) / saturation_creepage(problem), 1.0))
     distance = max(abs(x - border) / float(problem.half_width), 4 * EPS)
     condition = 16 * EPS / math.sqrt(distance)
-    assert float(fields.traction[0]) == approx(traction, abs=condition * float(fields.traction_bound.max() + traction))
-    assert float(fields.slip[0]) == approx(slip, abs=2.0 * condition * max(saturation_creepage(problem), slip))
+    assert float(fields.traction[0]) == pytest.approx(
+        traction, abs=condition * float(fields.traction_bound.max() + traction)
+    )
+    assert float(fields.slip[0]) == pytest.approx(slip, abs=2.0 * condition * max(saturation_creepage(problem), slip))
 
 
 @pytest.mark.parametrize("percent", [1e-4, 0.1, 0.5, 1.0, 1.2, 2.0, 25.0])
@@ -69,14 +70,15 @@ def test_the_total_is_the_integral_of_the_traction(percent: float) -> None:
             return 0.0
         # x = middle + half·sin θ takes the square roots out of both ends
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        return integrate.quad(
+        total: float = integrate.quad(
             lambda t: literal(problem, middle + half * math.sin(t))[0] * half * math.cos(t),
             -0.5 * math.pi, 0.5 * math.pi, epsrel=1e-9, limit=400,
         )[0]  # fmt: skip
+        return total
 
     total = over(-a, start) + over(start, end)
     contact = EXACT.solve(problem)
-    assert float(contact.tangential_force / problem.track_width) == approx(total, rel=1e-8)
+    assert float(contact.tangential_force / problem.track_width) == pytest.approx(total, rel=1e-8)
 
 
 @pytest.mark.parametrize("percent", [0.1, 1.0, 1.2, 2.0])
@@ -95,7 +97,7 @@ def test_the_slip_leaves_the_surfaces_together_in_stick(percent: float) -> None:
         )
         assert points[0] < points[1]
         slip = float(problem.creepage) - 2.0 / (math.pi * modulus) * principal
-        assert slip == approx(float(fields_at(EXACT, problem, x).slip[0]), abs=2e-6 * float(problem.creepage))
+        assert slip == pytest.approx(float(fields_at(EXACT, problem, x).slip[0]), abs=2e-6 * float(problem.creepage))
 
 
 def test_the_printed_slip_is_creepage_plus_k_x_in_the_whole_slip_zone() -> None:
@@ -103,10 +105,10 @@ def test_the_printed_slip_is_creepage_plus_k_x_in_the_whole_slip_zone() -> None:
     a, k = float(problem.half_width), 0.46 / 0.01175
     start = float(PRINTED.slip_zone(problem)[0])  # type: ignore[attr-defined]
     for x in (start + 1e-3 * a, 0.5 * a, 0.99 * a):
-        assert float(fields_at(PRINTED, problem, x).slip[0]) == approx(0.005 + k * x, rel=8 * EPS)
+        assert float(fields_at(PRINTED, problem, x).slip[0]) == pytest.approx(0.005 + k * x, rel=8 * EPS)
     assert float(fields_at(PRINTED, problem, start - 1e-3 * a).slip[0]) == 0.0
     # the step at the border is ξ_sat - ξ
-    assert float(fields_at(PRINTED, problem, start + 1e-9 * a).slip[0]) == approx(
+    assert float(fields_at(PRINTED, problem, start + 1e-9 * a).slip[0]) == pytest.approx(
         saturation_creepage(problem) - 0.005, rel=1e-5
     )
 
@@ -122,7 +124,7 @@ def test_both_slips_have_the_same_tractions_and_total() -> None:
 def test_the_stick_ratio_is_one_less_the_reduced_creepage(problem: wl.LineProblem) -> None:
     contact = EXACT.solve(problem)
     expected = max(1.0 - float(problem.creepage) / saturation_creepage(problem), 0.0)
-    assert float(contact.stick_ratio) == approx(expected, abs=64 * EPS)
+    assert float(contact.stick_ratio) == pytest.approx(expected, abs=64 * EPS)
 
 
 def test_slip_begins_continuously_at_the_end_of_the_stick_zone() -> None:
@@ -130,7 +132,7 @@ def test_slip_begins_continuously_at_the_end_of_the_stick_zone() -> None:
     a = float(problem.half_width)
     border = float(EXACT.slip_zone(problem)[0])  # type: ignore[attr-defined]
     slips = [float(fields_at(EXACT, problem, border + gap * a).slip[0]) for gap in (1e-4, 1e-8, 1e-12)]
-    assert slips[0] == approx(100.0 * slips[1], rel=1e-3)  # a square root
+    assert slips[0] == pytest.approx(100.0 * slips[1], rel=1e-3)  # a square root
     assert slips[2] < 1e-5 * saturation_creepage(problem)
 
 
@@ -138,9 +140,9 @@ def test_small_creepages_lose_no_digits() -> None:
     problem = with_creepage(problem_at(1.0), 1e-7)
     d = 1e-7 / saturation_creepage(problem)
     expected = 0.46 * 7414.3 * d * (2.0 - d)
-    assert float(EXACT.solve(problem).tangential_force) == approx(expected, rel=16 * EPS)
+    assert float(EXACT.solve(problem).tangential_force) == pytest.approx(expected, rel=16 * EPS)
 
 
 def test_a_wrong_slip_is_refused_by_name() -> None:
-    with pytest.raises(wl.ConfigurationError, match="slip.*'consistent' or 'as_printed'"):
+    with pytest.raises(wl.ConfigurationError, match=r"slip.*'consistent' or 'as_printed'"):
         wl.contact_model("exact", slip="printed")

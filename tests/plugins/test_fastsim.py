@@ -3,11 +3,10 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-import mpmath
+import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 from hypothesis import given
-from pytest import approx
 from scipy import integrate
 
 import wearlaw as wl
@@ -61,7 +60,7 @@ def march(problem: wl.LineProblem, bound: Bound, flexibility: Flexibility, cells
     a, creepage = float(problem.half_width), float(problem.creepage)
     flex = flexibility_of(problem, flexibility)
     step = 2.0 * a / cells
-    x = -a + step * np.arange(1, cells + 1)
+    x: Array = -a + step * np.arange(1.0, cells + 1.0)
     limits = bound_at(problem, bound, x)
     traction, slip = np.zeros(cells), np.zeros(cells)
     before = 0.0
@@ -93,7 +92,7 @@ def test_the_march_converges_to_the_closed_form_in_first_order(
     # so T converges in a higher order (1.5 at the elliptic edge) than the energy, whose slip is a one-sided difference
     # and which errs by two to three cells of those that slip.
     assert max(np.array(traction_errors) * counts) < 5.0
-    assert -np.polyfit(np.log(counts), np.log(energy_errors), 1)[0] == approx(1.0, abs=0.25)
+    assert -np.polyfit(np.log(counts), np.log(energy_errors), 1)[0] == pytest.approx(1.0, abs=0.25)
     start, end = model.slip_zone(problem)
     slipping_cells = counts[-1] * float((end - start) / (2.0 * problem.half_width))
     assert energy_errors[-1] < 3.0 / slipping_cells
@@ -109,12 +108,12 @@ def test_the_fields_of_the_march_are_those_of_the_closed_form(
     x, traction, slip = march(problem, bound, flexibility, cells)
     inside = slice(cells // 50, -cells // 50)  # the slope of the ellipse grows without bound at the edges
     fields = model.fields(problem[..., None], x)
-    assert traction[inside] == approx(fields.traction[inside], rel=1e-9)  # the march only adds up, in 4000 sums
+    assert traction[inside] == pytest.approx(fields.traction[inside], rel=1e-9)  # the march only adds up, in 4000 sums
     start, _ = model.slip_zone(problem)
     away = np.abs(x - float(start)) > 2.0 * float(problem.half_width) / cells
     keep = away & (np.abs(x) < 0.96 * float(problem.half_width))
     # a one-sided difference is off by L q'' dx/2
-    assert slip[keep] == approx(fields.slip[keep], abs=0.02 * float(problem.creepage) + 2e-4)
+    assert slip[keep] == pytest.approx(fields.slip[keep], abs=0.02 * float(problem.creepage) + 2e-4)
 
 
 @every_configuration
@@ -130,7 +129,7 @@ def test_the_total_is_the_integral_of_the_clipped_line(bound: Bound, flexibility
         for low, high in ((-a, start), (start, a))
         if low < high
     )
-    assert float(model.solve(problem).tangential_force / problem.track_width) == approx(total, rel=1e-9)
+    assert float(model.solve(problem).tangential_force / problem.track_width) == pytest.approx(total, rel=1e-9)
 
 
 @every_configuration
@@ -149,7 +148,7 @@ def test_the_slip_is_the_creepage_less_the_slope_of_the_bound(
     expected = float(problem.creepage) - flex * np.array(gradient)
     # the creepage and the slope may cancel where slip begins
     scale = float(problem.creepage) + flex * max(np.abs(gradient))
-    assert model.fields(problem[..., None], x).slip == approx(expected, abs=16 * EPS * scale)
+    assert model.fields(problem[..., None], x).slip == pytest.approx(expected, abs=16 * EPS * scale)
 
 
 def test_the_parabola_saturates_at_one_and_a_half_times_the_creepage_of_carter() -> None:
@@ -165,8 +164,8 @@ def test_the_two_flexibilities_differ_by_the_known_factor() -> None:
     force = {f: float(fastsim("parabolic", f).solve(problem).tangential_force) for _, f in CONFIGURATIONS[:2]}
     exact = float(wl.contact_model("exact").solve(problem).tangential_force)
     # Tassini et al. find about the same T with both theories; at 1 % creepage it is 6 % and 1.3 % less.
-    assert 1.0 - force["line"] / exact == approx(0.063, abs=5e-4)
-    assert 1.0 - force["kalker"] / exact == approx(0.013, abs=5e-4)
+    assert 1.0 - force["line"] / exact == pytest.approx(0.063, abs=5e-4)
+    assert 1.0 - force["kalker"] / exact == pytest.approx(0.013, abs=5e-4)
 
 
 @given(problem=line_problems())
@@ -175,7 +174,7 @@ def test_the_parabola_exceeds_friction_times_pressure_in_the_middle_only(problem
     ratio = contact.traction_bound / (problem.friction_coefficient * contact.pressure)
     # 3/4 P/a (1-t²) over (2/π) P/a √(1-t²)
     t = contact.x / problem.half_width
-    assert ratio == approx(3.0 * math.pi / 8.0 * np.sqrt(1.0 - t**2), rel=1e-12)
+    assert ratio == pytest.approx(3.0 * math.pi / 8.0 * np.sqrt(1.0 - t**2), rel=1e-12)
     assert ratio.max() > 1.17
 
 
@@ -184,7 +183,7 @@ def test_the_pressure_of_the_record_is_that_of_hertz(bound: Bound, flexibility: 
     problem = problem_at(1.0)
     contact = fastsim(bound, flexibility).at(problem, uniform_cells(problem.half_width, 50))
     expected = float(problem.max_pressure) * np.sqrt(1.0 - (contact.x / float(problem.half_width)) ** 2)
-    assert contact.pressure == approx(expected, rel=1e-13)
+    assert contact.pressure == pytest.approx(expected, rel=1e-13)
 
 
 @pytest.mark.parametrize("edge", [-1.0, 1.0])
@@ -197,7 +196,7 @@ def test_the_elliptic_bound_is_finite_at_the_very_edge(edge: float) -> None:
     grip = 0.46 * float(problem.max_pressure)
     limit = flexibility_of(problem, "line") * grip**2 / a if edge > 0 else 0.0
     # q and s are of order √EPS and 1/√EPS there
-    assert density == approx(limit, rel=1e-6)
+    assert density == pytest.approx(limit, rel=1e-6)
 
 
 def test_short_slip_zones_of_the_elliptic_bound_are_solved_without_nan() -> None:

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pytest import approx
 
 import wearlaw as wl
 from tests.strategies import EPS, LINE_MODELS, line_problems, log_uniform, saturation_creepage, with_creepage
@@ -21,11 +20,11 @@ def test_the_one_cell_holds_the_patch_means(problem: wl.LineProblem) -> None:
     contact = wl.contact_model("global").solve(problem)
     area = float(2.0 * problem.half_width * problem.track_width)
     assert contact.pressure.shape == (1,)
-    assert float(contact.area[0]) == approx(area, rel=4 * EPS)
+    assert float(contact.area[0]) == pytest.approx(area, rel=4 * EPS)
     # p = (π/4) p0
-    assert float(contact.pressure[0]) == approx(0.25 * math.pi * float(problem.max_pressure), rel=16 * EPS)
+    assert float(contact.pressure[0]) == pytest.approx(0.25 * math.pi * float(problem.max_pressure), rel=16 * EPS)
     assert float(contact.slip[0]) == float(problem.creepage)
-    assert float(contact.traction[0]) * area == approx(float(contact.tangential_force), rel=4 * EPS)
+    assert float(contact.traction[0]) * area == pytest.approx(float(contact.tangential_force), rel=4 * EPS)
 
 
 @given(problem=line_problems())
@@ -33,7 +32,7 @@ def test_the_total_is_that_of_carter_by_default(problem: wl.LineProblem) -> None
     reduced = min(float(problem.creepage) / saturation_creepage(problem), 1.0)
     # d (2-d), as 1-(1-d)² without its rounding at small d
     expected = float(problem.friction_coefficient * problem.normal_force) * reduced * (2.0 - reduced)
-    assert float(wl.contact_model("global").solve(problem).tangential_force) == approx(expected, rel=16 * EPS)
+    assert float(wl.contact_model("global").solve(problem).tangential_force) == pytest.approx(expected, rel=16 * EPS)
 
 
 @pytest.mark.parametrize("name", LINE_MODELS)
@@ -41,7 +40,7 @@ def test_the_total_is_that_of_carter_by_default(problem: wl.LineProblem) -> None
 def test_the_total_is_that_of_the_model_it_is_taken_from(name: str, problem: wl.LineProblem) -> None:
     model = LINE_MODELS[name]
     contact = wl.contact_model("global", total_from=model).solve(problem)
-    assert float(contact.tangential_force) == approx(float(model.solve(problem).tangential_force), rel=4 * EPS)
+    assert float(contact.tangential_force) == pytest.approx(float(model.solve(problem).tangential_force), rel=4 * EPS)
 
 
 @given(problem=line_problems(), coefficient=log_uniform(1e-3, 1.0), sign=st.sampled_from([-1.0, 0.0, 1.0]))
@@ -55,8 +54,8 @@ def test_a_measured_traction_coefficient_takes_the_place_of_the_theory(
     )
     contact = wl.contact_model("global").solve(measured)
     force = sign * coefficient * float(problem.normal_force)
-    assert float(contact.tangential_force) == approx(force, rel=4 * EPS)
-    assert float(contact.wear_index) == approx(
+    assert float(contact.tangential_force) == pytest.approx(force, rel=4 * EPS)
+    assert float(contact.wear_index) == pytest.approx(
         coefficient * float(problem.normal_force * abs(measured.creepage)), rel=8 * EPS
     )
     assert abs(float(contact.traction[0])) <= float(contact.traction_bound[0]) * (1.0 + 4 * EPS)
@@ -68,7 +67,7 @@ def test_the_patch_means_of_a_local_model_are_the_global_contact() -> None:
     one_cell = (SUROS | wl.contact_model("global", total_from="fastsim"))(**conditions).contact  # type: ignore[arg-type]
     for field in ("pressure", "traction", "slip", "area", "tangential_force", "wear_index"):
         # the means sum the nodes of the patch
-        assert getattr(means, field) == approx(getattr(one_cell, field), rel=64 * EPS), field
+        assert getattr(means, field) == pytest.approx(getattr(one_cell, field), rel=64 * EPS), field
 
 
 def test_a_local_model_refuses_a_measured_traction_coefficient() -> None:

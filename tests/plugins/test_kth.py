@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pytest import approx
 
 import wearlaw as wl
 from tests.plugins.laws import around, contact_of
@@ -39,13 +38,13 @@ def test_the_rate_is_archards_law_with_the_k_of_the_map(coefficient: str, pressu
     rate = float(kth(coefficient).rate(contact_of(pressure=pressure, slip=slip))[0])
     # ρ k p s / H with H = 2.1 GPa / 0.8
     expected = 7850.0 * TABLE_2[coefficient][field_of(pressure, slip)] * pressure * slip / (2.1e9 / 0.8)
-    assert rate == approx(expected, rel=16 * EPS, abs=1e-290)  # the least floats have fewer digits
+    assert rate == pytest.approx(expected, rel=16 * EPS, abs=1e-290)  # the least floats have fewer digits
 
 
 def test_the_density_is_that_of_the_contact_and_the_hardness_a_field() -> None:
     rate = float(kth().rate(contact_of())[0])
-    assert float(kth().rate(contact_of(density=15700.0))[0]) == approx(2.0 * rate, rel=4 * EPS)
-    assert float(kth(hardness="5.25 GPa").rate(contact_of())[0]) == approx(0.5 * rate, rel=4 * EPS)
+    assert float(kth().rate(contact_of(density=15700.0))[0]) == pytest.approx(2.0 * rate, rel=4 * EPS)
+    assert float(kth(hardness="5.25 GPa").rate(contact_of())[0]) == pytest.approx(0.5 * rate, rel=4 * EPS)
 
 
 def test_the_sign_of_the_slip_does_not_matter() -> None:
@@ -58,7 +57,7 @@ def test_every_declared_border_is_a_jump(variable: str, borders: tuple[float, ..
     law = kth()
     assert law.breakpoints is not None
     assert set(law.breakpoints) == {"pressure", "slip_speed"}
-    assert law.breakpoints[variable] == approx(borders, rel=2 * EPS)
+    assert law.breakpoints[variable] == pytest.approx(borders, rel=2 * EPS)
     assert law.jumps == law.breakpoints
     for border in law.breakpoints[variable]:
         # the contact rolls at 1 m/s, so slip and slip speed are one
@@ -69,11 +68,10 @@ def test_every_declared_border_is_a_jump(variable: str, borders: tuple[float, ..
 
 def test_the_band_is_the_published_range_of_this_instance() -> None:
     law = kth("high", hardness="3 GPa")
-    low, mid, high = law.band()  # type: ignore[misc]
-    assert high == law
-    assert [law_.coefficient for law_ in (low, mid, high)] == ["low", "mid", "high"]  # type: ignore[attr-defined]
-    rates = [float(law_.rate(contact_of(slip=0.1))[0]) for law_ in (low, mid, high)]
-    assert rates == approx([7850.0 * k * 1e9 * 0.1 / 3e9 for k in (1e-4, 5.5e-4, 10e-4)], rel=16 * EPS)
+    band = law.band()
+    assert band == (kth("low", hardness="3 GPa"), kth("mid", hardness="3 GPa"), law)
+    rates = [float(member.rate(contact_of(slip=0.1))[0]) for member in band]
+    assert rates == pytest.approx([7850.0 * k * 1e9 * 0.1 / 3e9 for k in (1e-4, 5.5e-4, 10e-4)], rel=16 * EPS)
 
 
 def test_coefficients_of_your_own_have_no_band() -> None:
@@ -86,7 +84,7 @@ def test_coefficients_of_your_own_have_no_band() -> None:
         (1e9, 0.9, "high_speed"),
     ):
         got = float(law.rate(contact_of(pressure=pressure, slip=slip))[0])
-        assert got == approx(7850.0 * OWN[name] * pressure * slip / 2.625e9, rel=16 * EPS)
+        assert got == pytest.approx(7850.0 * OWN[name] * pressure * slip / 2.625e9, rel=16 * EPS)
 
 
 def test_coefficients_of_your_own_survive_a_round_trip() -> None:
@@ -96,10 +94,10 @@ def test_coefficients_of_your_own_survive_a_round_trip() -> None:
 
 def test_borders_of_your_own_move_the_jumps() -> None:
     law = kth(pressure_threshold="1 GPa", lower_slip_speed="10 cm/s", upper_slip_speed=Q(0.5, "m/s"))
-    assert law.jumps["pressure"] == approx((1e9,), rel=2 * EPS)
-    assert law.jumps["slip_speed"] == approx((0.1, 0.5), rel=2 * EPS)
+    assert law.jumps["pressure"] == pytest.approx((1e9,), rel=2 * EPS)
+    assert law.jumps["slip_speed"] == pytest.approx((0.1, 0.5), rel=2 * EPS)
     below, at = law.rate(contact_of(pressure=around(1e9), slip=0.05))
-    assert at / below == approx(350.0 / 5.5, rel=1e-12)
+    assert at / below == pytest.approx(350.0 / 5.5, rel=1e-12)
 
 
 def test_the_law_claims_no_calibration_no_range_and_no_monotony() -> None:

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pytest import approx
 
 import wearlaw as wl
 from tests.plugins.laws import around, contact_of
@@ -33,7 +32,7 @@ def test_the_parameters_are_those_of_table_4(fitted_for: str) -> None:
     law: Any = wl.wear_law("usfd", fitted_for=fitted_for)
     units = ("ug/m/N", "ug/m/mm^2", "ug/m/N", "N/mm^2")
     got = [getattr(law, field).m_as(unit) for field, unit in zip(("m_m", "q_s", "m_c", "tr_sc"), units, strict=True)]
-    assert got == approx(TABLE_4[fitted_for], rel=4 * EPS)
+    assert got == pytest.approx(TABLE_4[fitted_for], rel=4 * EPS)
 
 
 def test_the_global_set_is_the_default() -> None:
@@ -46,7 +45,7 @@ def test_the_rate_is_that_of_tables_3_and_4(fitted_for: str, w: float) -> None:
     m_m, q_s, m_c, tr_sc = TABLE_4[fitted_for]
     expected = m_m * w if w < q_s / m_m else q_s if w < tr_sc else m_c * w - (m_c * tr_sc - q_s)
     # the last branch is a difference of numbers of size m_c·tr_sc
-    assert rate(wl.wear_law("usfd", fitted_for=fitted_for), w) == approx(
+    assert rate(wl.wear_law("usfd", fitted_for=fitted_for), w) == pytest.approx(
         expected, rel=8 * EPS, abs=8 * EPS * m_c * (w + tr_sc)
     )
 
@@ -58,20 +57,20 @@ def test_the_rate_is_continuous_at_both_borders(fitted_for: str) -> None:
     assert breakpoints is not None
     assert not law.jumps
     m_m, q_s, _, tr_sc = TABLE_4[fitted_for]
-    assert breakpoints["wear_index_density"] == approx((q_s / m_m * 1e6, tr_sc * 1e6), rel=4 * EPS)
+    assert breakpoints["wear_index_density"] == pytest.approx((q_s / m_m * 1e6, tr_sc * 1e6), rel=4 * EPS)
     for border in breakpoints["wear_index_density"]:
         below, at = law.rate(contact_of(traction=around(border), slip=1.0))
-        assert at == approx(below, rel=64 * EPS)
-        assert at * 1e3 == approx(q_s, rel=64 * EPS)
+        assert at == pytest.approx(below, rel=64 * EPS)
+        assert at * 1e3 == pytest.approx(q_s, rel=64 * EPS)
         # and it bends there: the slopes on the two sides differ
         left, middle, right = (float(law.rate(contact_of(traction=border * f, slip=1.0))[0]) for f in (0.99, 1.0, 1.01))
         assert abs((right - middle) - (middle - left)) > 0.005 * q_s * 1e-3
 
 
 def test_the_mild_regime_ends_at_ten_and_a_bit() -> None:
-    assert rate(wl.wear_law("usfd"), 10.0) == approx(53.0, rel=8 * EPS)
-    assert rate(wl.wear_law("usfd"), 11.0) == approx(55.0, rel=8 * EPS)
-    assert rate(wl.wear_law("usfd"), 78.26) == approx(55.0 + 61.9, rel=1e-12)
+    assert rate(wl.wear_law("usfd"), 10.0) == pytest.approx(53.0, rel=8 * EPS)
+    assert rate(wl.wear_law("usfd"), 11.0) == pytest.approx(55.0, rel=8 * EPS)
+    assert rate(wl.wear_law("usfd"), 78.26) == pytest.approx(55.0 + 61.9, rel=1e-12)
 
 
 def test_the_sign_of_slip_and_traction_together_does_not_matter() -> None:
@@ -90,8 +89,8 @@ def test_the_rate_never_falls_with_the_wear_index_density(fitted_for: str, value
 
 def test_parameters_of_your_own_take_the_place_of_published_ones() -> None:
     law: Any = wl.wear_law("usfd", m_m="6 ug/m/N", tr_sc=Q(8e7, "Pa"))
-    assert rate(law, 5.0) == approx(30.0, rel=8 * EPS)
-    assert rate(law, 81.0) == approx(55.0 + 61.9, rel=1e-12)
+    assert rate(law, 5.0) == pytest.approx(30.0, rel=8 * EPS)
+    assert rate(law, 81.0) == pytest.approx(55.0 + 61.9, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -140,7 +139,7 @@ def test_the_range_is_that_of_the_tests_up_to_twenty_percent_creepage() -> None:
     low, high = wl.wear_law("usfd").valid_range["wear_index_density"]
     assert low == 0.0
     # 20 % · 0.46 · the mean of 1500 MPa, to the four digits that a message shows
-    assert high == approx(0.2 * 0.46 * 1.5e9 * np.pi / 4.0, rel=2e-4)
+    assert high == pytest.approx(0.2 * 0.46 * 1.5e9 * np.pi / 4.0, rel=2e-4)
     predict(creepage=Q(20.0, "%"), **conditions)  # inside: a warning would be an error here
     with pytest.warns(wl.RangeWarning, match=r"1 of 2 operating points"):
         predict(creepage=Q([20.0, 20.1], "%"), **conditions)
