@@ -74,8 +74,8 @@ class Points:
     def references(self) -> list[reference.Point]:
         p = self.problem
         arrays = (p.normal_force_per_width, p.relative_radius, p.effective_modulus, p.friction_coefficient, p.creepage)
-        columns = [array.tolist() for array in arrays]
-        return [reference.Point(*values, SPEED) for values in zip(*columns, strict=True)]
+        columns = zip(*(array.tolist() for array in arrays), strict=True)
+        return [reference.Point(p, r, e, mu, xi, SPEED) for p, r, e, mu, xi in columns]
 
 
 def compare(name: str, law: str, points: Points) -> tuple[Array, Array, Array]:

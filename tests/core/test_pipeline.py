@@ -177,9 +177,7 @@ def test_leaving_the_range_of_a_law_is_warned_of_once_a_call_at_the_users_line(s
 
 def test_the_range_warning_counts_the_points_outside() -> None:
     predict = RIG | GLOBAL | FITTED["global"]
-    with pytest.warns(
-        wl.RangeWarning, match=r"2 of 4 operating points lie outside, as far as 135\.5"
-    ):
+    with pytest.warns(wl.RangeWarning, match=r"2 of 4 operating points lie outside, as far as 135\.5"):
         predict(max_pressure="1500 MPa", creepage=Q([10, 19, 22, 25], "%"), friction_coefficient=0.46)
     predict(max_pressure="1500 MPa", creepage=Q([10, 19], "%"), friction_coefficient=0.46)
 
