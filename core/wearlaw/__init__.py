@@ -26,7 +26,8 @@ from wearlaw.errors import (
     WearlawError,
     WearlawWarning,
 )
-from wearlaw.hookspecs import hookimpl
+from wearlaw.functions import as_wear_law
+from wearlaw.hookspecs import INTERFACE_VERSION, hookimpl
 from wearlaw.models import BreakpointMap, Calibration, Claim, ContactModel, LineContactModel, Scale, WearLaw
 from wearlaw.pipeline import ContactPipeline, PatchMean, Pipeline, patch_mean
 from wearlaw.plugins import contact_model, contact_models, wear_law, wear_laws
@@ -38,6 +39,7 @@ from wearlaw.units import Density, Length, Q, Quantity, QuantityLike, Speed, Str
 from wearlaw.version import __version__
 
 __all__ = [
+    "INTERFACE_VERSION",
     "Array",
     "BreakpointMap",
     "Calibration",
@@ -83,6 +85,7 @@ __all__ = [
     "WearlawError",
     "WearlawWarning",
     "__version__",
+    "as_wear_law",
     "contact_model",
     "contact_models",
     "hertz",

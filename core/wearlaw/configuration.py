@@ -11,6 +11,8 @@ from wearlaw.errors import ConfigurationError, Problem, did_you_mean
 from wearlaw.units import shortened, text_of
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from pydantic_core import ErrorDetails
 
 
@@ -58,6 +60,15 @@ class Configuration(BaseModel):
     def subject(cls) -> str:
         """Return what messages call this configuration."""
         return cls.__name__
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:  # noqa: ARG002
+        """Return a copy with some fields changed, checked like a new one; nothing computed before is kept.
+
+        `deep` makes no difference, since nothing in a configuration can change.
+        """
+        aliases = {name: field.alias or name for name, field in type(self).model_fields.items()}
+        fields = {aliases[name]: value for name, value in self}
+        return type(self)(**fields | {aliases.get(name, name): value for name, value in (update or {}).items()})
 
     def __str__(self) -> str:
         return repr(self)

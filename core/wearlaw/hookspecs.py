@@ -15,6 +15,14 @@ if TYPE_CHECKING:
     from wearlaw.models import ContactModel, WearLaw
 
 PROJECT = "wearlaw"
+
+INTERFACE_VERSION = 1
+"""The version of what a plugin can rely on: these hooks and the base classes in `wearlaw.models`.
+
+It rises when a plugin that worked would no longer do. A plugin module that sets ``wearlaw_interface = N`` is only
+loaded by a wearlaw whose version is at least N.
+"""
+
 hookspec = pluggy.HookspecMarker(PROJECT)
 hookimpl = pluggy.HookimplMarker(PROJECT)
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Generic, TypeVar, Unpack, overload
+from typing import TYPE_CHECKING, Generic, Self, TypeVar, Unpack, overload
 
 import numpy as np
+from pydantic import model_validator
 
 from wearlaw.arrays import Array
 from wearlaw.conditions import TwinDiscConditions
@@ -68,8 +69,9 @@ class ContactPipeline(Configuration, Generic[RigT]):
             return ContactPipeline(rig=self.rig, contact_model=self.contact_model, use_patch_mean=True)
         if not isinstance(stage, WearLaw):
             raise CompositionError(f"a contact model is followed by wl.patch_mean() or a wear law, not by {stage!r}")
-        _check_fit(self.contact_model, self.scale, stage)
-        return Pipeline(contact=self, wear_law=stage)
+        pipeline = Pipeline(contact=self, wear_law=stage)
+        _warn_of_calibration(self.scale, self.contact_model, stage)
+        return pipeline
 
     def __call__(self: ContactPipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> ContactSolution:
         """Return the contact under the given conditions; see `TwinDisc.problem` for these."""
@@ -91,6 +93,11 @@ class Pipeline(Configuration, Generic[RigT]):
     """The rig with its contact model."""
     wear_law: WearLawField
     """The law of wear."""
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        _check_scale(self.contact.scale, self.contact.contact_model, self.wear_law)
+        return self
 
     def __repr__(self) -> str:
         return f"{self.contact!r} | {self.wear_law!r}"
@@ -126,13 +133,17 @@ class Pipeline(Configuration, Generic[RigT]):
         return Prediction(rig, model, scale, problem, contact, self.wear_law, wear)
 
 
-def _check_fit(model: ContactModel, scale: Scale, law: WearLaw) -> None:
-    """Refuse a law that cannot use a contact, and warn of parameters that were fitted for another one."""
+def _check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
+    """Refuse a law of the whole patch on a contact that is resolved into cells."""
     if law.scale == "patch" and scale != "patch":
         raise CompositionError(
             f"wear law '{law.name}' is stated for the means of the whole patch, but contact model '{model.name}'"
             f' resolves it into cells; put wl.patch_mean() between them, or use wl.contact_model("global")'
         )
+
+
+def _warn_of_calibration(scale: Scale, model: ContactModel, law: WearLaw) -> None:
+    """Warn of parameters that were fitted for another contact."""
     calibration = law.calibration
     if calibration is not None and not calibration.covers(model, scale):
         used = "its patch means" if scale == "patch" else "its cells"

@@ -173,11 +173,22 @@ def _entry_points() -> list[tuple[EntryPoint, Origin]]:
     return [found[key] for key in sorted(found)]
 
 
+def _check_interface(needed: object) -> None:
+    if not isinstance(needed, int) or isinstance(needed, bool):
+        raise TypeError(f"wearlaw_interface must be a whole number, got {needed!r}")
+    if needed > hookspecs.INTERFACE_VERSION:
+        raise TypeError(
+            f"it is built for version {needed} of the plugin interface, this wearlaw has version"
+            f" {hookspecs.INTERFACE_VERSION}; upgrade wearlaw"
+        )
+
+
 def _load(entry_point: EntryPoint, origin: Origin, found: Installed) -> None:
     """Load one plugin with a plugin manager of its own and put its models on the shelves."""
     manager = pluggy.PluginManager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)
     plugin = entry_point.load()
+    _check_interface(getattr(plugin, "wearlaw_interface", hookspecs.INTERFACE_VERSION))
     manager.register(plugin, entry_point.name)
     manager.check_pending()
     if not manager.get_hookcallers(plugin):

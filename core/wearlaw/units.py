@@ -234,6 +234,12 @@ def scalar_si(quantity: Quantity, unit: str) -> float:
     return float(quantity.magnitude) * si_factor(quantity._REGISTRY, quantity.units, unit)
 
 
+def in_unit(value: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
+    """Return SI floats as floats in `unit`."""
+    factor = unit_in_si(unit)
+    return value if factor == 1.0 else value / factor
+
+
 def from_si(value: NDArray[np.float64] | float, unit: str) -> Quantity:
     """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
     scaled = np.asarray(value) / unit_in_si(unit)

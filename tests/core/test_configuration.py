@@ -12,6 +12,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw.grid import Axis
 
 STEEL = wl.steel()
 IN_MM = 'give it in mm or another unit of that dimension, such as Q(1.0, "mm") or "1.0 mm"'
@@ -117,3 +118,19 @@ def test_the_schema_describes_a_quantity_as_text_with_its_unit() -> None:
     diameter = wl.Disc.model_json_schema()["properties"]["diameter"]
     assert (diameter["type"], diameter["examples"]) == ("string", ["1.0 mm"])
     assert "flat body" in diameter["description"]
+
+
+def test_a_changed_copy_is_checked_and_keeps_nothing_computed_before() -> None:
+    law = wl.wear_law("usfd")
+    assert law.breakpoints  # computes and keeps SI values
+    changed = law.model_copy(update={"tr_sc": wl.Q(100, "N/mm^2")})
+    assert changed.breakpoints == wl.wear_law("usfd", tr_sc=wl.Q(100, "N/mm^2")).breakpoints != law.breakpoints
+    with pytest.raises(wl.ConfigurationError, match="usfd: tr_sc: got the bare number 100"):
+        law.model_copy(update={"tr_sc": 100})
+
+
+def test_a_copy_without_changes_is_equal() -> None:
+    axis = Axis(**{"from": "1 %", "to": "2 %", "points": 3})
+    for made in (wl.steel(), wl.TwinDisc.suros(), wl.contact_model("global"), wl.wear_law("kth"), axis):
+        assert made.model_copy() == made
+    assert axis.model_copy(update={"points": 4}).points == 4

@@ -285,3 +285,11 @@ def test_progress_counts_every_operating_point_once() -> None:
     (RIG | GLOBAL | KTH).predict(problem, on_block=done.append)
     assert sum(done) == 2500
     assert len(done) > 1
+
+
+def test_a_pipeline_read_from_json_is_checked_like_one_composed_in_python() -> None:
+    text = (RIG | wl.contact_model("global") | wl.wear_law("brr")).model_dump_json()
+    on_cells = text.replace('"model":"global","total_from":{"model":"exact","slip":"consistent"}', '"model":"exact"')
+    assert on_cells != text
+    with pytest.raises(wl.CompositionError, match="stated for the means of the whole patch"):
+        wl.Pipeline.model_validate_json(on_cells)

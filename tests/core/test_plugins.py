@@ -64,6 +64,14 @@ BROKEN = {
         textwrap.dedent(LAW).format(name="outside").replace("wearlaw_wear_laws", "wearlaw_contact_models"),
         "is not a subclass of ContactModel",
     ),
+    "built_for_a_newer_interface": (
+        "wearlaw_interface = 99",
+        "TypeError: it is built for version 99 of the plugin interface, this wearlaw has version 1; upgrade wearlaw",
+    ),
+    "interface_that_is_no_number": (
+        "wearlaw_interface = '1'",
+        "TypeError: wearlaw_interface must be a whole number, got '1'",
+    ),
     "abstract_model": (
         "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    class Half(wearlaw.WearLaw):\n"
         "        name = 'half'\n    return [Half]",
