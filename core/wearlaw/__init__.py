@@ -28,10 +28,11 @@ from wearlaw.errors import (
 )
 from wearlaw.functions import as_wear_law
 from wearlaw.hookspecs import INTERFACE_VERSION, hookimpl
-from wearlaw.models import BreakpointMap, Calibration, Claim, ContactModel, LineContactModel, Scale, WearLaw
+from wearlaw.line import LineFields, LineProblem
+from wearlaw.models import BreakpointMap, Calibration, Claim, ContactModel, LineContactModel, LocalWear, Scale, WearLaw
 from wearlaw.pipeline import ContactPipeline, PatchMean, Pipeline, patch_mean
 from wearlaw.plugins import contact_model, contact_models, wear_law, wear_laws
-from wearlaw.records import Contact, LineFields, LineProblem
+from wearlaw.records import Contact
 from wearlaw.result import ContactSolution, Prediction
 from wearlaw.rig import Disc, Material, TwinDisc, steel
 from wearlaw.specification import ContactModelField, WearLawField
@@ -62,6 +63,7 @@ __all__ = [
     "LineContactModel",
     "LineFields",
     "LineProblem",
+    "LocalWear",
     "Material",
     "ModelError",
     "OutputError",

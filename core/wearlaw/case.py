@@ -120,6 +120,8 @@ class Case(Configuration):
 
     title: str
     """What the study is called in its results."""
+    plugins: dict[str, str] = Field(default_factory=dict)
+    """The distributions that the case needs, each with a version range such as ">=1.2,<2"; "" for any version."""
     rig: Annotated[TwinDisc, BeforeValidator(_rig)]
     """The test rig; `preset = "suros"` starts from that rig and overrides what else is given."""
     contact_models: Annotated[tuple[ContactModelField, ...], *ModelList]
@@ -132,6 +134,16 @@ class Case(Configuration):
     """Single operating points at which stresses and slip along the patch are shown, each under a name."""
     measured: Measurement | None = None
     """Measured traction."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _has_its_plugins(cls, fields: Any) -> Any:
+        """Say that a plugin is missing before anything else fails for lack of it."""
+        if isinstance(fields, dict):
+            needed = fields.get("plugins", {})
+            if isinstance(needed, dict):
+                plugins.require({str(name): str(versions) for name, versions in needed.items()})
+        return fields
 
     @model_validator(mode="after")
     def _consistent(self) -> Case:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
+from wearlaw.line import LineProblem
 from wearlaw.models import LineContactModel
 from wearlaw.quadrature import Nodes, position
-from wearlaw.records import LineProblem
 
 SAMPLES = 32
 """Equal intervals of θ that are searched for a crossing."""

@@ -12,7 +12,7 @@ from wearlaw.arrays import Array
 from wearlaw.conditions import CONDITIONS, CREEPAGE, LOADS
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError
-from wearlaw.records import LineProblem
+from wearlaw.line import LineProblem
 from wearlaw.rig import TwinDisc
 from wearlaw.units import Q, Unit, coefficient
 

@@ -16,9 +16,10 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.crossings import crossings
 from wearlaw.errors import ModelError
+from wearlaw.line import LineProblem
 from wearlaw.models import ContactModel, LineContactModel, Scale, WearLaw, stick_nodes
 from wearlaw.quadrature import join, remainder, zone_nodes
-from wearlaw.records import NODE_VARIABLES, Contact, LineProblem
+from wearlaw.records import NODE_VARIABLES, Contact
 
 BLOCK = 1024
 """Operating points of a block: small enough for its arrays to stay in the cache."""
@@ -81,7 +82,7 @@ def integrate_wear(
     contact_columns, wear_columns = [], []
     for block in _blocks(flat):
         contact = contact_for(model, law, flat[block], scale)
-        rate = rate_of(law, contact)
+        rate = law.checked_rate(contact)
         contact_columns.append(_contact_columns(contact))
         wear_columns.append({"wear_rate": contact.mean(rate), "wear_rate_error": _error(model, scale, contact, rate)})
         if on_block is not None:
@@ -113,19 +114,6 @@ def contact_for(model: ContactModel, law: WearLaw, problem: LineProblem, scale: 
     contact = model.at(problem, join(*stick_nodes(problem, start, end), slipping))
     _check_contact(model, contact, problem)
     return contact
-
-
-def rate_of(law: WearLaw, contact: Contact) -> Array:
-    """Return a law's rate at the nodes, or raise a `ModelError` if it is not what a rate must be."""
-    rate = np.asarray(law.rate(contact))
-    if rate.shape != contact.pressure.shape:
-        raise ModelError(
-            f"wear law '{law.name}' returned rates of shape {rate.shape} for nodes of shape"
-            f" {contact.pressure.shape}; it must return one rate a node"
-        )
-    if not np.isfinite(rate).all():
-        raise ModelError(f"wear law '{law.name}' returned a rate that is not finite")
-    return rate
 
 
 def _check_contact(model: ContactModel, contact: Contact, problem: LineProblem) -> None:

@@ -6,17 +6,21 @@ A model is its configuration: a frozen pydantic record whose fields carry units 
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
-from wearlaw.errors import CompositionError
+from wearlaw.errors import CalibrationWarning, CompositionError, ModelError
+from wearlaw.line import LineFields, LineProblem
 from wearlaw.quadrature import Nodes, join, zone_nodes
-from wearlaw.records import Contact, LineFields, LineProblem
+from wearlaw.records import Contact
+from wearlaw.units import WEAR_RATE, Quantity, from_si
 
 Scale: TypeAlias = Literal["patch", "cells"]
 """Whether a contact holds the means of the whole patch in one node, or resolves it into many."""
@@ -151,6 +155,50 @@ class Calibration(Configuration):
         )
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class LocalWear:
+    """The wear in a contact that was solved elsewhere.
+
+    Attributes
+    ----------
+    contact : Contact
+        The contact.
+    rate : ndarray, (batch, nodes)
+        The law's rate at the nodes [kg/m/m²].
+    """
+
+    contact: Contact
+    rate: Array
+
+    @property
+    def local_wear_rate(self) -> Quantity:
+        """Mass lost per metre rolled and contact area at the nodes [kg/m/m²]."""
+        return from_si(self.rate, WEAR_RATE)
+
+    @property
+    def wear_rate(self) -> Quantity:
+        """Mass lost per metre rolled and contact area, mean over the patch [kg/m/m²]."""
+        return from_si(self.contact.mean(self.rate), WEAR_RATE)
+
+    @property
+    def wear_index(self) -> Quantity:
+        """Energy dissipated per metre rolled [N]."""
+        return from_si(self.contact.wear_index, "N")
+
+    @property
+    def tangential_force(self) -> Quantity:
+        """Sum of the tractions [N]."""
+        return from_si(self.contact.tangential_force, "N")
+
+    @property
+    def mass_per_distance(self) -> Quantity:
+        """Mass lost per metre rolled [kg/m]."""
+        return from_si(self.contact.sum_over_nodes(self.rate * self.contact.area), "ug/m")
+
+    def __repr__(self) -> str:
+        return f"LocalWear with wear_rate {self.wear_rate!r}"
+
+
 class WearLaw(Model):
     """A law of wear: from a solved contact to the wear rate at each of its nodes."""
 
@@ -163,6 +211,42 @@ class WearLaw(Model):
     @abstractmethod
     def rate(self, contact: Contact) -> Array:
         """Return the mass lost per metre rolled and contact area [kg/m/m²], of the shape of the nodes."""
+
+    def checked_rate(self, contact: Contact) -> Array:
+        """Return `rate`, or raise a `ModelError` if that is not what a rate must be."""
+        rate = np.asarray(self.rate(contact))
+        if rate.shape != contact.pressure.shape:
+            raise ModelError(
+                f"wear law '{self.name}' returned rates of shape {rate.shape} for nodes of shape"
+                f" {contact.pressure.shape}; it must return one rate a node"
+            )
+        if not np.isfinite(rate).all():
+            raise ModelError(f"wear law '{self.name}' returned a rate that is not finite")
+        return rate
+
+    def __ror__(self, contact: Contact) -> LocalWear:
+        """Return the wear in a contact that was solved elsewhere, as in ``Contact.from_arrays(...) | law``.
+
+        Raises
+        ------
+        CompositionError
+            If the law is stated for the whole patch, and the contact has more than one node.
+        """
+        if not isinstance(contact, Contact):
+            raise CompositionError(f"a wear law takes a contact, not {contact!r}; a pipeline begins with a rig")
+        scale: Scale = "patch" if contact.pressure.size == contact.rolling_speed.size else "cells"
+        if self.scale == "patch" and scale != "patch":
+            raise CompositionError(
+                f"wear law '{self.name}' is stated for the means of the whole patch; use contact.patch_mean() | law"
+            )
+        if self.calibration is not None and self.calibration.scale != scale:
+            warnings.warn(
+                f"the parameters of wear law '{self.name}' were fitted for {self.calibration}, but the contact holds"
+                f" {'the means of the patch' if scale == 'patch' else 'its cells'}; check them against data",
+                CalibrationWarning,
+                stacklevel=2,
+            )
+        return LocalWear(contact, self.checked_rate(contact))
 
     @property
     def breakpoints(self) -> BreakpointMap | None:

@@ -14,8 +14,9 @@ from wearlaw.conditions import TwinDiscConditions
 from wearlaw.configuration import Configuration
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning
 from wearlaw.integrate import ContactTotals, integrate_contact, integrate_wear
+from wearlaw.line import LineProblem
 from wearlaw.models import ContactModel, Scale, WearLaw
-from wearlaw.records import UNITS, LineProblem
+from wearlaw.records import UNITS
 from wearlaw.result import ContactSolution, Prediction
 from wearlaw.rig import TwinDisc
 from wearlaw.specification import ContactModelField, WearLawField

@@ -11,14 +11,14 @@ import inspect
 import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from importlib.metadata import EntryPoint, distributions
+from importlib.metadata import EntryPoint, PackageNotFoundError, distributions, version
 from itertools import chain
 from typing import Any, Generic, TypeVar
 
 import pluggy
 
 from wearlaw import hookspecs
-from wearlaw.errors import PluginWarning, UnknownModelError, did_you_mean
+from wearlaw.errors import InputError, PluginWarning, UnknownModelError, did_you_mean
 from wearlaw.models import ContactModel, Model, WearLaw
 
 ModelT = TypeVar("ModelT", bound=Model)
@@ -160,6 +160,38 @@ def wear_law(name: str, /, **options: Any) -> WearLaw:
     """
     found = installed()
     return found.wear_laws.find(name, found.broken)(**options)
+
+
+def require(needed: Mapping[str, str]) -> None:
+    """Refuse to go on unless distributions are installed in the versions asked for.
+
+    Parameters
+    ----------
+    needed : mapping of str to str
+        Names of distributions with version ranges such as ">=1.2,<2"; "" for any version.
+
+    Raises
+    ------
+    InputError
+        If one is missing, has another version, or its range is not one.
+    """
+    from packaging.specifiers import InvalidSpecifier, SpecifierSet
+
+    for name, versions in needed.items():
+        try:
+            allowed = SpecifierSet(versions)
+        except InvalidSpecifier:
+            raise InputError(
+                f"plugins.{name}: '{versions}' is no version range; write one such as '>=1.2,<2'"
+            ) from None
+        try:
+            found = version(name)
+        except PackageNotFoundError:
+            raise InputError(
+                f"plugins.{name}: is not installed; install it with: pip install '{name}{versions}'"
+            ) from None
+        if not allowed.contains(found, prereleases=True):
+            raise InputError(f"plugins.{name}: version {found} is installed, but {versions} is needed")
 
 
 def _entry_points() -> list[tuple[EntryPoint, Origin]]:

@@ -1,19 +1,21 @@
-"""The records that pass from stage to stage: `LineProblem` into a contact model, `Contact` out of it.
+"""The solved contact: the record that a contact model returns and a wear law reads.
 
-Both are frozen and hold SI float64 arrays. Their first axes are the *batch*, one entry an operating point;
-a scalar prediction has no batch axis. The axes of `Contact` behind the batch are the *nodes* of the patch.
+It is frozen and holds SI float64 arrays. Its first axes are the *batch*, one entry an operating point; a scalar
+prediction has no batch axis. The axes behind the batch are the *nodes* of the patch.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.errors import InputError
+from wearlaw.line import LineFields, LineProblem
+from wearlaw.units import QuantityLike, Unit
 
 NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density")
 """The variables of a `Contact` that differ from node to node."""
@@ -31,88 +33,24 @@ UNITS = {
 """The units in which variables of a `Contact` are shown; the record itself holds SI."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class LineProblem:
-    """Hertzian line contact between two rolling bodies: what a contact model is asked to solve.
-
-    All arrays are of the batch shape. Lengths lie along the rolling direction x, which runs from the leading
-    edge at x = -half_width to the trailing edge at x = half_width.
-
-    Attributes
-    ----------
-    normal_force_per_width : ndarray
-        P [N/m].
-    half_width : ndarray
-        Half the patch's length in the rolling direction, a [m].
-    max_pressure : ndarray
-        Hertz's maximum pressure, p0 [Pa].
-    relative_radius : ndarray
-        R [m], 1/R = 1/R1 + 1/R2.
-    effective_modulus : ndarray
-        E* [Pa], 1/E* = (1-ν1²)/E1 + (1-ν2²)/E2.
-    friction_coefficient : ndarray
-        μ [-].
-    creepage : ndarray
-        ξ [-], with its sign; positive where disc 1 is the faster one.
-    rolling_speed : ndarray
-        V [m/s].
-    track_width : ndarray
-        Width of the patch across the rolling direction [m].
-    density : ndarray
-        Mass density of the body whose wear is predicted [kg/m³].
-    traction_coefficient : ndarray or None
-        Measured tangential over normal force [-], where the test gave one.
-    """
-
-    normal_force_per_width: Array
-    half_width: Array
-    max_pressure: Array
-    relative_radius: Array
-    effective_modulus: Array
-    friction_coefficient: Array
-    creepage: Array
-    rolling_speed: Array
-    track_width: Array
-    density: Array
-    traction_coefficient: Array | None = None
-
-    @property
-    def batch_shape(self) -> tuple[int, ...]:
-        """The shape of the batch, () for one operating point."""
-        return self.creepage.shape
-
-    @property
-    def normal_force(self) -> Array:
-        """Normal force on the whole width [N]."""
-        return self.normal_force_per_width * self.track_width
-
-    @property
-    def patch_area(self) -> Array:
-        """Area of the patch, 2 a × width [m²]."""
-        return 2.0 * self.half_width * self.track_width
-
-    def __getitem__(self, index: Any) -> Self:
-        """Return the problem at some operating points of the batch; `index` is any NumPy index."""
-        return self._map(lambda array: array[index])
-
-    def flatten(self) -> Self:
-        """Return the problem with its batch as one axis."""
-        return self._map(lambda array: array.reshape(-1))
-
-    def _map(self, function: Callable[[Array], Array]) -> Self:
-        fields = ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self))
-        mapped: dict[str, Any] = {name: function(array) for name, array in fields if array is not None}
-        return type(self)(**mapped)
+_FROM_ARRAYS = {
+    "pressure": Unit("MPa", positive=False),
+    "traction": Unit("MPa", positive=False),
+    "slip": Unit("", positive=False),
+    "area": Unit("mm^2", positive=False),
+}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class LineFields:
-    """Pressure, traction, slip and traction bound at points of a line contact, as in `Contact`."""
-
-    pressure: Array
-    traction: Array
-    slip: Array
-    traction_bound: Array
+def _broadcast(arrays: dict[str, Array], batch_axes: int) -> dict[str, Array]:
+    """Return the arrays of nodes in one shape, which has the batch axes and at least one more."""
+    shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        raise InputError(f"the shapes of the arrays do not broadcast: {shapes}") from None
+    if len(shape) <= batch_axes or 0 in shape:
+        raise InputError(f"there must be at least one node behind the {batch_axes} axes of rolling_speed; got {shapes}")
+    return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -190,6 +128,56 @@ class Contact:
             tangential_force=force,
             wear_index=force * problem.creepage,
             density=problem.density,
+        )
+
+    @classmethod
+    def from_arrays(
+        cls,
+        *,
+        pressure: QuantityLike,
+        traction: QuantityLike,
+        slip: QuantityLike,
+        area: QuantityLike,
+        rolling_speed: QuantityLike,
+        density: QuantityLike = "7850 kg/m^3",
+    ) -> Self:
+        """Return a contact that was solved elsewhere, by a multibody or boundary-element program.
+
+        Parameters
+        ----------
+        pressure, traction, slip, area : Quantity, (batch, nodes)
+            Pressure [Pa], traction [Pa], relative slip [-] and area [m²] of each node; they broadcast against each
+            other. Traction and slip have the same sign, and there may be several axes of nodes.
+        rolling_speed, density : Quantity, (batch)
+            Rolling speed [m/s] and mass density of the body whose wear is predicted [kg/m³].
+
+        Raises
+        ------
+        UnitError
+            If a value lacks its unit or is out of bounds.
+        InputError
+            If the shapes do not broadcast, or traction and slip have opposite signs anywhere.
+        """
+        given = {"pressure": pressure, "traction": traction, "slip": slip, "area": area}
+        speed = Unit("m/s").si(rolling_speed, "rolling_speed")
+        nodes = _broadcast({name: _FROM_ARRAYS[name].si(value, name) for name, value in given.items()}, speed.ndim)
+        p, q, s, a = nodes.values()
+        if (p < 0).any():
+            raise InputError("pressure: must not be negative; a pressure that presses the bodies together is positive")
+        if (a < 0).any() or not (a.sum(axis=tuple(range(speed.ndim, a.ndim))) > 0).all():
+            raise InputError("area: must not be negative, and not zero at all nodes of a contact")
+        if (q * s < 0).any():
+            raise InputError("traction and slip: must have the same sign at every node; turn the sign of one of them")
+        axes = tuple(range(speed.ndim, p.ndim))
+        return cls(
+            **nodes,
+            traction_bound=np.full(p.shape, np.inf),
+            x=np.zeros(p.shape),
+            rolling_speed=speed,
+            normal_force=(p * a).sum(axis=axes),
+            tangential_force=(q * a).sum(axis=axes),
+            wear_index=(q * s * a).sum(axis=axes),
+            density=np.broadcast_to(Unit("kg/m^3").si(density, "density"), speed.shape),
         )
 
     @property

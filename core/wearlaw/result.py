@@ -11,9 +11,10 @@ from wearlaw import integrate
 from wearlaw.arrays import Array
 from wearlaw.errors import InputError
 from wearlaw.integrate import ContactTotals, WearTotals
+from wearlaw.line import LineProblem
 from wearlaw.models import ContactModel, LineContactModel, Scale, WearLaw
 from wearlaw.quadrature import uniform_cells
-from wearlaw.records import UNITS, Contact, LineProblem
+from wearlaw.records import UNITS, Contact
 from wearlaw.rig import Disc, TwinDisc
 from wearlaw.units import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
 
@@ -204,7 +205,7 @@ class Prediction(ContactSolution):
     @cached_property
     def profile(self) -> xarray.Dataset:
         """Pressure, traction, traction bound, slip and wear rate along the patch, labelled and with units."""
-        rate = integrate.rate_of(self.wear_law, self._cells())
+        rate = self.wear_law.checked_rate(self._cells())
         return self._profile({"wear_rate": (rate, WEAR_RATE)})
 
     def depth_per_distance(self, body: str) -> Quantity:

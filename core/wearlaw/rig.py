@@ -12,8 +12,8 @@ from wearlaw import hertz
 from wearlaw.conditions import TwinDiscConditions, condition_arrays
 from wearlaw.configuration import Configuration
 from wearlaw.errors import CompositionError, ConditionsError, InputError, RangeWarning, UnitError
+from wearlaw.line import LineProblem
 from wearlaw.models import ContactModel
-from wearlaw.records import LineProblem
 from wearlaw.units import (
     Density,
     Length,

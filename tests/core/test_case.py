@@ -414,3 +414,22 @@ def test_the_schema_accepts_each_installed_model_by_name_and_as_a_table(validato
         assert validator.is_valid(table(**{kind: [name]}))
         assert validator.is_valid(table(**{kind: [{"model": name}]}))
         assert not validator.is_valid(table(**{kind: [{"model": name, "nonsense": 1}]}))
+
+
+@pytest.mark.parametrize("versions", ["", ">=0.1", ">=0.0.1,<99", "==0.1.*"])
+def test_a_case_may_name_the_distributions_it_needs(versions: str) -> None:
+    assert case(plugins={"wearlaw": versions}).plugins == {"wearlaw": versions}
+
+
+@pytest.mark.parametrize(
+    ("needed", "message"),
+    [
+        ({"wearlaw": ">=99"}, "plugins.wearlaw: version .* is installed, but >=99 is needed"),
+        ({"wearlaw-zobory": ">=1"}, "plugins.wearlaw-zobory: is not installed; install it with: pip install "),
+        ({"wearlaw": "new"}, "plugins.wearlaw: 'new' is no version range; write one such as '>=1.2,<2'"),
+    ],
+)
+def test_a_case_whose_plugins_are_missing_is_refused_for_that_alone(needed: Any, message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=message) as caught:
+        case(plugins=needed, wear_laws=["zobory"])
+    assert len(caught.value.problems) == 1

@@ -1,0 +1,120 @@
+"""Contacts that were solved elsewhere, and the wear in them."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from wearlaw import Q
+
+EPS = np.finfo(float).eps
+FOUR_NODES: Any = {
+    "pressure": Q([100, 800, 900, 300], "MPa"),
+    "traction": Q([30, 200, 350, 120], "MPa"),
+    "slip": Q([0, 0, 0.4, 1.1], "%"),
+    "area": Q([1, 1, 1, 0.5], "mm^2"),
+    "rolling_speed": Q(1.2, "m/s"),
+}
+
+
+def test_the_totals_are_the_sums_over_the_nodes() -> None:
+    contact = wl.Contact.from_arrays(**FOUR_NODES)
+    assert contact.normal_force == pytest.approx(100 + 800 + 900 + 150, rel=8 * EPS)  # [N]
+    assert contact.tangential_force == pytest.approx(30 + 200 + 350 + 60, rel=8 * EPS)
+    assert contact.wear_index == pytest.approx(350 * 0.004 + 120 * 0.011 * 0.5, rel=8 * EPS)
+    assert contact.density == 7850
+
+
+def test_kth_on_given_arrays_is_archards_law_at_each_node() -> None:
+    wear = wl.Contact.from_arrays(**FOUR_NODES) | wl.wear_law("kth", coefficient="mid")
+    # ρ k p s / H with k = 5.5e-4, H = 2.625 GPa; 1 kg/m³ is 1000 µg/m/mm².
+    expected = 7850 * 5.5e-4 * np.array([100, 800, 900, 300]) * np.array([0, 0, 0.004, 0.011]) / 2625 * 1000
+    np.testing.assert_allclose(wear.local_wear_rate.magnitude, expected, rtol=16 * EPS)
+    mean = expected @ [1, 1, 1, 0.5] / 3.5
+    assert wear.wear_rate.magnitude == pytest.approx(mean, rel=16 * EPS)
+    assert wear.mass_per_distance.to("ug/m").magnitude == pytest.approx(mean * 3.5, rel=16 * EPS)
+    assert repr(wear) == f"LocalWear with wear_rate {wear.wear_rate!r}"
+
+
+def test_the_fields_of_a_model_given_as_arrays_wear_as_in_a_pipeline() -> None:
+    prediction = (wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact"))(
+        max_pressure="1500 MPa", creepage=Q([0.3, 1, 10], "%"), friction_coefficient=0.46
+    )
+    solved = prediction.contact
+    contact = wl.Contact.from_arrays(
+        pressure=Q(solved.pressure, "Pa"),
+        traction=Q(solved.traction, "Pa"),
+        slip=Q(solved.slip, ""),
+        area=Q(solved.area, "m^2"),
+        rolling_speed=Q(solved.rolling_speed, "m/s"),
+    )
+    wear = contact | wl.wear_law("usfd", fitted_for="exact")
+    # Sums of a few hundred products.
+    np.testing.assert_allclose(wear.wear_rate.magnitude, prediction.wear_rate.magnitude, rtol=300 * EPS)
+    np.testing.assert_allclose(wear.wear_index.magnitude, prediction.wear_index.magnitude, rtol=300 * EPS)
+
+
+def test_a_patch_with_two_axes_of_nodes_and_a_batch() -> None:
+    shape = (2, 3, 4)
+    contact = wl.Contact.from_arrays(
+        pressure=Q(np.full(shape, 500.0), "MPa"),
+        traction=Q(100, "MPa"),
+        slip=Q(np.linspace(0, 1, 24).reshape(shape), "%"),
+        area=Q(0.25, "mm^2"),
+        rolling_speed=Q([1, 2], "m/s"),
+    )
+    assert contact.patch_area.shape == (2,)
+    np.testing.assert_allclose(contact.patch_area, 3e-6, rtol=16 * EPS)
+    wear = contact | wl.wear_law("kth")
+    assert wear.wear_rate.magnitude.shape == (2,)
+    assert wear.local_wear_rate.magnitude.shape == shape
+
+
+@pytest.mark.parametrize(
+    ("changes", "error", "message"),
+    [
+        ({"pressure": [1.0, 2, 3, 4]}, wl.UnitError, "pressure: got .* which has no unit"),
+        ({"slip": Q(0.1, "mm")}, wl.UnitError, "slip: got 0.1000 mm, which is not a ratio"),
+        ({"area": Q(0, "mm^2")}, wl.InputError, "area: must not be negative, and not zero at all nodes"),
+        ({"area": Q([1, 1, -1, 1], "mm^2")}, wl.InputError, "area: must not be negative"),
+        ({"rolling_speed": Q(-1, "m/s")}, wl.UnitError, "rolling_speed: must be greater than zero"),
+        ({"traction": Q([1, np.nan, 1, 1], "MPa")}, wl.UnitError, "traction: must be a number"),
+        ({"pressure": Q([1, -2, 3, 4], "MPa")}, wl.InputError, "pressure: must not be negative"),
+        ({"slip": Q(-0.1, "%")}, wl.InputError, "traction and slip: must have the same sign"),
+        ({"area": Q([1, 2], "mm^2")}, wl.InputError, r"do not broadcast: pressure \(4,\), .* area \(2,\)"),
+        ({"rolling_speed": Q([1, 1], "m/s")}, wl.InputError, "at least one node behind the 1 axes of rolling_speed"),
+    ],
+)
+def test_wrong_arrays_are_refused(changes: dict[str, Any], error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        wl.Contact.from_arrays(**{**FOUR_NODES, **changes})
+
+
+def test_a_law_of_the_patch_is_refused_on_nodes_and_taken_on_their_mean() -> None:
+    contact = wl.Contact.from_arrays(**FOUR_NODES)
+    with pytest.raises(wl.CompositionError, match=r"use contact\.patch_mean\(\) \| law"):
+        contact | wl.wear_law("brr")
+    wear = contact.patch_mean() | wl.wear_law("brr")
+    # 6.165 µg/m per N of Tγ below 100 N: ρ π 0.25 mm³/km/N.
+    expected = 7850 * np.pi * 0.25e-12 * 1e9 * float(contact.wear_index)
+    assert wear.mass_per_distance.to("ug/m").magnitude == pytest.approx(expected, rel=16 * EPS)
+
+
+def test_parameters_of_another_scale_are_warned_of() -> None:
+    contact = wl.Contact.from_arrays(**FOUR_NODES)
+    with pytest.warns(wl.CalibrationWarning, match="fitted for patch means .* holds its cells"):
+        contact | wl.wear_law("usfd", fitted_for="global")
+    with pytest.warns(wl.CalibrationWarning, match="holds the means of the patch"):
+        contact.patch_mean() | wl.wear_law("usfd", fitted_for="exact")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        contact.patch_mean() | wl.wear_law("usfd", fitted_for="global")
+
+
+def test_only_a_contact_comes_before_a_law() -> None:
+    with pytest.raises(wl.CompositionError, match="a wear law takes a contact, not 3"):
+        3 | wl.wear_law("kth")  # type: ignore[operator]
