@@ -29,12 +29,21 @@ from wearlaw.errors import (
 from wearlaw.functions import as_wear_law
 from wearlaw.hookspecs import INTERFACE_VERSION, hookimpl
 from wearlaw.line import LineFields, LineProblem
+from wearlaw.material import Material, steel
 from wearlaw.models import BreakpointMap, Calibration, Claim, ContactModel, LineContactModel, LocalWear, Scale, WearLaw
 from wearlaw.pipeline import ContactPipeline, PatchMean, Pipeline, patch_mean
-from wearlaw.plugins import contact_model, contact_models, wear_law, wear_laws
+from wearlaw.plugins import (
+    contact_model,
+    contact_models,
+    material,
+    materials,
+    parameter_sets,
+    wear_law,
+    wear_laws,
+)
 from wearlaw.records import Contact
 from wearlaw.result import ContactSolution, Prediction
-from wearlaw.rig import Disc, Material, TwinDisc, steel
+from wearlaw.rig import Disc, TwinDisc
 from wearlaw.specification import ContactModelField, WearLawField
 from wearlaw.units import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
 from wearlaw.version import __version__
@@ -92,6 +101,9 @@ __all__ = [
     "contact_models",
     "hertz",
     "hookimpl",
+    "material",
+    "materials",
+    "parameter_sets",
     "parse",
     "patch_mean",
     "scalar_si",

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -23,8 +22,8 @@ from wearlaw.configuration import Configuration
 from wearlaw.errors import CaseError, ConfigurationError, InputError, did_you_mean
 from wearlaw.grid import Grid
 from wearlaw.models import Model
-from wearlaw.rig import Disc, Material, TwinDisc
-from wearlaw.specification import ContactModelField, WearLawField
+from wearlaw.rig import Disc, TwinDisc
+from wearlaw.specification import ContactModelField, MaterialField, WearLawField
 from wearlaw.units import Length, Quantity, Speed, Unit, coefficient, scalar_si, text_of
 
 
@@ -81,7 +80,7 @@ class Preset(Configuration):
     """The rig to start from."""
     diameter: Length | None = None
     """Diameter of both discs [m]."""
-    material: Material | None = None
+    material: MaterialField | None = None
     """Material of both discs."""
     disc_1: Disc | None = None
     """The wheel disc, whole."""
@@ -186,23 +185,20 @@ def _shown(value: Any) -> str:
     return text_of(value) if isinstance(value, pint.Quantity) else str(value)
 
 
-def shipped_cases() -> list[str]:
-    """Return the names of the cases that are shipped with the package."""
-    folder = resources.files("wearlaw") / "cases"
-    return sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
-
-
 def case_text(name_or_path: str) -> str:
-    """Return the text of a case file, or of the shipped case of that name.
+    """Return the text of a case file, or of the case that a plugin ships under that name.
 
     Raises
     ------
     CaseError
         If there is neither.
+    UnknownModelError
+        If several plugins ship a case of that name.
     """
-    known = shipped_cases()
-    if name_or_path in known:
-        return (resources.files("wearlaw") / "cases" / f"{name_or_path}.toml").read_text(encoding="utf-8")
+    found = plugins.installed()
+    known = found.cases.items()
+    if name_or_path in found.cases.providers:
+        return found.cases.find(name_or_path, found.broken)
     try:
         return Path(name_or_path).read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -223,6 +219,11 @@ def case_schema() -> dict[str, Any]:
     for field, models in kinds.items():
         tables = [_model_schema(name, model, definitions) for name, model in models.items()]
         schema["properties"][field]["items"] = {"anyOf": [{"enum": list(models)}, *tables]}
+    schema["properties"]["wear_laws"]["items"]["anyOf"] += [
+        choice
+        for name, law in plugins.parameter_sets().items()
+        for choice in ({"const": name}, {**_model_schema(name, type(law), definitions), "required": ["model"]})
+    ]
     preset = Preset.model_json_schema()
     definitions.update(preset.pop("$defs", {}))
     schema["properties"]["rig"] = {"anyOf": [{"$ref": "#/$defs/TwinDisc"}, preset]}

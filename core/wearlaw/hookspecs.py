@@ -6,12 +6,13 @@ names marked `@wearlaw.hookimpl`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import pluggy
 
 if TYPE_CHECKING:
+    from wearlaw.material import Material
     from wearlaw.models import ContactModel, WearLaw
 
 PROJECT = "wearlaw"
@@ -35,3 +36,18 @@ def wearlaw_contact_models() -> Iterable[type[ContactModel]]:  # type: ignore[em
 @hookspec
 def wearlaw_wear_laws() -> Iterable[type[WearLaw]]:  # type: ignore[empty-body]
     """Return the wear laws that the plugin provides."""
+
+
+@hookspec
+def wearlaw_parameter_sets() -> Mapping[str, WearLaw]:  # type: ignore[empty-body]
+    """Return wear laws with parameters of their own, such as a lab's for its pair of steels, by name."""
+
+
+@hookspec
+def wearlaw_materials() -> Mapping[str, Material]:  # type: ignore[empty-body]
+    """Return materials by name."""
+
+
+@hookspec
+def wearlaw_cases() -> Mapping[str, str]:  # type: ignore[empty-body]
+    """Return the texts of case files by name."""

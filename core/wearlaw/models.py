@@ -13,14 +13,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 import numpy as np
+from pydantic import model_validator
 
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
-from wearlaw.errors import CalibrationWarning, CompositionError, ModelError
+from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, did_you_mean
 from wearlaw.line import LineFields, LineProblem
 from wearlaw.quadrature import Nodes, join, zone_nodes
-from wearlaw.records import Contact
-from wearlaw.units import WEAR_RATE, Quantity, from_si
+from wearlaw.records import UNITS, Contact
+from wearlaw.units import WEAR_RATE, Quantity, Unit, from_si
 
 Scale: TypeAlias = Literal["patch", "cells"]
 """Whether a contact holds the means of the whole patch in one node, or resolves it into many."""
@@ -135,8 +136,26 @@ class Calibration(Configuration):
     """Shape of the contact patch."""
     materials: str
     """Materials of the two bodies."""
+    stated_range: tuple[tuple[str, str, str], ...] = ()
+    """Range of the tests: patch means of `Contact` variables with lowest and highest value, such as
+    ("wear_index_density", "0 N/mm^2", "108.4 N/mm^2")."""
     source: str
     """Literature."""
+
+    @model_validator(mode="after")
+    def _range_has_units(self) -> Calibration:
+        self.range_in_si()
+        return self
+
+    def range_in_si(self) -> dict[str, tuple[float, float]]:
+        """Return the stated range in SI."""
+        found = {}
+        for variable, low, high in self.stated_range:
+            if variable not in UNITS:
+                raise InputError(f"stated_range: unknown variable '{variable}';{did_you_mean(variable, UNITS)}")
+            unit = Unit(UNITS[variable], positive=False)
+            found[variable] = float(unit.si(low, variable)), float(unit.si(high, variable))
+        return found
 
     def __str__(self) -> str:
         if self.scale == "patch":

@@ -7,129 +7,92 @@ on working. Two models of one name are an error that names both distributions.
 from __future__ import annotations
 
 import functools
-import inspect
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib.metadata import EntryPoint, PackageNotFoundError, distributions, version
 from itertools import chain
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 import pluggy
 
 from wearlaw import hookspecs
-from wearlaw.errors import InputError, PluginWarning, UnknownModelError, did_you_mean
-from wearlaw.models import ContactModel, Model, WearLaw
-
-ModelT = TypeVar("ModelT", bound=Model)
-
-
-@dataclass(frozen=True)
-class Origin:
-    """Where a plugin comes from."""
-
-    entry_point: str
-    distribution: str
-    version: str
-
-    def __str__(self) -> str:
-        return f"{self.distribution} {self.version} (plugin '{self.entry_point}')"
-
-
-@dataclass(frozen=True)
-class Broken:
-    """A plugin that could not be used, or a part of it, and why."""
-
-    origin: Origin
-    cause: str
-
-    def __str__(self) -> str:
-        return f"{self.origin}: {self.cause}"
-
-
-@dataclass
-class Shelf(Generic[ModelT]):
-    """All installed models of one kind."""
-
-    kind: str
-    base: type[ModelT]
-    providers: dict[str, list[tuple[type[ModelT], Origin]]] = field(default_factory=dict)
-
-    def add(self, model: object, origin: Origin) -> None:
-        """Put a model on the shelf, or raise `TypeError` if it is not one."""
-        if not (inspect.isclass(model) and issubclass(model, self.base)):
-            raise TypeError(f"{model!r} is not a subclass of {self.base.__name__}")
-        if inspect.isabstract(model):
-            missing = ", ".join(sorted(model.__abstractmethods__))
-            raise TypeError(f"{model.__name__} does not implement {missing}")
-        name = getattr(model, "name", None)
-        if not (isinstance(name, str) and name.isidentifier()):
-            raise TypeError(f"the name of {model.__name__} must be an identifier, got {name!r}")
-        self.providers.setdefault(name, []).append((model, origin))
-
-    def origin(self, name: str) -> Origin:
-        """Return where the model of a name comes from."""
-        return self.providers[name][0][1]
-
-    def listing(self) -> list[tuple[str, str, Origin]]:
-        """Return kind, name and origin of every model, also of those whose name is taken twice."""
-        return [(self.kind, name, origin) for name, found in sorted(self.providers.items()) for _, origin in found]
-
-    def classes(self) -> dict[str, type[ModelT]]:
-        """Return the models by name, without those whose name is taken twice."""
-        return {name: found[0][0] for name, found in sorted(self.providers.items()) if len(found) == 1}
-
-    def find(self, name: str, broken: Iterable[Broken]) -> type[ModelT]:
-        """Return the model of a name, or raise an `UnknownModelError` that says what there is."""
-        found = self.providers.get(name, [])
-        if len(found) == 1:
-            return found[0][0]
-        if found:
-            origins = " and ".join(str(origin) for _, origin in found)
-            raise UnknownModelError(f"{self.kind} '{name}' is provided more than once, by {origins}; remove one")
-        raise UnknownModelError(unknown(self.kind, name, self.classes(), broken))
-
-
-def unknown(kind: str, name: str, known: Iterable[str], broken: Iterable[Broken]) -> str:
-    """Return the message that there is no model of a name, with what there is and what was left out."""
-    names = list(known)
-    message = f"no {kind} is called {name!r};{did_you_mean(str(name), names)} Installed: {', '.join(names) or 'none'}"
-    return message + "".join(f"\n  left out: {plugin}" for plugin in broken)
+from wearlaw.errors import InputError, PluginWarning
+from wearlaw.material import Material
+from wearlaw.models import ContactModel, WearLaw
+from wearlaw.shelf import Broken, Origin, Shelf, add_model
 
 
 @dataclass
 class Installed:
     """Everything that discovery found."""
 
-    contact_models: Shelf[ContactModel] = field(default_factory=lambda: Shelf("contact model", ContactModel))  # type: ignore[type-abstract]
-    wear_laws: Shelf[WearLaw] = field(default_factory=lambda: Shelf("wear law", WearLaw))  # type: ignore[type-abstract]
+    contact_models: Shelf[type[ContactModel]] = field(default_factory=lambda: Shelf("contact model", type))
+    wear_laws: Shelf[type[WearLaw]] = field(default_factory=lambda: Shelf("wear law", type))
+    parameter_sets: Shelf[WearLaw] = field(default_factory=lambda: Shelf("parameter set", WearLaw))  # type: ignore[type-abstract]
+    materials: Shelf[Material] = field(default_factory=lambda: Shelf("material", Material))
+    cases: Shelf[str] = field(default_factory=lambda: Shelf("case", str))
     plugins: list[Origin] = field(default_factory=list)
     broken: list[Broken] = field(default_factory=list)
+
+    def listing(self) -> list[tuple[str, str, Origin]]:
+        """Return kind, name and origin of everything that plugins provide."""
+        shelves = (self.contact_models, self.wear_laws, self.parameter_sets, self.materials, self.cases)
+        return [row for shelf in shelves for row in shelf.listing()]
 
 
 @functools.cache
 def installed() -> Installed:
     """Return all installed plugins; they are searched for once in a process."""
+    if _under_way:  # a hook that gives a parameter set looks up the law that it belongs to
+        return _under_way[0]
     found = Installed()
-    for entry_point, origin in _entry_points():
-        found.plugins.append(origin)
-        try:
-            _load(entry_point, origin, found)
-        except Exception as error:  # whatever a plugin raises must not stop the others
-            found.broken.append(Broken(origin, f"{type(error).__name__}: {error}"))
+    _under_way.append(found)
+    try:
+        _discover(found)
+    finally:
+        _under_way.clear()
     for plugin in found.broken:
         warnings.warn(f"left out: {plugin}", PluginWarning, stacklevel=3)
     return found
 
 
+_under_way: list[Installed] = []
+"""What discovery has found so far, while it goes on."""
+
+
+def _discover(found: Installed) -> None:
+    """Load all plugins: first the models of all of them, then what is given by name and may look up models."""
+    loaded: list[tuple[pluggy.PluginManager, Origin]] = []
+    for entry_point, origin in _entry_points():
+        found.plugins.append(origin)
+        with _isolated(found, origin):
+            manager = _load(entry_point)
+            _add_models(manager, origin, found)
+            loaded.append((manager, origin))
+    for manager, origin in loaded:
+        with _isolated(found, origin):
+            _add_named(manager, origin, found)
+
+
+@contextmanager
+def _isolated(found: Installed, origin: Origin) -> Iterator[None]:
+    """Note what a plugin raises, whatever that is, and go on."""
+    try:
+        yield
+    except Exception as error:
+        found.broken.append(Broken(origin, f"{type(error).__name__}: {error}"))
+
+
 def contact_models() -> Mapping[str, type[ContactModel]]:
     """Return the installed contact models by name."""
-    return installed().contact_models.classes()
+    return installed().contact_models.items()
 
 
 def wear_laws() -> Mapping[str, type[WearLaw]]:
     """Return the installed wear laws by name."""
-    return installed().wear_laws.classes()
+    return installed().wear_laws.items()
 
 
 def contact_model(name: str, /, **options: Any) -> ContactModel:
@@ -154,12 +117,36 @@ def contact_model(name: str, /, **options: Any) -> ContactModel:
 
 
 def wear_law(name: str, /, **options: Any) -> WearLaw:
-    """Return the installed wear law of a name, with its options.
+    """Return the installed wear law of a name, or the law with the parameter set of that name, with its options.
 
     Parameters, errors: as for `contact_model`.
     """
     found = installed()
+    if name in found.parameter_sets.providers and name not in found.wear_laws.providers:
+        return found.parameter_sets.find(name, found.broken).model_copy(update=options)
     return found.wear_laws.find(name, found.broken)(**options)
+
+
+def material(name: str, /) -> Material:
+    """Return the installed material of a name.
+
+    Raises
+    ------
+    UnknownModelError
+        If no installed plugin provides it, or more than one does.
+    """
+    found = installed()
+    return found.materials.find(name, found.broken)
+
+
+def materials() -> Mapping[str, Material]:
+    """Return the installed materials by name."""
+    return installed().materials.items()
+
+
+def parameter_sets() -> Mapping[str, WearLaw]:
+    """Return the installed parameter sets by name."""
+    return installed().parameter_sets.items()
 
 
 def require(needed: Mapping[str, str]) -> None:
@@ -215,8 +202,8 @@ def _check_interface(needed: object) -> None:
         )
 
 
-def _load(entry_point: EntryPoint, origin: Origin, found: Installed) -> None:
-    """Load one plugin with a plugin manager of its own and put its models on the shelves."""
+def _load(entry_point: EntryPoint) -> pluggy.PluginManager:
+    """Return a plugin manager that holds one plugin alone."""
     manager = pluggy.PluginManager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)
     plugin = entry_point.load()
@@ -225,7 +212,22 @@ def _load(entry_point: EntryPoint, origin: Origin, found: Installed) -> None:
     manager.check_pending()
     if not manager.get_hookcallers(plugin):
         raise TypeError("it implements no hook; mark its functions with @wearlaw.hookimpl")
+    return manager
+
+
+def _add_models(manager: pluggy.PluginManager, origin: Origin, found: Installed) -> None:
     for model in chain.from_iterable(manager.hook.wearlaw_contact_models()):
-        found.contact_models.add(model, origin)
+        add_model(found.contact_models, ContactModel, model, origin)
     for law in chain.from_iterable(manager.hook.wearlaw_wear_laws()):
-        found.wear_laws.add(law, origin)
+        add_model(found.wear_laws, WearLaw, law, origin)
+
+
+def _add_named(manager: pluggy.PluginManager, origin: Origin, found: Installed) -> None:
+    answers: list[tuple[Shelf[Any], list[Mapping[str, Any]]]] = [
+        (found.parameter_sets, manager.hook.wearlaw_parameter_sets()),
+        (found.materials, manager.hook.wearlaw_materials()),
+        (found.cases, manager.hook.wearlaw_cases()),
+    ]
+    for shelf, mappings in answers:
+        for name, item in chain.from_iterable(mapping.items() for mapping in mappings):
+            shelf.add(name, item, origin)

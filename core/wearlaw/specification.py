@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BeforeValidator, PlainSerializer, WithJsonSchema
 
 from wearlaw import plugins
 from wearlaw.errors import InputError
+from wearlaw.material import Material
 from wearlaw.models import ContactModel, Model, WearLaw
+
+if TYPE_CHECKING:
+    from pydantic import GetJsonSchemaHandler
+    from pydantic_core import core_schema
 
 
 def specification(model: Model) -> dict[str, Any]:
@@ -31,6 +36,23 @@ def _maker(look_up: Callable[..., Model]) -> Callable[[Any], Any]:
 
     return make
 
+
+def _material(value: Any) -> Any:
+    return plugins.material(value) if isinstance(value, str) else value
+
+
+class _OrName:
+    """Adds to a field's JSON Schema that a name will do."""
+
+    @staticmethod
+    def __get_pydantic_json_schema__(
+        schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, object]:
+        return {"anyOf": [handler(schema), {"type": "string"}]}
+
+
+MaterialField = Annotated[Material, BeforeValidator(_material), _OrName]
+"""A field that takes a material, its name, or a table of its fields."""
 
 _SCHEMA = WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "object", "required": ["model"]}]}, mode="validation")
 

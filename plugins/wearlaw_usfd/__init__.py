@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
 import wearlaw as wl
 from wearlaw import Array
@@ -22,19 +22,30 @@ PARAMETERS = {
 }
 """Table 4 of Tassini et al. (2010)."""
 
+TESTED = (("wear_index_density", "0 N/mm^2", "108.4 N/mm^2"),)
+"""Up to Tγ/A of the tests: 20 % creepage, 1500 MPa and μ = 0.46, or 0.2 · 0.46 · (π/4) 1500 MPa, rounded up."""
+
 CALIBRATIONS = {
     "global": wl.Calibration(
         contact_model="global",
         scale="patch",
         materials=MATERIALS,
+        stated_range=TESTED,
         source="R. Lewis and R. S. Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478",
     ),
-    "exact": wl.Calibration(contact_model="exact", scale="cells", materials=MATERIALS, source=f"{TASSINI}, Table 4"),
+    "exact": wl.Calibration(
+        contact_model="exact",
+        scale="cells",
+        materials=MATERIALS,
+        stated_range=TESTED,
+        source=f"{TASSINI}, Table 4",
+    ),
     "fastsim": wl.Calibration(
         contact_model="fastsim",
         scale="cells",
         options=(("bound", "parabolic"),),
         materials=MATERIALS,
+        stated_range=TESTED,
         source=f"{TASSINI}, Table 4",
     ),
 }
@@ -54,9 +65,9 @@ class USFD(wl.WearLaw):
     source: ClassVar[str] = f"{TASSINI}, Tables 3 and 4"
     monotone_in: ClassVar[tuple[str, ...]] = ("wear_index_density",)
 
-    fitted_for: Literal["global", "exact", "fastsim"] = "global"
-    """The contact solution to which the parameters were fitted; it also chooses the published set that gives
-    the parameters which are not given by hand."""
+    fitted_for: Literal["global", "exact", "fastsim"] | wl.Calibration = "global"
+    """The contact solution to which the parameters were fitted. A name also chooses the published set that gives the
+    parameters which are not given by hand; a set of your own states what it was fitted to as a Calibration."""
     m_m: Slope
     """Slope of the mild regime [µg/m/N]."""
     q_s: WearRate
@@ -65,6 +76,15 @@ class USFD(wl.WearLaw):
     """Slope of the catastrophic regime [µg/m/N]."""
     tr_sc: WearIndexDensity
     """Tγ/A at the transition from the severe to the catastrophic regime [N/mm²]."""
+
+    @field_validator("fitted_for", mode="before")
+    @classmethod
+    def _name_or_calibration(cls, value: Any) -> Any:
+        if isinstance(value, dict):
+            return wl.Calibration(**value)
+        if isinstance(value, wl.Calibration) or (isinstance(value, str) and value in CALIBRATIONS):
+            return value
+        raise ValueError(f"must be 'global', 'exact' or 'fastsim', or the Calibration of your own set, got {value!r}")
 
     @model_validator(mode="before")
     @classmethod
@@ -101,13 +121,13 @@ class USFD(wl.WearLaw):
 
     @property
     def valid_range(self) -> Mapping[str, tuple[float, float]]:
-        """Up to Tγ/A of the tests: 20 % creepage, 1500 MPa and μ = 0.46, or 0.2 · 0.46 · (π/4) 1500 MPa, rounded up."""
-        return {"wear_index_density": (0.0, 108.4e6)}
+        """The range of the tests that the parameters were fitted to."""
+        return self.calibration.range_in_si()
 
     @property
     def calibration(self) -> wl.Calibration:
         """What the parameters were fitted to."""
-        return CALIBRATIONS[self.fitted_for]
+        return CALIBRATIONS[self.fitted_for] if isinstance(self.fitted_for, str) else self.fitted_for
 
     def rate(self, contact: wl.Contact) -> Array:
         """Return the wear rate at the nodes [kg/m/m²]."""

@@ -14,6 +14,7 @@ import tomli_w
 import wearlaw as wl
 from wearlaw import Array, plugins
 from wearlaw.case import Case
+from wearlaw.shelf import Origin
 
 Table = dict[str, Any]
 """A case as TOML gives it."""
@@ -98,7 +99,7 @@ Install = Callable[[type[wl.ContactModel] | type[wl.WearLaw]], None]
 def installer(monkeypatch: pytest.MonkeyPatch) -> Install:
     """Return what puts a model among the installed ones until the test ends, as one of the plugin "testing"."""
     found = plugins.installed()
-    origin = plugins.Origin("testing", "wearlaw-testing", "9.8.7")
+    origin = Origin("testing", "wearlaw-testing", "9.8.7")
 
     def install(model: type[wl.ContactModel] | type[wl.WearLaw]) -> None:
         providers: Any = (found.wear_laws if issubclass(model, wl.WearLaw) else found.contact_models).providers

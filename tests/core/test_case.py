@@ -12,10 +12,11 @@ import pytest
 import tomli_w
 
 import wearlaw as wl
+import wearlaw_sheffield
 from tests.core import cases
 from tests.core.cases import Install, case, changed, table
 from wearlaw import plugins
-from wearlaw.case import Case, case_schema, case_text, labels, load_case, shipped_cases
+from wearlaw.case import Case, case_schema, case_text, labels, load_case
 
 
 def load(tmp_path: Path, content: cases.Table) -> Case:
@@ -42,9 +43,9 @@ def install(monkeypatch: pytest.MonkeyPatch) -> Install:
 
 
 def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:
-    assert shipped_cases() == ["tassini2010"]
-    package = Path(wl.__file__).parent
-    assert case_text("tassini2010") == (package / "cases" / "tassini2010.toml").read_text(encoding="utf-8")
+    assert list(plugins.installed().cases.items()) == ["tassini2010"]
+    package = Path(wearlaw_sheffield.__file__).parent
+    assert case_text("tassini2010") == (package / "tassini2010.toml").read_text(encoding="utf-8")
 
 
 def test_the_shipped_case_sweeps_what_section_5_2_of_the_paper_sweeps() -> None:

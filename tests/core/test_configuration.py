@@ -41,7 +41,8 @@ def disc(**fields: Any) -> wl.Disc:
         (lambda: disc(diameter=Q([1, 2], "mm")), "Disc: diameter: must be one value, got an array of shape (2,)"),
         (lambda: disc(diametr="4 mm"), "did you mean 'diameter'? The fields are: diameter, material"),
         (lambda: wl.Disc(diameter="4 mm"), "Disc: material: is missing"),  # type: ignore[call-arg]
-        (lambda: disc(material="steel"), "Disc: material: input should be a valid dictionary or instance of Material"),
+        (lambda: disc(material="steal"), "Disc: material: no material is called 'steal'; did you mean 'steel'?"),
+        (lambda: disc(material=7), "Disc: material: input should be a valid dictionary or instance of Material"),
         (lambda: disc(material={**dict(STEEL), "density": 1}), "Disc: material.density: got the bare number 1"),
         (lambda: wl.steel(youngs_modulus=Q(0, "GPa")), f"must be greater than zero, got 0.000 GPa; {IN_GPA}"),
         (lambda: wl.steel(youngs_modulus=Q(-1, "GPa")), f"must be greater than zero, got -1.000 GPa; {IN_GPA}"),
@@ -85,7 +86,7 @@ def test_wrong_json_is_an_error_of_the_package(text: str) -> None:
 
 def test_a_long_value_is_cut_in_the_message() -> None:
     with pytest.raises(wl.ConfigurationError) as caught:
-        disc(material="steel" * 1000)
+        disc(material=["steel"] * 1000)
     assert len(str(caught.value)) < 250
 
 

@@ -83,7 +83,7 @@ EXPECTED: dict[str, list[str]] = {
 def test_there_is_an_expectation_for_every_model_of_the_package() -> None:
     ours = {
         name for shelf in (plugins.installed().contact_models, plugins.installed().wear_laws)
-        for name in shelf.classes() if shelf.origin(name).distribution == "wearlaw"
+        for name in shelf.items() if shelf.origin(name).distribution == "wearlaw"
     }  # fmt: skip
     assert ours == EXPECTED.keys()
 

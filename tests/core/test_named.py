@@ -1,0 +1,148 @@
+"""Parameter sets, materials and cases that plugins provide by name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+
+import wearlaw as wl
+from tests.core.cases import case, table
+from tests.core.test_plugins import Install, install  # noqa: F401  (a fixture)
+from wearlaw import plugins
+from wearlaw.case import case_schema, case_text, load_case
+
+LAB = """
+    import wearlaw as wl
+
+    @wl.hookimpl
+    def wearlaw_parameter_sets():
+        fitted_for = wl.Calibration(
+            contact_model="exact",
+            scale="cells",
+            materials="two steels of a test",
+            stated_range=(("wear_index_density", "0 N/mm^2", "40 N/mm^2"),),
+            source="made up for a test",
+        )
+        return {
+            "lab_2026": wl.wear_law(
+                "usfd", m_m="6 ug/m/N", q_s="60 ug/m/mm^2", m_c="70 ug/m/N", tr_sc="80 N/mm^2", fitted_for=fitted_for
+            )
+        }
+
+    @wl.hookimpl
+    def wearlaw_materials():
+        return {"soft_steel": wl.steel(youngs_modulus="190 GPa", density="7800 kg/m^3")}
+
+    @wl.hookimpl
+    def wearlaw_cases():
+        return {"lab_study": "title = 'A study of the lab'"}
+"""
+POINT: Any = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46}
+RIG = wl.TwinDisc.suros()
+
+
+def test_the_steel_and_the_study_come_from_a_plugin_like_any_other() -> None:
+    assert wl.material("steel") == wl.steel()
+    assert list(wl.materials()) == ["steel"]
+    assert plugins.installed().cases.origin("tassini2010").entry_point == "sheffield"
+
+
+def test_a_parameter_set_is_looked_up_like_a_law_and_takes_options(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    law = wl.wear_law("lab_2026")
+    assert law == wl.parameter_sets()["lab_2026"]
+    assert law.name == "usfd"
+    assert wl.wear_law("lab_2026", m_c=wl.Q(75, "ug/m/N")) == law.model_copy(update={"m_c": "75 ug/m/N"}) != law
+    with pytest.raises(wl.ConfigurationError, match="usfd: mc: unknown field; did you mean 'm_c'"):
+        wl.wear_law("lab_2026", mc="75 ug/m/N")
+
+
+def test_a_parameter_set_says_what_it_was_fitted_for_and_its_range(
+    install: Install,  # noqa: F811
+    recwarn: pytest.WarningsRecorder,
+) -> None:
+    install("lab", LAB)
+    law = wl.wear_law("lab_2026")
+    predict = RIG | wl.contact_model("exact") | law
+    predict(**POINT)
+    assert not recwarn.list
+    with pytest.warns(wl.CalibrationWarning, match=r"fitted for the cells of contact_model\('exact'\)"):
+        RIG | wl.contact_model("global") | law
+    assert law.valid_range == {"wear_index_density": (0.0, 40e6)}
+    with pytest.warns(wl.RangeWarning, match=r"from 0.000 N/mm² to 40.00 N/mm²"):
+        predict(**{**POINT, "creepage": "10 %"})
+
+
+def test_a_law_with_a_calibration_of_its_own_survives_json(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    predict = RIG | wl.contact_model("exact") | wl.wear_law("lab_2026")
+    again = wl.Pipeline.model_validate_json(predict.model_dump_json())
+    assert again == predict
+    assert hash(again) == hash(predict)
+
+
+def test_case_files_name_parameter_sets_and_materials(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    rig = {"preset": "suros", "material": "soft_steel"}
+    changes: Any = {"rig": rig, "contact_models": ["exact"], "wear_laws": ["lab_2026"]}
+    read = case(**changes)
+    assert read.wear_laws == (wl.wear_law("lab_2026"),)
+    assert read.rig.disc_1.material == read.rig.disc_2.material == wl.material("soft_steel")
+    validator = jsonschema.Draft202012Validator(case_schema())
+    assert validator.is_valid(table(**changes))
+    assert validator.is_valid(table(**{**changes, "wear_laws": [{"model": "lab_2026", "m_c": "75 ug/m/N"}]}))
+    assert not validator.is_valid(table(**{**changes, "wear_laws": ["lab_2027"]}))
+
+
+def test_cases_of_plugins_are_shipped_cases(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    assert case_text("lab_study") == "title = 'A study of the lab'"
+    with pytest.raises(wl.CaseError, match="case 'lab_study' is wrong in:\n  rig: is missing"):
+        load_case("lab_study")
+
+
+def test_two_cases_of_one_name_are_refused_with_both_plugins(install: Install) -> None:  # noqa: F811
+    install("lab", LAB.replace("lab_study", "tassini2010"))
+    with pytest.raises(wl.UnknownModelError, match=r"more than once, by lab 1\.0 .* and wearlaw "):
+        case_text("tassini2010")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "cause"),
+    [
+        ('"soft_steel"', '"soft steel"', "the name of a material must be an identifier, got 'soft steel'"),
+        ("wl.steel(youngs_modulus=", "dict(youngs_modulus=", "material 'soft_steel' must be a Material, got {"),
+        ("\"title = 'A study of the lab'\"", "3", "case 'lab_study' must be a str, got 3"),
+    ],
+)
+def test_what_is_not_of_its_kind_is_left_out_with_the_reason(
+    install: Install,  # noqa: F811
+    old: str,
+    new: str,
+    cause: str,
+) -> None:
+    assert old in LAB
+    install("lab", LAB.replace(old, new))
+    with pytest.warns(wl.PluginWarning, match="left out: lab 1.0"):
+        found = plugins.installed()
+    assert cause in found.broken[0].cause
+
+
+@pytest.mark.parametrize(
+    ("stated", "message"),
+    [
+        (("wear_indx", "0 N", "1 N"), "unknown variable 'wear_indx'; did you mean 'wear_index'"),
+        (("wear_index", "0 mm", "1 N"), "wear_index: got 0.000 mm"),
+    ],
+)
+def test_a_stated_range_needs_a_variable_and_its_unit(stated: Any, message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=message):
+        wl.Calibration(contact_model="exact", scale="cells", materials="-", source="-", stated_range=(stated,))
+
+
+def test_parameters_of_ones_own_need_all_four() -> None:
+    own = wl.Calibration(contact_model="exact", scale="cells", materials="-", source="-")
+    with pytest.raises(wl.ConfigurationError, match="m_m: is missing"):
+        wl.wear_law("usfd", fitted_for=own)
