@@ -7,6 +7,8 @@
 27.70 µg/m/mm²
 """
 
+import sys as _sys
+
 from wearlaw import hertz
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
@@ -111,3 +113,8 @@ __all__ = [
     "wear_law",
     "wear_laws",
 ]
+
+if "hypothesis" in _sys.modules:  # its entry point came too early to know the types
+    from _wearlaw_hypothesis import register_types as _register_types
+
+    _register_types()

@@ -13,6 +13,7 @@ from wearlaw import plugins
 from wearlaw.errors import InputError
 from wearlaw.models import ContactModel, Model, WearLaw
 from wearlaw.records import UNITS
+from wearlaw.registry import symbol
 from wearlaw.units import from_si
 
 
@@ -49,7 +50,9 @@ def _field(model: type[Model], name: str, default: Model | None) -> Iterator[str
 
 
 def _shown(value: Any) -> str:
-    return f"{value:~P}" if isinstance(value, pint.Quantity) else repr(value)
+    return (
+        f"{value.magnitude} {symbol(value.units, '~P')}".rstrip() if isinstance(value, pint.Quantity) else repr(value)
+    )
 
 
 def _choices(model: type[Model], name: str) -> list[str]:

@@ -58,6 +58,14 @@ def _coherent(registry: pint.UnitRegistry[Any], unit: str) -> float:
     return float(in_root_units / 1000.0**mass_exponent)
 
 
+def symbol(unit: Any, style: str) -> str:
+    """Return a unit's symbol in one of pint's styles, with the micro sign in all of pint's versions.
+
+    Since version 0.26 pint writes the Greek letter mu, which looks the same and is another character.
+    """
+    return format(unit, style).replace("\u03bc", "\u00b5")
+
+
 def quantity(magnitude: Any, unit: str) -> Any:
     """Return a quantity of the registry that is in force; the magnitude is a float or a float array."""
     registry = application_registry()
@@ -70,7 +78,7 @@ def quantity_class(registry: pint.UnitRegistry[Any]) -> type[Any]:
 
     class ReadableQuantity(registry.Quantity):  # type: ignore[misc, name-defined]
         def __repr__(self) -> str:
-            return f"{_digits(self.magnitude)} {self.units:~P}".rstrip()
+            return f"{_digits(self.magnitude)} {symbol(self.units, '~P')}".rstrip()
 
         def __str__(self) -> str:
             return repr(self)

@@ -16,7 +16,7 @@ import pint
 from pydantic_core import core_schema
 
 from wearlaw.errors import UnitError
-from wearlaw.registry import application_registry, quantity, si_factor, unit_in_si
+from wearlaw.registry import application_registry, quantity, si_factor, symbol, unit_in_si
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -76,7 +76,7 @@ def parse(text: str) -> Quantity:
 
 def text_of(quantity: Quantity) -> str:
     """Return the text that `parse` reads back to the same scalar quantity, to the last digit."""
-    return f"{float(quantity.magnitude)!r} {format(quantity.units, '~C') or 'dimensionless'}"
+    return f"{float(quantity.magnitude)!r} {symbol(quantity.units, '~C') or 'dimensionless'}"
 
 
 _QUANTITY_TEXT = re.compile(
