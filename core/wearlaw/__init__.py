@@ -114,7 +114,7 @@ __all__ = [
     "wear_laws",
 ]
 
-if "hypothesis" in _sys.modules:  # its entry point came too early to know the types
+if _sys.modules.get("hypothesis") is not None:  # its entry point came too early to know the types
     from _wearlaw_hypothesis import register_types as _register_types
 
     _register_types()

@@ -68,6 +68,10 @@ class ContactModel(Model):
     uses_measured_traction: ClassVar[bool] = False
     """Whether the model can use a measured traction coefficient."""
 
+    accuracy: ClassVar[float] = 5e-8
+    """Relative error of sums over the nodes that `solve` returns, for pressure, traction and dissipation. The default
+    is that of the quadrature of `LineContactModel`, whose worst case is a slip zone just short of the whole patch."""
+
     @abstractmethod
     def solve(self, problem: LineProblem) -> Contact:
         """Return the solved contact on nodes of the model's choice, of shape (batch, nodes)."""

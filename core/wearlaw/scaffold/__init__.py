@@ -1,0 +1,144 @@
+"""A new plugin to start from: a small distribution that passes its own tests as generated."""
+
+from __future__ import annotations
+
+import datetime
+import keyword
+import os
+import re
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from string import Template
+from typing import Literal, TypeAlias, get_args
+
+from wearlaw import plugins
+from wearlaw.errors import InputError, OutputError
+from wearlaw.output import fresh_folder
+from wearlaw.version import __version__
+
+Kind: TypeAlias = Literal["wear_law", "contact_model"]
+"""What the plugin is to provide."""
+
+Licence: TypeAlias = Literal["bsd-3-clause", "mit", "none"]
+"""The licence of the plugin; "none" leaves the choice for later."""
+
+LICENCES = get_args(Licence)
+
+_SPDX = {"bsd-3-clause": "BSD-3-Clause", "mit": "MIT"}
+
+_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+
+LONGEST_NAME = 24
+"""So that the lines of the generated files keep their length."""
+
+
+@dataclass(frozen=True)
+class _Example:
+    kind: str
+    law: str
+    pipeline: str
+
+
+_EXAMPLES: dict[Kind, _Example] = {
+    "wear_law": _Example("wear law", "Archard's law", 'wl.contact_model("exact") | wl.wear_law("{}")'),
+    "contact_model": _Example("contact model", "full slip", 'wl.contact_model("{}") | wl.wear_law("usfd")'),
+}
+
+
+def write_plugin(name: str, kind: Kind, parent: Path, licence: Licence = "none") -> Path:
+    """Write a new distribution with one plugin, whole or not at all.
+
+    Parameters
+    ----------
+    name : str
+        The name of the wear law or contact model.
+    kind : {"wear_law", "contact_model"}
+        What the plugin provides.
+    parent : Path
+        The folder in which the new folder is made.
+    licence : {"bsd-3-clause", "mit", "none"}
+        The licence of the plugin.
+
+    Returns
+    -------
+    Path
+        The new folder, ``parent/wearlaw-NAME``.
+
+    Raises
+    ------
+    InputError
+        If the name cannot be used or is taken.
+    OutputError
+        If the folder exists, or cannot be written.
+    """
+    _check_name(name)
+    folder = parent / f"wearlaw-{name}"
+    if os.path.lexists(folder):
+        raise OutputError(f"output: '{folder}' exists and is left as it is; choose another parent folder with -o")
+    contents = _files(name, kind, licence)
+    with fresh_folder(folder, overwrite=False) as fresh:
+        _write(contents, fresh)
+    return folder
+
+
+def class_name(name: str) -> str:
+    """Return the name of the class that implements a model: TwoSlopes for two_slopes."""
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+def _check_name(name: str) -> None:
+    if not _NAME.fullmatch(name) or keyword.iskeyword(name):
+        raise InputError(
+            f"name: must be a Python name of lower-case letters, digits and single underscores between them,"
+            f" such as 'zobory', got {name!r}"
+        )
+    if len(name) > LONGEST_NAME:
+        raise InputError(f"name: must have at most {LONGEST_NAME} characters, got {len(name)}: {name!r}")
+    made = class_name(name)
+    if made.startswith("Test") or made in {"None", "True", "False", "Check", "ClassVar", "Field", "Mapping"}:
+        raise InputError(f"name: {name!r} would name its class {made}, which means something else; choose another")
+    found = plugins.installed()
+    origins = [shelf.origin(name) for shelf in (found.wear_laws, found.contact_models) if name in shelf.providers]
+    origins += [origin for origin in found.plugins if origin.entry_point == name]
+    if origins:
+        raise InputError(f"name: '{name}' is taken by {origins[0]}; choose another")
+
+
+def _files(name: str, kind: Kind, licence: Licence) -> dict[str, str]:
+    """Return the text of each file by its path."""
+    example = _EXAMPLES[kind]
+    values = {
+        "name": name,
+        "class_name": class_name(name),
+        "kind": example.kind,
+        "example": example.law,
+        "pipeline": example.pipeline.format(name),
+        "version": __version__,
+        "year": str(datetime.datetime.now(tz=datetime.UTC).year),
+        "licence": f'license = "{_SPDX[licence]}"\n' if licence in _SPDX else "",
+    }
+    templates = {
+        "pyproject.toml": "pyproject.toml.in",
+        f"wearlaw_{name}.py": f"{kind}/module.py.in",
+        f"test_{name}.py": f"{kind}/test.py.in",
+        "README.md": "README.md.in",
+        "LICENSE": f"licences/{licence}.in",
+        ".gitignore": "gitignore.in",
+        ".github/workflows/tests.yml": "tests.yml.in",
+    }
+    return {path: _filled(template, values) for path, template in templates.items()}
+
+
+def _write(contents: dict[str, str], folder: Path) -> None:
+    try:
+        for path, text in contents.items():
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"output: cannot write the plugin: {error.strerror or error}") from None
+
+
+def _filled(template: str, values: dict[str, str]) -> str:
+    text = resources.files(__name__).joinpath("templates", template).read_text(encoding="utf-8")
+    return Template(text).substitute(values)

@@ -1,0 +1,18 @@
+"""The conformance kit: what every wear law and contact model must keep, and strategies to test your own code with.
+
+`checks` yields the checks of a model, `conformance` makes pytest tests of them. The strategies are also what
+hypothesis draws from for arguments typed `Material`, `TwinDisc`, `LineProblem` and `Contact`.
+"""
+
+try:
+    import hypothesis as _hypothesis  # noqa: F401  asked for first, so that the message names what to do
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(
+        'wearlaw.testing needs hypothesis; install it with: pip install "wearlaw[test]"', name=error.name
+    ) from error
+
+from wearlaw.testing.decorator import conformance
+from wearlaw.testing.kit import Check, checks
+from wearlaw.testing.strategies import conditions, contacts, line_problems, materials, rigs
+
+__all__ = ["Check", "checks", "conditions", "conformance", "contacts", "line_problems", "materials", "rigs"]

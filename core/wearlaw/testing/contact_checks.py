@@ -1,0 +1,238 @@
+"""Checks of a contact model that hold for every theory.
+
+Tolerances: a position is exact to the rounding of the half-width a, so what is integrated over a slip zone is exact to
+rounding over the zone's share of the patch. `ContactModel` subclasses with nodes of their own, whose sums are only as
+exact as their cells, declare that as `accuracy`.
+"""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+from functools import partial
+
+import numpy as np
+from hypothesis import strategies as st
+
+from wearlaw.arrays import Array
+from wearlaw.line import LineProblem
+from wearlaw.models import ContactModel
+from wearlaw.records import Contact
+from wearlaw.testing.bisection import lost_digits
+from wearlaw.testing.examples import SAME, assert_close, for_each
+from wearlaw.testing.sampling import EPS
+from wearlaw.testing.strategies import line_problems
+
+SUM = 64.0 * EPS
+"""Relative error of a sum over the nodes of a zone."""
+
+
+def with_creepage(problem: LineProblem, creepage: Array | float) -> LineProblem:
+    """Return the problem at another creepage."""
+    return dataclasses.replace(problem, creepage=np.asarray(creepage, dtype=np.float64))
+
+
+def repeated(problem: LineProblem, shape: tuple[int, ...]) -> LineProblem:
+    """Return one operating point many times."""
+    fields = {f.name: getattr(problem, f.name) for f in dataclasses.fields(problem)}
+    return LineProblem(**{name: np.full(shape, value) for name, value in fields.items() if value is not None})
+
+
+def saturation(problem: LineProblem) -> Array:
+    """Return μa/R, at which Carter's theory slips everywhere."""
+    return problem.friction_coefficient * problem.half_width / problem.relative_radius
+
+
+def friction_limit(problem: LineProblem) -> Array:
+    """Return μN."""
+    return problem.friction_coefficient * problem.normal_force
+
+
+def contact_has_the_shape_of_the_problem(model: ContactModel) -> None:
+    """Totals have the batch shape, fields one more axis; without a batch axis, with one and with two."""
+
+    def examine(problem: LineProblem) -> None:
+        for shape in ((), (1,), (2, 3)):
+            contact = model.solve(repeated(problem, shape))
+            for name in ("normal_force", "tangential_force", "wear_index", "rolling_speed", "density"):
+                found = getattr(contact, name).shape
+                assert found == shape, f"{name} has the shape {found} for a batch of shape {shape}"
+            for name in ("pressure", "traction", "slip", "traction_bound", "area", "x"):
+                found = getattr(contact, name).shape
+                assert found == contact.pressure.shape, f"{name} has the shape {found}, pressure another"
+                assert found[:-1] == shape, f"{name} has the shape {found} for a batch of shape {shape}"
+
+    for_each(line_problems(), examine)
+
+
+def contact_is_finite(model: ContactModel) -> None:
+    """Every field and total is a finite number; the traction bound may be infinite."""
+
+    def examine(problem: LineProblem) -> None:
+        contact = model.solve(problem)
+        for field in dataclasses.fields(contact):
+            value = getattr(contact, field.name)
+            bad = np.isnan(value).any() or (field.name != "traction_bound" and np.isinf(value).any())
+            assert not bad, f"{field.name} is not finite: {value!r}"
+
+    for_each(line_problems(), examine)
+
+
+def contact_carries_the_conditions(model: ContactModel) -> None:
+    """Rolling speed, density and normal force are those of the problem."""
+
+    def examine(problem: LineProblem) -> None:
+        contact = model.solve(problem)
+        for name in ("rolling_speed", "density", "normal_force"):
+            assert_close(getattr(contact, name), getattr(problem, name), f"the {name} of the contact")
+
+    for_each(line_problems(), examine)
+
+
+def nodes_cover_the_patch(model: ContactModel) -> None:
+    """Nodes lie in the patch, none has a negative area, and their areas sum to that of the patch."""
+
+    def examine(problem: LineProblem) -> None:
+        contact = model.solve(problem)
+        assert (contact.area >= 0).all(), f"an area is negative: {contact.area.min()!r}"
+        inside = np.abs(contact.x) <= problem.half_width * (1.0 + SAME)
+        assert inside.all(), f"a node lies outside the patch, at x = {contact.x[~inside]!r}"
+        assert_close(contact.patch_area, problem.patch_area, "the sum of the areas", SUM)
+
+    for_each(line_problems(), examine)
+
+
+def pressure_sums_to_the_load(model: ContactModel) -> None:
+    """The pressure is never negative, and pressure times area sums to the normal force."""
+
+    def examine(problem: LineProblem) -> None:
+        contact = model.solve(problem)
+        assert (contact.pressure >= 0).all(), f"a pressure is negative: {contact.pressure.min()!r}"
+        load = contact.sum_over_nodes(contact.pressure * contact.area)
+        assert_close(load, problem.normal_force, "the sum of the pressures", model.accuracy)
+
+    for_each(line_problems(), examine)
+
+
+def tractions_sum_to_the_force(model: ContactModel) -> None:
+    """Traction times area sums to the tangential force."""
+
+    def examine(problem: LineProblem) -> None:
+        contact = model.solve(problem)
+        allowed = model.accuracy * friction_limit(problem)
+        force = contact.sum_over_nodes(contact.traction * contact.area)
+        assert_close(force, contact.tangential_force, "the sum of the tractions", absolute=allowed)
+
+    for_each(line_problems(), examine)
+
+
+def traction_and_slip_follow_the_creepage(model: ContactModel) -> None:
+    """Traction and slip have the sign of the creepage or are zero, so that q·s is never negative."""
+
+    def examine(problem: LineProblem) -> None:
+        for sign in (-1.0, 1.0):
+            contact = model.solve(with_creepage(problem, sign * problem.creepage))
+            # The slip of full slip is a difference that vanishes at the leading edge, to rounding of the creepage.
+            allowed = 4.0 * EPS * problem.creepage
+            assert (sign * contact.slip >= -allowed).all(), f"slip against the creepage: {contact.slip!r}"
+            assert (sign * contact.traction >= 0).all(), f"traction against the creepage: {contact.traction!r}"
+
+    for_each(line_problems(), examine)
+
+
+def random_problems(points: int) -> LineProblem:
+    """Return steel discs under random loads, frictions, sizes and speeds; always the same ones."""
+    random = np.random.default_rng(5)
+    radius, modulus = 10.0 ** random.uniform(-3, 1, points), 10.0 ** random.uniform(9, 12, points)
+    half_width = 2.0 * radius * 10.0 ** random.uniform(-5, np.log10(3e-2), points)
+    friction = random.uniform(0.01, 1.5, points)
+    return LineProblem(
+        normal_force_per_width=0.25 * np.pi * modulus * half_width**2 / radius,
+        half_width=half_width,
+        max_pressure=0.5 * modulus * half_width / radius,
+        relative_radius=radius,
+        effective_modulus=modulus,
+        friction_coefficient=friction,
+        creepage=friction * half_width / radius * 10.0 ** random.uniform(-3, 1, points),
+        rolling_speed=10.0 ** random.uniform(-2, 2, points),
+        track_width=10.0 ** random.uniform(-4, 0, points),
+        density=random.uniform(1e3, 2e4, points),
+    )
+
+
+def batch_equals_loop(model: ContactModel) -> None:
+    """All operating points at once give what one at a time gives."""
+
+    def examine(problem: LineProblem) -> None:
+        # Stick, full slip and none in one batch: the points that a batch must keep apart.
+        factors = np.array([[1.0, 0.0, -1.0], [1e-3, 1e3, 1.0 + 1e-9]])
+        batch = with_creepage(repeated(problem, factors.shape), problem.creepage * factors)
+        together = model.solve(batch)
+        for index in np.ndindex(factors.shape):
+            alone = model.solve(batch[index])
+            for name in ("tangential_force", "wear_index", "patch_area", "mean_slip"):
+                # A batch may hold zones without length, which change the order of a sum.
+                found, due = getattr(together, name)[index], getattr(alone, name)
+                assert_close(found, due, f"the {name} at operating point {index} of a batch", SUM)
+
+    for_each(line_problems(), examine)
+
+
+def problem_is_not_changed(model: ContactModel) -> None:
+    """The model leaves the arrays of the problem as they are."""
+
+    def examine(problem: LineProblem) -> None:
+        batch = repeated(problem, (2,))
+        before = copy.deepcopy(batch)
+        model.solve(batch)
+        for field in dataclasses.fields(batch):
+            same = np.array_equal(getattr(batch, field.name), getattr(before, field.name))
+            assert field.name == "traction_coefficient" or same, f"the model changed the problem's {field.name}"
+
+    for_each(line_problems(), examine)
+
+
+def solutions_agree_to_the_bit(model: ContactModel) -> None:
+    """The same problem gives the same contact again, with another problem in between."""
+
+    def examine(problems: tuple[LineProblem, LineProblem]) -> None:
+        first = model.solve(problems[0])
+        kept = copy.deepcopy(first)
+        model.solve(problems[1])
+        second = model.solve(problems[0])
+        for field in dataclasses.fields(Contact):
+            for contact in (first, second):
+                same = np.array_equal(getattr(contact, field.name), getattr(kept, field.name))
+                assert same, f"two solutions of one problem differ in {field.name}"
+
+    for_each(st.tuples(line_problems(), line_problems()), examine)
+
+
+def solution_is_in_double_precision(model: ContactModel) -> None:
+    """The force is a float64 and resolves changes of 1e-8 in load and creepage."""
+    problem = random_problems(64)
+    contact = model.solve(problem)
+    for field in dataclasses.fields(contact):
+        kind = getattr(contact, field.name).dtype
+        assert kind == np.float64, f"{field.name} is of type {kind}, not float64"
+    for name in ("creepage", "friction_coefficient", "half_width"):
+        lost_digits(partial(_force_with, model, problem, name), f"the tangential force loses digits of {name}")
+
+
+def _force_with(model: ContactModel, problem: LineProblem, name: str, factor: float) -> Array:
+    return model.solve(dataclasses.replace(problem, **{name: getattr(problem, name) * factor})).tangential_force
+
+
+CHECKS = (
+    contact_has_the_shape_of_the_problem,
+    contact_is_finite,
+    contact_carries_the_conditions,
+    nodes_cover_the_patch,
+    pressure_sums_to_the_load,
+    tractions_sum_to_the_force,
+    traction_and_slip_follow_the_creepage,
+    batch_equals_loop,
+    problem_is_not_changed,
+    solutions_agree_to_the_bit,
+    solution_is_in_double_precision,
+)

@@ -1,0 +1,108 @@
+"""Checks of what a model says about itself: documentation, units, schema, names."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, get_args
+
+import numpy as np
+import pint
+
+from wearlaw.models import Claim, ContactModel, Model, WearLaw
+from wearlaw.records import NODE_VARIABLES
+from wearlaw.registry import application_registry
+from wearlaw.testing.examples import assert_close, for_each
+from wearlaw.testing.law_shape import contacts_for
+from wearlaw.testing.sampling import forward, random_contacts
+from wearlaw.testing.strategies import line_problems
+from wearlaw.units import Q
+
+VARIABLES = (*NODE_VARIABLES, "wear_index")
+"""What a law may branch in or be monotone in."""
+
+
+def model_is_documented(model: Model) -> None:
+    """The class has a name, a docstring of its own and a source; each field says what it is and in which unit."""
+    cls = type(model)
+    assert isinstance(getattr(cls, "name", None), str), "the class has no name"
+    assert cls.name.isidentifier(), f"the name must be an identifier, got {cls.name!r}"
+    assert (cls.__doc__ or "").strip(), f"{cls.__name__} has no docstring"
+    assert str(getattr(cls, "source", "")).strip(), f"{cls.__name__} names no source"
+    for name, field in cls.model_fields.items():
+        description = field.description or ""
+        assert description.strip(), f"the field '{name}' has no docstring"
+        if isinstance(getattr(model, name), (float, pint.Quantity)):
+            assert "[" in description, f"the docstring of the field '{name}' names no unit, such as [N/m²] or [-]"
+
+
+def json_schema_is_complete(model: Model) -> None:
+    """The class has a JSON Schema, with a description of each field, that can be written as JSON."""
+    schema: dict[str, Any] = json.loads(json.dumps(type(model).model_json_schema()))
+    properties = schema.get("properties", {})
+    for name, field in type(model).model_fields.items():
+        key = field.alias or name
+        assert key in properties, f"the schema lacks the field '{key}'"
+        assert properties[key].get("description"), f"the schema does not describe the field '{key}'"
+
+
+def units_of_parameters_do_not_matter(model: Model) -> None:
+    """The result is the same when each parameter is given in base units, not in the unit that it was given in."""
+    registry = application_registry()
+    changed = {
+        name: Q(value.to_base_units().magnitude, str(value.to_base_units().units))
+        for name, value in model
+        if isinstance(value, pint.Quantity) and value.units != registry.Quantity(1, value.units).to_base_units().units
+    }
+    other = model.model_copy(update=changed)
+    # A value converted twice is off by two roundings, so a rate near a border may lie on its other side.
+    converted = 1e-9
+    if isinstance(model, WearLaw) and isinstance(other, WearLaw):
+        contact = random_contacts(64)
+        assert_close(other.rate(contact), model.rate(contact), "the rate with parameters in base units", converted)
+    if isinstance(model, ContactModel) and isinstance(other, ContactModel):
+        changed_model, original = other, model
+
+        def examine(problem: Any) -> None:
+            found, due = (m.solve(problem).tangential_force for m in (changed_model, original))
+            assert_close(found, due, "the tangential force with parameters in base units", converted)
+
+        for_each(line_problems(), examine)
+
+
+def declared_names_are_variables(law: WearLaw) -> None:
+    """`breakpoints`, `jumps`, `monotone_in` and `valid_range` name variables of a contact, with finite values."""
+    for subject in ("breakpoints", "jumps", "valid_range"):
+        for name, values in (getattr(law, subject) or {}).items():
+            assert name in VARIABLES, f"`{subject}` names '{name}'; the variables are: {', '.join(VARIABLES)}"
+            bad = np.isnan(values).any() or (subject != "valid_range" and not np.isfinite(values).all())
+            assert not bad, f"`{subject}` has {name} = {values}"
+    for name, (low, high) in law.valid_range.items():
+        assert low < high, f"`valid_range` of {name} goes from {low:g} to {high:g}"
+    for name in law.monotone_in:
+        assert name in VARIABLES, f"`monotone_in` names '{name}'; the variables are: {', '.join(VARIABLES)}"
+
+
+def band_is_ordered(law: WearLaw) -> None:
+    """The law at the low end of published parameters wears no more than at their middle, and that than at the high."""
+    band = law.band()
+    if band is None:
+        return
+
+    def examine(contact: Any) -> None:
+        low, middle, high = (end.rate(forward(contact)) for end in band)
+        assert (low <= middle).all(), f"the low end {low!r} lies above the middle {middle!r}"
+        assert (middle <= high).all(), f"the middle {middle!r} lies above the high end {high!r}"
+
+    for_each(contacts_for(law), examine)
+
+
+def exemptions_are_claims(model: ContactModel) -> None:
+    """`exemptions` names claims that there are, each with a reason."""
+    for claim, reason in model.exemptions.items():
+        assert claim in get_args(Claim), f"'{claim}' is no claim; there are: {', '.join(get_args(Claim))}"
+        assert reason.strip(), f"the exemption from '{claim}' has no reason"
+
+
+COMMON = (model_is_documented, json_schema_is_complete, units_of_parameters_do_not_matter)
+OF_LAWS = (declared_names_are_variables, band_is_ordered)
+OF_CONTACT_MODELS = (exemptions_are_claims,)

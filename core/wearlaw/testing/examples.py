@@ -1,0 +1,57 @@
+"""How the checks search for a counter-example, and the tolerances that they share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import numpy as np
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from wearlaw.arrays import Array
+from wearlaw.testing.sampling import EPS
+
+T = TypeVar("T")
+
+EXAMPLES = 25
+"""Examples a check draws."""
+
+SAME = 16.0 * EPS
+"""Relative difference of two orders of the same few operations: vector and scalar code may round differently."""
+
+_SETTINGS = settings(
+    max_examples=EXAMPLES,
+    derandomize=True,
+    database=None,
+    deadline=None,
+    report_multiple_bugs=False,
+    phases=(Phase.generate, Phase.shrink),
+    suppress_health_check=(HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example),
+)
+"""Without chance and without files, so that a check gives the same answer wherever it runs."""
+
+
+def for_each(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> None:
+    """Run a function on examples; a counter-example is shrunk and named in a note of the error."""
+
+    @_SETTINGS
+    @given(strategy)
+    def check(example: T) -> None:
+        examine(example)
+
+    check()
+
+
+def assert_close(
+    found: Array, expected: Array, message: str, relative: float | Array = SAME, absolute: float | Array = 0.0
+) -> None:
+    """Assert that two arrays agree, and name the worst entry if they do not."""
+    found, expected = np.broadcast_arrays(found, expected)
+    allowed = np.broadcast_to(relative * np.abs(expected) + absolute, expected.shape)
+    wrong = ~(np.abs(found - expected) <= allowed)
+    if wrong.any():
+        worst = np.unravel_index(np.argmax(np.where(wrong, np.abs(found - expected), 0.0)), expected.shape)
+        raise AssertionError(
+            f"{message}: {found[worst]!r} instead of {expected[worst]!r} (allowed: {allowed[worst]:.1e})"
+        )

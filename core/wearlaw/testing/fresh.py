@@ -1,0 +1,48 @@
+"""Run in a fresh process: make a model again from its TOML, its JSON and its pickle, and say what it computes.
+
+Reads a pickled request from standard input and writes a pickled answer to standard output; it imports nothing of the
+kit, which would cost more time than all of that.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pickle
+import sys
+import tomllib
+from collections.abc import Callable
+from typing import Any
+
+
+def made_again(way: Callable[[], Any], argument: Any) -> tuple[str, Any]:
+    """Return what a model computes, or why it could not be made."""
+    try:
+        model = way()
+        if hasattr(model, "rate"):
+            return "", model.rate(argument)
+        contact = model.solve(argument)
+        return "", [contact.tangential_force, contact.traction, contact.slip]
+    except Exception as error:
+        return f"{type(error).__name__}: {error}", None
+
+
+def main() -> None:
+    """Answer the request."""
+    path, request = pickle.load(sys.stdin.buffer)
+    sys.path[:] = path
+    contents = pickle.loads(request)
+    cls: Any = importlib.import_module(contents["module"])
+    for part in contents["qualname"].split("."):
+        cls = getattr(cls, part)
+    cls = cls if isinstance(cls, type) else type(cls)
+    ways: dict[str, Callable[[], Any]] = {
+        "toml": lambda: cls.model_validate(tomllib.loads(contents["toml"])),
+        "json": lambda: cls.model_validate_json(contents["json"]),
+        "pickle": lambda: pickle.loads(contents["pickle"]),
+    }
+    argument = pickle.loads(contents["argument"])
+    pickle.dump({name: made_again(way, argument) for name, way in ways.items()}, sys.stdout.buffer)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,156 @@
+"""Checks that a wear law depends on what it may depend on, and keeps what it declares."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.errors import CompositionError
+from wearlaw.models import WearLaw
+from wearlaw.records import Contact
+from wearlaw.testing.examples import SAME, assert_close, for_each
+from wearlaw.testing.law_shape import contacts_for
+from wearlaw.testing.sampling import aimed, at_nodes, forward, random_contacts, retotalled, rows
+
+
+def order_of_nodes_does_not_matter(law: WearLaw) -> None:
+    """The rate goes with its node when the nodes are listed in another order."""
+
+    def examine(contact: Contact) -> None:
+        turned = _nodes(contact, lambda array: array[..., ::-1])
+        assert_close(law.rate(turned)[..., ::-1], law.rate(contact), "the rate with the nodes in reverse order")
+
+    for_each(contacts_for(law), examine)
+
+
+def batching_does_not_matter(law: WearLaw) -> None:
+    """One operating point at a time gives what all at once give."""
+
+    def examine(contact: Contact) -> None:
+        together = law.rate(contact)
+        for point in range(contact.rolling_speed.size):
+            alone = law.rate(rows(contact, slice(point, point + 1)))[0]
+            assert_close(together[point], alone, f"the rate at operating point {point} of a batch")
+
+    for_each(contacts_for(law), examine)
+
+
+def splitting_a_node_does_not_matter(law: WearLaw) -> None:
+    """Two halves of a node wear at the rate of the whole."""
+
+    def examine(contact: Contact) -> None:
+        halves = _nodes(contact, lambda array: np.repeat(array, 2, axis=-1))
+        halves = dataclasses.replace(halves, area=0.5 * halves.area)
+        rate = np.repeat(law.rate(contact), 2, axis=-1)
+        assert_close(law.rate(halves), rate, "the rate of the halves of a node")
+
+    for_each(contacts_for(law), examine)
+
+
+def nodes_without_area_do_not_matter(law: WearLaw) -> None:
+    """Nodes that stand for no area, as in a zone that has shrunk to nothing, leave the other rates as they are."""
+
+    def examine(contact: Contact) -> None:
+        more = _nodes(contact, lambda array: np.concatenate([array, array[..., :1] * 0.5], axis=-1))
+        area = np.concatenate([contact.area, np.zeros_like(contact.area[..., :1])], axis=-1)
+        rate = law.rate(dataclasses.replace(more, area=area))[..., :-1]
+        assert_close(rate, law.rate(contact), "the rate beside a node without area")
+
+    for_each(contacts_for(law), examine)
+
+
+def each_node_wears_by_itself(law: WearLaw) -> None:
+    """The rate at a node depends on its own values and the totals of the patch, not on its neighbours."""
+
+    def examine(contact: Contact) -> None:
+        rate = law.rate(contact)
+        for node in range(rate.shape[-1]):
+            names = ("pressure", "traction", "slip", "traction_bound", "x")
+            own = {name: getattr(contact, name)[..., node : node + 1] for name in names}
+            alike = {name: np.broadcast_to(value, rate.shape).copy() for name, value in own.items()}
+            found = law.rate(dataclasses.replace(contact, **alike))[..., node]
+            assert_close(found, rate[..., node], f"the rate at node {node} among others like it")
+
+    for_each(contacts_for(law), examine)
+
+
+def scale_is_respected(law: WearLaw) -> None:
+    """A law of the patch means is refused on cells, and was not fitted to cells."""
+    try:
+        _ = random_contacts(2, nodes=3) | law
+    except CompositionError:
+        pass
+    else:
+        raise AssertionError("the law declares scale 'patch', but takes a contact of several nodes")
+    calibration = law.calibration
+    assert calibration is None or calibration.scale == "patch", "its calibration is for cells, its scale 'patch'"
+
+
+def is_monotone_as_declared(law: WearLaw) -> None:
+    """The rate never falls when a variable in `monotone_in` grows, from anywhere to anywhere, over all decades."""
+    start = _many(law)
+    rate = law.rate(start)
+    for name in law.monotone_in:
+        for factor in 1.0 + np.logspace(-6, 2, 17):
+            before, after = at_nodes(start, name), law.rate(_grown(start, name, factor))
+            fell = after < rate * (1.0 - SAME)
+            if fell.any():
+                at = np.argwhere(fell)[0]
+                raise AssertionError(
+                    f"the rate falls from {rate[tuple(at)]!r} to {after[tuple(at)]!r} as {name} grows from"
+                    f" {before[tuple(at)]:g} by a factor of {factor:g}"
+                )
+
+
+def _many(law: WearLaw, points: int = 512) -> Contact:
+    """Return many contacts of one node, a third of them at the breakpoints of the law."""
+    contact = forward(random_contacts(points))
+    targets = [(name, value) for name, values in (law.breakpoints or {}).items() for value in values]
+    for number, (name, value) in enumerate(targets):
+        chosen = np.arange(points) % (3 * len(targets)) == number
+        near = value * np.random.default_rng(number).uniform(0.7, 1.1, contact.pressure.shape)
+        contact = _where(chosen, aimed(contact, name, near), contact)
+    return contact
+
+
+def _grown(contact: Contact, name: str, factor: float) -> Contact:
+    """Return the contact with a variable grown, and the wear index with it where it is made of that variable."""
+    if name == "slip_speed":
+        return retotalled(contact, rolling_speed=contact.rolling_speed * factor)
+    if name == "wear_index":
+        return dataclasses.replace(
+            contact, wear_index=contact.wear_index * factor, tangential_force=contact.tangential_force * factor
+        )
+    return aimed(contact, name, at_nodes(contact, name) * factor)
+
+
+def _where(chosen: Array, first: Contact, second: Contact) -> Contact:
+    def mixed(name: str) -> Array:
+        one, other = getattr(first, name), getattr(second, name)
+        value: Array = np.where(chosen.reshape(chosen.shape + (1,) * (one.ndim - 1)), one, other)
+        return value
+
+    return Contact(**{field.name: mixed(field.name) for field in dataclasses.fields(first)})
+
+
+def _nodes(contact: Contact, change: Callable[[Array], Array]) -> Contact:
+    """Return the contact with its arrays of nodes changed and its totals kept."""
+    names = ("pressure", "traction", "slip", "traction_bound", "area", "x")
+    return dataclasses.replace(contact, **{name: change(getattr(contact, name)) for name in names})
+
+
+OF_SEVERAL_NODES = (
+    order_of_nodes_does_not_matter,
+    splitting_a_node_does_not_matter,
+    nodes_without_area_do_not_matter,
+    each_node_wears_by_itself,
+)
+"""Checks that mean nothing for a law of the whole patch."""
+
+OF_THE_PATCH = (scale_is_respected,)
+"""Checks that mean nothing for any other law."""
+
+CHECKS = (batching_does_not_matter, *OF_SEVERAL_NODES, *OF_THE_PATCH, is_monotone_as_declared)

@@ -1,0 +1,169 @@
+"""Checks of what a wear law returns at any contact."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+from collections.abc import Callable
+
+import numpy as np
+from hypothesis import strategies as st
+
+from wearlaw.arrays import Array
+from wearlaw.models import WearLaw
+from wearlaw.records import Contact
+from wearlaw.testing.examples import assert_close, for_each
+from wearlaw.testing.sampling import retotalled
+from wearlaw.testing.strategies import contacts
+
+
+def contacts_for(law: WearLaw) -> st.SearchStrategy[Contact]:
+    """Return contacts of the scale of a law, which crowd at its breakpoints."""
+    nodes = st.just(1) if law.scale == "patch" else st.integers(1, 5)
+    return contacts(nodes=nodes, crowded=law.breakpoints)
+
+
+def rate_has_the_shape_of_the_nodes(law: WearLaw) -> None:
+    """One rate a node, also for one operating point without a batch axis and for a batch of two axes."""
+
+    def examine(contact: Contact) -> None:
+        for shape in ((), (1,), (2, 1)):
+            fields = {f.name: getattr(contact, f.name)[0] for f in dataclasses.fields(contact)}
+            batch = Contact(**{n: np.broadcast_to(v, shape + v.shape).copy() for n, v in fields.items()})
+            found, due = np.shape(law.rate(batch)), batch.pressure.shape
+            assert found == due, f"rates of shape {found} for nodes of shape {due}"
+
+    for_each(contacts_for(law), examine)
+
+
+def rate_is_finite(law: WearLaw) -> None:
+    """The rate is a finite number at every node, also where pressure, traction or slip is zero."""
+
+    def examine(contact: Contact) -> None:
+        rate = law.rate(contact)
+        assert np.isfinite(rate).all(), f"the rate is not finite: {rate!r}"
+
+    for_each(contacts_for(law), examine)
+
+
+def rate_is_never_negative(law: WearLaw) -> None:
+    """Wear takes material away; no rate is below zero, whatever the sign of the creepage."""
+
+    def examine(contact: Contact) -> None:
+        rate = law.rate(contact)
+        assert not (rate < 0).any(), f"the rate is negative: {rate!r}"
+
+    for_each(contacts_for(law), examine)
+
+
+def no_slip_no_wear(law: WearLaw) -> None:
+    """Where nothing slips, and hence no energy is dissipated, the rate is exactly zero."""
+
+    def examine(contact: Contact) -> None:
+        rate = law.rate(retotalled(contact, slip=np.zeros_like(contact.slip)))
+        assert (rate == 0).all(), f"without slip the rate is {rate!r}, not zero"
+
+    for_each(contacts_for(law), examine)
+
+
+def sign_of_creepage_does_not_matter(law: WearLaw) -> None:
+    """The rate is the same when traction and slip both change their sign."""
+
+    def examine(contact: Contact) -> None:
+        mirrored = retotalled(contact, traction=-contact.traction, slip=-contact.slip)
+        assert_close(law.rate(mirrored), law.rate(contact), "the rate with the opposite creepage")
+
+    for_each(contacts_for(law), examine)
+
+
+def memory_layout_does_not_matter(law: WearLaw) -> None:
+    """The rate is the same for arrays in Fortran order, with strides, or read-only."""
+
+    def examine(contact: Contact) -> None:
+        rate = law.rate(contact)
+        for message, layout in LAYOUTS.items():
+            fields = {f.name: layout(getattr(contact, f.name)) for f in dataclasses.fields(contact)}
+            assert_close(law.rate(Contact(**fields)), rate, f"the rate for {message} arrays")
+
+    for_each(contacts_for(law), examine)
+
+
+def _strided(array: Array) -> Array:
+    spaced = np.full((*array.shape, 2), np.nan)
+    spaced[..., 0] = array
+    return spaced[..., 0]
+
+
+def _read_only(array: Array) -> Array:
+    array = array.copy()
+    array.flags.writeable = False
+    return array
+
+
+LAYOUTS: dict[str, Callable[[Array], Array]] = {
+    "Fortran-ordered": np.asfortranarray,
+    "strided": _strided,
+    "read-only": _read_only,
+}
+
+
+def integer_input_does_not_matter(law: WearLaw) -> None:
+    """The rate is the same for whole numbers given as integers."""
+
+    def examine(contact: Contact) -> None:
+        whole = retotalled(
+            contact,
+            pressure=np.rint(contact.pressure),
+            traction=np.rint(contact.traction),
+            slip=np.sign(contact.slip),
+            rolling_speed=np.ceil(contact.rolling_speed),
+            density=np.rint(contact.density),
+        )
+        names = ("pressure", "traction", "slip", "rolling_speed", "density")
+        integers = {name: getattr(whole, name).astype(np.int64) for name in names}
+        rate = law.rate(dataclasses.replace(whole, **integers))
+        assert_close(rate, law.rate(whole), "the rate for integers")
+
+    for_each(contacts_for(law), examine)
+
+
+def inputs_are_not_changed(law: WearLaw) -> None:
+    """The law leaves the arrays of the contact as they are."""
+
+    def examine(contact: Contact) -> None:
+        before = copy.deepcopy(contact)
+        law.rate(contact)
+        for field in dataclasses.fields(contact):
+            same = np.array_equal(getattr(contact, field.name), getattr(before, field.name))
+            assert same, f"the law changed the {field.name} of the contact"
+
+    # Broadcast arrays refuse to be written to, and would hide a law that writes.
+    for_each(contacts_for(law).map(copy.deepcopy), examine)
+
+
+def calls_agree_to_the_bit(law: WearLaw) -> None:
+    """The same contact gives the same rates again, with another contact in between, in an array of its own."""
+
+    def examine(pair: tuple[Contact, Contact]) -> None:
+        first = law.rate(pair[0])
+        kept = np.array(first)
+        law.rate(pair[1])
+        law.rate(retotalled(pair[0], slip=0.5 * pair[0].slip))
+        assert np.array_equal(kept, first), "a later call changed the array that an earlier one returned"
+        second = law.rate(pair[0])
+        assert np.array_equal(kept, second), f"two calls differ: {kept!r} and {second!r}"
+
+    for_each(st.tuples(contacts_for(law), contacts_for(law)), examine)
+
+
+CHECKS = (
+    rate_has_the_shape_of_the_nodes,
+    rate_is_finite,
+    rate_is_never_negative,
+    no_slip_no_wear,
+    sign_of_creepage_does_not_matter,
+    memory_layout_does_not_matter,
+    integer_input_does_not_matter,
+    inputs_are_not_changed,
+    calls_agree_to_the_bit,
+)

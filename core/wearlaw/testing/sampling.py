@@ -1,0 +1,148 @@
+"""Contacts from numbers between 0 and 1, and how to move one variable of a contact."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.records import Contact
+
+EPS = float(np.finfo(np.float64).eps)
+
+_PRESSURE = (1e5, 1e10)
+_TRACTION = (1e-6, 1.0)
+_SLIP = (1e-8, 1.0)
+_AREA = (1e-10, 1e-4)
+NODE_VALUES_DRAWN = 4
+"""Shares per node: pressure, traction over its bound, slip, area."""
+CONDITIONS_DRAWN = 4
+"""Shares per operating point: friction, rolling speed, density, sign."""
+
+
+def _log_range(share: Array, low: float, high: float) -> Array:
+    value: Array = low * (high / low) ** share
+    return value
+
+
+def contact_from_shares(nodes: Array, conditions: Array) -> Contact:
+    """Return the contact that numbers from 0 to 1 stand for.
+
+    Parameters
+    ----------
+    nodes : ndarray, (batch, nodes, NODE_VALUES_DRAWN)
+        A share of 0 stands for the value 0 in pressure, traction and slip.
+    conditions : ndarray, (batch, CONDITIONS_DRAWN)
+    """
+    friction = _log_range(conditions[..., 0], 0.01, 1.5)
+    sign = np.where(conditions[..., 3] < 0.5, 1.0, -1.0)[..., None]
+    pressure = np.where(nodes[..., 0] == 0, 0.0, _log_range(nodes[..., 0], *_PRESSURE))
+    bound = friction[..., None] * pressure
+    return with_totals(
+        pressure=pressure,
+        traction=sign * np.where(nodes[..., 1] == 0, 0.0, _log_range(nodes[..., 1], *_TRACTION)) * bound,
+        slip=sign * np.where(nodes[..., 2] == 0, 0.0, _log_range(nodes[..., 2], *_SLIP)),
+        traction_bound=bound,
+        area=_log_range(nodes[..., 3], *_AREA),
+        rolling_speed=_log_range(conditions[..., 1], 1e-2, 1e2),
+        density=1e3 + 1.9e4 * conditions[..., 2],
+    )
+
+
+def with_totals(
+    *,
+    pressure: Array,
+    traction: Array,
+    slip: Array,
+    traction_bound: Array,
+    area: Array,
+    rolling_speed: Array,
+    density: Array,
+) -> Contact:
+    """Return the contact of the given nodes, with one axis of nodes and the sums over it."""
+    return Contact(
+        pressure=pressure,
+        traction=traction,
+        slip=slip,
+        traction_bound=traction_bound,
+        area=area,
+        x=np.broadcast_to(np.linspace(-1e-3, 1e-3, area.shape[-1]), area.shape),
+        rolling_speed=rolling_speed,
+        normal_force=(pressure * area).sum(-1),
+        tangential_force=(traction * area).sum(-1),
+        wear_index=(traction * slip * area).sum(-1),
+        density=density,
+    )
+
+
+def random_contacts(points: int, nodes: int = 1, seed: int = 0) -> Contact:
+    """Return contacts at many random operating points; the same ones for the same seed."""
+    random = np.random.default_rng(seed)
+    return contact_from_shares(random.random((points, nodes, NODE_VALUES_DRAWN)), random.random((points, 4)))
+
+
+def retotalled(contact: Contact, **changed: Array) -> Contact:
+    """Return the contact with some of its node values changed and its sums computed anew."""
+    names = ("pressure", "traction", "slip", "traction_bound", "area", "rolling_speed", "density")
+    values: dict[str, Array] = {name: getattr(contact, name) for name in names}
+    return with_totals(**(values | changed))
+
+
+def aimed(contact: Contact, variable: str, value: Array | float) -> Contact:
+    """Return the contact with a variable set to a value at all nodes; where it cannot be reached, as it was.
+
+    A density of wear index is reached by traction, a slip speed by slip, the wear index by area.
+    """
+    target = np.broadcast_to(np.asarray(value, dtype=np.float64), contact.pressure.shape)
+    sign = np.where(contact.traction + contact.slip < 0, -1.0, 1.0)
+    if variable == "pressure":
+        return retotalled(contact, pressure=target.copy(), traction_bound=np.maximum(contact.traction_bound, target))
+    if variable == "slip":
+        return retotalled(contact, slip=sign * target)
+    if variable == "slip_speed":
+        return retotalled(contact, slip=sign * target / contact.rolling_speed[..., None])
+    if variable == "wear_index":
+        current = contact.wear_index[..., None]
+        factor = np.divide(target[..., :1], current, out=np.ones_like(current), where=current > 0)
+        exact = np.where(contact.wear_index > 0, target[..., 0], contact.wear_index)
+        return dataclasses.replace(retotalled(contact, area=contact.area * factor), wear_index=exact)
+    traction = target
+    if variable == "wear_index_density":
+        slip = np.abs(contact.slip)
+        traction = np.divide(target, slip, out=np.abs(contact.traction), where=slip > 0)
+    bound = np.maximum(contact.traction_bound, traction)
+    return retotalled(contact, traction=sign * traction, traction_bound=bound)
+
+
+def between(first: Contact, second: Contact, share: Array) -> Contact:
+    """Return the contacts on the way from one batch to another, straight in the logarithm of every value.
+
+    Both hold positive values only; `share` has the batch shape.
+    """
+
+    def mixed(name: str) -> Array:
+        start, end = getattr(first, name), getattr(second, name)
+        part = share.reshape(share.shape + (1,) * (start.ndim - share.ndim))
+        value: Array = start * (end / start) ** part
+        return value
+
+    names = ("pressure", "traction", "slip", "traction_bound", "area", "rolling_speed", "density")
+    return with_totals(**{name: mixed(name) for name in names})
+
+
+def forward(contact: Contact) -> Contact:
+    """Return the contact with positive creepage."""
+    return retotalled(contact, traction=np.abs(contact.traction), slip=np.abs(contact.slip))
+
+
+def rows(contact: Contact, index: object) -> Contact:
+    """Return some of the operating points of a batch."""
+    fields = (field.name for field in dataclasses.fields(contact))
+    return Contact(**{name: getattr(contact, name)[index] for name in fields})
+
+
+def at_nodes(contact: Contact, variable: str) -> Array:
+    """Return the magnitude of a variable at the nodes."""
+    value: Array = np.abs(getattr(contact, variable))
+    return np.broadcast_to(contact.per_node(value), contact.pressure.shape)

@@ -1,0 +1,207 @@
+"""New plugins: what is written, and that it passes its own tests where it is installed as its author would."""
+
+from __future__ import annotations
+
+import ast
+import os
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+import wearlaw as wl
+from tests.core.cases import Coarse, Linear, installer
+from tests.environments import ROOT, Environment, build
+from wearlaw import plugins
+from wearlaw.cli import main
+from wearlaw.scaffold import LICENCES, Kind, write_plugin
+from wearlaw.shelf import Origin
+
+KINDS: dict[Kind, str] = {"wear_law": "--wear-law", "contact_model": "--contact-model"}
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    here = tmp_path / "my work"
+    here.mkdir()
+    monkeypatch.chdir(here)
+    return here
+
+
+def new_plugin(*arguments: str) -> Result:
+    return CliRunner(env={"COLUMNS": "100"}).invoke(main, ["new-plugin", *arguments])
+
+
+def assert_refused(result: Result, message: str, exit_code: int = 1) -> None:
+    assert isinstance(result.exception, SystemExit)
+    assert result.exit_code == exit_code
+    assert message in result.stderr
+    assert result.stdout == ""
+
+
+def files(folder: Path) -> set[str]:
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*")}
+
+
+@pytest.fixture(scope="module")
+def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
+    wheel = build(ROOT, tmp_path_factory.mktemp("wheel"))
+    return Environment(tmp_path_factory.mktemp("environment"), wheel)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_new_plugin_passes_its_own_tests_and_checks_as_generated(kind: Kind, environment: Environment) -> None:
+    name = f"my_{kind}"
+    plugin = write_plugin(name, kind, Path()).resolve()
+    environment.install("-e", plugin)
+    passed = environment.run("-m", "pytest", "-p", "no:cacheprovider", cwd=plugin).stdout
+    assert " passed in " in passed
+    assert not {"failed", "skipped", "xfailed", "error", "warning", "warnings"} & set(passed.split())
+    example = (plugin / "README.md").read_text(encoding="utf-8").partition("```python\n")[2].partition("```")[0]
+    assert "Prediction of 1 operating point" in environment.run("-c", example).stdout
+    checked = environment.wearlaw("check", name)
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+    rows = [line.split() for line in environment.wearlaw("plugins").stdout.splitlines()]
+    assert [*kind.split("_"), name, f"wearlaw-{name}", "0.1.0"] in rows
+
+
+@pytest.mark.parametrize(("kind", "flag"), KINDS.items())
+def test_what_to_type_next_is_what_works(kind: Kind, flag: str) -> None:
+    result = new_plugin("zobory", flag, "-o", "two words")
+    assert result.exit_code == 0
+    assert result.stdout == (
+        f"two words/wearlaw-zobory holds a {kind.replace('_', ' ')} to replace: wearlaw_zobory.py. Next:\n"
+        "  cd 'two words/wearlaw-zobory'\n"
+        '  python -m pip install -e ".[test]"\n'
+        "  pytest\n"
+        "  wearlaw plugins\n"
+        "  wearlaw check zobory\n"
+    )
+    assert result.stderr == ""
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_new_plugin_is_a_whole_distribution(kind: Kind) -> None:
+    plugin = write_plugin("two_slopes", kind, Path())
+    assert plugin == Path("wearlaw-two_slopes")
+    assert files(plugin) == {
+        *(".github", ".github/workflows", ".github/workflows/tests.yml", ".gitignore", "LICENSE", "README.md"),
+        *("pyproject.toml", "test_two_slopes.py", "wearlaw_two_slopes.py"),
+    }
+    for path in plugin.rglob("*"):
+        assert path.is_dir() or "$" not in path.read_text(encoding="utf-8").replace("${{ matrix.python }}", "")
+    module = ast.parse((plugin / "wearlaw_two_slopes.py").read_text(encoding="utf-8"))
+    (model,) = [node for node in module.body if isinstance(node, ast.ClassDef)]
+    assert model.name == "TwoSlopes"
+    project: Any = tomllib.loads((plugin / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert project["entry-points"] == {"wearlaw": {"two_slopes": "wearlaw_two_slopes"}}
+    assert project["optional-dependencies"] == {"test": ["wearlaw[test]"]}
+    assert project["dependencies"] == [f"wearlaw>={wl.__version__}"]
+
+
+@pytest.mark.parametrize(
+    ("licence", "title", "spdx"),
+    [
+        ("bsd-3-clause", "BSD 3-Clause License", "BSD-3-Clause"),
+        ("mit", "MIT License", "MIT"),
+        ("none", "No licence has been chosen yet", None),
+    ],
+)
+def test_the_licence_is_that_which_was_chosen(licence: str, title: str, spdx: str | None) -> None:
+    assert licence in LICENCES
+    assert new_plugin("zobory", "--wear-law", "--license", licence).exit_code == 0
+    assert Path("wearlaw-zobory/LICENSE").read_text(encoding="utf-8").startswith(title)
+    project: Any = tomllib.loads(Path("wearlaw-zobory/pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert project.get("license") == spdx
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["", "two words", "Zobory", "2slopes", "class", "a-b", "../up", "a/b", "_zobory", "zobory_", "a__b", "é", "a\n"],
+)
+def test_a_name_that_is_no_lower_case_identifier_is_refused(name: str, folder: Path) -> None:
+    assert_refused(new_plugin("--wear-law", "--", name), "name: must be a Python name of lower-case letters")
+    assert files(folder.parent) == {"my work"}
+
+
+@pytest.mark.parametrize("name", ["none", "true", "field", "class_var", "test_law", "check"])
+def test_a_name_whose_class_would_mean_something_else_is_refused(name: str, folder: Path) -> None:
+    assert_refused(new_plugin(name, "--wear-law"), f"name: {name!r} would name its class ")
+    assert files(folder) == set()
+
+
+def test_a_name_too_long_for_the_lines_is_refused() -> None:
+    assert_refused(new_plugin(25 * "a", "--wear-law"), "name: must have at most 24 characters, got 25")
+
+
+@pytest.mark.parametrize("flag", KINDS.values())
+@pytest.mark.parametrize("name", ["usfd", "kth", "brr", "exact", "fastsim"])
+def test_a_taken_name_is_refused_with_who_has_it(name: str, flag: str, folder: Path) -> None:
+    assert_refused(
+        new_plugin(name, flag), f"name: '{name}' is taken by wearlaw {wl.__version__} (plugin '{name}'); cho"
+    )
+    assert files(folder) == set()
+
+
+@pytest.mark.parametrize("model", [Coarse, Linear])
+def test_a_name_that_a_model_but_no_plugin_bears_is_taken(
+    model: type[wl.ContactModel] | type[wl.WearLaw], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    installer(monkeypatch)(model)
+    taken = f"'{model.name}' is taken by wearlaw-testing 9.8.7 (plugin 'testing')"
+    assert_refused(new_plugin(model.name, "--wear-law"), taken)
+
+
+def test_the_name_of_a_plugin_that_is_broken_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    origin = Origin("crumbling", "wearlaw-crumbling", "1.0")
+    monkeypatch.setattr(plugins.installed(), "plugins", [*plugins.installed().plugins, origin])
+    assert_refused(new_plugin("crumbling", "--wear-law"), "'crumbling' is taken by wearlaw-crumbling 1.0 (plugin 'cru")
+
+
+@pytest.mark.parametrize("content", ["folder", "empty folder", "file", "dangling link"])
+def test_what_is_there_is_never_overwritten(content: str, folder: Path) -> None:
+    taken = folder / "wearlaw-zobory"
+    if content == "file":
+        taken.write_text("thesis")
+    elif content == "dangling link":
+        taken.symlink_to("nowhere")
+    else:
+        taken.mkdir()
+        if content == "folder":
+            (taken / "thesis.tex").write_text("years of work")
+    before = files(folder)
+    assert_refused(new_plugin("zobory", "--wear-law"), "output: 'wearlaw-zobory' exists and is left as it is")
+    assert files(folder) == before
+    assert content != "file" or taken.read_text() == "thesis"
+
+
+def test_a_folder_that_cannot_be_written_is_one_clear_error() -> None:
+    assert_refused(new_plugin("zobory", "--wear-law", "-o", "/proc"), "output: cannot write to '/proc/wearlaw-zobory'")
+
+
+def test_nothing_is_left_when_the_writing_fails(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_text = Path.write_text
+
+    def failing(path: Path, *arguments: Any, **options: Any) -> int:
+        if path.name == "README.md":
+            raise OSError(28, os.strerror(28))
+        return write_text(path, *arguments, **options)
+
+    monkeypatch.setattr(Path, "write_text", failing)
+    assert_refused(new_plugin("zobory", "--wear-law"), "output: cannot write the plugin: No space left on device")
+    assert files(folder) == set()
+
+
+def test_without_a_kind_both_are_named(folder: Path) -> None:
+    assert_refused(new_plugin("zobory"), "say what it provides: --wear-law or --contact-model", exit_code=2)
+    assert files(folder) == set()
+
+
+def test_the_wheel_holds_the_templates(environment: Environment, tmp_path: Path) -> None:
+    assert environment.wearlaw("new-plugin", "outside", "--wear-law", cwd=tmp_path).returncode == 0
+    there = tmp_path / "wearlaw-outside"
+    here = write_plugin("outside", "wear_law", Path())
+    assert files(there) == files(here)
+    assert (there / "wearlaw_outside.py").read_bytes() == (here / "wearlaw_outside.py").read_bytes()

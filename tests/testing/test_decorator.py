@@ -1,0 +1,94 @@
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import wearlaw as wl
+from tests.testing.wrong_laws import WrongSign
+from wearlaw.testing import Check, checks, conformance
+
+SUITE = """
+from tests.testing.wrong_laws import Linear, Offset, Raises, WrongSign
+from wearlaw.testing import conformance
+
+@conformance(WrongSign(), expected_failures={"rate_is_never_negative": "material grows"})
+def test_known(check):
+    check()
+
+@conformance(Linear(), expected_failures={"rate_is_finite": "it passes, in truth"})
+def test_unknown(check):
+    check()
+
+@conformance(Offset())
+def test_wrong(check):
+    check()
+"""
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """What pytest prints about a suite of one expected failure, one that passes, and one failure."""
+    folder = tmp_path_factory.mktemp("suite")
+    (folder / "test_suite.py").write_text(SUITE)
+    chosen = "never_negative or is_finite or no_slip"
+    command = [sys.executable, "-m", "pytest", "-v", "-rA", "-k", chosen, "-p", "no:cacheprovider", str(folder)]
+    root = Path(__file__).parents[2]
+    done = subprocess.run(
+        [*command, f"--rootdir={folder}", "-c", "/dev/null"], capture_output=True, text=True, cwd=root, check=False
+    )
+    return done.stdout
+
+
+def test_ids_are_the_names_of_the_checks(report: str) -> None:
+    assert "test_wrong[rate_is_finite] PASSED" in report
+
+
+def test_an_expected_failure_is_an_xfail_with_its_reason(report: str) -> None:
+    assert re.search(r"XFAIL \S+::test_known\[rate_is_never_negative\] - material grows", report), report
+
+
+def test_an_expected_failure_that_passes_fails(report: str) -> None:
+    assert "[XPASS(strict)] it passes, in truth" in report
+
+
+def test_a_failure_shows_the_counter_example_and_the_values(report: str) -> None:
+    assert "test_wrong[no_slip_no_wear] FAILED" in report
+    assert "without slip the rate is array([[1.e-07]]), not zero" in report
+    # only a rewritten assert shows what its parts were
+    assert "assert np.False_" in report
+    assert "example=Contact(pressure=array([[0.]])" in report
+
+
+def test_an_unknown_expected_failure_is_an_error_with_a_hint() -> None:
+    with pytest.raises(wl.InputError, match=r"'no_slip_no_war'.*'no_slip_no_wear'"):
+        conformance(wl.wear_law("usfd"), expected_failures={"no_slip_no_war": "misspelt"})
+
+
+def test_a_check_of_what_a_model_does_not_claim_is_not_there_to_fail() -> None:
+    with pytest.raises(wl.InputError, match="what_sticks_does_not_slip"):
+        conformance(wl.contact_model("global"), expected_failures={"what_sticks_does_not_slip": "one cell"})
+
+
+def test_checks_are_named_documented_and_frozen() -> None:
+    found = list(checks(WrongSign()))
+    assert len({check.name for check in found}) == len(found)
+    assert all(check.name.isidentifier() and check.doc for check in found)
+    with pytest.raises(AttributeError):
+        found[0].name = "other"  # type: ignore[misc]
+
+
+def test_checks_of_something_else_are_an_error() -> None:
+    with pytest.raises(wl.InputError, match="needs a wear law or a contact model"):
+        list(checks(3))  # type: ignore[arg-type]
+
+
+def test_an_error_in_the_model_is_a_failure_that_names_it() -> None:
+    def broken() -> None:
+        raise ZeroDivisionError("by nothing")
+
+    with pytest.raises(AssertionError, match="the model raised ZeroDivisionError: by nothing"):
+        Check("broken", "", broken)()

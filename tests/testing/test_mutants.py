@@ -1,0 +1,76 @@
+"""Deliberately wrong models: each is caught by the check that should catch it, and right ones by none."""
+
+from __future__ import annotations
+
+import importlib
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.testing import wrong_contacts, wrong_declarations, wrong_laws
+from wearlaw.testing import Check, checks, conformance
+
+WRONG: dict[Any, str] = {**wrong_laws.CAUGHT, **wrong_declarations.CAUGHT, **wrong_contacts.CAUGHT}
+
+
+def made(mutant: Any) -> Any:
+    return mutant(slope=wl.Q(7.0, "ug/m/N")) if issubclass(mutant, wrong_declarations.LosesField) else mutant()
+
+
+@pytest.mark.parametrize("mutant", WRONG, ids=lambda mutant: mutant.__name__)
+def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any) -> None:
+    check = {check.name: check for check in checks(made(mutant))}[WRONG[mutant]]
+    with pytest.raises(AssertionError) as failure:
+        check()
+    assert len(str(failure.value)) > 10
+
+
+def test_every_check_of_an_invariant_catches_a_mutant() -> None:
+    models: list[Any] = [wrong_laws.Linear(), wrong_contacts.Wrapped()]
+    names = {check.name for model in models for check in checks(model)}
+    assert names == set(WRONG.values())
+
+
+@conformance(wrong_laws.Linear())
+def test_a_minimal_law_passes(check: Check) -> None:
+    check()
+
+
+@conformance(wrong_contacts.Wrapped())
+def test_a_contact_model_with_only_solve_passes(check: Check) -> None:
+    check()
+
+
+@wl.as_wear_law(
+    inputs={"wear_index_density": "N/mm^2"},
+    returns="ug/m/mm^2",
+    breakpoints={"wear_index_density": [4.0]},
+    jumps=[4.0],
+    parameters={"mild": "ug/m/N", "severe": "ug/m/N", "limit": "N/mm^2"},
+    source="made up for the tests",
+)
+def two_slopes(wear_index_density: Any, *, mild: float = 5.0, severe: float = 15.0, limit: float = 4.0) -> Any:
+    """Two slopes with a jump between them."""
+    return np.where(wear_index_density < limit, mild, severe) * wear_index_density
+
+
+@conformance(two_slopes)
+def test_a_law_from_one_function_passes(check: Check) -> None:
+    check()
+
+
+@pytest.mark.parametrize(("module", "cls"), [("wearlaw_threshold", "Threshold"), ("wearlaw_rigid", "Rigid")])
+def test_the_models_of_the_documentation_pass(
+    module: str, cls: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "plugins.md").read_text(encoding="utf-8")
+    block = re.search(rf":caption: {module}\.py\n\n(.*?)\n```", page, re.DOTALL)
+    assert block is not None
+    (tmp_path / f"{module}.py").write_text(block[1], encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    for check in checks(getattr(importlib.import_module(module), cls)()):
+        check()

@@ -1,0 +1,146 @@
+"""Wear laws that are not what they say of themselves."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+import wearlaw as wl
+from tests.testing.wrong_laws import SLOPE, Linear
+
+
+class HiddenJump(Linear):
+    """Twice the rate above 4 N/mm², undeclared."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        w = contact.wear_index_density
+        return np.where(w < 4e6, SLOPE, 2 * SLOPE) * w
+
+
+class SmallHiddenJump(Linear):
+    """A hundredth more above a slip speed of 0.3 m/s, undeclared."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return np.where(contact.slip_speed < 0.3, 1.0, 1.01) * SLOPE * contact.wear_index_density
+
+
+class JumpElsewhere(Linear):
+    """The jump is declared at 4 N/mm², but lies at 5 N/mm²."""
+
+    @property
+    def breakpoints(self) -> wl.BreakpointMap:
+        return {"wear_index_density": (4e6,)}
+
+    @property
+    def jumps(self) -> wl.BreakpointMap:
+        return self.breakpoints
+
+    def rate(self, contact: wl.Contact) -> Any:
+        w = contact.wear_index_density
+        return np.where(w < 5e6, SLOPE, 2 * SLOPE) * w
+
+
+class JumpThatIsNone(JumpElsewhere):
+    """A declared jump at which nothing jumps."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return SLOPE * contact.wear_index_density
+
+
+class JumpWithoutBreakpoint(HiddenJump):
+    """The jump is declared, but not as a breakpoint."""
+
+    @property
+    def jumps(self) -> wl.BreakpointMap:
+        return {"wear_index_density": (4e6,)}
+
+
+class FallsDespiteDeclaration(Linear):
+    """Less wear above 4 N/mm², continuously."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        w = contact.wear_index_density
+        return SLOPE * np.where(w < 4e6, w, 4e6 * np.sqrt(4e6 / np.maximum(w, 1.0)))
+
+
+class UnknownVariable(Linear):
+    """Monotone in what there is not."""
+
+    monotone_in: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def valid_range(self) -> dict[str, tuple[float, float]]:
+        return {"temperature": (0.0, 1.0)}
+
+
+class Undocumented(Linear):
+    """A field without unit."""
+
+    slope: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = Field(
+        default="5 ug/m/N", validate_default=True, description="Slope"
+    )
+
+
+class NoSource(Linear):
+    """No source."""
+
+    source: ClassVar[str] = " "
+
+
+class LosesField(Linear):
+    """Writes no parameter, so that the reader takes the default."""
+
+    slope: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = Field(
+        default="5 ug/m/N", validate_default=True, exclude=True, description="Slope [kg/m/N]."
+    )
+
+
+class LosesFieldInJSON(LosesField):
+    """The same, for JSON."""
+
+
+class FieldWithoutDocstring(Linear):
+    """A field that nothing is said of."""
+
+    extra: int = 1
+
+
+class Unpicklable(Linear):
+    """Holds a function in what is pickled."""
+
+    @cached_property
+    def cached(self) -> Any:
+        return lambda: None
+
+    def __reduce__(self) -> Any:
+        return self.cached, ()
+
+
+class BandUpsideDown(Linear):
+    """The low end wears most."""
+
+    def band(self) -> tuple[wl.WearLaw, wl.WearLaw, wl.WearLaw]:
+        low, middle, high = (Linear(slope=wl.Q(k, "ug/m/N")) for k in (7.0, 5.0, 3.0))
+        return low, middle, high
+
+
+CAUGHT: dict[type[wl.WearLaw], str] = {
+    HiddenJump: "rate_jumps_only_where_declared",
+    SmallHiddenJump: "rate_jumps_only_where_declared",
+    JumpElsewhere: "rate_jumps_only_where_declared",
+    JumpThatIsNone: "declared_jumps_exist",
+    JumpWithoutBreakpoint: "jumps_are_breakpoints",
+    FallsDespiteDeclaration: "is_monotone_as_declared",
+    UnknownVariable: "declared_names_are_variables",
+    Undocumented: "model_is_documented",
+    NoSource: "model_is_documented",
+    LosesField: "round_trip_through_toml",
+    LosesFieldInJSON: "round_trip_through_json",
+    FieldWithoutDocstring: "json_schema_is_complete",
+    Unpicklable: "round_trip_through_pickle",
+    BandUpsideDown: "band_is_ordered",
+}
+"""The check that must catch each."""

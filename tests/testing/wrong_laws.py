@@ -1,0 +1,223 @@
+"""Wear laws that are wrong in one way each, made from a right one."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+import wearlaw as wl
+
+SLOPE = 5e-9
+
+
+class Linear(wl.WearLaw):
+    """The right one: wear in proportion to the wear-index density."""
+
+    name: ClassVar[str] = "linear"
+    source: ClassVar[str] = "made up for the tests"
+    monotone_in: ClassVar[tuple[str, ...]] = ("wear_index_density",)
+
+    slope: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = Field(default="5 ug/m/N", validate_default=True)
+    """Slope [kg/m/N]."""
+
+    @property
+    def breakpoints(self) -> wl.BreakpointMap:
+        return {}
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return wl.scalar_si(self.slope, "kg/m/N") * contact.wear_index_density
+
+
+class WrongSign(Linear):
+    """Material grows."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return -SLOPE * contact.wear_index_density
+
+
+class SignedSlip(Linear):
+    """Pressure times the slip with its sign."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return SLOPE * contact.pressure * contact.slip
+
+
+class ForwardOnly(Linear):
+    """Wear at positive creepage only."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return SLOPE * contact.wear_index_density * (contact.slip > 0)
+
+
+class Offset(Linear):
+    """A rate of 1e-7 without slip."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return SLOPE * contact.wear_index_density + 1e-7
+
+
+class MissingUnit(Linear):
+    """The number of a parameter without its unit."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return 1e-9 * float(self.slope.magnitude) * contact.wear_index_density
+
+
+class NodeOrder(Linear):
+    """Wear accumulates from the leading edge."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return SLOPE * np.cumsum(contact.wear_index_density, axis=-1)
+
+
+class BatchLeak(Linear):
+    """Relative to the largest of the batch."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        w = contact.wear_index_density
+        return SLOPE * w * (1.0 + 0.01 * w / np.maximum(w.max(), 1.0))
+
+
+class NeighbourLeak(Linear):
+    """Relative to the largest of the patch."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        w = contact.wear_index_density
+        return SLOPE * w * (1.0 + 0.01 * w / np.maximum(w.max(axis=-1, keepdims=True), 1.0))
+
+
+class CountsNodes(Linear):
+    """Depends on how finely the patch is resolved."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return SLOPE * contact.wear_index_density / contact.area.shape[-1]
+
+
+class PlainMean(Linear):
+    """The mean over the nodes without their areas."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return np.broadcast_to(SLOPE * contact.wear_index_density.mean(axis=-1, keepdims=True), contact.slip.shape)
+
+
+class ChangesInput(Linear):
+    """Takes the magnitude of the slip in place."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        if contact.slip.flags.writeable:
+            np.abs(contact.slip, out=contact.slip)
+        return SLOPE * np.abs(contact.traction) * np.abs(contact.slip)
+
+
+class NaNAtCorner(Linear):
+    """Divides zero by zero where the pressure is zero."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        with np.errstate(all="ignore"):
+            return SLOPE * contact.wear_index_density * (contact.pressure / contact.pressure)
+
+
+CALLS: list[int] = []
+
+
+class KeepsState(Linear):
+    """Wears more with each call."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        CALLS.append(1)
+        return SLOPE * contact.wear_index_density * (1.0 + 1e-9 * len(CALLS))
+
+
+BUFFER: dict[tuple[int, ...], Any] = {}
+
+
+class ReusesBuffer(Linear):
+    """Returns the same array again."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        buffer = BUFFER.setdefault(contact.slip.shape, np.empty(contact.slip.shape))
+        buffer[...] = SLOPE * contact.wear_index_density
+        return buffer
+
+
+class SinglePrecision(Linear):
+    """Computes in single precision, and returns double."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return SLOPE * contact.wear_index_density.astype(np.float32).astype(np.float64)
+
+
+class ReturnsSingle(Linear):
+    """Returns single precision."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return (SLOPE * contact.wear_index_density).astype(np.float32)
+
+
+class WrongShape(Linear):
+    """One rate a patch, though stated for the nodes."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return SLOPE * contact.wear_index_density.mean(axis=-1)
+
+
+class FlattensMemory(Linear):
+    """Reads the memory of an array in its order."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return SLOPE * contact.wear_index_density.ravel(order="K").reshape(contact.slip.shape)
+
+
+class IntegerArithmetic(Linear):
+    """Fills an array of the type of the input."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        rate = np.zeros_like(contact.pressure)
+        rate[...] = SLOPE * contact.wear_index_density
+        return rate
+
+
+class PatchOnCells(Linear):
+    """States no scale, but reads the total of the patch."""
+
+    scale: ClassVar[Literal["patch", "any"]] = "patch"
+
+    def __ror__(self, contact: wl.Contact) -> wl.LocalWear:
+        return wl.LocalWear(contact, self.rate(contact))
+
+
+class Raises(Linear):
+    """Refuses a corner."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        if (contact.slip == 0).any():
+            raise ZeroDivisionError("no slip")
+        return SLOPE * contact.wear_index_density
+
+
+CAUGHT: dict[type[wl.WearLaw], str] = {
+    WrongSign: "rate_is_never_negative",
+    SignedSlip: "rate_is_never_negative",
+    ForwardOnly: "sign_of_creepage_does_not_matter",
+    Offset: "no_slip_no_wear",
+    MissingUnit: "units_of_parameters_do_not_matter",
+    NodeOrder: "order_of_nodes_does_not_matter",
+    BatchLeak: "batching_does_not_matter",
+    NeighbourLeak: "each_node_wears_by_itself",
+    CountsNodes: "splitting_a_node_does_not_matter",
+    PlainMean: "nodes_without_area_do_not_matter",
+    ChangesInput: "inputs_are_not_changed",
+    NaNAtCorner: "rate_is_finite",
+    KeepsState: "calls_agree_to_the_bit",
+    ReusesBuffer: "calls_agree_to_the_bit",
+    SinglePrecision: "precision_is_double",
+    ReturnsSingle: "precision_is_double",
+    WrongShape: "rate_has_the_shape_of_the_nodes",
+    FlattensMemory: "memory_layout_does_not_matter",
+    IntegerArithmetic: "integer_input_does_not_matter",
+    PatchOnCells: "scale_is_respected",
+    Raises: "no_slip_no_wear",
+}
+"""The check that must catch each."""

@@ -1,0 +1,37 @@
+"""A contact model of rigid bodies."""
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+
+import wearlaw as wl
+
+
+class Rigid(wl.LineContactModel):
+    """The whole patch slips with the creepage under the traction μp."""
+
+    name: ClassVar[str] = "rigid"
+    source: ClassVar[str] = "Amontons' law of friction"
+
+    @property
+    def exemptions(self) -> Mapping[wl.Claim, str]:
+        """Return what the model does not claim."""
+        return {"initial_slope": "rigid bodies slip at any creepage"}
+
+    def slip_zone(self, problem: wl.LineProblem) -> tuple[wl.Array, wl.Array]:
+        """Return the whole patch, or nothing at zero creepage."""
+        a = problem.half_width
+        return np.where(problem.creepage > 0, -a, a), a
+
+    def fields(self, problem: wl.LineProblem, x: wl.Array) -> wl.LineFields:
+        """Return traction at its bound and slip equal to the creepage."""
+        pressure = wl.hertz.pressure(x, problem.half_width, problem.max_pressure)
+        bound = problem.friction_coefficient * pressure
+        traction = np.where(problem.creepage > 0, bound, 0.0)
+        slip = np.broadcast_to(problem.creepage, x.shape)
+        return wl.LineFields(pressure=pressure, traction=traction, slip=slip, traction_bound=bound)
+
+    def tangential_force_per_width(self, problem: wl.LineProblem) -> wl.Array:
+        """Return μP [N/m]."""
+        return np.where(problem.creepage > 0, problem.friction_coefficient * problem.normal_force_per_width, 0.0)
