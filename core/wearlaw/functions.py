@@ -115,21 +115,9 @@ def as_wear_law(
         subject = f"as_wear_law on {function.__name__}"
         _check(subject, function, inputs, units, returns)
         splits = None if breakpoints is None else _in_si(subject, "breakpoints", breakpoints, inputs)
-        if not isinstance(jumps, Mapping) and len(jumps) and len(breakpoints or {}) != 1:
-            raise _error(subject, "jumps", "name their variable, as in {'pressure': [2.1]}, unless there is only one")
-        named = jumps if isinstance(jumps, Mapping) else {name: jumps for name in breakpoints or {} if len(jumps)}
+        named = _by_variable(subject, jumps, breakpoints or {})
         declared = (splits, _in_si(subject, "jumps", named, inputs))
-        defaults = inspect.signature(function).parameters
-        fields: dict[str, Any] = {
-            name: (
-                Annotated[Quantity, Unit(unit, positive=False)],
-                Field(
-                    default_factory=functools.partial(Q, defaults[name].default, unit),
-                    description=f"Parameter {name} of {function.__name__} [{unit or '-'}].",
-                ),
-            )
-            for name, unit in units.items()
-        }
+        fields = _fields(function, units)
         law: Any = create_model(function.__name__, __base__=FunctionLaw, __module__=function.__module__, **fields)
         law.__qualname__ = function.__qualname__
         law.__doc__ = inspect.getdoc(function) or f"The function {function.__name__} as a wear law."
@@ -140,6 +128,34 @@ def as_wear_law(
         return made
 
     return decorate
+
+
+def _fields(function: Function, units: Mapping[str, str]) -> dict[str, Any]:
+    """Return the function's keyword arguments as fields with units."""
+    signature = inspect.signature(function).parameters
+    return {
+        name: (
+            Annotated[Quantity, Unit(unit, positive=False)],
+            Field(
+                default_factory=functools.partial(Q, signature[name].default, unit),
+                description=f"Parameter {name} of {function.__name__} [{unit or '-'}].",
+            ),
+        )
+        for name, unit in units.items()
+    }
+
+
+def _by_variable(
+    subject: str, jumps: Sequence[float] | Mapping[str, Sequence[float]], breakpoints: Mapping[str, Sequence[float]]
+) -> Mapping[str, Sequence[float]]:
+    """Return the jumps by their variable, which need not be named where only one has breakpoints."""
+    if isinstance(jumps, Mapping):
+        return jumps
+    if not len(jumps):
+        return {}
+    if len(breakpoints) != 1:
+        raise _error(subject, "jumps", "name their variable, as in {'pressure': [2.1]}, unless there is only one")
+    return dict.fromkeys(breakpoints, jumps)
 
 
 def _check(subject: str, function: Function, inputs: Mapping[str, str], units: Mapping[str, str], returns: str) -> None:

@@ -131,7 +131,8 @@ def test_a_changed_copy_is_checked_and_keeps_nothing_computed_before() -> None:
 
 
 def test_a_copy_without_changes_is_equal() -> None:
-    axis = Axis(**{"from": "1 %", "to": "2 %", "points": 3})
+    ends: Any = {"from": "1 %", "to": "2 %", "points": 3}
+    axis = Axis(**ends)
     for made in (wl.steel(), wl.TwinDisc.suros(), wl.contact_model("global"), wl.wear_law("kth"), axis):
         assert made.model_copy() == made
     assert axis.model_copy(update={"points": 4}).points == 4
