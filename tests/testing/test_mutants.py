@@ -30,7 +30,9 @@ def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any) -> Non
 
 
 def test_every_check_of_an_invariant_catches_a_mutant() -> None:
-    models: list[Any] = [wrong_laws.Linear(), wrong_contacts.Wrapped()]
+    # Of the patch and of cells, with fields at any position and without: between them they are given every check.
+    laws = [wrong_laws.Linear(), wl.wear_law("brr")]
+    models: list[Any] = [*laws, wrong_contacts.Wrapped(), wl.contact_model("exact")]
     names = {check.name for model in models for check in checks(model)}
     assert names == set(WRONG.values())
 
