@@ -23,3 +23,10 @@ def pictures(session: nox.Session) -> None:
     """Draw the pictures of the README and the documentation anew."""
     session.install("-e", ".")
     session.run("python", "docs/pictures.py")
+
+
+@nox.session(python="3.11")
+def bench(session: nox.Session) -> None:
+    """Time wearlaw beside its rivals; the rivals in C need a compiler."""
+    session.install("-e", ".[fast]")
+    session.run("python", "-m", "tests.benchmarks.speed", *session.posargs)

@@ -18,6 +18,7 @@ from wearlaw.errors import (
     CompositionError,
     ConditionsError,
     ConfigurationError,
+    FrozenError,
     InputError,
     ModelError,
     OutputError,
@@ -30,9 +31,11 @@ from wearlaw.errors import (
 )
 from wearlaw.functions import as_wear_law
 from wearlaw.hookspecs import INTERFACE_VERSION, hookimpl
+from wearlaw.kernels import accelerate, kernel
 from wearlaw.line import LineFields, LineProblem
+from wearlaw.line_model import FieldVariable, LineContactModel
 from wearlaw.material import Material, steel
-from wearlaw.models import BreakpointMap, Calibration, Claim, ContactModel, LineContactModel, LocalWear, Scale, WearLaw
+from wearlaw.models import BreakpointMap, Calibration, Claim, ContactModel, LocalWear, Scale, WearLaw
 from wearlaw.pipeline import ContactPipeline, PatchMean, Pipeline, patch_mean
 from wearlaw.plugins import (
     contact_model,
@@ -43,6 +46,7 @@ from wearlaw.plugins import (
     wear_law,
     wear_laws,
 )
+from wearlaw.quadrature import Nodes
 from wearlaw.records import Contact
 from wearlaw.result import ContactSolution, Prediction
 from wearlaw.rig import Disc, TwinDisc
@@ -69,6 +73,8 @@ __all__ = [
     "ContactSolution",
     "Density",
     "Disc",
+    "FieldVariable",
+    "FrozenError",
     "InputError",
     "Length",
     "LineContactModel",
@@ -77,6 +83,7 @@ __all__ = [
     "LocalWear",
     "Material",
     "ModelError",
+    "Nodes",
     "OutputError",
     "PatchMean",
     "Pipeline",
@@ -98,11 +105,13 @@ __all__ = [
     "WearlawError",
     "WearlawWarning",
     "__version__",
+    "accelerate",
     "as_wear_law",
     "contact_model",
     "contact_models",
     "hertz",
     "hookimpl",
+    "kernel",
     "material",
     "materials",
     "parameter_sets",

@@ -18,7 +18,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from wearlaw import plugins
 from wearlaw.arrays import Array
 from wearlaw.conditions import CREEPAGE
-from wearlaw.configuration import Configuration
+from wearlaw.configuration import Configuration, known_as
 from wearlaw.errors import CaseError, ConfigurationError, InputError, did_you_mean
 from wearlaw.grid import Grid
 from wearlaw.models import Model
@@ -257,8 +257,9 @@ def load_case(name_or_path: str) -> Case:
     """
     text = case_text(name_or_path)
     try:
-        return Case(**tomllib.loads(text))
+        case = Case(**tomllib.loads(text))
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"case '{name_or_path}' is not valid TOML: {error}") from None
     except ConfigurationError as error:
         raise CaseError(f"case '{name_or_path}' is wrong in:" + "".join(f"\n  {p}" for p in error.problems)) from None
+    return known_as(name_or_path, case) if name_or_path in plugins.installed().cases.providers else case

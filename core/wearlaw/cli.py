@@ -82,6 +82,7 @@ def run(case: str, output: Path | None, overwrite: bool) -> None:
     _print_notes(study)
     for name, sweep in study.sweeps.items():
         Console().print(_summary(name, sweep))
+    _print_used(study)
     click.echo(f"Results in {folder}:")
     for name in names:
         click.echo(f"  {folder / name}")
@@ -248,6 +249,20 @@ class _progress:  # noqa: N801  (used as a function)
 def _print_notes(study: Study) -> None:
     for note in study.notes:
         click.echo(f"note: {note}", err=True)
+
+
+def _print_used(study: Study) -> None:
+    """Print the version of wearlaw, and a line for each other distribution with what came from it."""
+    from wearlaw.study import used
+
+    provided: dict[str, list[str]] = {f"wearlaw {__version__}": []}
+    for kind, names in used(study.case).items():
+        for name, distribution in names.items():
+            provided.setdefault(distribution, []).append(f"{kind} {name}")
+    (ours, _), *others = provided.items()
+    click.echo(f"Computed with {ours}")
+    for distribution, things in others:
+        click.echo(f"  and {distribution}: {', '.join(things)}")
 
 
 def _summary(name: str, sweep: xarray.Dataset) -> Table:

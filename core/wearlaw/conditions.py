@@ -68,6 +68,8 @@ def condition_arrays(conditions: dict[str, Any]) -> dict[str, Array]:
 
 
 def _broadcast(arrays: dict[str, Array]) -> dict[str, Array]:
+    if all(array.ndim == 0 for array in arrays.values()):
+        return {name: array[()] for name, array in arrays.items()}  # NumPy computes five times as fast with scalars
     try:
         shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
     except ValueError:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import pint
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from wearlaw.errors import ConfigurationError, Problem, did_you_mean
+from wearlaw.errors import ConfigurationError, FrozenError, Problem, did_you_mean
 from wearlaw.units import shortened, text_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from pydantic_core import ErrorDetails
+
+ConfigurationT = TypeVar("ConfigurationT", bound="Configuration")
 
 
 class Configuration(BaseModel):
@@ -56,6 +58,28 @@ class Configuration(BaseModel):
             except ValidationError as error:
                 raise configuration_error(cls.subject(), cls, error) from None
 
+        def __setattr__(self, name: str, value: Any) -> None:
+            try:
+                super().__setattr__(name, value)
+            except ValidationError:
+                raise self._frozen(name) from None
+
+        def __delattr__(self, name: str) -> None:
+            try:
+                super().__delattr__(name)
+            except ValidationError:
+                raise self._frozen(name) from None
+
+    def _frozen(self, name: str) -> FrozenError:
+        fields = type(self).model_fields
+        if name not in fields:
+            hint = did_you_mean(name, fields)
+            return FrozenError(f"{self.subject()}: {name}: unknown field;{hint} The fields are: {', '.join(fields)}")
+        return FrozenError(
+            f"{self.subject()}: {name}: cannot be changed, since it is frozen; make a changed copy with"
+            f" .model_copy(update={{'{name}': ...}})"
+        )
+
     @classmethod
     def subject(cls) -> str:
         """Return what messages call this configuration."""
@@ -67,7 +91,7 @@ class Configuration(BaseModel):
         `deep` makes no difference, since nothing in a configuration can change.
         """
         aliases = {name: field.alias or name for name, field in type(self).model_fields.items()}
-        fields = {aliases[name]: value for name, value in self}
+        fields = {alias: getattr(self, name) for name, alias in aliases.items()}
         return type(self)(**fields | {aliases.get(name, name): value for name, value in (update or {}).items()})
 
     def __str__(self) -> str:
@@ -76,6 +100,30 @@ class Configuration(BaseModel):
     def __repr_args__(self) -> Any:
         for name, value in super().__repr_args__():
             yield name, _Text(text_of(value)) if isinstance(value, pint.Quantity) else value
+
+
+def parts(value: object) -> Iterator[Configuration]:
+    """Give all configurations in a value: itself, and those that its fields hold at any depth."""
+    inner: Iterable[object] = ()
+    if isinstance(value, Configuration):
+        yield value
+        inner = (getattr(value, name) for name in type(value).model_fields)
+    elif isinstance(value, (list, tuple)):
+        inner = value
+    for one in inner:
+        yield from parts(one)
+
+
+def known_as(name: str, record: ConfigurationT) -> ConfigurationT:
+    """Return an equal record that remembers the name under which it was looked up; changed copies do not."""
+    found = record.model_copy()
+    vars(found)["_known_as"] = name
+    return found
+
+
+def known_name(record: Configuration) -> str | None:
+    """Return the name under which a record was looked up, if it was."""
+    return vars(record).get("_known_as")
 
 
 class _Text(str):

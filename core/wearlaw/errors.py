@@ -36,6 +36,10 @@ class CaseError(InputError):
     """A case file is missing, is not TOML, or is wrong in one of its fields."""
 
 
+class FrozenError(InputError, AttributeError):
+    """A setting of a record that never changes was assigned or deleted."""
+
+
 class OutputError(WearlawError, OSError):
     """Results cannot be written where the user asked for them."""
 

@@ -26,13 +26,13 @@ def effective_modulus(
 
 def half_width(normal_force_per_width: Array, radius: float, modulus: float) -> Array:
     """Return a [m] of a² = 4 P R / (π E*) (Johnson, eq. 4.43)."""
-    width: Array = np.sqrt(4.0 * normal_force_per_width * radius / (np.pi * modulus))
+    width: Array = np.sqrt(normal_force_per_width * (4.0 * radius / (np.pi * modulus)))
     return width
 
 
 def max_pressure(normal_force_per_width: Array, half_width: Array) -> Array:
     """Return p0 = 2 P / (π a) [Pa] (Johnson, eq. 4.44)."""
-    return 2.0 * normal_force_per_width / (np.pi * half_width)
+    return normal_force_per_width * (2.0 / np.pi) / half_width
 
 
 def force_from_max_pressure(max_pressure: Array, radius: float, modulus: float) -> Array:
@@ -47,3 +47,10 @@ def pressure(x: Array, half_width: Array, max_pressure: Array) -> Array:
     """
     inside = np.maximum((half_width - x) * (half_width + x), 0.0)
     return max_pressure * np.sqrt(inside) / half_width
+
+
+def distances_at_pressure(pressure: Array, half_width: Array, max_pressure: Array) -> Array:
+    """Return how far from an edge the patch bears a pressure [m], of shape (..., 2); NaN where it nowhere does."""
+    share = np.where(pressure <= max_pressure, pressure / max_pressure, np.nan)
+    x = np.sqrt((1.0 - share) * (1.0 + share))
+    return half_width[..., None] * np.stack([share**2 / (1.0 + x), 1.0 + x], axis=-1)

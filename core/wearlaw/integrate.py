@@ -1,15 +1,21 @@
 """Where the nodes lie, and what a law's rate is on average over the patch.
 
-The only code that sees both a contact model and a wear law. A model that knows its fields in closed form and
-a law that declares its breakpoints are integrated to rounding error: nodes in the slip zone, split where a
-variable crosses a breakpoint. With less known, the integral is as good as can be had, with an error estimate.
+The only code that sees both a contact model and a wear law. Three ways, from the most that is known to the least:
+
+1. The law is a sum of ramps in q·s, and the model knows the energy above a threshold: a closed form without nodes.
+2. The model knows its fields: quadrature over the slip zone, to rounding error where the law declares the breakpoints
+   at which the zone is then split.
+3. Else the law at the nodes that the model chose.
+
+The last two come with an error estimate. The number of cells of a plot has no part in this.
 """
 
 from __future__ import annotations
 
-import dataclasses
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -17,49 +23,83 @@ from wearlaw.arrays import Array
 from wearlaw.crossings import crossings
 from wearlaw.errors import ModelError
 from wearlaw.line import LineProblem
-from wearlaw.models import ContactModel, LineContactModel, Scale, WearLaw, stick_nodes
-from wearlaw.quadrature import join, remainder, zone_nodes
+from wearlaw.line_model import LineContactModel
+from wearlaw.models import ContactModel, Scale, WearLaw
+from wearlaw.quadrature import join, remainder
 from wearlaw.records import NODE_VARIABLES, Contact
+from wearlaw.units import extremes
 
-BLOCK = 1024
-"""Operating points of a block: small enough for its arrays to stay in the cache."""
+BLOCK = 16384
+"""Operating points of a block in closed form: its arrays stay in the cache."""
+
+NODE_BLOCK = 512
+"""Operating points of a block with nodes."""
 
 PANELS_UNDECLARED = 4
 """Panels of the slip zone for a law that says nothing about where it branches."""
 
+ROUNDINGS = 32.0
+"""Roundings of the largest term in a closed form."""
+
+EPS = float(np.finfo(np.float64).eps)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ContactTotals:
-    """The outcome of a contact at each operating point, as SI arrays of the batch shape."""
+class SlipTotals:
+    """How much of the patch slips at each operating point, as SI arrays of the batch shape."""
 
-    tangential_force: Array
-    wear_index: Array
-    patch_area: Array
     mean_slip: Array
     slip_area: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WearTotals:
-    """The wear at each operating point, as SI arrays of the batch shape.
+    """The outcome at each operating point, as SI arrays of the batch shape.
 
     Attributes
     ----------
     wear_rate : ndarray
         Area mean of the law's rate over the patch [kg/m/m²].
-    wear_rate_error : ndarray
-        Estimate of the integration error in it [kg/m/m²].
+    wear_rate_error : ndarray or None
+        Estimate of the numerical error in it [kg/m/m²]; None for a closed form, where `rounding` gives it.
+    tangential_force : ndarray or None
+        T with the sign of the creepage [N]; None where the contact model knows it without nodes.
     """
 
     wear_rate: Array
-    wear_rate_error: Array
+    wear_rate_error: Array | None = None
+    tangential_force: Array | None = None
 
 
-def integrate_contact(model: ContactModel, problem: LineProblem, scale: Scale) -> ContactTotals:
-    """Return the totals of a contact, block by block."""
+Columns: TypeAlias = dict[str, Array]
+
+OnBlock: TypeAlias = Callable[[LineProblem, Array], None]
+"""What is called with a block of operating points and their tangential forces [N]."""
+
+
+def integrate_contact(model: ContactModel, problem: LineProblem) -> Array:
+    """Return the tangential force [N]."""
+    if isinstance(model, LineContactModel):
+        force = model.tangential_force(problem)
+        _check_finite(model, {"tangential_force": force}, problem)
+        return force
     flat = problem.flatten()
-    columns = [_contact_columns(solve(model, flat[block], scale)) for block in _blocks(flat)]
-    return ContactTotals(**_join(columns, problem.batch_shape))
+    columns = _by_block(flat, NODE_BLOCK, lambda part: {"force": solve(model, part, model.scale).tangential_force})
+    return columns["force"].reshape(problem.batch_shape)
+
+
+def integrate_slip(model: ContactModel, problem: LineProblem, scale: Scale) -> SlipTotals:
+    """Return how much of the patch slips."""
+
+    def columns(part: LineProblem) -> Columns:
+        contact = solve(model, part, scale)
+        area = contact.slip_area
+        if scale == "cells" and isinstance(model, LineContactModel):
+            area = model.slip_length(part.forward()) * part.track_width
+        return {"mean_slip": contact.mean_slip, "slip_area": area}
+
+    found = _by_block(problem.flatten(), NODE_BLOCK, columns)
+    return SlipTotals(**{name: values.reshape(problem.batch_shape) for name, values in found.items()})
 
 
 def integrate_wear(
@@ -67,84 +107,125 @@ def integrate_wear(
     law: WearLaw,
     problem: LineProblem,
     scale: Scale,
-    on_block: Callable[[int], None] | None = None,
-) -> tuple[ContactTotals, WearTotals]:
-    """Return the totals of a contact and of the wear in it, block by block.
+    on_block: OnBlock | None = None,
+) -> WearTotals:
+    """Return the wear in a contact, block by block.
 
-    `on_block` is called with the number of operating points of each block when that is done.
+    `on_block` is called with each block of operating points and their tangential forces [N] when it is done.
 
     Raises
     ------
     ModelError
         If the model or the law breaks its contract.
     """
-    flat = problem.flatten()
-    contact_columns, wear_columns = [], []
-    for block in _blocks(flat):
-        contact = contact_for(model, law, flat[block], scale)
-        rate = law.checked_rate(contact)
-        contact_columns.append(_contact_columns(contact))
-        wear_columns.append({"wear_rate": contact.mean(rate), "wear_rate_error": _error(model, scale, contact, rate)})
-        if on_block is not None:
-            on_block(contact.rolling_speed.size)
-    shape = problem.batch_shape
-    return ContactTotals(**_join(contact_columns, shape)), WearTotals(**_join(wear_columns, shape))
+    ramps = law.ramps if scale == "cells" else None
+    closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
+
+    def columns(part: LineProblem) -> Columns:
+        return (closed and _closed_form(*closed, part)) or _from_nodes(model, law, part, scale)
+
+    flat = problem if closed and problem.batch_shape == () else problem.flatten()  # scalars are computed as scalars
+    block = BLOCK if closed else NODE_BLOCK
+    found = _by_block(flat, block, columns, on_block, drop_force=isinstance(model, LineContactModel))
+    found = {name: values.reshape(problem.batch_shape) for name, values in found.items()}
+    _check_finite(model, found, problem)
+    return WearTotals(**found)
 
 
 def solve(model: ContactModel, problem: LineProblem, scale: Scale) -> Contact:
     """Return the contact of a model on its own nodes, or its patch mean where that is asked for."""
     contact = model.solve(problem)
-    _check_contact(model, contact, problem)
+    fields = ("pressure", "traction", "slip", "area", "tangential_force")
+    _check_finite(model, {name: getattr(contact, name) for name in fields}, problem)
     if scale == "patch" and model.scale != "patch":
         return contact.patch_mean()
     return contact
 
 
 def contact_for(model: ContactModel, law: WearLaw, problem: LineProblem, scale: Scale) -> Contact:
-    """Return the contact on the nodes that suit a law."""
+    """Return the contact on the nodes that suit a law, for a batch of one axis."""
     if scale == "patch" or not isinstance(model, LineContactModel):
         return solve(model, problem, scale)
-    start, end = model.slip_zone(dataclasses.replace(problem, creepage=np.abs(problem.creepage)))
+    slip = model.slip_zone(problem)
+    splits = _splits(model, law, problem)
+    nodes = slip.nodes(panels=PANELS_UNDECLARED) if splits is None else slip.nodes(splits)
+    return model.at(problem, join(model.stick_zone(problem).nodes().reversed(), nodes))
+
+
+def _closed_form(
+    model: LineContactModel, ramps: tuple[tuple[float, float], ...], problem: LineProblem
+) -> Columns | None:
+    """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form."""
+    forward = problem.forward()
+    force = model.tangential_force_per_width(forward)
+    total: Array | float = 0.0
+    for threshold, slope in ramps:
+        excess = model.excess_dissipation(forward, threshold) if threshold > 0.0 else force * forward.creepage
+        if excess is None:
+            return None
+        total = total + slope * excess
+    force = np.copysign(force * problem.track_width, problem.creepage)
+    return {"wear_rate": 0.5 * total / problem.half_width, "tangential_force": force}
+
+
+def rounding(law: WearLaw, problem: LineProblem, tangential_force: Array) -> Array:
+    """Return the error of a closed form: some roundings of what each ramp would give without its threshold."""
+    slopes = sum(abs(slope) for _, slope in law.ramps or ())
+    return (ROUNDINGS * EPS * slopes) * tangential_force * problem.creepage / problem.patch_area
+
+
+def _from_nodes(model: ContactModel, law: WearLaw, problem: LineProblem, scale: Scale) -> Columns:
+    """Return the mean of a law's rate at nodes."""
+
+    def columns(part: LineProblem) -> Columns:
+        if scale == "cells" and isinstance(model, LineContactModel):
+            return _over_slip_zone(model, law, part)
+        contact = solve(model, part, scale)
+        rate = law.checked_rate(contact)
+        error = _thinning_error(contact, rate) if scale == "cells" else EPS * np.abs(contact.mean(rate))
+        return {"wear_rate": contact.mean(rate), "wear_rate_error": error, "tangential_force": contact.tangential_force}
+
+    return _by_block(problem.flatten(), NODE_BLOCK, columns)
+
+
+def _over_slip_zone(model: LineContactModel, law: WearLaw, problem: LineProblem) -> Columns:
+    """Return the mean of a law's rate, with as many panels as each operating point needs."""
+    splits = _splits(model, law, problem)
+    rate, error = np.empty(problem.creepage.shape), np.empty(problem.creepage.shape)
+    if splits is None:
+        rate, error = _panels(model, law, problem, None)
+    else:
+        end = model.slip_zone(problem).angle[:, None]
+        needed = np.sum((splits > 0.0) & (splits < end), axis=-1)
+        first = np.sum(splits <= 0.0, axis=-1)
+        for count in np.unique(needed):
+            points = np.flatnonzero(needed == count)
+            columns = first[points, None] + np.arange(count)
+            rate[points], error[points] = _panels(model, law, problem[points], splits[points[:, None], columns])
+    return {"wear_rate": rate, "wear_rate_error": error, "tangential_force": model.tangential_force(problem)}
+
+
+def _splits(model: LineContactModel, law: WearLaw, problem: LineProblem) -> Array | None:
     breakpoints = law.breakpoints
     if breakpoints is None:
-        slipping = zone_nodes(start, end, panels=PANELS_UNDECLARED)
-    else:
-        per_node = {name: values for name, values in breakpoints.items() if name in NODE_VARIABLES}
-        slipping = zone_nodes(start, end, splits=crossings(model, problem, (start, end), per_node))
-    contact = model.at(problem, join(*stick_nodes(problem, start, end), slipping))
-    _check_contact(model, contact, problem)
-    return contact
+        return None
+    per_node = {name: values for name, values in breakpoints.items() if name in NODE_VARIABLES}
+    return crossings(model, problem.forward(), model.slip_zone(problem), per_node)
 
 
-def _check_contact(model: ContactModel, contact: Contact, problem: LineProblem) -> None:
-    for name in ("pressure", "traction", "slip", "area", "tangential_force"):
-        if not np.isfinite(getattr(contact, name)).all():
-            raise ModelError(
-                f"contact model '{model.name}' gave a {name.replace('_', ' ')} that is not finite"
-                f" for {_ranges(problem)}"
-            )
-
-
-def _ranges(problem: LineProblem) -> str:
-    creepage, pressure = problem.creepage, problem.max_pressure
-    return (
-        f"creepages from {creepage.min():g} to {creepage.max():g}"
-        f" and maximum pressures from {pressure.min():g} to {pressure.max():g} Pa"
-    )
-
-
-def _error(model: ContactModel, scale: Scale, contact: Contact, rate: Array) -> Array:
-    resolved = scale == "cells"
-    if resolved and not isinstance(model, LineContactModel):
-        return _thinning_error(contact, rate)
-    weighted = rate * contact.area
-    # Positions are exact to the rounding of a, so in a short slip zone the rates are that much less exact.
-    slip_area = contact.slip_area
-    shortness = np.divide(contact.patch_area, slip_area, out=np.ones_like(slip_area), where=slip_area > 0)
-    error = np.finfo(np.float64).eps * shortness * contact.sum_over_nodes(np.abs(weighted))
-    if resolved:
-        error = error + remainder(weighted)
-    return error / contact.patch_area
+def _panels(model: LineContactModel, law: WearLaw, problem: LineProblem, splits: Array | None) -> tuple[Array, Array]:
+    """Return the mean of a law's rate over the patch and its error estimate, by panels of the slip zone."""
+    zone = model.slip_zone(problem)
+    nodes = zone.nodes(panels=PANELS_UNDECLARED) if splits is None else zone.nodes(splits)
+    contact = model.at(problem, join(model.stick_zone(problem).middle().reversed(), nodes))
+    weighted = law.checked_rate(contact) * contact.area
+    if weighted[..., 0].any():
+        raise ModelError(
+            f"wear law '{law.name}' gives wear where the bodies stick; the rate must be zero where the slip is"
+        )
+    total = weighted.sum(axis=-1)
+    error = ROUNDINGS * EPS * np.abs(weighted).sum(axis=-1) + remainder(weighted[..., 1:])
+    return total / problem.patch_area, error / problem.patch_area
 
 
 def _thinning_error(contact: Contact, rate: Array) -> Array:
@@ -166,22 +247,54 @@ def _thinning_error(contact: Contact, rate: Array) -> Array:
     return error
 
 
-def _contact_columns(contact: Contact) -> dict[str, Array]:
-    return {
-        "tangential_force": contact.tangential_force,
-        "wear_index": contact.wear_index,
-        "patch_area": contact.patch_area,
-        "mean_slip": contact.mean_slip,
-        "slip_area": contact.slip_area,
-    }
+def _check_finite(model: ContactModel, values: Columns, problem: LineProblem) -> None:
+    for name, value in values.items():
+        low, high = extremes(value)
+        if not (math.isfinite(low) and math.isfinite(high)):
+            raise ModelError(
+                f"contact model '{model.name}' gave a {name.replace('_', ' ')} that is not finite"
+                f" for {_ranges(problem)}"
+            )
 
 
-def _blocks(flat: LineProblem) -> Iterator[slice]:
-    points = flat.creepage.size
-    return (slice(first, first + BLOCK) for first in range(0, points, BLOCK))
+def _ranges(problem: LineProblem) -> str:
+    creepage, pressure = problem.creepage, problem.max_pressure
+    return (
+        f"creepages from {creepage.min():g} to {creepage.max():g}"
+        f" and maximum pressures from {pressure.min():g} to {pressure.max():g} Pa"
+    )
 
 
-def _join(columns: list[dict[str, Array]], shape: tuple[int, ...]) -> dict[str, Array]:
-    if not columns:
+def _by_block(
+    problem: LineProblem,
+    block: int,
+    function: Callable[[LineProblem], Columns],
+    on_block: OnBlock | None = None,
+    drop_force: bool = False,
+) -> Columns:
+    """Return the columns of a function of a problem with one batch axis at most, evaluated block by block.
+
+    With `drop_force`, the tangential forces are told to `on_block` and not kept.
+    """
+    points = problem.creepage.size
+    if points == 0:
         raise ValueError("an empty batch has no totals")
-    return {name: np.concatenate([c[name] for c in columns]).reshape(shape) for name in columns[0]}
+    whole: Columns = {}
+    for part in _blocks(points, block):
+        within = problem if points <= block else problem[part]
+        columns = function(within)
+        if on_block is not None:
+            on_block(within, columns["tangential_force"])
+        if drop_force:
+            del columns["tangential_force"]
+        if points <= block:
+            whole = columns
+            break
+        whole = whole or {name: np.empty(points) for name in columns}
+        for name, values in columns.items():
+            whole[name][part] = values
+    return whole
+
+
+def _blocks(points: int, block: int) -> Iterator[slice]:
+    return (slice(first, min(first + block, points)) for first in range(0, points, block))

@@ -10,6 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Self
 
+import numpy as np
+
 from wearlaw.arrays import Array
 
 
@@ -76,6 +78,10 @@ class LineProblem:
     def __getitem__(self, index: Any) -> Self:
         """Return the problem at some operating points of the batch; `index` is any NumPy index."""
         return self._map(lambda array: array[index])
+
+    def forward(self) -> Self:
+        """Return the problem with the magnitude of the creepage."""
+        return self if (self.creepage >= 0.0).all() else dataclasses.replace(self, creepage=np.abs(self.creepage))
 
     def flatten(self) -> Self:
         """Return the problem with its batch as one axis."""

@@ -1,15 +1,15 @@
-"""What a plugin implements: `ContactModel` or `LineContactModel`, and `WearLaw`.
+"""What a plugin implements: `ContactModel`, or `LineContactModel` of its own module, and `WearLaw`.
 
 A model is its configuration: a frozen pydantic record whose fields carry units and whose methods compute.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 import numpy as np
@@ -18,8 +18,7 @@ from pydantic import model_validator
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, did_you_mean
-from wearlaw.line import LineFields, LineProblem
-from wearlaw.quadrature import Nodes, join, zone_nodes
+from wearlaw.line import LineProblem
 from wearlaw.records import UNITS, Contact
 from wearlaw.units import WEAR_RATE, Quantity, Unit, from_si
 
@@ -76,55 +75,21 @@ class ContactModel(Model):
     def solve(self, problem: LineProblem) -> Contact:
         """Return the solved contact on nodes of the model's choice, of shape (batch, nodes)."""
 
+    def tangential_force(self, problem: LineProblem) -> Array:
+        """Return T [N] with the sign of the creepage, of the batch shape; that of `solve`, unless known without it."""
+        return self.solve(problem).tangential_force
+
+    def refined(self) -> ContactModel | None:
+        """Return the same theory on twice as fine nodes, or None, the default, if the model has no such choice.
+
+        The checks then hold the model to errors of its sums that fall with refinement, at the least in first order.
+        """
+        return None
+
     @property
     def exemptions(self) -> Mapping[Claim, str]:
         """The invariants that this model does not keep, each with the reason."""
         return {}
-
-
-class LineContactModel(ContactModel):
-    """A contact model that knows its fields at any x in closed form, with one slip zone.
-
-    The methods are only called with creepage ≥ 0; `solve` mirrors the result for negative creepage.
-    """
-
-    @abstractmethod
-    def slip_zone(self, problem: LineProblem) -> tuple[Array, Array]:
-        """Return where the slip zone begins and ends [m], each of the batch shape; equal if nothing slips."""
-
-    @abstractmethod
-    def fields(self, problem: LineProblem, x: Array) -> LineFields:
-        """Return the fields at positions `x` [m] of shape (batch, nodes).
-
-        The arrays of `problem` come with a last axis of length one, so that formulas broadcast against `x`.
-        """
-
-    @abstractmethod
-    def tangential_force_per_width(self, problem: LineProblem) -> Array:
-        """Return T [N/m], of the batch shape."""
-
-    def at(self, problem: LineProblem, nodes: Nodes) -> Contact:
-        """Return the contact on the given nodes, mirrored where the creepage is negative."""
-        sign = np.sign(problem.creepage)
-        forward = dataclasses.replace(problem, creepage=np.abs(problem.creepage))
-        fields = self.fields(forward[..., None], nodes.x)
-        mirrored = dataclasses.replace(
-            fields, traction=sign[..., None] * fields.traction, slip=sign[..., None] * fields.slip
-        )
-        force = sign * self.tangential_force_per_width(forward)
-        return Contact.from_line(problem, mirrored, x=nodes.x, length=nodes.length, force_per_width=force)
-
-    def solve(self, problem: LineProblem) -> Contact:
-        """Return the contact on quadrature nodes of the stick zone and the slip zone."""
-        start, end = self.slip_zone(dataclasses.replace(problem, creepage=np.abs(problem.creepage)))
-        return self.at(problem, join(*stick_nodes(problem, start, end), zone_nodes(start, end)))
-
-
-def stick_nodes(problem: LineProblem, start: Array, end: Array) -> list[Nodes]:
-    """Return the nodes of what lies before and behind the slip zone, if anything does anywhere in the batch."""
-    a = problem.half_width
-    zones = [(-a, start), (end, a)]
-    return [zone_nodes(low, high) for low, high in zones if (low < high).any()]
 
 
 class Calibration(Configuration):
@@ -148,11 +113,12 @@ class Calibration(Configuration):
 
     @model_validator(mode="after")
     def _range_has_units(self) -> Calibration:
-        self.range_in_si()
+        self.range_in_si  # noqa: B018  raises where it is wrong
         return self
 
+    @cached_property
     def range_in_si(self) -> dict[str, tuple[float, float]]:
-        """Return the stated range in SI."""
+        """The stated range in SI."""
         found = {}
         for variable, low, high in self.stated_range:
             if variable not in UNITS:
@@ -233,7 +199,10 @@ class WearLaw(Model):
 
     @abstractmethod
     def rate(self, contact: Contact) -> Array:
-        """Return the mass lost per metre rolled and contact area [kg/m/m²], of the shape of the nodes."""
+        """Return the mass lost per metre rolled and contact area [kg/m/m²], of the shape of the nodes.
+
+        Where nothing slips it must be zero.
+        """
 
     def checked_rate(self, contact: Contact) -> Array:
         """Return `rate`, or raise a `ModelError` if that is not what a rate must be."""
@@ -276,6 +245,15 @@ class WearLaw(Model):
         """The variables in which the law branches, with the SI values where it does.
 
         {} declares a law that is smooth everywhere; None, the default, that nothing is known.
+        """
+        return None
+
+    @property
+    def ramps(self) -> tuple[tuple[float, float], ...] | None:
+        """The law as a sum of ramps in q·s, where that is what it is: pairs of threshold [N/m²] and slope [kg/m/N].
+
+        The rate is Σ slope · max(q·s - threshold, 0). Contact models with a closed form of the energy above a
+        threshold then give the mean over the patch without nodes.
         """
         return None
 

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Generic, Self, TypeVar, Unpack, overload
 
-import numpy as np
 from pydantic import model_validator
 
 from wearlaw.arrays import Array
 from wearlaw.conditions import TwinDiscConditions
 from wearlaw.configuration import Configuration
-from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning
-from wearlaw.integrate import ContactTotals, integrate_contact, integrate_wear
+from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
+from wearlaw.integrate import integrate_contact, integrate_wear
 from wearlaw.line import LineProblem
 from wearlaw.models import ContactModel, Scale, WearLaw
-from wearlaw.records import UNITS
+from wearlaw.ranges import RangeWatch
 from wearlaw.result import ContactSolution, Prediction
 from wearlaw.rig import TwinDisc
 from wearlaw.specification import ContactModelField, WearLawField
-from wearlaw.units import from_si
 
 RigT = TypeVar("RigT", bound=TwinDisc)
 
@@ -79,8 +77,8 @@ class ContactPipeline(Configuration, Generic[RigT]):
         problem = self.rig.problem(**conditions)
         _check_traction(self.contact_model, problem)
         self.rig.warn_of_plasticity(problem, stacklevel=2)
-        totals = integrate_contact(self.contact_model, problem, self.scale)
-        return ContactSolution(self.rig, self.contact_model, self.scale, problem, totals)
+        force = integrate_contact(self.contact_model, problem)
+        return ContactSolution(self.rig, self.contact_model, self.scale, problem, force)
 
 
 class Pipeline(Configuration, Generic[RigT]):
@@ -129,9 +127,16 @@ class Pipeline(Configuration, Generic[RigT]):
         rig, model, scale = self.contact.rig, self.contact.contact_model, self.contact.scale
         _check_traction(model, problem)
         rig.warn_of_plasticity(problem, stacklevel=stacklevel)
-        contact, wear = integrate_wear(model, self.wear_law, problem, scale, on_block)
-        _warn_of_range(self.wear_law, problem, contact, stacklevel=stacklevel)
-        return Prediction(rig, model, scale, problem, contact, self.wear_law, wear)
+        watch = RangeWatch(self.wear_law)
+
+        def see(part: LineProblem, force: Array) -> None:
+            watch.see(part, force)
+            if on_block is not None:
+                on_block(part.creepage.size)
+
+        wear = integrate_wear(model, self.wear_law, problem, scale, see)
+        watch.warn(stacklevel)
+        return Prediction(rig, model, scale, problem, self.wear_law, wear)
 
 
 def _check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
@@ -162,33 +167,3 @@ def _check_traction(model: ContactModel, problem: LineProblem) -> None:
             f"traction_coefficient: contact model '{model.name}' computes the traction itself; leave"
             ' traction_coefficient out, or use wl.contact_model("global")'
         )
-
-
-def _patch_values(problem: LineProblem, totals: ContactTotals) -> Mapping[str, Array]:
-    """Return the patch means by the names of `Contact`."""
-    creepage = np.abs(problem.creepage)
-    return {
-        "pressure": problem.normal_force / totals.patch_area,
-        "slip": creepage,
-        "slip_speed": creepage * problem.rolling_speed,
-        "wear_index": totals.wear_index,
-        "wear_index_density": totals.wear_index / totals.patch_area,
-    }
-
-
-def _warn_of_range(law: WearLaw, problem: LineProblem, totals: ContactTotals, stacklevel: int) -> None:
-    """Warn once for each variable that leaves the law's stated range anywhere in the batch."""
-    if not law.valid_range:
-        return
-    values = _patch_values(problem, totals)
-    for name, (low, high) in law.valid_range.items():
-        outside = (values[name] < low) | (values[name] > high)
-        if outside.any():
-            farthest = values[name].max() if (values[name] > high).any() else values[name].min()
-            shown = [repr(from_si(value, UNITS[name])) for value in (low, high, farthest)]
-            warnings.warn(
-                f"wear law '{law.name}' is stated for a mean {name.replace('_', ' ')} from {shown[0]} to {shown[1]};"
-                f" {outside.sum()} of {outside.size} operating points lie outside, as far as {shown[2]}",
-                RangeWarning,
-                stacklevel=stacklevel + 1,
-            )

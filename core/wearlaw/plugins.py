@@ -11,13 +11,14 @@ import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from importlib.metadata import EntryPoint, PackageNotFoundError, distributions, version
+from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
 from itertools import chain
 from typing import Any
 
 import pluggy
 
 from wearlaw import hookspecs
+from wearlaw.configuration import Configuration, known_as
 from wearlaw.errors import InputError, PluginWarning
 from wearlaw.material import Material
 from wearlaw.models import ContactModel, WearLaw
@@ -36,10 +37,13 @@ class Installed:
     plugins: list[Origin] = field(default_factory=list)
     broken: list[Broken] = field(default_factory=list)
 
+    def shelves(self) -> tuple[Shelf[Any], ...]:
+        """Return what there is of each kind."""
+        return self.contact_models, self.wear_laws, self.parameter_sets, self.materials, self.cases
+
     def listing(self) -> list[tuple[str, str, Origin]]:
         """Return kind, name and origin of everything that plugins provide."""
-        shelves = (self.contact_models, self.wear_laws, self.parameter_sets, self.materials, self.cases)
-        return [row for shelf in shelves for row in shelf.listing()]
+        return [row for shelf in self.shelves() for row in shelf.listing()]
 
 
 @functools.cache
@@ -123,7 +127,7 @@ def wear_law(name: str, /, **options: Any) -> WearLaw:
     """
     found = installed()
     if name in found.parameter_sets.providers and name not in found.wear_laws.providers:
-        return found.parameter_sets.find(name, found.broken).model_copy(update=options)
+        return known_as(name, found.parameter_sets.find(name, found.broken).model_copy(update=options))
     return found.wear_laws.find(name, found.broken)(**options)
 
 
@@ -182,14 +186,15 @@ def require(needed: Mapping[str, str]) -> None:
 
 
 def _entry_points() -> list[tuple[EntryPoint, Origin]]:
-    found: dict[tuple[str, str], tuple[EntryPoint, Origin]] = {}
-    for dist in distributions():
-        for entry_point in dist.entry_points:
-            if entry_point.group == hookspecs.PROJECT:
-                origin = Origin(entry_point.name, dist.name, dist.version)
-                # Of two copies of a distribution, the first on sys.path is the one that is imported.
-                found.setdefault((dist.name, entry_point.name), (entry_point, origin))
-    return [found[key] for key in sorted(found)]
+    """Return what the installed distributions name; of two copies of one, the first on `sys.path` counts."""
+    given = entry_points(group=hookspecs.PROJECT)
+    metadata = {dist: dist.metadata for dist in {one.dist for one in given} if dist is not None}  # parsed once each
+    found = [
+        (one, Origin(one.name, metadata[one.dist]["Name"], metadata[one.dist]["Version"]))
+        for one in given
+        if one.dist is not None
+    ]
+    return sorted(found, key=lambda pair: (pair[1].distribution, pair[1].entry_point))
 
 
 def _check_interface(needed: object) -> None:
@@ -230,4 +235,4 @@ def _add_named(manager: pluggy.PluginManager, origin: Origin, found: Installed) 
     ]
     for shelf, mappings in answers:
         for name, item in chain.from_iterable(mapping.items() for mapping in mappings):
-            shelf.add(name, item, origin)
+            shelf.add(name, known_as(name, item) if isinstance(item, Configuration) else item, origin)

@@ -31,10 +31,15 @@ def parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
         raise UnitError(f"'{unit}' is not a unit") from None
 
 
+def si_factor(quantity: Any, due: str) -> float:
+    """Return the factor from a quantity's unit to the coherent SI unit of the dimension of `due`."""
+    # pint's container of units hashes and compares ten times as fast as the unit around it
+    return _factor(quantity._REGISTRY, quantity._units, due)
+
+
 @functools.lru_cache(maxsize=512)
-def si_factor(registry: pint.UnitRegistry[Any], given: pint.Unit, due: str) -> float:
-    """Return the factor from `given` to the coherent SI unit of the dimension of `due`."""
-    due_unit = parse_unit(registry, due)
+def _factor(registry: pint.UnitRegistry[Any], container: Any, due: str) -> float:
+    given, due_unit = registry.Unit(container), parse_unit(registry, due)
     if given.dimensionality != due_unit.dimensionality:
         raise UnitError("which is not " + (f"of the dimension of '{due}'" if due else "a ratio"))
     zero, one = (registry.convert(value, given, due_unit) for value in (0.0, 1.0))

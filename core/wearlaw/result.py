@@ -10,9 +10,10 @@ import numpy as np
 from wearlaw import integrate
 from wearlaw.arrays import Array
 from wearlaw.errors import InputError
-from wearlaw.integrate import ContactTotals, WearTotals
+from wearlaw.integrate import SlipTotals, WearTotals, integrate_contact, rounding
 from wearlaw.line import LineProblem
-from wearlaw.models import ContactModel, LineContactModel, Scale, WearLaw
+from wearlaw.line_model import LineContactModel
+from wearlaw.models import ContactModel, Scale, WearLaw
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import UNITS, Contact
 from wearlaw.rig import Disc, TwinDisc
@@ -36,33 +37,33 @@ class ContactSolution:
     )  # fmt: skip
 
     def __init__(
-        self, rig: TwinDisc, model: ContactModel, scale: Scale, problem: LineProblem, totals: ContactTotals
+        self, rig: TwinDisc, model: ContactModel, scale: Scale, problem: LineProblem, force: Array | None = None
     ) -> None:
         self.rig = rig
         self.contact_model = model
         self.scale: Scale = scale
         self.problem = problem
-        self._totals = totals
+        self._given_force = force
 
     @property
     def tangential_force(self) -> Quantity:
         """T on the whole track width [N], with the sign of the creepage."""
-        return from_si(self._totals.tangential_force, "N")
+        return from_si(self._force, "N")
 
     @property
     def traction_coefficient(self) -> Quantity:
         """T over the normal force [-]."""
-        return from_si(self._totals.tangential_force / self.problem.normal_force, "")
+        return from_si(self._force / self.problem.normal_force, "")
 
     @property
     def wear_index(self) -> Quantity:
         """Tγ [N], the energy dissipated per metre rolled (Tassini et al. 2010, eq. 5)."""
-        return from_si(self._totals.wear_index, "N")
+        return from_si(self._wear_index, "N")
 
     @property
     def wear_index_density(self) -> Quantity:
         """Tγ over the area of the patch [N/mm²]."""
-        return from_si(self._totals.wear_index / self._totals.patch_area, "N/mm^2")
+        return from_si(self._wear_index / self.problem.patch_area, "N/mm^2")
 
     @property
     def averaged_wear_index(self) -> Quantity:
@@ -71,14 +72,14 @@ class ContactSolution:
         Mean slip of the slipping part of the patch times the sum of the tractions. It exceeds the energy that is
         dissipated wherever part of the patch sticks; `wear_index` is the one that is consistent with it.
         """
-        totals = self._totals
+        slip = self._slip
         slipping = np.divide(
-            totals.mean_slip * totals.patch_area,
-            totals.slip_area,
-            out=np.zeros_like(totals.slip_area),
-            where=totals.slip_area > 0,
+            slip.mean_slip * self.problem.patch_area,
+            slip.slip_area,
+            out=np.zeros_like(slip.slip_area),
+            where=slip.slip_area > 0,
         )
-        return from_si(slipping * np.abs(totals.tangential_force), "N")
+        return from_si(slipping * np.abs(self._force), "N")
 
     @property
     def normal_force(self) -> Quantity:
@@ -113,21 +114,33 @@ class ContactSolution:
     @property
     def patch_area(self) -> Quantity:
         """Area of the patch, 2a × track width [m²]."""
-        return from_si(self._totals.patch_area, "mm^2")
+        return from_si(self.problem.patch_area, "mm^2")
 
     @property
     def stick_ratio(self) -> Quantity:
         """Share of the patch that sticks [-]."""
-        return from_si(1.0 - self._totals.slip_area / self._totals.patch_area, "")
+        return from_si(1.0 - self._slip.slip_area / self.problem.patch_area, "")
 
     @property
     def mean_slip(self) -> Quantity:
         """Mean magnitude of the relative slip over the whole patch [-]."""
-        return from_si(self._totals.mean_slip, "%")
+        return from_si(self._slip.mean_slip, "%")
+
+    @cached_property
+    def _force(self) -> Array:
+        return integrate_contact(self.contact_model, self.problem) if self._given_force is None else self._given_force
+
+    @cached_property
+    def _wear_index(self) -> Array:
+        return self._force * self.problem.creepage
+
+    @cached_property
+    def _slip(self) -> SlipTotals:
+        return integrate.integrate_slip(self.contact_model, self.problem, self.scale)
 
     @cached_property
     def contact(self) -> Contact:
-        """The solved contact as SI arrays, on the nodes on which it was integrated."""
+        """The solved contact as SI arrays, on the nodes that the contact model chose."""
         return integrate.solve(self.contact_model, self.problem, self.scale)
 
     @cached_property
@@ -177,11 +190,10 @@ class Prediction(ContactSolution):
         model: ContactModel,
         scale: Scale,
         problem: LineProblem,
-        totals: ContactTotals,
         law: WearLaw,
         wear: WearTotals,
     ) -> None:
-        super().__init__(rig, model, scale, problem, totals)
+        super().__init__(rig, model, scale, problem, wear.tangential_force)
         self.wear_law = law
         self._wear = wear
 
@@ -193,11 +205,12 @@ class Prediction(ContactSolution):
     @property
     def wear_rate_error(self) -> Quantity:
         """Estimate of the numerical error in `wear_rate` [kg/m/m²]."""
-        return from_si(self._wear.wear_rate_error, WEAR_RATE)
+        error = self._wear.wear_rate_error
+        return from_si(rounding(self.wear_law, self.problem, self._force) if error is None else error, WEAR_RATE)
 
     @cached_property
     def contact(self) -> Contact:
-        """The solved contact as SI arrays, on the nodes on which the wear was integrated."""
+        """The solved contact as SI arrays, on the nodes that suit the wear law."""
         flat = self.problem.flatten()
         contact = integrate.contact_for(self.contact_model, self.wear_law, flat, self.scale)
         return contact.with_batch(self.problem.batch_shape)
@@ -228,7 +241,7 @@ class Prediction(ContactSolution):
         This is the measure of the BRR law (Pearce and Sherratt, Wear 144 (1991) 343-351): the depth per distance,
         times the track width.
         """
-        section = self._volume_rate(body) * self._totals.patch_area / self._circumference(body)
+        section = self._volume_rate(body) * self.problem.patch_area / self._circumference(body)
         return from_si(section, "mm^2/km")
 
     def mass_lost(self, over: QuantityLike, body: str) -> Quantity:
@@ -249,7 +262,7 @@ class Prediction(ContactSolution):
         return from_si(self._mass_per_distance() * self._circumference(body), "ug")
 
     def _mass_per_distance(self) -> Array:
-        return self._wear.wear_rate * self._totals.patch_area
+        return self._wear.wear_rate * self.problem.patch_area
 
     def _volume_rate(self, body: str) -> Array:
         return self._wear.wear_rate / scalar_si(self._disc(body).material.density, "kg/m^3")

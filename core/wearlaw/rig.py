@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Annotated, Unpack
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 from pydantic import model_validator
 
 from wearlaw import hertz
+from wearlaw.arrays import Array
 from wearlaw.conditions import TwinDiscConditions, condition_arrays
 from wearlaw.configuration import Configuration
 from wearlaw.errors import CompositionError, ConditionsError, InputError, RangeWarning, UnitError
@@ -23,6 +25,7 @@ from wearlaw.units import (
     QuantityLike,
     Speed,
     Unit,
+    extremes,
     from_si,
     parse,
     scalar_si,
@@ -129,7 +132,6 @@ class TwinDisc(Configuration):
             )
         return ContactPipeline(rig=self, contact_model=model)
 
-    @np.errstate(over="ignore", divide="ignore", invalid="ignore")  # `_check_scale` refuses what comes of it
     def problem(self, **conditions: Unpack[TwinDiscConditions]) -> LineProblem:
         """Return the contact problem that the conditions of a test pose.
 
@@ -152,44 +154,31 @@ class TwinDisc(Configuration):
             If a condition lacks its unit or is out of bounds.
         """
         arrays = condition_arrays(dict(conditions))
-        radius, modulus = self._radius(), self._modulus()
-        width = scalar_si(self.track_width, "m")
-        if "max_pressure" in arrays:
-            per_width = hertz.force_from_max_pressure(arrays["max_pressure"], radius, modulus)
-        elif "normal_force" in arrays:
-            per_width = arrays["normal_force"] / width
-        else:
-            per_width = arrays["normal_force_per_width"]
-        half_width = hertz.half_width(per_width, radius, modulus)
+        constants = self._constants
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `_check_scale` refuses what comes of it
+            per_width = self._normal_force_per_width(arrays)
+            half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
+            max_pressure = hertz.max_pressure(per_width, half_width)
+        _check_scale(half_width, max_pressure)
         shape = arrays["creepage"].shape
-        problem = LineProblem(
+        same = {name: np.broadcast_to(value, shape) for name, value in constants.items()} if shape else constants
+        return LineProblem(
             normal_force_per_width=per_width,
             half_width=half_width,
-            max_pressure=hertz.max_pressure(per_width, half_width),
-            relative_radius=np.broadcast_to(radius, shape),
-            effective_modulus=np.broadcast_to(modulus, shape),
+            max_pressure=max_pressure,
             friction_coefficient=arrays["friction_coefficient"],
             creepage=arrays["creepage"],
-            rolling_speed=np.broadcast_to(scalar_si(self.rolling_speed, "m/s"), shape),
-            track_width=np.broadcast_to(width, shape),
-            density=np.broadcast_to(scalar_si(self.disc_1.material.density, "kg/m^3"), shape),
             traction_coefficient=arrays.get("traction_coefficient"),
+            **same,
         )
-        _check_scale(problem)
-        return problem
 
     def warn_of_plasticity(self, problem: LineProblem, stacklevel: int) -> None:
         """Warn once if the maximum pressure is beyond the elastic limit of a disc's material."""
-        limits = [
-            scalar_si(disc.material.elastic_limit, "Pa")
-            for disc in (self.disc_1, self.disc_2)
-            if disc.material.elastic_limit is not None
-        ]
-        highest = problem.max_pressure.max()
-        if limits and highest > min(limits):
+        limit, (_, highest) = self._elastic_limit, extremes(problem.max_pressure)
+        if highest > limit:
             warnings.warn(
                 f"the maximum pressure reaches {from_si(highest, 'MPa')!r}, beyond the material's elastic limit of"
-                f" {from_si(min(limits), 'MPa')!r}; the elastic contact models no longer hold there",
+                f" {from_si(limit, 'MPa')!r}; the elastic contact models no longer hold there",
                 RangeWarning,
                 stacklevel=stacklevel + 1,
             )
@@ -201,17 +190,37 @@ class TwinDisc(Configuration):
         disc: Disc = getattr(self, name)
         return disc
 
-    def _radius(self) -> float:
-        return hertz.relative_radius(*(0.5 * scalar_si(d.diameter, "m") for d in (self.disc_1, self.disc_2)))
+    def _normal_force_per_width(self, arrays: dict[str, Array]) -> Array:
+        constants = self._constants
+        if "max_pressure" in arrays:
+            return hertz.force_from_max_pressure(
+                arrays["max_pressure"], constants["relative_radius"], constants["effective_modulus"]
+            )
+        if "normal_force" in arrays:
+            per_width: Array = arrays["normal_force"] / constants["track_width"]
+            return per_width
+        return arrays["normal_force_per_width"]
 
-    def _modulus(self) -> float:
-        first, second = self.disc_1.material, self.disc_2.material
-        return hertz.effective_modulus(
-            scalar_si(first.youngs_modulus, "Pa"),
-            first.poisson_ratio,
-            scalar_si(second.youngs_modulus, "Pa"),
-            second.poisson_ratio,
-        )
+    @cached_property
+    def _constants(self) -> dict[str, Any]:
+        """The fields of `LineProblem` that are the same for all operating points, as SI scalars."""
+        discs = (self.disc_1, self.disc_2)
+        radii = (0.5 * scalar_si(disc.diameter, "m") for disc in discs)
+        elastic = ((scalar_si(d.material.youngs_modulus, "Pa"), d.material.poisson_ratio) for d in discs)
+        values = {
+            "relative_radius": hertz.relative_radius(*radii),
+            "effective_modulus": hertz.effective_modulus(*next(elastic), *next(elastic)),
+            "rolling_speed": scalar_si(self.rolling_speed, "m/s"),
+            "track_width": scalar_si(self.track_width, "m"),
+            "density": scalar_si(self.disc_1.material.density, "kg/m^3"),
+        }
+        return {name: np.float64(value) for name, value in values.items()}
+
+    @cached_property
+    def _elastic_limit(self) -> float:
+        """The lower of the two discs' elastic limits [Pa]; infinite where none is known."""
+        limits = (disc.material.elastic_limit for disc in (self.disc_1, self.disc_2))
+        return min((scalar_si(limit, "Pa") for limit in limits if limit is not None), default=np.inf)
 
 
 def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
@@ -229,13 +238,13 @@ def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
     return Q(angular * 0.5 * diameter, "m/s")
 
 
-def _check_scale(problem: LineProblem) -> None:
+def _check_scale(half_width: Array, max_pressure: Array) -> None:
     """Refuse loads and sizes so far from any contact that floats overflow or lose their precision."""
-    tiny = np.sqrt(np.finfo(np.float64).tiny)
-    for name in ("half_width", "max_pressure"):
-        value = getattr(problem, name)
-        if not (np.isfinite(value) & (value > tiny) & (value < 1.0 / tiny)).all():
+    tiny = float(np.sqrt(np.finfo(np.float64).tiny))
+    for name, value in (("half width", half_width), ("max pressure", max_pressure)):
+        low, high = extremes(value)
+        if not (low > tiny and high < 1.0 / tiny):
             raise ConditionsError(
-                f"the load gives a {name.replace('_', ' ')} of {value.min():g} to {value.max():g} in SI units,"
+                f"the load gives a {name} of {low:g} to {high:g} in SI units,"
                 " which no contact has; check the units of the load and of the rig"
             )

@@ -57,6 +57,13 @@ class Shelf(Generic[T]):
         """Return where what bears a name comes from."""
         return self.providers[name][0][1]
 
+    def distribution(self, name: str, item: T | None = None) -> str:
+        """Return the distribution and its version that provides what bears a name, and is `item` if that is given."""
+        for provided, origin in self.providers.get(name, []):
+            if item is None or provided is item:
+                return f"{origin.distribution} {origin.version}"
+        return "not installed"
+
     def listing(self) -> list[tuple[str, str, Origin]]:
         """Return kind, name and origin of everything, also of what bears a name that is taken twice."""
         return [(self.kind, name, origin) for name, found in sorted(self.providers.items()) for _, origin in found]

@@ -14,8 +14,10 @@ import numpy as np
 from wearlaw import plugins
 from wearlaw.arrays import Array
 from wearlaw.case import Case, labels
+from wearlaw.configuration import known_name, parts
 from wearlaw.errors import CompositionError, InputError, WearlawWarning
-from wearlaw.models import ContactModel
+from wearlaw.material import Material
+from wearlaw.models import Model, WearLaw
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
 from wearlaw.units import from_si
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
 
     from wearlaw.grid import Grid
     from wearlaw.result import ContactSolution, Prediction
+    from wearlaw.shelf import Shelf
 
 
 @dataclass(frozen=True)
@@ -120,29 +123,25 @@ def evaluations(case: Case) -> int:
 
 
 def provenance(case: Case) -> dict[str, Any]:
-    """Return what a result came from: versions of wearlaw and of each plugin used, and the case."""
+    """Return what a result came from: the version of wearlaw, all that plugins provided, and the case."""
+    provided = {f"{kind.replace(' ', '_')}s": names for kind, names in used(case).items()}
+    return {"wearlaw": __version__, **provided, "case": case.model_dump(mode="json", by_alias=True, exclude_none=True)}
+
+
+def used(case: Case) -> dict[str, dict[str, str]]:
+    """Return the models of a case and what else it names, by kind and name, each with distribution and version."""
     found = plugins.installed()
-    contact_models = {nested.name for model in case.contact_models for nested in _with_nested(model)}
-    origins = {
-        "contact_models": {name: found.contact_models.origin(name) for name in sorted(contact_models)},
-        "wear_laws": {name: found.wear_laws.origin(name) for name in sorted({law.name for law in case.wear_laws})},
-    }
-    return {
-        "wearlaw": __version__,
-        **{
-            kind: {name: f"{origin.distribution} {origin.version}" for name, origin in models.items()}
-            for kind, models in origins.items()
-        },
-        "case": case.model_dump(mode="json", by_alias=True, exclude_none=True),
-    }
-
-
-def _with_nested(model: ContactModel) -> Iterator[ContactModel]:
-    """Give a contact model and those that its fields hold, such as the one that gives the global model its total."""
-    yield model
-    for _, value in model:
-        if isinstance(value, ContactModel):
-            yield from _with_nested(value)
+    named: dict[type, Shelf[Any]] = {WearLaw: found.parameter_sets, Material: found.materials, Case: found.cases}
+    origins: dict[str, dict[str, str]] = {shelf.kind: {} for shelf in found.shelves()}
+    for part in parts(case):
+        if isinstance(part, Model):
+            models: Shelf[Any] = found.wear_laws if isinstance(part, WearLaw) else found.contact_models
+            origins[models.kind][part.name] = models.distribution(part.name, type(part))
+        name = known_name(part)
+        if name is not None:
+            (shelf,) = (shelf for kind, shelf in named.items() if isinstance(part, kind))
+            origins[shelf.kind][name] = shelf.distribution(name)
+    return {kind: dict(sorted(names.items())) for kind, names in origins.items()}
 
 
 def _pairs(case: Case, notes: Notes) -> list[Pair]:

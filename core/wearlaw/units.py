@@ -132,15 +132,29 @@ class Unit:
         quantity = self._as_quantity(value)
         magnitude = real_array(quantity.magnitude)
         try:
-            factor = si_factor(application_registry(), quantity.units, self.unit)
+            factor = si_factor(quantity, self.unit)
         except UnitError as error:
             raise UnitError(f"got {_describe(Q(magnitude, str(quantity.units)))}, {error}") from None
-        in_si = magnitude if factor == 1.0 else magnitude * factor
+        in_si = magnitude if factor == 1.0 else np.asarray(magnitude * factor)
+        if self._allows(in_si):
+            return quantity, in_si
         for wrong, rule in self._rules(in_si):
             if wrong.any():
                 first, where = _first(magnitude, wrong)
                 raise UnitError(f"{rule}, got {Q(first, str(quantity.units))!r}{where}")
         return quantity, in_si
+
+    def _allows(self, in_si: NDArray[np.float64]) -> bool:
+        """Return whether no rule is broken, from the extremes alone; an array that is empty or has NaN is not sure."""
+        if in_si.size == 0:
+            return False
+        low, high = extremes(in_si)
+        above = low > 0.0 if self.positive else low >= -self._limit_in_si
+        return above and high <= self._limit_in_si and (self.infinite or (low > -np.inf and high < np.inf))
+
+    @property
+    def _limit_in_si(self) -> float:
+        return self.limit * unit_in_si(self.unit) if self.limit < np.inf else np.inf
 
     def _rules(self, in_si: NDArray[np.float64]) -> Iterator[tuple[NDArray[np.bool_], str]]:
         """Return where each rule is broken, and the rule."""
@@ -150,7 +164,7 @@ class Unit:
         if self.positive:
             yield in_si <= 0, "must be greater than zero"
         yield (
-            np.abs(in_si) > self.limit * unit_in_si(self.unit),
+            np.abs(in_si) > self._limit_in_si,
             f"must not exceed {self.limit:g} {self.unit}".rstrip() + " in magnitude",
         )
 
@@ -195,6 +209,8 @@ class Unit:
 
 def real_array(value: object) -> NDArray[np.float64]:
     """Return `value` as float64, refusing what is no real number: booleans, complex, text, masked entries."""
+    if type(value) is float:
+        return np.asarray(value)
     if np.ma.is_masked(value):
         raise UnitError("masked entries have no value")
     if isinstance(value, pint.Quantity) or (
@@ -220,9 +236,9 @@ def coefficient(value: object, name: str) -> NDArray[np.float64]:
     """
     try:
         array = Unit("")._checked(value)[1] if isinstance(value, pint.Quantity) else real_array(value)
-        wrong = ~(np.isfinite(array) & (array > 0))
-        if wrong.any():
-            first, where = _first(array, wrong)
+        low, high = extremes(array) if array.size else (1.0, 1.0)
+        if not (low > 0.0 and high < np.inf):
+            first, where = _first(array, ~(np.isfinite(array) & (array > 0)))
             raise UnitError(f"must be a positive finite number, got {first:g}{where}")
     except UnitError as error:
         raise UnitError(f"{name}: {error}; give {name} as a plain number, such as 0.46") from None
@@ -231,7 +247,7 @@ def coefficient(value: object, name: str) -> NDArray[np.float64]:
 
 def scalar_si(quantity: Quantity, unit: str) -> float:
     """Return the SI value of a scalar quantity that has been validated before."""
-    return float(quantity.magnitude) * si_factor(quantity._REGISTRY, quantity.units, unit)
+    return float(quantity.magnitude) * si_factor(quantity, unit)
 
 
 def in_unit(value: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
@@ -242,8 +258,16 @@ def in_unit(value: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
 
 def from_si(value: NDArray[np.float64] | float, unit: str) -> Quantity:
     """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
-    scaled = np.asarray(value) / unit_in_si(unit)
-    return Q(float(scaled) if scaled.ndim == 0 else scaled, unit)
+    scaled = value / unit_in_si(unit)
+    return quantity(float(scaled) if np.ndim(scaled) == 0 else scaled, unit)  # type: ignore[no-any-return]
+
+
+def extremes(array: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the smallest and the largest entry; NaN if any is."""
+    if array.ndim == 0:
+        value = float(array)
+        return value, value
+    return float(array.min()), float(array.max())
 
 
 Length = Annotated[Quantity, Unit("mm")]

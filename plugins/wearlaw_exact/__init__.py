@@ -9,6 +9,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw_exact._kernel import excess_dissipation
 
 
 class Exact(wl.LineContactModel):
@@ -41,29 +42,28 @@ class Exact(wl.LineContactModel):
             return {}
         return {"energy_balance": "the printed slip lacks a term in partial slip"}
 
-    def slip_zone(self, problem: wl.LineProblem) -> tuple[Array, Array]:
-        """Return [-a+2c, a]."""
-        a = problem.half_width
-        return a - 2.0 * np.minimum(problem.creepage * _inverse_k(problem), a), a
+    def slip_length(self, problem: wl.LineProblem) -> Array:
+        """Return 2 (a - c)."""
+        return 2.0 * np.minimum(problem.creepage * _inverse_k(problem), problem.half_width)
 
-    def fields(self, problem: wl.LineProblem, x: Array) -> wl.LineFields:
+    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
         """Return the fields of the paper's eqs. (7) and (8), corrected."""
         a, k = problem.half_width, 1.0 / _inverse_k(problem)
-        stick_start = np.minimum(problem.creepage / k, a)  # a - c, without its rounding at small creepage
-        border = a - 2.0 * stick_start  # -a + 2c
-        pressure = wl.hertz.pressure(x, a, problem.max_pressure)
+        before, behind = nodes.from_trailing, nodes.from_leading  # a - x and x + a
+        length = self.slip_length(problem)
+        into = length - before  # x + a - 2c, the distance from where slip begins
+        slipping = into > 0.0
+        pressure = problem.max_pressure * np.sqrt(before * behind) / a
         bound = problem.friction_coefficient * pressure
         # μp - (c/a) μp0 √(1-((x+a-c)/c)²) as √A - √B = (A-B)/(√A + √B), which loses no digits and is never negative.
-        roots = np.sqrt(np.maximum(a - x, 0.0)) + np.sqrt(np.maximum(border - x, 0.0))
-        growth = 2.0 * stick_start * np.sqrt(np.maximum(a + x, 0.0))
-        growth = np.divide(growth, roots, out=np.zeros_like(roots), where=roots > 0)
+        roots = np.sqrt(before) + np.sqrt(np.maximum(-into, 0.0))
+        growth = np.divide(length * np.sqrt(behind), roots, out=np.zeros_like(roots), where=roots > 0)
         stuck = problem.friction_coefficient * problem.max_pressure / a * growth
+        everywhere = problem.creepage + k * nodes.x
         if self.slip == "as_printed":
-            slip = problem.creepage + k * x
+            slip = everywhere
         else:
-            partial = k * np.sqrt(np.maximum((x - border) * (x + a), 0.0))
-            slip = np.where(problem.creepage < k * a, partial, problem.creepage + k * x)
-        slipping = x > border
+            slip = np.where(problem.creepage < k * a, k * np.sqrt(np.maximum(into, 0.0) * behind), everywhere)
         return wl.LineFields(
             pressure=pressure,
             traction=np.where(slipping, bound, stuck),
@@ -73,13 +73,46 @@ class Exact(wl.LineContactModel):
 
     def tangential_force_per_width(self, problem: wl.LineProblem) -> Array:
         """Return μP [1 - (c/a)²], with d = ξ/ξ_sat = (a-c)/a as μP d (2-d)."""
-        d = np.minimum(problem.creepage * _inverse_k(problem) / problem.half_width, 1.0)
+        d = np.minimum(problem.creepage / _saturation(problem), 1.0)
         return problem.friction_coefficient * problem.normal_force_per_width * d * (2.0 - d)
+
+    def crossings(self, problem: wl.LineProblem, variable: wl.FieldVariable, value: Array) -> Array | None:
+        """Return where the pressure or the slip crosses a value."""
+        if variable == "pressure":
+            return wl.hertz.distances_at_pressure(value, problem.half_width, problem.max_pressure)
+        if variable != "slip":
+            return None
+        a, length = problem.half_width, self.slip_length(problem)
+        grown = value * _inverse_k(problem)
+        everywhere = a + problem.creepage * _inverse_k(problem) - grown
+        if self.slip == "as_printed":
+            return everywhere[..., None]
+        c = a - 0.5 * length
+        partial = length - grown**2 / (c + np.sqrt(c**2 + grown**2))
+        return np.where(length < 2.0 * a, partial, everywhere)[..., None]
+
+    def excess_dissipation(self, problem: wl.LineProblem, threshold: float) -> Array | None:
+        """Return ∫ max(q·s - threshold, 0) dx [N/m] in closed form."""
+        if self.slip == "as_printed":
+            return None
+        return excess_dissipation(
+            problem.creepage,
+            problem.friction_coefficient,
+            problem.max_pressure,
+            problem.half_width,
+            problem.relative_radius,
+            threshold,
+        )
 
 
 def _inverse_k(problem: wl.LineProblem) -> Array:
     """Return 1/k = R/μ [m]."""
     return problem.relative_radius / problem.friction_coefficient
+
+
+def _saturation(problem: wl.LineProblem) -> Array:
+    """Return ξ_sat = μa/R."""
+    return problem.friction_coefficient * problem.half_width / problem.relative_radius
 
 
 @wl.hookimpl

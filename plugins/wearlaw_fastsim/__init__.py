@@ -9,6 +9,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw_fastsim._kernel import elliptic_excess, parabolic_excess
 
 
 class Fastsim(wl.LineContactModel):
@@ -44,23 +45,36 @@ class Fastsim(wl.LineContactModel):
             exempt["initial_slope"] = "the flexibility is that of a long ellipse"
         return exempt
 
-    def slip_zone(self, problem: wl.LineProblem) -> tuple[Array, Array]:
-        """Return from where the traction meets its bound to the trailing edge."""
-        a, saturation = problem.half_width, self._saturation(problem)
-        if self.bound == "parabolic":
-            return a - 2.0 * a * np.minimum(saturation, 1.0), a
-        return a - 2.0 * a * (saturation**2 / (1.0 + saturation**2)), a
+    @property
+    def square_roots_at(self) -> Literal["patch"]:
+        """Nothing behaves like a square root where slip begins."""
+        return "patch"
 
-    def fields(self, problem: wl.LineProblem, x: Array) -> wl.LineFields:
+    def slip_length(self, problem: wl.LineProblem) -> Array:
+        """Return the distance from where the traction meets its bound to the trailing edge."""
+        d = self._reduced_creepage(problem)
+        if self.bound == "parabolic":
+            return 2.0 * problem.half_width * np.minimum(d, 1.0)
+        return 2.0 * problem.half_width * (d**2 / (1.0 + d**2))
+
+    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
         """Return the fields of the paper's eqs. (11) to (13), in closed form."""
-        a, creepage, flexibility = problem.half_width, problem.creepage, self._flexibility(problem)
-        bound, slope = self._bound(problem, x)
-        stuck = creepage / flexibility * (x + a)
-        slipping = stuck > bound
+        a, friction = problem.half_width, problem.friction_coefficient
+        inside = nodes.from_leading * nodes.from_trailing  # a² - x²
+        pressure = problem.max_pressure * np.sqrt(inside) / a
+        slope = self._bound_slope(problem) * nodes.x / a
+        if self.bound == "parabolic":
+            bound = friction * self._bound_centre(problem) * inside / a**2
+        else:
+            root = np.sqrt(np.maximum(inside, 1e-200 * a**2))  # at the very edge q·s keeps its finite limit
+            bound = friction * problem.max_pressure * root / a
+            slope = slope * a / root
+        stuck = problem.creepage / self._flexibility(problem) * nodes.from_leading
+        slipping = nodes.from_trailing < self.slip_length(problem)
         return wl.LineFields(
-            pressure=wl.hertz.pressure(x, a, problem.max_pressure),
-            traction=np.where(slipping, bound, stuck),
-            slip=np.where(slipping, creepage - flexibility * slope, 0.0),
+            pressure=pressure,
+            traction=np.where(slipping, bound, np.minimum(stuck, bound)),
+            slip=np.where(slipping, problem.creepage + slope, 0.0),
             traction_bound=bound,
         )
 
@@ -70,38 +84,51 @@ class Fastsim(wl.LineContactModel):
         Parabolic: μP [1 - (1-d)³], d = ξ/ξ_f, ξ_f = 3μPL/(2a²). Elliptic: μP (2/π) [atan κ + κ/(1+κ²)],
         κ = ξa/(μ p0 L).
         """
-        saturation = self._saturation(problem)
+        d = self._reduced_creepage(problem)
         if self.bound == "parabolic":
-            d = np.minimum(saturation, 1.0)
+            d = np.minimum(d, 1.0)
             share: Array = d * (3.0 - 3.0 * d + d**2)
         else:
-            share = 2.0 / np.pi * (np.arctan(saturation) + saturation / (1.0 + saturation**2))
+            share = 2.0 / np.pi * (np.arctan(d) + d / (1.0 + d**2))
         return problem.friction_coefficient * problem.normal_force_per_width * share
+
+    def crossings(self, problem: wl.LineProblem, variable: wl.FieldVariable, value: Array) -> Array | None:
+        """Return where the pressure or the slip crosses a value."""
+        a, slope = problem.half_width, self._bound_slope(problem)
+        if variable == "pressure":
+            return wl.hertz.distances_at_pressure(value, a, problem.max_pressure)
+        if variable != "slip":
+            return None
+        grown = value - problem.creepage
+        if self.bound == "parabolic":
+            return (a * (1.0 - grown / slope))[..., None]
+        distance: Array = 2.0 * a * np.sin(0.5 * np.arctan2(slope, grown)) ** 2
+        return distance[..., None]
+
+    def excess_dissipation(self, problem: wl.LineProblem, threshold: float) -> Array:
+        """Return ∫ max(q·s - threshold, 0) dx [N/m] in closed form."""
+        excess = parabolic_excess if self.bound == "parabolic" else elliptic_excess
+        centre = problem.friction_coefficient * self._bound_centre(problem)
+        return excess(problem.creepage, self._bound_slope(problem), centre, problem.half_width, threshold)
 
     def _flexibility(self, problem: wl.LineProblem) -> Array:
         factor = 4.0 / np.pi if self.flexibility == "line" else 32.0 / (3.0 * np.pi**2)
         return factor * problem.half_width / problem.effective_modulus
 
-    def _saturation(self, problem: wl.LineProblem) -> Array:
-        """Return d (parabolic) or κ (elliptic): creepage over the creepage that the bound's size sets."""
-        grip = problem.friction_coefficient * self._flexibility(problem)
+    def _bound_centre(self, problem: wl.LineProblem) -> Array:
+        """Return p2 at x = 0 [Pa]."""
         if self.bound == "parabolic":
-            grip = grip * 1.5 * problem.normal_force_per_width / problem.half_width
-        else:
-            grip = grip * problem.max_pressure
-        return problem.creepage * problem.half_width / grip
+            return 0.75 * problem.normal_force_per_width / problem.half_width
+        return problem.max_pressure
 
-    def _bound(self, problem: wl.LineProblem, x: Array) -> tuple[Array, Array]:
-        """Return the bound [Pa] and its derivative in x [Pa/m]."""
-        a, friction = problem.half_width, problem.friction_coefficient
-        inside = np.maximum((a - x) * (a + x), 0.0)
-        if self.bound == "parabolic":
-            scale = friction * 0.75 * problem.normal_force_per_width / a**3
-            return scale * inside, -2.0 * scale * x
-        scale = friction * problem.max_pressure / a
-        # At an edge the slope is infinite; x is no finer than rounding there, and q·s keeps its finite limit.
-        root = np.sqrt(np.maximum(inside, 0.25 * np.finfo(np.float64).eps * a**2))
-        return scale * root, -scale * x / root
+    def _bound_slope(self, problem: wl.LineProblem) -> Array:
+        """Return the slope of the bound's shape in x/a, as slip: L μp2(0)/a, for the parabola twice that."""
+        slope = self._flexibility(problem) * problem.friction_coefficient * self._bound_centre(problem)
+        return (2.0 if self.bound == "parabolic" else 1.0) * slope / problem.half_width
+
+    def _reduced_creepage(self, problem: wl.LineProblem) -> Array:
+        """Return d = ξ/ξ_f (parabolic) or κ (elliptic)."""
+        return problem.creepage / self._bound_slope(problem)
 
 
 @wl.hookimpl

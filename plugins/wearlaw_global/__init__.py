@@ -38,7 +38,7 @@ class Global(wl.ContactModel):
         length = 2.0 * problem.half_width
         pressure = problem.normal_force_per_width / length
         if problem.traction_coefficient is None:
-            force = self.total_from.solve(problem).tangential_force / problem.track_width
+            force = self.total_from.tangential_force(problem) / problem.track_width
             bound = problem.friction_coefficient * pressure
         else:
             force = np.sign(problem.creepage) * problem.traction_coefficient * problem.normal_force_per_width

@@ -120,9 +120,15 @@ class USFD(wl.WearLaw):
         return {"wear_index_density": (q_s / m_m, tr_sc)}
 
     @property
+    def ramps(self) -> tuple[tuple[float, float], ...]:
+        """The rise of the mild regime, which ends at its border, and that of the catastrophic one."""
+        m_m, q_s, m_c, tr_sc = self._si
+        return (0.0, m_m), (q_s / m_m, -m_m), (tr_sc, m_c)
+
+    @property
     def valid_range(self) -> Mapping[str, tuple[float, float]]:
         """The range of the tests that the parameters were fitted to."""
-        return self.calibration.range_in_si()
+        return self.calibration.range_in_si
 
     @property
     def calibration(self) -> wl.Calibration:

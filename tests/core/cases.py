@@ -1,4 +1,4 @@
-"""Small cases, and models that only tests know, shared by the tests of studies and their results."""
+"""Small cases, models that only tests know, and the command line, shared by the tests of what uses them."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
+from click.testing import CliRunner, Result
 
 import wearlaw as wl
 from wearlaw import Array, plugins
 from wearlaw.case import Case
+from wearlaw.cli import main
 from wearlaw.shelf import Origin
 
 Table = dict[str, Any]
@@ -106,3 +108,26 @@ def installer(monkeypatch: pytest.MonkeyPatch) -> Install:
         monkeypatch.setitem(providers, model.name, [(model, origin)])
 
     return install
+
+
+def wearlaw(*arguments: str, columns: int = 100, charset: str = "utf-8", **env: str) -> Result:
+    """Run the command line in this process."""
+    return CliRunner(charset=charset, env={"COLUMNS": str(columns), **env}).invoke(main, arguments)
+
+
+def assert_refused(result: Result, message: str, exit_code: int = 1) -> None:
+    """One message on standard error, no traceback, nothing on standard output."""
+    assert isinstance(result.exception, SystemExit)
+    assert result.exit_code == exit_code
+    assert message in result.stderr
+    assert result.stdout == ""
+    assert "Traceback" not in result.stderr
+    assert sum(line.startswith("Error: ") for line in result.stderr.splitlines()) == 1
+
+
+def spaced_folder(parent: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Work in a new folder with a space in its name, and return it."""
+    here = parent / "my work"
+    here.mkdir()
+    monkeypatch.chdir(here)
+    return here

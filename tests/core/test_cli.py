@@ -16,27 +16,17 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray
-from click.testing import CliRunner, Result
 
 import wearlaw as wl
 from tests.core import cases
-from tests.core.cases import changed, table, write
+from tests.core.cases import assert_refused, changed, table, wearlaw, write
 from wearlaw import plugins
 from wearlaw.case import case_schema, case_text
-from wearlaw.cli import main
-
-
-def wearlaw(*arguments: str, columns: int = 100, charset: str = "utf-8", **env: str) -> Result:
-    return CliRunner(charset=charset, env={"COLUMNS": str(columns), **env}).invoke(main, arguments)
 
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Work in a folder with a space in its name."""
-    here = tmp_path / "my work"
-    here.mkdir()
-    monkeypatch.chdir(here)
-    return here
+    return cases.spaced_folder(tmp_path, monkeypatch)
 
 
 @pytest.fixture
@@ -49,16 +39,6 @@ def files(folder: Path) -> set[str]:
     return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
 
 
-def assert_refused(result: Result, message: str, exit_code: int = 1) -> None:
-    """One message on standard error, no traceback, nothing on standard output."""
-    assert isinstance(result.exception, SystemExit)
-    assert result.exit_code == exit_code
-    assert message in result.stderr
-    assert result.stdout == ""
-    assert "Traceback" not in result.stderr
-    assert sum(line.startswith("Error: ") for line in result.stderr.splitlines()) == 1
-
-
 # run
 
 
@@ -66,6 +46,7 @@ def test_a_study_is_run_and_its_files_are_listed_as_they_are(folder: Path) -> No
     write(folder / "my case.toml", table())
     result = wearlaw("run", "my case.toml", "-o", "out folder")
     assert result.exit_code == 0
+    assert f"\nComputed with wearlaw {wl.__version__}\nResults in out folder:\n" in result.stdout
     listing = result.stdout.partition("Results in out folder:\n")[2].splitlines()
     assert {line.strip() for line in listing} == files(folder) - {"my case.toml"}
     assert len(listing) == 3 + 3 + 1
@@ -159,7 +140,12 @@ def test_the_shipped_study_and_an_edited_copy_of_it_give_equal_results(folder: P
     ours = xarray.open_datatree("tassini2010-results/results.nc", engine="h5netcdf")
     theirs = xarray.open_datatree("copy/results.nc", engine="h5netcdf")
     with ours, theirs:
-        xarray.testing.assert_identical(ours, theirs)
+        xarray.testing.assert_equal(ours, theirs)
+        for group in (group for group in ours.groups if ours[group].attrs):
+            said, copied = (json.loads(tree[group].attrs["provenance"]) for tree in (ours, theirs))
+            assert said.pop("cases") == {"tassini2010": f"wearlaw {wl.__version__}"}
+            assert copied.pop("cases") == {}
+            assert said == copied
         sweep = ours["sweeps/creepage"].to_dataset()
         rates = sweep.wear_rate.sel(creepage=25.0, method="nearest")
         # Half a digit of the converged integrals that tests/test_numbers.py computes anew.

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import copy
+import functools
 import pickle
 from collections.abc import Callable
 from typing import Any
 
-import pydantic
 import pytest
 
 import wearlaw as wl
+from tests.core.cases import Linear
 from wearlaw import Q
 from wearlaw.grid import Axis
 
@@ -96,9 +97,30 @@ def test_equal_lengths_in_other_units_are_equal_and_hash_alike() -> None:
     assert disc(diameter="47 mm") != disc(diameter="47.001 mm")
 
 
-def test_a_configuration_is_frozen() -> None:
-    with pytest.raises(pydantic.ValidationError, match="frozen"):
-        disc().diameter = Q(1, "mm")
+def test_a_configuration_is_frozen_and_says_how_to_change_a_copy() -> None:
+    law, rig = wl.wear_law("usfd"), wl.TwinDisc.suros()
+    before = law.model_copy()
+    said = r"^usfd: q_s: cannot be changed, since it is frozen; .* with \.model_copy\(update={'q_s': \.\.\.}\)$"
+    with pytest.raises(wl.FrozenError, match=said):
+        law.q_s = "56 ug/m/mm^2"  # type: ignore[attr-defined]
+    with pytest.raises(wl.FrozenError, match=said):
+        del law.q_s  # type: ignore[attr-defined]
+    assert law == before
+    with pytest.raises(wl.FrozenError, match=r"^TwinDisc: rolling_speed: cannot be changed"):
+        rig.rolling_speed = Q(2, "m/s")
+    with pytest.raises(wl.FrozenError, match=r"^TwinDisc: speed: unknown field; The fields are: disc_1, disc_2"):
+        rig.speed = "1 m/s"  # type: ignore[attr-defined]
+    with pytest.raises(wl.FrozenError, match=r"unknown field; did you mean 'q_s'\?"):
+        law.qs = "56 ug/m/mm^2"  # type: ignore[attr-defined]
+
+
+def test_a_model_may_keep_what_it_computed_in_a_private_attribute() -> None:
+    class Keeps(Linear):
+        _seen: int = 0
+
+    law = Keeps(slope="1 m")  # type: ignore[arg-type]
+    law._seen = 3
+    assert law._seen == 3
 
 
 def test_a_configuration_survives_pickle_copy_and_json() -> None:
@@ -136,3 +158,14 @@ def test_a_copy_without_changes_is_equal() -> None:
     for made in (wl.steel(), wl.TwinDisc.suros(), wl.contact_model("global"), wl.wear_law("kth"), axis):
         assert made.model_copy() == made
     assert axis.model_copy(update={"points": 4}).points == 4
+
+
+def test_a_copy_of_a_model_that_keeps_what_it_computed_computes_it_anew() -> None:
+    class Keeps(Linear):
+        @functools.cached_property
+        def doubled(self) -> float:
+            return 2.0 * wl.scalar_si(self.slope, "m")
+
+    law = Keeps(slope="1 m")  # type: ignore[arg-type]
+    assert law.doubled == 2.0
+    assert law.model_copy(update={"slope": "3 m"}).doubled == 6.0

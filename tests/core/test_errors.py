@@ -28,6 +28,7 @@ def test_every_error_and_warning_has_the_base_of_its_kind_and_is_public(error: t
         (wl.ConditionsError, ValueError),
         (wl.UnknownModelError, ValueError),
         (wl.CaseError, ValueError),
+        (wl.FrozenError, AttributeError),
         (wl.ConfigurationError, ValueError),
         (wl.CompositionError, TypeError),
         (wl.OutputError, OSError),

@@ -12,6 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 import wearlaw as wl
+from tests.line import fields_at
 from wearlaw import Q
 
 Array = NDArray[np.float64]
@@ -95,10 +96,9 @@ def test_the_jump_is_integrated_to_rounding() -> None:
     # An independent midpoint sum over 2e6 cells. Each of the two crossings costs it at most one cell of the jump,
     # (15 - 5) µg/m/N at 4 N/mm²; the square roots at the ends of the zone cost cells^-1.5 = 4e-10.
     problem = RIG.problem(**POINT)
-    assert isinstance(contact, wl.LineContactModel)
     cells = 2_000_000
     x = problem.half_width * ((2 * np.arange(cells) + 1.0) / cells - 1)
-    fields = contact.fields(problem[..., None], x)
+    fields = fields_at(contact, problem, x)
     w = fields.traction * fields.slip / 1e6
     mean = np.where(w < 4.0, 5.0, 15.0) * w
     assert prediction.wear_rate.magnitude == pytest.approx(mean.mean(), abs=2 * 10 * 4 / cells + 4e-10 * mean.mean())

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import functools
-import itertools
 import math
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import pytest
-from scipy import integrate, optimize
+from scipy import optimize
 
 import wearlaw as wl
 from tests import reference
 from tests.strategies import EPS, LINE_MODELS
-from wearlaw import Array, Q
-from wearlaw.integrate import BLOCK, integrate_contact, integrate_wear
+from wearlaw import Array, Q, integrate
+from wearlaw.integrate import BLOCK, NODE_BLOCK, integrate_contact, integrate_slip
 from wearlaw.quadrature import uniform_cells
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
@@ -41,6 +40,22 @@ MEANS: dict[str, Callable[[reference.Solution], float]] = {
 }
 
 
+class Wear(NamedTuple):
+    """What a pipeline shows of the wear, in SI."""
+
+    wear_rate: Array
+    wear_rate_error: Array
+    tangential_force: Array
+
+
+def integrate_wear(model: wl.ContactModel, law: wl.WearLaw, problem: wl.LineProblem, scale: wl.Scale) -> Wear:
+    """Return the wear, with what is computed when it is asked for."""
+    wear = integrate.integrate_wear(model, law, problem, scale)
+    force = integrate_contact(model, problem) if wear.tangential_force is None else wear.tangential_force
+    error = integrate.rounding(law, problem, force) if wear.wear_rate_error is None else wear.wear_rate_error
+    return Wear(wear.wear_rate, error, force)
+
+
 class Points:
     """Operating points of the rig at random, with the problem that they pose."""
 
@@ -49,7 +64,7 @@ class Points:
         self.size = size
         self.pressure = self.random.uniform(0.3e9, 4e9, size)
         self.friction = self.random.uniform(0.05, 1.0, size)
-        self.creepage = 10.0 ** self.random.uniform(-6.0, 0.0, size)
+        self.creepage = 10.0 ** self.random.uniform(-7.0, 0.0, size)
 
     def crowd(self) -> Array:
         """Return factors next to one on both sides."""
@@ -80,22 +95,13 @@ class Points:
 
 def compare(name: str, law: str, points: Points) -> tuple[Array, Array, Array]:
     """Return the rates, those of the reference and the error estimates [µg/m/mm²]."""
-    _, wear = integrate_wear(LINE_MODELS[name], wl.wear_law(law), points.problem, "cells")
+    wear = integrate_wear(LINE_MODELS[name], wl.wear_law(law), points.problem, "cells")
     want = np.array([MEANS[law](REFERENCE[name](point)) for point in points.references()])
     return wear.wear_rate * 1e3, want, wear.wear_rate_error * 1e3
 
 
-def accuracy(name: str, points: Points) -> Array:
-    """Return the relative accuracy that a model's means are held to.
-
-    1e-9 for all of them, but that a position in a slip zone of length 2h is exact to EPS·a/h only, which is felt
-    where the zone of the elliptic bound shrinks with the square of creepage; and that Hertz's pressure next to
-    the leading edge costs what GRAZING in test_invariants says.
-    """
-    if "elliptic" not in name:
-        return np.full(points.size, 1e-9)
-    kappa = 0.5 * math.pi * points.creepage / points.saturation
-    return 5e-8 + 8.0 * EPS * (1.0 + 1.0 / kappa**2)
+ACCURACY = 1e-9
+"""The relative accuracy that all means are held to; most meet 1e-13, of which the reference gives 12 digits."""
 
 
 @pytest.mark.parametrize("law", MEANS)
@@ -103,9 +109,9 @@ def accuracy(name: str, points: Points) -> Array:
 def test_patch_means_meet_their_integral_at_any_creepage(name: str, law: str) -> None:
     points = Points(seed=1, size=80)
     got, want, error = compare(name, law, points)
-    assert (np.abs(got - want) <= accuracy(name, points) * want).all()
+    assert (np.abs(got - want) <= ACCURACY * want).all()
     honest = np.abs(got - want) <= error + 1e-12 * want  # the reference itself ends at 1e-13
-    # The estimate does not know how a jump of the rate enlarges the rounding of where it lies in a short zone.
+    # The estimate does not know how a jump of the rate enlarges the rounding of where it lies.
     assert honest.mean() >= (0.95 if "elliptic" in name and law == "kth" else 1.0)
 
 
@@ -116,7 +122,7 @@ def test_patch_means_meet_their_integral_next_to_full_slip(name: str, law: str) 
     centre = 1.0 if name.startswith("exact") else 1.5 * FULL_SLIP[name.rpartition("-")[2]]
     points.creepage = points.saturation * centre * points.crowd()
     got, want, error = compare(name, law, points)
-    assert (np.abs(got - want) <= accuracy(name, points) * want).all()
+    assert (np.abs(got - want) <= ACCURACY * want).all()
     assert (np.abs(got - want) <= error + 1e-12 * want).all()
 
 
@@ -137,7 +143,7 @@ def test_usfd_means_meet_their_integral_where_a_regime_just_begins(name: str, bo
         creepages.append(optimize.brentq(excess, low, high, xtol=1e-18) if excess(low) < 0.0 else 0.01)
     points.creepage = np.array(creepages) * points.crowd()
     got, want, _ = compare(name, "usfd", points)
-    assert (np.abs(got - want) <= accuracy(name, points) * want).all()
+    assert (np.abs(got - want) <= ACCURACY * want).all()
 
 
 def jump_condition(points: Points) -> Array:
@@ -158,7 +164,7 @@ def test_kth_means_meet_their_integral_where_the_pressure_just_reaches_its_borde
         reduced = 0.5 if name.startswith("exact") else 0.75 if "parabolic" in name else 2.0 / math.pi
         points.creepage = points.saturation * reduced * FULL_SLIP.get(name.rpartition("-")[2], 1.0) * points.crowd()
     got, want, _ = compare(name, "kth", points)
-    assert (np.abs(got - want) <= (accuracy(name, points) + jump_condition(points)) * want).all()
+    assert (np.abs(got - want) <= (ACCURACY + jump_condition(points)) * want).all()
 
 
 @pytest.mark.parametrize("name", ["exact", "fastsim-parabolic-line"])
@@ -170,7 +176,7 @@ def test_kth_means_meet_their_integral_where_the_slip_speed_just_reaches_its_bor
     points.creepage = np.where(2.0 * full < speed / SPEED, speed / SPEED - full, speed / SPEED + full) * points.crowd()
     got, want, _ = compare(name, "kth", points)
     # a slip that just passes its border does so within (gap·a) of an edge, where the pressure is zero
-    assert (np.abs(got - want) <= 1e-9 * want).all()
+    assert (np.abs(got - want) <= ACCURACY * want).all()
 
 
 # --- Laws that declare nothing ---------------------------------------------------------------------------------
@@ -207,12 +213,12 @@ class Jumping(Kinked):
 
 
 class Sticking(Kinked):
-    """Wears by traction, also where nothing slips, from a threshold on."""
+    """Wears by traction, also where nothing slips."""
 
     name: ClassVar[str] = "sticking"
 
     def rate(self, contact: wl.Contact) -> Array:
-        return np.maximum(np.abs(contact.traction) / 1e6 - self.threshold, 0.0)
+        return np.abs(contact.traction)
 
 
 RATES: dict[type[Smooth], Callable[[Array, float], Array]] = {
@@ -233,7 +239,7 @@ def test_the_error_estimate_of_a_law_that_declares_nothing_is_honest(name: str, 
     points.creepage = 10.0 ** points.random.uniform(-4.0, 0.0, points.size)
     law: Any = law_type() if law_type is Smooth else law_type(threshold=10.0)  # type: ignore[call-arg]
     assert law.breakpoints is None
-    _, wear = integrate_wear(LINE_MODELS[name], law, points.problem, "cells")
+    wear = integrate_wear(LINE_MODELS[name], law, points.problem, "cells")
     want = []
     for point in points.references():
         solution = REFERENCE[name](point)
@@ -248,29 +254,12 @@ def test_the_error_estimate_of_a_law_that_declares_nothing_is_honest(name: str, 
         assert (error <= 1e-6 * np.array(want)).all()
 
 
-def test_the_error_estimate_covers_the_stick_zone() -> None:
-    points = Points(seed=7, size=200)
-    points.creepage = points.saturation * 1.5 * points.random.uniform(0.05, 0.95, points.size)
-    _, wear = integrate_wear(LINE_MODELS["fastsim-parabolic-line"], Sticking(threshold=50.0), points.problem, "cells")
-    want = []
-    for point in points.references():
-        d = point.creepage / (1.5 * point.exact_saturation)
-        top = point.friction * 0.75 * point.load / point.half_width
-
-        # with t = x/a: q = 2 d top (1+t) until the bound top (1-t²) at t = 1 - 2d
-        def rate(t: float, d: float = d, top: float = top) -> float:
-            return 0.5 * max(min(2.0 * d * (1.0 + t), 1.0 - t * t) * top / 1e6 - 50.0, 0.0)
-
-        kinks = [
-            1.0 - 2.0 * d,
-            50e6 / (2.0 * d * top) - 1.0,
-            *(s * math.sqrt(max(1.0 - 50e6 / top, 0.0)) for s in (-1, 1)),
-        ]
-        edges = [-1.0, *sorted(k for k in kinks if -1.0 < k < 1.0), 1.0]
-        want.append(sum(integrate.quad(rate, low, high)[0] for low, high in itertools.pairwise(edges)))
-    honest = np.abs(wear.wear_rate - want) <= wear.wear_rate_error + 1e-10 * np.array(want)
-    assert honest.mean() >= 0.95
-    assert wear.wear_rate_error.max() > 0.0
+@pytest.mark.parametrize("name", ["exact", "fastsim-elliptic-line"])
+def test_a_law_that_wears_where_the_bodies_stick_is_refused(name: str) -> None:
+    points = Points(seed=7, size=5)
+    points.creepage = 0.5 * points.saturation
+    with pytest.raises(wl.ModelError, match="wear law 'sticking' gives wear where the bodies stick"):
+        integrate_wear(LINE_MODELS[name], Sticking(), points.problem, "cells")
 
 
 def test_breakpoints_that_are_declared_bring_the_error_down() -> None:
@@ -281,8 +270,7 @@ def test_breakpoints_that_are_declared_bring_the_error_down() -> None:
 
     points = Points(seed=8, size=100)
     blind, split = (
-        integrate_wear(LINE_MODELS["exact"], law(threshold=10.0), points.problem, "cells")[1]
-        for law in (Kinked, Declared)
+        integrate_wear(LINE_MODELS["exact"], law(threshold=10.0), points.problem, "cells") for law in (Kinked, Declared)
     )
     worn = split.wear_rate > 0.0
     assert np.median(split.wear_rate_error[worn] / split.wear_rate[worn]) < 1e-12
@@ -308,22 +296,22 @@ class Celled(wl.ContactModel):
 
 def test_a_model_that_only_solves_works_and_says_how_good_it_is() -> None:
     points = Points(seed=9, size=200)
-    contact, wear = integrate_wear(Celled(), wl.wear_law("usfd"), points.problem, "cells")
+    wear = integrate_wear(Celled(), wl.wear_law("usfd"), points.problem, "cells")
     want = np.array([MEANS["usfd"](reference.exact(point)) for point in points.references()]) / 1e3
     # A zone of less than two cells cannot be seen at all.
     seen = points.creepage / points.saturation > 0.02
     error = np.abs(wear.wear_rate - want)[seen]
     assert (error <= wear.wear_rate_error[seen]).mean() >= 0.95
     assert np.median(wear.wear_rate_error[seen] / want[seen]) < 0.1
-    totals = integrate_contact(LINE_MODELS["exact"], points.problem, "cells")
-    assert contact.tangential_force == pytest.approx(totals.tangential_force, rel=4 * EPS)
+    force = integrate_contact(LINE_MODELS["exact"], points.problem)
+    assert wear.tangential_force == pytest.approx(force, rel=4 * EPS)
 
 
 def test_finer_cells_have_a_smaller_error_estimate() -> None:
     points = Points(seed=10, size=50)
     points.creepage = points.saturation * points.random.uniform(0.2, 3.0, points.size)
     coarse, fine = (
-        np.median(integrate_wear(Celled(cells=n), wl.wear_law("usfd"), points.problem, "cells")[1].wear_rate_error)
+        np.median(integrate_wear(Celled(cells=n), wl.wear_law("usfd"), points.problem, "cells").wear_rate_error)
         for n in (50, 800)
     )
     assert fine < 0.2 * coarse
@@ -331,14 +319,14 @@ def test_finer_cells_have_a_smaller_error_estimate() -> None:
 
 def test_one_cell_alone_says_nothing_of_its_error() -> None:
     points = Points(seed=11, size=5)
-    _, wear = integrate_wear(Celled(cells=1), wl.wear_law("usfd"), points.problem, "cells")
+    wear = integrate_wear(Celled(cells=1), wl.wear_law("usfd"), points.problem, "cells")
     assert (wear.wear_rate_error == np.abs(wear.wear_rate)).all()
 
 
 def test_patch_means_have_no_integration_error() -> None:
     points = Points(seed=12, size=20)
     for model, scale in ((wl.contact_model("global"), "patch"), (LINE_MODELS["exact"], "patch"), (Celled(), "patch")):
-        _, wear = integrate_wear(model, wl.wear_law("usfd"), points.problem, scale)  # type: ignore[arg-type]
+        wear = integrate_wear(model, wl.wear_law("usfd"), points.problem, scale)  # type: ignore[arg-type]
         assert (wear.wear_rate_error <= 2.0 * EPS * wear.wear_rate).all()
 
 
@@ -395,33 +383,47 @@ def test_a_contact_model_that_is_not_finite_is_named(field: str) -> None:
 @pytest.mark.parametrize("law", ["usfd", "kth"])
 @pytest.mark.parametrize("name", REFERENCE)
 def test_results_do_not_depend_on_the_blocks_they_were_computed_in(name: str, law: str) -> None:
-    points = Points(seed=15, size=2 * BLOCK + 100)
+    block = NODE_BLOCK if law == "kth" else BLOCK
+    points = Points(seed=15, size=2 * block + 100)
     problem = points.problem
     model, wear_law = LINE_MODELS[name], wl.wear_law(law)
-    contact, wear = integrate_wear(model, wear_law, problem, "cells")
-    borders = [0, 1, BLOCK - 1, BLOCK, BLOCK + 1, 2 * BLOCK - 1, 2 * BLOCK, points.size - 1]
+    wear = integrate_wear(model, wear_law, problem, "cells")
+    borders = [0, 1, block - 1, block, block + 1, 2 * block - 1, 2 * block, points.size - 1]
     for index in [*borders, *range(7, points.size, 211)]:
-        contact_alone, wear_alone = integrate_wear(model, wear_law, problem[index : index + 1], "cells")
+        wear_alone = integrate_wear(model, wear_law, problem[index : index + 1], "cells")
         # to rounding, not to the bit: zones without length, which some batches hold, change the order of sums
         assert wear.wear_rate[index] == pytest.approx(wear_alone.wear_rate[0], rel=64 * EPS)
-        for field in ("tangential_force", "wear_index", "patch_area", "mean_slip", "slip_area"):
-            assert getattr(contact, field)[index] == pytest.approx(getattr(contact_alone, field)[0], rel=64 * EPS)
+        assert wear.tangential_force[index] == pytest.approx(wear_alone.tangential_force[0], rel=64 * EPS)
 
 
-def test_progress_is_told_block_by_block() -> None:
-    told: list[int] = []
-    points = Points(seed=16, size=BLOCK + 10)
-    integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), points.problem, "cells", on_block=told.append)
-    assert told == [BLOCK, 10]
+def test_slip_is_summed_in_blocks() -> None:
+    points = Points(seed=17, size=NODE_BLOCK + 30)
+    model = LINE_MODELS["exact"]
+    slip = integrate_slip(model, points.problem, "cells")
+    share = np.minimum(points.creepage / points.saturation, 1.0)
+    assert slip.slip_area == pytest.approx(share * points.problem.patch_area, rel=64 * EPS)
+    alone = integrate_slip(model, points.problem[-1:], "cells")
+    assert slip.mean_slip[-1] == pytest.approx(alone.mean_slip[0], rel=64 * EPS)
+
+
+def test_each_block_is_told_with_its_forces() -> None:
+    told: list[tuple[wl.LineProblem, Array]] = []
+    problem = Points(seed=16, size=BLOCK + 10).problem
+    integrate.integrate_wear(
+        LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells", lambda part, force: told.append((part, force))
+    )
+    assert [part.creepage.size for part, _ in told] == [BLOCK, 10]
+    forces = np.concatenate([force for _, force in told])
+    assert forces == pytest.approx(integrate_contact(LINE_MODELS["exact"], problem), rel=4 * EPS)
 
 
 def test_the_batch_keeps_its_shape() -> None:
     conditions: dict[str, Any] = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46}
     creepage = np.geomspace(1e-4, 0.2, 24).reshape(2, 3, 4)
     problem = RIG.problem(creepage=Q(creepage, ""), **conditions)
-    _, wear = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells")
+    wear = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells")
     assert wear.wear_rate.shape == wear.wear_rate_error.shape == (2, 3, 4)
     alone = RIG.problem(creepage=Q(float(creepage[1, 2, 0]), ""), **conditions)
-    _, single = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), alone, "cells")
+    single = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), alone, "cells")
     assert single.wear_rate.shape == ()
     assert float(single.wear_rate) == pytest.approx(float(wear.wear_rate[1, 2, 0]), rel=64 * EPS)

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import json
+import pickle
+import tomllib
+from pathlib import Path
 from typing import Any
 
 import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import case, table
+from tests.core.cases import case, table, wearlaw
 from tests.core.test_plugins import Install, install  # noqa: F401  (a fixture)
 from wearlaw import plugins
-from wearlaw.case import case_schema, case_text, load_case
+from wearlaw.case import Case, case_schema, case_text, load_case
+from wearlaw.study import provenance, run
 
 LAB = """
     import wearlaw as wl
@@ -33,7 +38,8 @@ LAB = """
 
     @wl.hookimpl
     def wearlaw_materials():
-        return {"soft_steel": wl.steel(youngs_modulus="190 GPa", density="7800 kg/m^3")}
+        soft = wl.steel(youngs_modulus="190 GPa", density="7800 kg/m^3")
+        return {"soft_steel": soft, "steel_of_rail_b": soft}
 
     @wl.hookimpl
     def wearlaw_cases():
@@ -101,6 +107,70 @@ def test_cases_of_plugins_are_shipped_cases(install: Install) -> None:  # noqa: 
     assert case_text("lab_study") == "title = 'A study of the lab'"
     with pytest.raises(wl.CaseError, match="case 'lab_study' is wrong in:\n  rig: is missing"):
         load_case("lab_study")
+
+
+LAB_STUDY = """
+    title = "A study of the lab"
+    contact_models = ["exact"]
+    wear_laws = [{ model = "lab_2026", m_c = "75 ug/m/N" }, "kth"]
+
+    [rig]
+    preset = "suros"
+    material = "soft_steel"
+
+    [sweeps.one]
+    max_pressure = "1500 MPa"
+    creepage = "1 %"
+    friction_coefficient = 0.46
+"""
+
+
+def test_the_provenance_names_where_a_set_a_material_and_a_case_come_from(install: Install) -> None:  # noqa: F811
+    install("lab", LAB.replace("\"title = 'A study of the lab'\"", repr(LAB_STUDY)), version="1.2.3")
+    loaded = load_case("lab_study")
+    assert loaded == Case(**tomllib.loads(case_text("lab_study")))
+    for ran in (loaded, pickle.loads(pickle.dumps(loaded))):
+        said = provenance(ran)
+        assert said["parameter_sets"] == {"lab_2026": "lab 1.2.3"}
+        assert said["materials"] == {"soft_steel": "lab 1.2.3"}
+        assert said["cases"] == {"lab_study": "lab 1.2.3"}
+        assert said["wear_laws"] == {"kth": f"wearlaw {wl.__version__}", "usfd": f"wearlaw {wl.__version__}"}
+    (sweep,) = run(loaded).sweeps.values()
+    assert json.loads(sweep.attrs["provenance"]) == provenance(loaded)
+
+
+def test_a_material_under_two_names_and_a_set_from_the_list_of_all_keep_the_name_they_were_found_by(
+    install: Install,  # noqa: F811
+) -> None:
+    install("lab", LAB)
+    rig = {"preset": "suros", "material": "soft_steel"}
+    said = provenance(case(wear_laws=[wl.parameter_sets()["lab_2026"]], contact_models=["exact"], rig=rig))
+    assert said["materials"] == {"soft_steel": "lab 1.0"}
+    assert said["parameter_sets"] == {"lab_2026": "lab 1.0"}
+
+
+def test_what_was_not_looked_up_by_name_is_not_in_the_provenance(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    changed = wl.wear_law("lab_2026").model_copy(update={"m_c": "75 ug/m/N"})
+    steel = wl.material("soft_steel").model_copy()
+    said = provenance(case(contact_models=["exact"], wear_laws=[changed], rig=wl.TwinDisc.suros(material=steel)))
+    assert said["parameter_sets"] == said["materials"] == said["cases"] == {}
+    assert changed == wl.wear_law("lab_2026", m_c="75 ug/m/N")
+
+
+def test_a_run_says_what_it_used(
+    install: Install,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("wearlaw.figures.figures", lambda _: {})
+    install("lab", LAB, version="1.2.3")
+    (tmp_path / "own.toml").write_text(LAB_STUDY)
+    monkeypatch.chdir(tmp_path)
+    printed = wearlaw("run", "own.toml").stdout.splitlines()
+    start = printed.index(f"Computed with wearlaw {wl.__version__}")
+    assert printed[start + 1] == "  and lab 1.2.3: parameter set lab_2026, material soft_steel"
+    assert printed[start + 2] == "Results in own-results:"
 
 
 def test_two_cases_of_one_name_are_refused_with_both_plugins(install: Install) -> None:  # noqa: F811

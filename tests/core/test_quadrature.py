@@ -9,78 +9,119 @@ from hypothesis import strategies as st
 
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw.quadrature import ORDER, Nodes, join, position, remainder, uniform_cells, zone_nodes
+from wearlaw.quadrature import ORDER, Nodes, Zone, join, remainder, uniform_cells
 
-START, END = np.array(-0.3), np.array(1.1)
+HALF_WIDTH, LENGTH = np.array(1.1), np.array(1.4)
+
+
+def zone(length: float | Array = LENGTH, half_width: float | Array = HALF_WIDTH, over_patch: bool = False) -> Zone:
+    return Zone.of(np.asarray(half_width), np.asarray(length), over_patch)
 
 
 def total(nodes: Nodes, values: Array) -> float:
     return float((values * nodes.length).sum(axis=-1))
 
 
-@given(start=st.floats(-1.0, 1.0), length=st.floats(0.0, 2.0), splits=st.lists(st.floats(-1.5, 1.5), max_size=4))
-def test_the_lengths_of_nodes_sum_to_the_zone(start: float, length: float, splits: list[float]) -> None:
-    nodes = zone_nodes(np.array(start), np.array(start + length), splits=np.array(splits))
+@pytest.mark.parametrize("over_patch", [False, True])
+@given(length=st.floats(0.0, 2.2), splits=st.lists(st.floats(0.0, 1.0), max_size=4))
+def test_the_lengths_of_nodes_sum_to_the_zone(over_patch: bool, length: float, splits: list[float]) -> None:
+    it = zone(length, over_patch=over_patch)
+    nodes = it.nodes(it.angle * np.sort(splits))
     assert nodes.x.shape == nodes.length.shape == ((len(splits) + 1) * ORDER,)
-    assert nodes.length.sum() == pytest.approx((start + length) - start, rel=64 * EPS, abs=EPS)
+    # the angle is exact to a rounding, of which the length feels the sine, at most the span over the length
+    assert nodes.length.sum() == pytest.approx(length, rel=64 * EPS, abs=4 * EPS if over_patch else 0.0)
     assert (nodes.length >= 0.0).all()
-    assert (nodes.x >= start - 2 * EPS).all()
-    assert (nodes.x <= start + length + 2 * EPS).all()
+    assert (nodes.from_trailing >= 0.0).all()
+    assert (nodes.from_trailing <= length * (1.0 + 4 * EPS)).all()
+    assert nodes.from_leading + nodes.from_trailing == pytest.approx(2.2, rel=4 * EPS)
+
+
+@given(exponent=st.floats(-16.0, 0.0))
+def test_positions_in_a_short_zone_keep_their_digits(exponent: float) -> None:
+    length = 10.0**exponent
+    distances = zone(length).nodes().from_trailing
+    assert distances == pytest.approx(length * zone(1.0).nodes().from_trailing, rel=4 * EPS)
 
 
 @pytest.mark.parametrize("panels", [1, 3])
 def test_square_roots_at_both_ends_of_a_zone_are_integrated_to_rounding(panels: int) -> None:
-    nodes = zone_nodes(START, END, panels=panels)
-    x = nodes.x
-    half = 0.7
-    semicircle = total(nodes, np.sqrt((x - START) * (END - x)))
-    assert semicircle == pytest.approx(0.5 * math.pi * half**2, rel=32 * EPS)
-    inverse = total(nodes, 1.0 / np.sqrt((x - START) * (END - x)))
-    # x is exact to EPS, which next to an end, where the first node lies 7e-7 inside, is that much of the distance
-    assert inverse == pytest.approx(math.pi, rel=1e-9)
+    nodes = zone().nodes(panels=panels)
+    before, into = nodes.from_trailing, LENGTH - nodes.from_trailing
+    assert total(nodes, np.sqrt(into * before)) == pytest.approx(0.5 * math.pi * 0.7**2, rel=32 * EPS)
+    # the distance from where the zone begins is exact to EPS, next to it, 7e-7 inside, that much of the distance
+    assert total(nodes, 1.0 / np.sqrt(into * before)) == pytest.approx(math.pi, rel=1e-9)
+
+
+@pytest.mark.parametrize("length", [1e-12, 1e-3, 1.0, 2.2 * (1 - 1e-12), 2.2])
+def test_a_zone_mapped_over_the_patch_has_the_square_roots_of_its_edges_to_rounding(length: float) -> None:
+    nodes = zone(length, over_patch=True).nodes()
+    # ∫ √(y (2a - y)) dy from 0 to L, with y = 2a sin²(ψ/2): a²/2 (ψ - sin ψ cos ψ)
+    end = 2.0 * math.asin(math.sqrt(length / 2.2))
+    expected = 0.5 * 1.1**2 * (end - math.sin(end) * math.cos(end))
+    if length < 1e-6:
+        expected = 2.0 / 3.0 * math.sqrt(2.2) * length**1.5  # its series, where the difference cancels
+    assert total(nodes, np.sqrt(nodes.from_leading * nodes.from_trailing)) == pytest.approx(expected, rel=64 * EPS)
 
 
 def test_polynomials_are_integrated_to_rounding() -> None:
-    nodes = zone_nodes(START, END)
+    nodes = zone().nodes()
     assert total(nodes, nodes.x**5) == pytest.approx((1.1**6 - 0.3**6) / 6.0, rel=32 * EPS)
 
 
 def test_a_split_at_a_step_keeps_the_accuracy() -> None:
-    step = math.asin(0.25)  # x = 0.4 + 0.7·0.25
-    nodes = zone_nodes(START, END, splits=np.array([step]))
-    assert total(nodes, np.where(nodes.x < 0.575, 0.0, 1.0)) == pytest.approx(1.1 - 0.575, rel=64 * EPS)
-    unsplit = zone_nodes(START, END)
+    split = zone().angle_of(np.array([0.525]))
+    nodes = zone().nodes(split)
+    assert total(nodes, np.where(nodes.x < 0.575, 0.0, 1.0)) == pytest.approx(0.525, rel=64 * EPS)
+    unsplit = zone().nodes()
     assert abs(total(unsplit, np.where(unsplit.x < 0.575, 0.0, 1.0)) - 0.525) > 1e-4
 
 
-def test_splits_may_come_in_any_order_and_at_the_end() -> None:
-    ordered = zone_nodes(START, END, splits=np.array([-1.0, 0.5, 0.5 * math.pi]))
-    mixed = zone_nodes(START, END, splits=np.array([0.5 * math.pi, -1.0, 0.5]))
-    assert (ordered.x == mixed.x).all()
-    assert (ordered.length[-ORDER:] == 0.0).all()
+@pytest.mark.parametrize("over_patch", [False, True])
+def test_what_is_not_in_the_zone_has_the_angle_of_its_end(over_patch: bool) -> None:
+    it = zone(over_patch=over_patch)
+    angles = it.angle_of(np.array([np.nan, 1.5, -0.1, 0.0, 0.7]))
+    assert (angles[:2] == it.angle).all()
+    assert (angles[2:4] == 0.0).all()
+    assert it.span * np.sin(0.5 * angles[4]) ** 2 == pytest.approx(0.7, rel=4 * EPS)
 
 
-def test_a_batch_is_its_points() -> None:
-    start, end = np.array([[-1.0, -0.5], [0.0, 1.0]]), np.array([[1.0, 0.5], [0.25, 1.0]])
-    splits = np.array([[[0.1], [0.2]], [[-0.3], [0.0]]])
-    together = zone_nodes(start, end, splits=splits)
+def test_a_zone_without_length_has_nodes_without_length() -> None:
+    for over_patch in (False, True):
+        it = zone(0.0, over_patch=over_patch)
+        nodes = it.nodes(it.angle_of(np.array([0.1])))
+        assert (nodes.length == 0.0).all()
+        assert np.isfinite(nodes.x).all()
+
+
+@pytest.mark.parametrize("over_patch", [False, True])
+def test_a_batch_is_its_points(over_patch: bool) -> None:
+    half_width, length = np.array([[1.0, 0.5], [0.25, 1.0]]), np.array([[1.0, 1.0], [0.1, 0.0]])
+    splits = np.array([[[0.1], [0.2]], [[0.3], [0.0]]])
+    together = zone(length, half_width, over_patch).nodes(splits)
     assert together.x.shape == (2, 2, 2 * ORDER)
     for index in np.ndindex(2, 2):
-        alone = zone_nodes(start[index], end[index], splits=splits[index])
+        alone = zone(length[index], half_width[index], over_patch).nodes(splits[index])
         assert (together.x[index] == alone.x).all()
         assert (together.length[index] == alone.length).all()
-    assert (together.length[1, 1] == 0.0).all()  # a zone without length
 
 
-def test_the_angle_runs_from_one_end_of_the_zone_to_the_other() -> None:
-    x = position(START, END, np.array([-0.5 * math.pi, 0.0, 0.5 * math.pi]))
-    assert x == pytest.approx([-0.3, 0.4, 1.1], rel=2 * EPS)
+def test_the_middle_stands_for_the_zone() -> None:
+    node = zone().middle()
+    assert node.x == pytest.approx([0.4], rel=2 * EPS)
+    assert node.length == LENGTH
+
+
+def test_points_are_given_by_x_or_counted_from_the_other_edge() -> None:
+    nodes = Nodes.at(np.array([-1.0, 0.25]), np.array(1.0))
+    assert nodes.x == pytest.approx([-1.0, 0.25])
+    assert nodes.from_leading == pytest.approx([0.0, 1.25])
+    assert nodes.reversed().x == pytest.approx([1.0, -0.25])
 
 
 def test_joined_zones_are_both_there() -> None:
-    parts = zone_nodes(np.array(-1.0), START), zone_nodes(START, END)
+    parts = zone(0.8).nodes().reversed(), zone().nodes()
     nodes = join(*parts)
-    assert nodes.length.sum() == pytest.approx(2.1, rel=16 * EPS)
+    assert nodes.length.sum() == pytest.approx(2.2, rel=16 * EPS)
     assert (nodes.x == np.concatenate([parts[0].x, parts[1].x])).all()
 
 
@@ -94,11 +135,11 @@ def test_uniform_cells_cover_the_patch(cells: int) -> None:
     assert edges == pytest.approx(np.array([[0.5], [2.0]]) * np.linspace(-1.0, 1.0, cells + 1), abs=8 * EPS)
 
 
-def test_a_root_just_outside_the_zone_costs_what_the_invariants_allow_for() -> None:
-    # Hertz's pressure √(1-x²) over [-1+gap, 1]: its leading root lies just outside, √(2 gap) from the real θ-axis.
+def test_a_root_just_outside_a_zone_mapped_over_itself_costs_what_models_declare() -> None:
+    # Hertz's pressure √(1-x²) over [-1+gap, 1]: its leading root lies just outside, √(2 gap) from the real axis.
     gap = np.geomspace(1e-12, 1.0, 2000)
-    nodes = zone_nodes(gap - 1.0, np.ones_like(gap))
-    got = (np.sqrt((1.0 - nodes.x) * (1.0 + nodes.x)) * nodes.length).sum(axis=-1)
+    nodes = zone(2.0 - gap, np.ones_like(gap)).nodes()
+    got = (np.sqrt(nodes.from_leading * nodes.from_trailing) * nodes.length).sum(axis=-1)
     before = 0.5 * (np.arccos(1.0 - gap) - (1.0 - gap) * np.sqrt(gap * (2.0 - gap)))
     error = np.abs(got + before - 0.5 * math.pi)
     assert 1e-9 < error.max() < 5e-8
@@ -108,12 +149,12 @@ def test_a_root_just_outside_the_zone_costs_what_the_invariants_allow_for() -> N
 
 
 def test_the_remainder_of_a_resolved_integrand_is_rounding() -> None:
-    nodes = zone_nodes(START, END, panels=2)
+    nodes = zone().nodes(panels=2)
     assert float(remainder(np.cos(nodes.x) * nodes.length)) < 64 * EPS
 
 
 def test_the_remainder_is_summed_over_panels() -> None:
-    nodes = zone_nodes(START, END, panels=2)
+    nodes = zone().nodes(panels=2)
     rough = np.abs(nodes.x - 0.1) * nodes.length
     first, second = rough.copy(), rough.copy()
     first[ORDER:] = 0.0
@@ -131,7 +172,7 @@ def test_the_remainder_is_the_size_of_the_last_two_legendre_coefficients() -> No
 
 @given(kink=st.floats(-0.29, 1.09), power=st.sampled_from([0.0, 1.0, 1.5]))
 def test_the_remainder_bounds_the_error_of_kinks_and_steps(kink: float, power: float) -> None:
-    nodes = zone_nodes(START, END)
+    nodes = zone().nodes()
     values = np.where(nodes.x > kink, np.abs(nodes.x - kink) ** power, 0.0)
     error = abs(total(nodes, values) - (1.1 - kink) ** (power + 1.0) / (power + 1.0))
     # Two coefficients of falling size can both pass close to zero; then a bound by them holds to a factor.

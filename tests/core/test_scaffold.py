@@ -9,13 +9,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
 
 import wearlaw as wl
-from tests.core.cases import Coarse, Linear, installer
+from tests.core.cases import Coarse, Linear, assert_refused, case, installer, spaced_folder, wearlaw
+from tests.core.test_named import LAB
+from tests.core.test_plugins import LAW, Install, install  # noqa: F401  (a fixture)
 from tests.environments import ROOT, Environment, build
 from wearlaw import plugins
-from wearlaw.cli import main
+from wearlaw.case import case_text
 from wearlaw.scaffold import LICENCES, Kind, write_plugin
 from wearlaw.shelf import Origin
 
@@ -24,21 +26,11 @@ KINDS: dict[Kind, str] = {"wear_law": "--wear-law", "contact_model": "--contact-
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    here = tmp_path / "my work"
-    here.mkdir()
-    monkeypatch.chdir(here)
-    return here
+    return spaced_folder(tmp_path, monkeypatch)
 
 
 def new_plugin(*arguments: str) -> Result:
-    return CliRunner(env={"COLUMNS": "100"}).invoke(main, ["new-plugin", *arguments])
-
-
-def assert_refused(result: Result, message: str, exit_code: int = 1) -> None:
-    assert isinstance(result.exception, SystemExit)
-    assert result.exit_code == exit_code
-    assert message in result.stderr
-    assert result.stdout == ""
+    return wearlaw("new-plugin", *arguments)
 
 
 def files(folder: Path) -> set[str]:
@@ -139,9 +131,9 @@ def test_a_name_too_long_for_the_lines_is_refused() -> None:
 @pytest.mark.parametrize("flag", KINDS.values())
 @pytest.mark.parametrize("name", ["usfd", "kth", "brr", "exact", "fastsim"])
 def test_a_taken_name_is_refused_with_who_has_it(name: str, flag: str, folder: Path) -> None:
-    assert_refused(
-        new_plugin(name, flag), f"name: '{name}' is taken by wearlaw {wl.__version__} (plugin '{name}'); cho"
-    )
+    kind = "wear law" if name in wl.wear_laws() else "contact model"
+    taker = f"the {kind} of wearlaw {wl.__version__} (plugin '{name}')"
+    assert_refused(new_plugin(name, flag), f"name: '{name}' is taken by {taker}; choose another")
     assert files(folder) == set()
 
 
@@ -150,14 +142,50 @@ def test_a_name_that_a_model_but_no_plugin_bears_is_taken(
     model: type[wl.ContactModel] | type[wl.WearLaw], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     installer(monkeypatch)(model)
-    taken = f"'{model.name}' is taken by wearlaw-testing 9.8.7 (plugin 'testing')"
+    kind = "wear law" if issubclass(model, wl.WearLaw) else "contact model"
+    taken = f"'{model.name}' is taken by the {kind} of wearlaw-testing 9.8.7 (plugin 'testing')"
     assert_refused(new_plugin(model.name, "--wear-law"), taken)
 
 
-def test_the_name_of_a_plugin_that_is_broken_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
-    origin = Origin("crumbling", "wearlaw-crumbling", "1.0")
-    monkeypatch.setattr(plugins.installed(), "plugins", [*plugins.installed().plugins, origin])
-    assert_refused(new_plugin("crumbling", "--wear-law"), "'crumbling' is taken by wearlaw-crumbling 1.0 (plugin 'cru")
+@pytest.mark.parametrize(
+    ("name", "taker"),
+    [
+        ("crumbling", "wearlaw-dust 1.0 (plugin 'crumbling')"),
+        ("lab_of_two", "Wearlaw.Lab-of-two 1.0 (plugin 'other')"),
+    ],
+)
+def test_the_name_of_a_plugin_or_a_distribution_that_is_broken_is_taken(
+    name: str, taker: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    installed = [Origin("crumbling", "wearlaw-dust", "1.0"), Origin("other", "Wearlaw.Lab-of-two", "1.0")]
+    monkeypatch.setattr(plugins.installed(), "plugins", [*plugins.installed().plugins, *installed])
+    assert_refused(new_plugin(name, "--wear-law"), f"'{name}' is taken by the plugin {taker}; choose another")
+    assert new_plugin("lab", "--wear-law").exit_code == 0
+
+
+def test_the_name_of_a_parameter_set_is_taken_for_a_wear_law_that_would_hide_it(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    taken = "name: 'lab_2026' is taken by the parameter set of lab 1.0 (plugin 'lab'); choose another"
+    assert_refused(new_plugin("lab_2026", "--wear-law"), taken)
+    assert new_plugin("lab_2026", "--contact-model").exit_code == 0
+    install("hiding", LAW.format(name="lab_2026"))
+    assert wl.wear_law("lab_2026").name == "lab_2026", "the law hides the set, which is of usfd"
+    assert wl.contact_model("exact").name == "exact"
+
+
+@pytest.mark.parametrize("name", ["steel", "tassini2010"])
+def test_the_name_of_a_material_or_a_case_is_free_since_they_are_looked_up_apart(
+    name: str,
+    install: Install,  # noqa: F811
+) -> None:
+    assert new_plugin(name, "--wear-law").exit_code == 0
+    install("free", LAW.format(name=name))
+    assert wl.wear_law(name).name == name
+    assert wl.material("steel") == wl.steel()
+    assert "title = " in case_text("tassini2010")
+    read = case(contact_models=["exact"], wear_laws=[name], rig={"preset": "suros", "material": "steel"})
+    assert read.wear_laws == (wl.wear_law(name),)
+    assert read.rig.disc_1.material == wl.steel()
 
 
 @pytest.mark.parametrize("content", ["folder", "empty folder", "file", "dangling link"])

@@ -17,7 +17,7 @@ from tests.core import cases
 from tests.core.cases import Install, case
 from wearlaw import Array, Q
 from wearlaw.case import Case
-from wearlaw.study import Study, along_main_axis, axes_of, evaluations, main_axis, run
+from wearlaw.study import Study, along_main_axis, axes_of, evaluations, main_axis, provenance, run
 from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
 
 EPS = float(np.finfo(np.float64).eps)
@@ -185,12 +185,25 @@ def test_the_provenance_is_the_case_and_the_versions_of_all_that_was_used(instal
     version = importlib.metadata.version("wearlaw")
     for dataset in (*study.sweeps.values(), *study.profiles.values()):
         assert dataset.attrs["title"] == "A small study"
-        provenance = json.loads(dataset.attrs["provenance"])
-        assert provenance["wearlaw"] == version
-        assert provenance["contact_models"] == {"exact": f"wearlaw {version}", "global": f"wearlaw {version}"}
-        assert provenance["wear_laws"] == {"kth": f"wearlaw {version}", "linear": "wearlaw-testing 9.8.7"}
-        assert Case(**provenance["case"]) == ran
+        said = json.loads(dataset.attrs["provenance"])
+        assert said["wearlaw"] == version
+        assert said["contact_models"] == {"exact": f"wearlaw {version}", "global": f"wearlaw {version}"}
+        assert said["wear_laws"] == {"kth": f"wearlaw {version}", "linear": "wearlaw-testing 9.8.7"}
+        assert said["parameter_sets"] == said["materials"] == said["cases"] == {}
+        assert Case(**said["case"]) == ran
     assert study.case == ran
+
+
+def test_the_provenance_says_of_a_law_that_only_this_process_knows_that_it_is_not_installed(install: Install) -> None:
+    class Own(cases.Linear):
+        name = "linear"
+
+    laws = [Own(slope="1 m"), wl.wear_law("kth")]  # type: ignore[arg-type]
+    ran = case(contact_models=["exact"], wear_laws=laws, profiles={})
+    assert provenance(ran)["wear_laws"]["linear"] == "not installed"
+    install(cases.Linear)  # another law of that name
+    assert provenance(ran)["wear_laws"]["linear"] == "not installed"
+    assert run(ran).sweeps["creepage"].sizes["pair"] == 2
 
 
 # Measured traction

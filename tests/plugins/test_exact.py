@@ -9,6 +9,8 @@ from hypothesis import given
 from scipy import integrate
 
 import wearlaw as wl
+from tests import line
+from tests.line import slip_zone
 from tests.strategies import EPS, line_problems, log_uniform, saturation_creepage, with_creepage
 from wearlaw import Q
 
@@ -22,8 +24,7 @@ def problem_at(percent: float) -> wl.LineProblem:
 
 
 def fields_at(model: wl.ContactModel, problem: wl.LineProblem, x: float) -> wl.LineFields:
-    assert isinstance(model, wl.LineContactModel)
-    return model.fields(problem[..., None], np.array([x]))
+    return line.fields_at(model, problem, np.array([x]))
 
 
 def literal(problem: wl.LineProblem, x: float) -> tuple[float, float]:
@@ -63,7 +64,7 @@ def test_the_fields_are_the_corrected_equations_7_and_8(problem: wl.LineProblem,
 def test_the_total_is_the_integral_of_the_traction(percent: float) -> None:
     problem = problem_at(percent)
     a = float(problem.half_width)
-    start, end = (float(v) for v in EXACT.slip_zone(problem))  # type: ignore[attr-defined]
+    start, end = (float(v) for v in slip_zone(EXACT, problem))
 
     def over(low: float, high: float) -> float:
         if high <= low:
@@ -91,7 +92,7 @@ def test_the_slip_leaves_the_surfaces_together_in_stick(percent: float) -> None:
     a, modulus = float(problem.half_width), float(problem.effective_modulus)
     for position in (-0.9, -0.4, 0.05, 0.6, 0.93):
         x = position * a
-        points = [float(v) for v in EXACT.slip_zone(problem)]  # type: ignore[attr-defined]
+        points = [float(v) for v in slip_zone(EXACT, problem)]
         principal, _ = integrate.quad(
             lambda t: float(fields_at(EXACT, problem, t).traction[0]), -a, a, weight="cauchy", wvar=x, limit=2000
         )
@@ -103,7 +104,7 @@ def test_the_slip_leaves_the_surfaces_together_in_stick(percent: float) -> None:
 def test_the_printed_slip_is_creepage_plus_k_x_in_the_whole_slip_zone() -> None:
     problem = problem_at(0.5)
     a, k = float(problem.half_width), 0.46 / 0.01175
-    start = float(PRINTED.slip_zone(problem)[0])  # type: ignore[attr-defined]
+    start = float(slip_zone(PRINTED, problem)[0])
     for x in (start + 1e-3 * a, 0.5 * a, 0.99 * a):
         assert float(fields_at(PRINTED, problem, x).slip[0]) == pytest.approx(0.005 + k * x, rel=8 * EPS)
     assert float(fields_at(PRINTED, problem, start - 1e-3 * a).slip[0]) == 0.0
@@ -130,7 +131,7 @@ def test_the_stick_ratio_is_one_less_the_reduced_creepage(problem: wl.LineProble
 def test_slip_begins_continuously_at_the_end_of_the_stick_zone() -> None:
     problem = problem_at(0.5)
     a = float(problem.half_width)
-    border = float(EXACT.slip_zone(problem)[0])  # type: ignore[attr-defined]
+    border = float(slip_zone(EXACT, problem)[0])
     slips = [float(fields_at(EXACT, problem, border + gap * a).slip[0]) for gap in (1e-4, 1e-8, 1e-12)]
     assert slips[0] == pytest.approx(100.0 * slips[1], rel=1e-3)  # a square root
     assert slips[2] < 1e-5 * saturation_creepage(problem)

@@ -10,6 +10,7 @@ from hypothesis import given
 from scipy import integrate
 
 import wearlaw as wl
+from tests.line import fields_at, slip_zone
 from tests.strategies import EPS, line_problems, saturation_creepage
 from wearlaw import Array, Q
 from wearlaw.quadrature import uniform_cells
@@ -93,7 +94,7 @@ def test_the_march_converges_to_the_closed_form_in_first_order(
     # and which errs by two to three cells of those that slip.
     assert max(np.array(traction_errors) * counts) < 5.0
     assert -np.polyfit(np.log(counts), np.log(energy_errors), 1)[0] == pytest.approx(1.0, abs=0.25)
-    start, end = model.slip_zone(problem)
+    start, end = slip_zone(model, problem)
     slipping_cells = counts[-1] * float((end - start) / (2.0 * problem.half_width))
     assert energy_errors[-1] < 3.0 / slipping_cells
 
@@ -107,9 +108,9 @@ def test_the_fields_of_the_march_are_those_of_the_closed_form(
     cells = 4000
     x, traction, slip = march(problem, bound, flexibility, cells)
     inside = slice(cells // 50, -cells // 50)  # the slope of the ellipse grows without bound at the edges
-    fields = model.fields(problem[..., None], x)
+    fields = fields_at(model, problem, x)
     assert traction[inside] == pytest.approx(fields.traction[inside], rel=1e-9)  # the march only adds up, in 4000 sums
-    start, _ = model.slip_zone(problem)
+    start, _ = slip_zone(model, problem)
     away = np.abs(x - float(start)) > 2.0 * float(problem.half_width) / cells
     keep = away & (np.abs(x) < 0.96 * float(problem.half_width))
     # a one-sided difference is off by L q'' dx/2
@@ -121,7 +122,7 @@ def test_the_fields_of_the_march_are_those_of_the_closed_form(
 def test_the_total_is_the_integral_of_the_clipped_line(bound: Bound, flexibility: Flexibility, percent: float) -> None:
     problem, model = problem_at(percent), fastsim(bound, flexibility)
     a, slope = float(problem.half_width), float(problem.creepage) / flexibility_of(problem, flexibility)
-    start = float(model.slip_zone(problem)[0])
+    start = float(slip_zone(model, problem)[0])
     total = sum(
         integrate.quad(
             lambda x: min(slope * (x + a), float(bound_at(problem, bound, np.array(x)))), low, high, epsrel=1e-11
@@ -139,7 +140,7 @@ def test_the_slip_is_the_creepage_less_the_slope_of_the_bound(
 ) -> None:
     problem, model = problem_at(percent), fastsim(bound, flexibility)
     a, flex = float(problem.half_width), flexibility_of(problem, flexibility)
-    start = float(model.slip_zone(problem)[0])
+    start = float(slip_zone(model, problem)[0])
     x = start + (a - start) * np.linspace(0.05, 0.9, 12)
     with mpmath.workdps(40):
         top = mpmath.mpf(float(bound_at(problem, bound, np.array(0.0))))
@@ -148,14 +149,14 @@ def test_the_slip_is_the_creepage_less_the_slope_of_the_bound(
     expected = float(problem.creepage) - flex * np.array(gradient)
     # the creepage and the slope may cancel where slip begins
     scale = float(problem.creepage) + flex * max(np.abs(gradient))
-    assert model.fields(problem[..., None], x).slip == pytest.approx(expected, abs=16 * EPS * scale)
+    assert fields_at(model, problem, x).slip == pytest.approx(expected, abs=16 * EPS * scale)
 
 
 def test_the_parabola_saturates_at_one_and_a_half_times_the_creepage_of_carter() -> None:
     problem = problem_at(1.0)
     for shift, sticks in ((-1e-9, True), (1e-9, False)):
         percent = 150.0 * saturation_creepage(problem) * (1.0 + shift)
-        start = float(fastsim("parabolic", "line").slip_zone(problem_at(percent))[0])
+        start = float(slip_zone(fastsim("parabolic", "line"), problem_at(percent))[0])
         assert (start > -float(problem.half_width)) is sticks
 
 
@@ -190,7 +191,7 @@ def test_the_pressure_of_the_record_is_that_of_hertz(bound: Bound, flexibility: 
 def test_the_elliptic_bound_is_finite_at_the_very_edge(edge: float) -> None:
     problem = problem_at(1.0)
     a = float(problem.half_width)
-    fields = fastsim("elliptic", "line").fields(problem[..., None], np.array([edge * a, edge * a * (1 + 2 * EPS)]))
+    fields = fields_at(fastsim("elliptic", "line"), problem, np.array([edge * a]))
     density = fields.traction * fields.slip
     # towards the trailing edge q·s tends to L (μp0)²/a
     grip = 0.46 * float(problem.max_pressure)

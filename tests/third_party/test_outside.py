@@ -143,6 +143,7 @@ def test_they_work_in_a_case_file(environment: Environment, tmp_path: Path) -> N
     (tmp_path / "mine.toml").write_text(textwrap.dedent(CASE))
     done = environment.wearlaw("run", "mine.toml", "-o", "out", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
+    assert "\n  and wearlaw-outside 1.2.3: contact model rigid, wear law made_up\nResults in out:\n" in done.stdout
     csv = (tmp_path / "out" / "results.csv").read_text()
     for law in ("made_up", "kth"):
         for model in ("rigid", "exact"):

@@ -6,15 +6,19 @@ import datetime
 import keyword
 import os
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from string import Template
-from typing import Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, get_args
+
+from packaging.utils import canonicalize_name
 
 from wearlaw import plugins
 from wearlaw.errors import InputError, OutputError
 from wearlaw.output import fresh_folder
+from wearlaw.shelf import Shelf
 from wearlaw.version import __version__
 
 Kind: TypeAlias = Literal["wear_law", "contact_model"]
@@ -72,7 +76,7 @@ def write_plugin(name: str, kind: Kind, parent: Path, licence: Licence = "none")
     OutputError
         If the folder exists, or cannot be written.
     """
-    _check_name(name)
+    _check_name(name, kind)
     folder = parent / f"wearlaw-{name}"
     if os.path.lexists(folder):
         raise OutputError(f"output: '{folder}' exists and is left as it is; choose another parent folder with -o")
@@ -87,7 +91,7 @@ def class_name(name: str) -> str:
     return "".join(word.capitalize() for word in name.split("_"))
 
 
-def _check_name(name: str) -> None:
+def _check_name(name: str, kind: Kind) -> None:
     if not _NAME.fullmatch(name) or keyword.iskeyword(name):
         raise InputError(
             f"name: must be a Python name of lower-case letters, digits and single underscores between them,"
@@ -98,11 +102,26 @@ def _check_name(name: str) -> None:
     made = class_name(name)
     if made.startswith("Test") or made in {"None", "True", "False", "Check", "ClassVar", "Field", "Mapping"}:
         raise InputError(f"name: {name!r} would name its class {made}, which means something else; choose another")
+    for taker in _takers(name, kind):
+        raise InputError(f"name: '{name}' is taken by {taker}; choose another")
+
+
+def _takers(name: str, kind: Kind) -> Iterator[str]:
+    """Give what bears a name already, where a look-up would confuse the two.
+
+    `wearlaw show` and `check` take contact models and wear laws alike, and a wear law hides the parameter set of its
+    name. Materials and cases are looked up apart. A distribution replaces that of its name.
+    """
     found = plugins.installed()
-    origins = [shelf.origin(name) for shelf in (found.wear_laws, found.contact_models) if name in shelf.providers]
-    origins += [origin for origin in found.plugins if origin.entry_point == name]
-    if origins:
-        raise InputError(f"name: '{name}' is taken by {origins[0]}; choose another")
+    shelves: list[Shelf[Any]] = [found.wear_laws, found.contact_models]
+    if kind == "wear_law":
+        shelves.append(found.parameter_sets)
+    for shelf in shelves:
+        if name in shelf.providers:
+            yield f"the {shelf.kind} of {shelf.origin(name)}"
+    for origin in found.plugins:
+        if origin.entry_point == name or canonicalize_name(origin.distribution) == canonicalize_name(f"wearlaw-{name}"):
+            yield f"the plugin {origin}"
 
 
 def _files(name: str, kind: Kind, licence: Licence) -> dict[str, str]:

@@ -19,17 +19,16 @@ class Rigid(wl.LineContactModel):
         """Return what the model does not claim."""
         return {"initial_slope": "rigid bodies slip at any creepage"}
 
-    def slip_zone(self, problem: wl.LineProblem) -> tuple[wl.Array, wl.Array]:
-        """Return the whole patch, or nothing at zero creepage."""
-        a = problem.half_width
-        return np.where(problem.creepage > 0, -a, a), a
+    def slip_length(self, problem: wl.LineProblem) -> wl.Array:
+        """Return the length of the whole patch, or nothing at zero creepage."""
+        return np.where(problem.creepage > 0, 2.0 * problem.half_width, 0.0)
 
-    def fields(self, problem: wl.LineProblem, x: wl.Array) -> wl.LineFields:
+    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
         """Return traction at its bound and slip equal to the creepage."""
-        pressure = wl.hertz.pressure(x, problem.half_width, problem.max_pressure)
+        pressure = wl.hertz.pressure(nodes.x, problem.half_width, problem.max_pressure)
         bound = problem.friction_coefficient * pressure
         traction = np.where(problem.creepage > 0, bound, 0.0)
-        slip = np.broadcast_to(problem.creepage, x.shape)
+        slip = np.broadcast_to(problem.creepage, pressure.shape)
         return wl.LineFields(pressure=pressure, traction=traction, slip=slip, traction_bound=bound)
 
     def tangential_force_per_width(self, problem: wl.LineProblem) -> wl.Array:

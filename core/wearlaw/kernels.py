@@ -1,0 +1,112 @@
+"""Kernels: formulas for one operating point that run compiled where numba is installed.
+
+A kernel is written twice, as a scalar function that numba can compile and as a function of NumPy arrays. Single
+operating points take the scalar function as it is; arrays take the compiled one if numba is installed and not turned
+off, else the NumPy one. All three agree to rounding.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Callable
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.errors import InputError
+
+SETTING = "WEARLAW_ACCELERATE"
+"""The environment variable that turns compiled kernels off with "0"."""
+
+WORTHWHILE = 10_000
+"""Operating points from which on compiled kernels are chosen; loading numba takes longer than fewer take in NumPy."""
+
+_chosen: bool | None = None
+
+
+def accelerate(on: bool | None) -> None:
+    """Turn compiled kernels on or off in this process; None returns to the choice by size and environment.
+
+    Raises
+    ------
+    InputError
+        If they are turned on, but numba is not installed.
+    """
+    global _chosen
+    if on and _numba() is None:
+        raise InputError('accelerate: numba is not installed; python -m pip install "wearlaw[fast]"')
+    _chosen = on
+
+
+def accelerated(points: int) -> bool:
+    """Return whether an array of so many operating points runs through compiled kernels."""
+    if _chosen is not None:
+        return _chosen
+    return points >= WORTHWHILE and os.environ.get(SETTING, "1") != "0" and _numba() is not None
+
+
+class Kernel:
+    """A formula for one operating point, as made by `kernel`."""
+
+    def __init__(self, scalar: Callable[..., float], arrays: Callable[..., Array]) -> None:
+        self.scalar = scalar
+        self.arrays = arrays
+
+    def __call__(self, first: Array, *others: Array | float) -> Array:
+        """Return the formula of float64 arrays of one shape, of which all but the first may be single numbers."""
+        arguments = (first, *others)
+        if first.ndim == 0:
+            value: Any = np.float64(self.scalar(*map(float, arguments)))  # computes as an array without axes does
+            return value  # type: ignore[no-any-return]
+        if first.size == 1:
+            return np.full(first.shape, self.scalar(*map(_number, arguments)))
+        return self.compiled(*arguments) if accelerated(first.size) else self.arrays(*arguments)
+
+    @functools.cached_property
+    def compiled(self) -> Callable[..., Array]:
+        """The scalar function, compiled by numba for arrays; kept on disk for later processes where there is room."""
+        numba, code = _numba(), self.scalar.__code__
+        options = {"fastmath": {"contract"}}  # a multiplication and an addition with one rounding, as C compilers do
+        namespace = dict(self.scalar.__globals__)
+        for name in code.co_names:
+            if isinstance(namespace.get(name), FunctionType):
+                namespace[name] = numba.njit(**options)(namespace[name])
+        function = FunctionType(code, namespace, self.scalar.__name__)
+        function.__module__ = self.scalar.__module__
+        signatures = [numba.float64(*[numba.float64] * code.co_argcount)]
+        compiled: Callable[..., Array]
+        try:
+            compiled = numba.vectorize(signatures, cache=True, **options)(function)
+        except RuntimeError:  # no folder that numba may write to
+            compiled = numba.vectorize(signatures, **options)(function)
+        return compiled
+
+
+def kernel(arrays: Callable[..., Array]) -> Callable[[Callable[..., float]], Kernel]:
+    """Return a decorator that makes a kernel of a scalar function.
+
+    Parameters
+    ----------
+    arrays : callable
+        The same formula of float64 arrays of one shape, of which all but the first may be single numbers. The scalar
+        function takes as many floats and returns one; it uses only what numba can compile, such as `math` and
+        functions of its module that do the same.
+    """
+    return lambda scalar: Kernel(scalar, arrays)
+
+
+def _number(value: Array | float) -> float:
+    return value if isinstance(value, float) else value.item()
+
+
+@functools.cache
+def _numba() -> Any:
+    """Return numba, or None where it is not installed or does not fit the rest of the environment."""
+    try:
+        import numba
+    except ImportError:
+        return None
+    return numba

@@ -1,0 +1,68 @@
+"""Watching whether operating points stay in the range that a wear law is stated for."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.errors import RangeWarning
+from wearlaw.line import LineProblem
+from wearlaw.models import WearLaw
+from wearlaw.records import UNITS
+from wearlaw.units import extremes, from_si
+
+
+class RangeWatch:
+    """Sees operating points block by block and warns once for each variable that leaves the law's range."""
+
+    def __init__(self, law: WearLaw) -> None:
+        self.law = law
+        self.range = law.valid_range
+        self.seen = {name: _Seen() for name in self.range}
+        self.points = 0
+
+    def see(self, problem: LineProblem, force: Array) -> None:
+        """Take note of a block of operating points with their tangential forces [N]."""
+        self.points += problem.creepage.size
+        for name, (low, high) in self.range.items():
+            values = _patch_mean(name, problem, force)
+            lowest, highest = extremes(values)
+            seen = self.seen[name]
+            seen.lowest, seen.highest = min(seen.lowest, lowest), max(seen.highest, highest)
+            if lowest < low or highest > high:
+                seen.outside += int(np.count_nonzero((values < low) | (values > high)))
+
+    def warn(self, stacklevel: int) -> None:
+        """Warn of what has been seen; `stacklevel` 1 is the caller."""
+        for name, seen in self.seen.items():
+            if seen.outside:
+                low, high = self.range[name]
+                farthest = seen.highest if seen.highest > high else seen.lowest
+                shown = [repr(from_si(value, UNITS[name])) for value in (low, high, farthest)]
+                warnings.warn(
+                    f"wear law '{self.law.name}' is stated for a mean {name.replace('_', ' ')} from {shown[0]} to"
+                    f" {shown[1]}; {seen.outside} of {self.points} operating points lie outside, as far as {shown[2]}",
+                    RangeWarning,
+                    stacklevel=stacklevel + 1,
+                )
+
+
+class _Seen:
+    """What has been seen of one variable."""
+
+    def __init__(self) -> None:
+        self.lowest, self.highest, self.outside = np.inf, -np.inf, 0
+
+
+def _patch_mean(variable: str, problem: LineProblem, force: Array) -> Array:
+    """Return a variable of `Contact` as its patch mean."""
+    if variable == "pressure":
+        return problem.normal_force / problem.patch_area
+    if variable == "slip":
+        return np.abs(problem.creepage)
+    if variable == "slip_speed":
+        return np.abs(problem.creepage) * problem.rolling_speed
+    wear_index = force * problem.creepage
+    return wear_index / problem.patch_area if variable == "wear_index_density" else wear_index

@@ -1,0 +1,135 @@
+"""Wearlaw and its rivals on the same operating points: CPU time, and error against the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from tests.benchmarks import rivals
+from tests.benchmarks.points import Points, creepage_sweep, in_si, pipeline, reference, workload
+from tests.benchmarks.report import Gate, Row
+from tests.benchmarks.rivals import CELLS, CHUNKS, Compiled
+from tests.benchmarks.timing import in_mode, modes, side_by_side
+from wearlaw import Array
+
+POINTS = 100_000
+CURVE_POINTS = 10_000
+CURVE_CELLS = (10, 30, 300, 1000, 3000)
+CURVE_ROUNDS = 5
+
+NUMPY_CELLS = "cells, NumPy"
+NUMPY_TUNED = "cells, NumPy tuned by hand"
+C_CELLS = "cells, C"
+C_CLOSED = "closed form, C"
+C_CLOSED_FAST = "closed form, C, fast maths"
+
+
+def compare(rounds: int) -> tuple[list[Row], list[Gate]]:
+    """Return a row for every rival, and the gates that compare them."""
+    points = workload(POINTS)
+    exact = reference(points)
+    works = _rivals(points)
+    again = {f"{name}, again": works[name] for name in (NUMPY_CELLS, *map(_wearlaw, modes()))}
+    _check(points, works)
+    times = side_by_side({**works, **again}, rounds)
+    for name in again:
+        ratio, low, high = times.ratio(name, name.removesuffix(", again"))
+        print(f"A/A control, {name.removesuffix(', again')}: {ratio:.3f} ({low:.3f} to {high:.3f})")
+    for name in works:
+        ratios = " ".join(
+            f"{times.ratio(name, base)[0]:8.3f} × {base};" for base in (NUMPY_CELLS, C_CLOSED) if base in works
+        )
+        print(f"{name:30} {ratios}")
+    errors = {name: _error(_rate(work()), exact) for name, work in works.items()}
+    rows = [
+        Row(name, CELLS if name.startswith("cells") else None, 1e6 * times.median(name) / POINTS, *errors[name])
+        for name in works
+    ]
+    _print_default_load()
+    gates = [
+        Gate("time, wearlaw with NumPy over cells in NumPy", times.ratio(_wearlaw("NumPy"), NUMPY_CELLS)[0], 0.25),
+        Gate("rms error, wearlaw with NumPy over cells", errors[_wearlaw("NumPy")][0] / errors[NUMPY_CELLS][0], 1e-3),
+    ]
+    if C_CLOSED in works and "numba" in modes():
+        ratio = times.ratio(_wearlaw("numba"), C_CLOSED)[0]
+        gates.append(Gate("time, wearlaw with numba over closed form in C", ratio, 1.5))
+    return rows, gates
+
+
+def curve() -> list[Row]:
+    """Return rows of the algorithms of cells for other numbers of cells."""
+    points = workload(CURVE_POINTS)
+    exact = reference(points)
+    chunk = _best_chunk(rivals.numpy_cells, points)
+    works: dict[tuple[str, int], Callable[[], Array]] = {
+        (NUMPY_CELLS, count): partial(rivals.numpy_cells, points, count, chunk) for count in CURVE_CELLS
+    }
+    if rivals.compilers():
+        fast = Compiled(rivals.FAST)
+        works |= {(C_CELLS, count): partial(fast.cells, points, count) for count in CURVE_CELLS}
+    times = side_by_side({f"{name} {count}": work for (name, count), work in works.items()}, CURVE_ROUNDS)
+    return [
+        Row(name, count, 1e6 * times.median(f"{name} {count}") / CURVE_POINTS, *_error(work(), exact))
+        for (name, count), work in works.items()
+    ]
+
+
+def _rivals(points: Points) -> dict[str, Callable[[], object]]:
+    predict, conditions = pipeline(), points.conditions()
+    works: dict[str, Callable[[], object]] = {
+        _wearlaw(name): in_mode(on, lambda: predict(**conditions).wear_rate) for name, on in modes().items()
+    }
+    for name, cells in ((NUMPY_CELLS, rivals.numpy_cells), (NUMPY_TUNED, rivals.numpy_cells_in_buffers)):
+        works[name] = partial(cells, points, chunk=_best_chunk(cells, points))
+    if rivals.compilers():
+        fast, plain = Compiled(rivals.FAST), Compiled(rivals.PLAIN_LIBRARY)
+        works[C_CELLS] = partial(fast.cells, points)
+        works[C_CLOSED] = partial(plain.closed_form, points)
+        works[C_CLOSED_FAST] = partial(fast.closed_form, points)
+    else:
+        print("no C compiler: the rivals in C are left out")
+    return works
+
+
+def _check(points: Points, works: dict[str, Callable[[], object]]) -> None:
+    """Check the compiled cells with other flags, or another compiler, and against NumPy."""
+    if C_CELLS not in works:
+        return
+    ours, fast = works[NUMPY_CELLS](), works[C_CELLS]()
+    others = {f"{name} {' '.join(rivals.CHECK)}": Compiled(rivals.CHECK, name) for name in rivals.compilers()}
+    for name, rates in {**{name: other.cells(points) for name, other in others.items()}, "NumPy": ours}.items():
+        assert isinstance(rates, np.ndarray)
+        assert isinstance(fast, np.ndarray)
+        apart = float(np.abs(rates - fast).max() / rates.max())
+        print(f"cells in C ({' '.join(rivals.FAST)}) and {name} differ by {apart:.1e} of the largest rate")
+        assert apart < 1e-12
+
+
+def _best_chunk(cells: Callable[..., Array], points: Points) -> int:
+    """Return the chunk with which an algorithm is fastest here."""
+    works = {str(chunk): partial(cells, points, chunk=chunk) for chunk in CHUNKS}
+    times = side_by_side(works, rounds=3)
+    return int(min(works, key=times.median))
+
+
+def _print_default_load() -> None:
+    points = creepage_sweep(POINTS)
+    rms, worst = _error(rivals.numpy_cells(points), reference(points))
+    print(f"at the load and friction of Tassini et al. (2010), {CELLS} cells: rms error {rms:.1%}, at most {worst:.0%}")
+
+
+def _wearlaw(mode: str) -> str:
+    return f"wearlaw, {mode}"
+
+
+def _rate(outcome: object) -> Array:
+    """Return the outcome of a rival [kg/m/m²]."""
+    return outcome if isinstance(outcome, np.ndarray) else in_si(outcome)
+
+
+def _error(found: Array, exact: Array) -> tuple[float, float]:
+    """Return the root mean square and the largest of the relative errors."""
+    relative = found / exact - 1.0
+    return float(np.sqrt(np.mean(relative * relative))), float(np.abs(relative).max())

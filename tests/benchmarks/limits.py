@@ -1,0 +1,91 @@
+"""What a single prediction costs, what units cost, how much memory a sweep takes, and how its time grows."""
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+import warnings
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tests.benchmarks.points import DEFAULT_FORCE, DEFAULT_FRICTION, Predict, pipeline, workload
+from tests.benchmarks.timing import Times, accelerator, cpu_time, in_mode, side_by_side
+from wearlaw import Q, RangeWarning
+from wearlaw.conditions import condition_arrays
+
+DECADES = (10**3, 10**4, 10**5, 10**6, 10**7)
+SWEEP = 10**5
+MEMORY_POINTS = 10**6
+
+
+def scalar_seconds(on: bool, rounds: int = 21, calls: int = 200) -> float:
+    """Return the CPU seconds of one prediction from Quantities built beforehand, the median of rounds."""
+    accelerator(on)
+    predict = pipeline()
+    load, creepage = Q(DEFAULT_FORCE, "N"), Q(1.0, "%")
+
+    def once() -> object:
+        return predict(normal_force=load, creepage=creepage, friction_coefficient=DEFAULT_FRICTION).wear_rate
+
+    once()
+    return float(np.median([cpu_time(once, calls) for _ in range(rounds)]))
+
+
+def rim(on: bool, rounds: int) -> Times:
+    """Return the times of a sweep and, in it, of the conditions' way from Quantities to checked SI arrays."""
+    predict, conditions = pipeline(), workload(SWEEP).conditions()
+    works = {
+        "sweep": in_mode(on, lambda: predict(**conditions).wear_rate),
+        "conditions": lambda: condition_arrays(conditions),
+    }
+    return side_by_side(works, rounds)
+
+
+def peak_memory(on: bool) -> tuple[float, float]:
+    """Return the peak memory [MiB] of a fresh process after a small sweep and after that of `MEMORY_POINTS`."""
+    # The peak that a process reports includes that of the one which started it, so a small one does that.
+    launcher = "import subprocess, sys; sys.exit(subprocess.run(sys.argv[1:]).returncode)"
+    command = [sys.executable, "-c", launcher, sys.executable, "-m", "tests.benchmarks.limits", str(int(on))]
+    project = Path(__file__).parents[2]
+    printed = subprocess.run(command, cwd=project, stdout=subprocess.PIPE, text=True, check=True).stdout
+    before, after = printed.split()
+    return float(before), float(after)
+
+
+def linearity(on: bool) -> tuple[dict[int, float], float]:
+    """Return the CPU seconds of sweeps by number of points, and the exponent fitted to them."""
+    accelerator(on)
+    predict, seconds = pipeline(), {}
+    predict(**workload(DECADES[0]).conditions())
+    for count in DECADES:
+        sweep = partial(_sweep, predict, workload(count).conditions())
+        seconds[count] = float(np.median([cpu_time(sweep) for _ in range(max(3, SWEEP // count))]))
+    exponent, _ = np.polyfit(np.log(list(seconds)), np.log(list(seconds.values())), 1)
+    return seconds, float(exponent)
+
+
+def _sweep(predict: Predict, conditions: dict[str, Any]) -> object:
+    return predict(**conditions).wear_rate
+
+
+def _peak_mib() -> float:
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / (2**20 if sys.platform == "darwin" else 2**10)
+
+
+def _print_peaks(on: bool) -> None:
+    warnings.simplefilter("ignore", RangeWarning)
+    accelerator(on)
+    predict = pipeline()
+    _sweep(predict, workload(DECADES[0]).conditions())
+    before = _peak_mib()
+    _sweep(predict, workload(MEMORY_POINTS).conditions())
+    print(before, _peak_mib())
+
+
+if __name__ == "__main__":
+    _print_peaks(sys.argv[1] == "1")
