@@ -41,34 +41,37 @@ CONDITIONS = (*LOADS, "creepage", *COEFFICIENTS)
 """All conditions of a twin-disc test."""
 
 
+UNITS = {**LOADS, "creepage": CREEPAGE}
+"""The conditions that have units."""
+
+
 def condition_arrays(conditions: dict[str, Any]) -> dict[str, Array]:
     """Return all given conditions as SI arrays of one shape."""
-    for name in conditions:
-        if name not in CONDITIONS:
+    arrays = {}
+    for name, value in conditions.items():
+        if name in UNITS and value is not None:
+            arrays[name] = UNITS[name].si(value, name)
+        elif name in COEFFICIENTS and value is not None:
+            arrays[name] = coefficient(value, name)
+        elif name not in CONDITIONS:
             raise ConditionsError(
                 f"{name}: unknown condition;{did_you_mean(name, CONDITIONS)}"
                 f" The conditions are: {', '.join(CONDITIONS)}"
             )
-    given = {name: value for name, value in conditions.items() if value is not None}
-    loads = [name for name in LOADS if name in given]
+    loads = [name for name in LOADS if name in arrays]
     if len(loads) != 1:
         raise ConditionsError(
             f"give exactly one of {', '.join(LOADS)}; got {' and '.join(loads) if loads else 'none of them'}"
         )
     for name in ("creepage", "friction_coefficient"):
-        if name not in given:
+        if name not in arrays:
             example = 'Q(1, "%")' if name == "creepage" else "0.46"
             raise ConditionsError(f"{name}: is missing; give {name}={example}")
-    units = {**LOADS, "creepage": CREEPAGE}
-    arrays = {
-        name: units[name].si(value, name) if name in units else coefficient(value, name)
-        for name, value in given.items()
-    }
     return _broadcast(arrays)
 
 
 def _broadcast(arrays: dict[str, Array]) -> dict[str, Array]:
-    if all(array.ndim == 0 for array in arrays.values()):
+    if not any(array.ndim for array in arrays.values()):
         return {name: array[()] for name, array in arrays.items()}  # NumPy computes five times as fast with scalars
     try:
         shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))

@@ -124,9 +124,15 @@ def integrate_wear(
     def columns(part: LineProblem) -> Columns:
         return (closed and _closed_form(*closed, part)) or _from_nodes(model, law, part, scale)
 
-    flat = problem if closed and problem.batch_shape == () else problem.flatten()  # scalars are computed as scalars
+    if closed and problem.batch_shape == ():  # scalars are computed as scalars
+        found = _closed_form(*closed, problem)
+        if found is not None:
+            if on_block is not None:
+                on_block(problem, found["tangential_force"])
+            _check_finite(model, found, problem)
+            return WearTotals(wear_rate=found["wear_rate"])
     block = BLOCK if closed else NODE_BLOCK
-    found = _by_block(flat, block, columns, on_block, drop_force=isinstance(model, LineContactModel))
+    found = _by_block(problem.flatten(), block, columns, on_block, drop_force=isinstance(model, LineContactModel))
     found = {name: values.reshape(problem.batch_shape) for name, values in found.items()}
     _check_finite(model, found, problem)
     return WearTotals(**found)

@@ -81,7 +81,8 @@ class LineProblem:
 
     def forward(self) -> Self:
         """Return the problem with the magnitude of the creepage."""
-        return self if (self.creepage >= 0.0).all() else dataclasses.replace(self, creepage=np.abs(self.creepage))
+        lowest = self.creepage.min() if self.creepage.ndim else self.creepage
+        return self if lowest >= 0.0 else dataclasses.replace(self, creepage=np.abs(self.creepage))
 
     def flatten(self) -> Self:
         """Return the problem with its batch as one axis."""

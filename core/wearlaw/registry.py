@@ -77,6 +77,20 @@ def quantity(magnitude: Any, unit: str) -> Any:
     return quantity_class(registry)(magnitude, parse_unit(registry, unit))
 
 
+def quantity_from_si(value: Any, unit: str) -> Any:
+    """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
+    make, container, factor = _shown_in(application_registry(), unit)
+    scaled = value / factor
+    return make(scaled if np.ndim(scaled) else float(scaled), container)
+
+
+@functools.lru_cache(maxsize=512)
+def _shown_in(registry: pint.UnitRegistry[Any], unit: str) -> tuple[type[Any], Any, float]:
+    # pint takes its container of units faster than the unit around it
+    container = parse_unit(registry, unit)._units
+    return quantity_class(registry), container, _coherent(registry, unit)
+
+
 @functools.lru_cache(maxsize=64)
 def quantity_class(registry: pint.UnitRegistry[Any]) -> type[Any]:
     """Return the registry's quantity class with a repr that a reader of wear rates can read."""

@@ -16,7 +16,7 @@ import pint
 from pydantic_core import core_schema
 
 from wearlaw.errors import UnitError
-from wearlaw.registry import application_registry, quantity, si_factor, symbol, unit_in_si
+from wearlaw.registry import application_registry, quantity, quantity_from_si, si_factor, symbol, unit_in_si
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -258,8 +258,8 @@ def in_unit(value: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
 
 def from_si(value: NDArray[np.float64] | float, unit: str) -> Quantity:
     """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
-    scaled = value / unit_in_si(unit)
-    return quantity(float(scaled) if np.ndim(scaled) == 0 else scaled, unit)  # type: ignore[no-any-return]
+    result: Quantity = quantity_from_si(value, unit)
+    return result
 
 
 def extremes(array: NDArray[np.float64]) -> tuple[float, float]:
