@@ -13,13 +13,12 @@ The last two come with an error estimate. The number of cells of a plot has no p
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.blocks import Columns, OnBlock, by_block
 from wearlaw.crossings import crossings
 from wearlaw.errors import ModelError
 from wearlaw.line import LineProblem
@@ -71,12 +70,6 @@ class WearTotals:
     tangential_force: Array | None = None
 
 
-Columns: TypeAlias = dict[str, Array]
-
-OnBlock: TypeAlias = Callable[[LineProblem, Array], None]
-"""What is called with a block of operating points and their tangential forces [N]."""
-
-
 def integrate_contact(model: ContactModel, problem: LineProblem) -> Array:
     """Return the tangential force [N]."""
     if isinstance(model, LineContactModel):
@@ -84,7 +77,7 @@ def integrate_contact(model: ContactModel, problem: LineProblem) -> Array:
         _check_finite(model, {"tangential_force": force}, problem)
         return force
     flat = problem.flatten()
-    columns = _by_block(flat, NODE_BLOCK, lambda part: {"force": solve(model, part, model.scale).tangential_force})
+    columns = by_block(flat, NODE_BLOCK, lambda part: {"force": solve(model, part, model.scale).tangential_force})
     return columns["force"].reshape(problem.batch_shape)
 
 
@@ -98,7 +91,7 @@ def integrate_slip(model: ContactModel, problem: LineProblem, scale: Scale) -> S
             area = model.slip_length(part.forward()) * part.track_width
         return {"mean_slip": contact.mean_slip, "slip_area": area}
 
-    found = _by_block(problem.flatten(), NODE_BLOCK, columns)
+    found = by_block(problem.flatten(), NODE_BLOCK, columns)
     return SlipTotals(**{name: values.reshape(problem.batch_shape) for name, values in found.items()})
 
 
@@ -132,7 +125,7 @@ def integrate_wear(
             _check_finite(model, found, problem)
             return WearTotals(wear_rate=found["wear_rate"])
     block = BLOCK if closed else NODE_BLOCK
-    found = _by_block(problem.flatten(), block, columns, on_block, drop_force=isinstance(model, LineContactModel))
+    found = by_block(problem.flatten(), block, columns, on_block, drop_force=isinstance(model, LineContactModel))
     found = {name: values.reshape(problem.batch_shape) for name, values in found.items()}
     _check_finite(model, found, problem)
     return WearTotals(**found)
@@ -191,7 +184,7 @@ def _from_nodes(model: ContactModel, law: WearLaw, problem: LineProblem, scale: 
         error = _thinning_error(contact, rate) if scale == "cells" else EPS * np.abs(contact.mean(rate))
         return {"wear_rate": contact.mean(rate), "wear_rate_error": error, "tangential_force": contact.tangential_force}
 
-    return _by_block(problem.flatten(), NODE_BLOCK, columns)
+    return by_block(problem.flatten(), NODE_BLOCK, columns)
 
 
 def _over_slip_zone(model: LineContactModel, law: WearLaw, problem: LineProblem) -> Columns:
@@ -269,38 +262,3 @@ def _ranges(problem: LineProblem) -> str:
         f"creepages from {creepage.min():g} to {creepage.max():g}"
         f" and maximum pressures from {pressure.min():g} to {pressure.max():g} Pa"
     )
-
-
-def _by_block(
-    problem: LineProblem,
-    block: int,
-    function: Callable[[LineProblem], Columns],
-    on_block: OnBlock | None = None,
-    drop_force: bool = False,
-) -> Columns:
-    """Return the columns of a function of a problem with one batch axis at most, evaluated block by block.
-
-    With `drop_force`, the tangential forces are told to `on_block` and not kept.
-    """
-    points = problem.creepage.size
-    if points == 0:
-        raise ValueError("an empty batch has no totals")
-    whole: Columns = {}
-    for part in _blocks(points, block):
-        within = problem if points <= block else problem[part]
-        columns = function(within)
-        if on_block is not None:
-            on_block(within, columns["tangential_force"])
-        if drop_force:
-            del columns["tangential_force"]
-        if points <= block:
-            whole = columns
-            break
-        whole = whole or {name: np.empty(points) for name in columns}
-        for name, values in columns.items():
-            whole[name][part] = values
-    return whole
-
-
-def _blocks(points: int, block: int) -> Iterator[slice]:
-    return (slice(first, min(first + block, points)) for first in range(0, points, block))

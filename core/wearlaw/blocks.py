@@ -1,0 +1,52 @@
+"""Operating points block by block, so that what is computed for them stays in the cache."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TypeAlias
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.line import LineProblem
+
+Columns: TypeAlias = dict[str, Array]
+"""Arrays with one entry an operating point."""
+
+OnBlock: TypeAlias = Callable[[LineProblem, Array], None]
+"""What is called with a block of operating points and their tangential forces [N]."""
+
+
+def by_block(
+    problem: LineProblem,
+    block: int,
+    function: Callable[[LineProblem], Columns],
+    on_block: OnBlock | None = None,
+    drop_force: bool = False,
+) -> Columns:
+    """Return the columns of a function of a problem with one batch axis at most, evaluated block by block.
+
+    With `drop_force`, the tangential forces are told to `on_block` and not kept.
+    """
+    points = problem.creepage.size
+    if points == 0:
+        raise ValueError("an empty batch has no totals")
+    whole: Columns = {}
+    for part in _blocks(points, block):
+        within = problem if points <= block else problem[part]
+        columns = function(within)
+        if on_block is not None:
+            on_block(within, columns["tangential_force"])
+        if drop_force:
+            del columns["tangential_force"]
+        if points <= block:
+            whole = columns
+            break
+        whole = whole or {name: np.empty(points) for name in columns}
+        for name, values in columns.items():
+            whole[name][part] = values
+    return whole
+
+
+def _blocks(points: int, block: int) -> Iterator[slice]:
+    return (slice(first, min(first + block, points)) for first in range(0, points, block))
