@@ -1,4 +1,4 @@
-"""The models that come with wearlaw pass the kit in all combinations of their options."""
+"""The models that come with wearlaw pass the kit in all combinations of their options, and so does one on cells."""
 
 from __future__ import annotations
 
@@ -8,8 +8,13 @@ from importlib.metadata import distribution
 import pytest
 
 import wearlaw as wl
+from tests.testing.cells import Cells
 from wearlaw.models import Model
 from wearlaw.testing import Check, checks
+from wearlaw_kth import PUBLISHED
+
+OWN = {"high_pressure": 0.02, "low_speed": 2e-4, "mid_speed": 3e-3, "high_speed": 4e-4}
+"""Coefficients of one's own for the KTH map, in an order that no published set has."""
 
 CONTACT_MODELS: list[wl.ContactModel] = [
     *(wl.contact_model("exact", slip=slip) for slip in ("consistent", "as_printed")),
@@ -19,24 +24,34 @@ CONTACT_MODELS: list[wl.ContactModel] = [
     ),
     *(
         wl.contact_model("global", total_from=model)
-        for model in ("exact", wl.contact_model("fastsim", bound="elliptic", flexibility="kalker"))
+        for model in (
+            "exact",
+            "fastsim",
+            wl.contact_model("fastsim", bound="elliptic"),
+            wl.contact_model("fastsim", bound="elliptic", flexibility="kalker"),
+        )
     ),
 ]
 WEAR_LAWS: list[wl.WearLaw] = [
     *(wl.wear_law("usfd", fitted_for=fitted_for) for fitted_for in ("global", "exact", "fastsim")),
-    *(wl.wear_law("kth", coefficient=coefficient) for coefficient in ("low", "mid", "high")),
+    *(wl.wear_law("kth", coefficient=coefficient) for coefficient in ("low", "mid", "high", OWN)),
     wl.wear_law("brr"),
 ]
 
 
 def named(model: Model) -> str:
-    options = [str(getattr(value, "name", value)) for _, value in model if isinstance(value, (str, wl.ContactModel))]
-    return "-".join([model.name, *options])
+    options = (
+        value if isinstance(value, str) else named(value)
+        for _, value in model
+        if isinstance(value, (str, wl.ContactModel))
+    )
+    own = ["own"] if getattr(model, "coefficient", "") not in ("", *PUBLISHED) else []
+    return "-".join([model.name, *options, *own])
 
 
 CASES = [
     pytest.param(check, id=f"{named(model)}-{check.name}")
-    for model in [*CONTACT_MODELS, *WEAR_LAWS]
+    for model in [*CONTACT_MODELS, *WEAR_LAWS, Cells()]
     for check in checks(model)
 ]
 

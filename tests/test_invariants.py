@@ -1,4 +1,4 @@
-"""The invariants that every contact model keeps unless it declares itself exempt, over a wide range of contacts.
+"""What theory says of the contact models that come with wearlaw, more closely than the conformance kit asks of any.
 
 Tolerances are rounding, EPS times a small number of operations, times the condition of what is computed:
 
@@ -10,15 +10,14 @@ Tolerances are rounding, EPS times a small number of operations, times the condi
 
 from __future__ import annotations
 
-import dataclasses
 import math
+import warnings
 from collections.abc import Iterable
 from typing import get_args
 
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
 import wearlaw as wl
 from tests.strategies import (
@@ -28,12 +27,11 @@ from tests.strategies import (
     MODELS,
     line_problems,
     log_uniform,
-    of_size,
+    repeated,
     saturation_creepage,
     with_creepage,
 )
 from wearlaw import Q
-from wearlaw.integrate import integrate_wear
 from wearlaw.models import Claim
 from wearlaw.quadrature import uniform_cells
 
@@ -63,14 +61,7 @@ def slip_share(contact: wl.Contact) -> float:
     return float(contact.slip_area / contact.patch_area)
 
 
-# --- Traction and slip -----------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", claiming("traction_bound"))
-@given(problem=line_problems())
-def test_traction_never_exceeds_its_bound(name: str, problem: wl.LineProblem) -> None:
-    for contact in solutions(name, problem):
-        assert (np.abs(contact.traction) <= contact.traction_bound * (1.0 + 4.0 * EPS)).all()
+# --- Bound -----------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["exact", "exact-as_printed", "fastsim-elliptic-line", "global"])
@@ -90,24 +81,6 @@ def test_the_bound_carries_friction_times_the_load(name: str, problem: wl.LinePr
     contact = MODELS[name].solve(problem)
     total = float(contact.sum_over_nodes(contact.traction_bound * contact.area))
     assert total == pytest.approx(float(problem.friction_coefficient * problem.normal_force), rel=GRAZING)
-
-
-@pytest.mark.parametrize("name", claiming("stick"))
-@given(problem=line_problems())
-def test_slip_is_zero_where_traction_is_below_its_bound(name: str, problem: wl.LineProblem) -> None:
-    for contact in solutions(name, problem):
-        below = np.abs(contact.traction) < contact.traction_bound * (1.0 - 8.0 * EPS)
-        assert (contact.slip[below] == 0.0).all()
-
-
-@pytest.mark.parametrize("name", MODELS)
-@given(problem=line_problems(), sign=st.sampled_from([-1.0, 1.0]))
-def test_slip_never_opposes_the_creepage(name: str, problem: wl.LineProblem, sign: float) -> None:
-    mirrored = with_creepage(problem, sign * float(problem.creepage))
-    for contact in solutions(name, mirrored):
-        # the slip of full slip is a difference that vanishes at the leading edge, to rounding of the creepage
-        assert (sign * contact.slip >= -4.0 * EPS * float(problem.creepage)).all()
-        assert (sign * contact.traction >= 0.0).all()
 
 
 # --- Energy ----------------------------------------------------------------------------------------------------
@@ -186,56 +159,7 @@ def test_the_mean_slip_is_the_creepage_in_full_slip(name: str, problem: wl.LineP
     assert float(contact.stick_ratio) == pytest.approx(0.0, abs=64 * EPS)
 
 
-@pytest.mark.parametrize("name", claiming("saturation", FULL_SLIP))
-@given(problem=line_problems(), gap=log_uniform(1e-12, 1e-1))
-def test_the_mean_slip_is_continuous_at_full_slip(name: str, problem: wl.LineProblem, gap: float) -> None:
-    full = FULL_SLIP[name] * saturation_creepage(problem)
-    contact = MODELS[name].solve(with_creepage(problem, full * (1.0 - gap)))
-    # 2 gap of slip at most is missing on the 2 gap a that stick and in what slips; √ near the border: GRAZING
-    assert float(contact.mean_slip) == pytest.approx(full, rel=4.0 * gap + GRAZING)
-
-
 # --- Total traction --------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", MODELS)
-@given(problem=line_problems(), growth=log_uniform(1e-15, 1.0))
-def test_total_traction_is_odd_and_monotone_and_below_its_limit(
-    name: str, problem: wl.LineProblem, growth: float
-) -> None:
-    creepage, model = float(problem.creepage), MODELS[name]
-    force = float(model.solve(problem).tangential_force)
-    limit = float(problem.friction_coefficient * problem.normal_force)
-    assert 0.0 < force <= limit * (1.0 + 4 * EPS)
-    assert float(model.solve(with_creepage(problem, -creepage)).tangential_force) == -force
-    more = float(model.solve(with_creepage(problem, creepage * (1.0 + growth))).tangential_force)
-    assert more >= force * (1.0 - 8 * EPS)
-
-
-@pytest.mark.parametrize("name", claiming("similarity"))
-@given(problem=line_problems(), other=line_problems())
-def test_the_share_of_the_limit_depends_on_the_reduced_creepage_alone(
-    name: str, problem: wl.LineProblem, other: wl.LineProblem
-) -> None:
-    reduced = float(problem.creepage) / saturation_creepage(problem)
-    alike = with_creepage(other, reduced * saturation_creepage(other))
-    shares = [
-        float(MODELS[name].solve(p).tangential_force / (p.friction_coefficient * p.normal_force))
-        for p in (problem, alike)
-    ]
-    assert shares[0] == pytest.approx(shares[1], rel=32 * EPS)
-
-
-@pytest.mark.parametrize("name", claiming("initial_slope"))
-@given(problem=line_problems(), reduced=log_uniform(1e-9, 1e-2))
-def test_traction_begins_with_the_slope_of_the_elastic_half_space(
-    name: str, problem: wl.LineProblem, reduced: float
-) -> None:
-    creepage = reduced * saturation_creepage(problem)
-    force = float(MODELS[name].solve(with_creepage(problem, creepage)).tangential_force / problem.track_width)
-    slope = float(0.5 * math.pi * problem.effective_modulus * problem.half_width)
-    # the next term of T is of relative size d/2 (Carter), 2d/3 (parabola), d² (ellipse)
-    assert force / creepage == pytest.approx(slope, rel=reduced + 16 * EPS)
 
 
 @given(problem=line_problems(), reduced=log_uniform(3.0, 1e3))
@@ -252,44 +176,38 @@ def test_exact_and_elliptic_fastsim_approach_the_same_traction(problem: wl.LineP
     assert missing <= 4.0 / (3.0 * math.pi) / kappa**3 + 4 * EPS
 
 
-# --- Nodes -----------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", MODELS)
-@given(problem=line_problems())
-def test_nodes_stand_for_the_whole_patch_and_its_load(name: str, problem: wl.LineProblem) -> None:
-    contact = MODELS[name].solve(problem)
-    assert float(contact.patch_area) == pytest.approx(float(problem.patch_area), rel=64 * EPS)
-    load = float(contact.sum_over_nodes(contact.pressure * contact.area))
-    assert load == pytest.approx(float(problem.normal_force), rel=GRAZING)
-    traction = float(contact.sum_over_nodes(contact.traction * contact.area))
-    limit = float(problem.friction_coefficient * problem.normal_force)
-    assert traction == pytest.approx(float(contact.tangential_force), abs=GRAZING * limit)
-
-
 # --- Wear ------------------------------------------------------------------------------------------------------
 
 
 LAWS: dict[str, wl.WearLaw] = {name: wl.wear_law(name) for name in ("usfd", "kth", "brr")}
 
 
+def prediction(model: wl.ContactModel, law: wl.WearLaw, problem: wl.LineProblem) -> wl.Prediction:
+    contact = wl.ContactPipeline(
+        rig=wl.TwinDisc.suros(), contact_model=model, use_patch_mean=law.scale != model.scale and law.scale == "patch"
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.RangeWarning)  # the problems go as far as a law may be asked
+        return wl.Pipeline(contact=contact, wear_law=law).predict(problem)
+
+
 @pytest.mark.parametrize("name", MODELS)
 @given(problem=line_problems())
 def test_wear_does_not_know_the_sign_of_the_creepage_and_is_zero_without(name: str, problem: wl.LineProblem) -> None:
     creepage = float(problem.creepage)
-    batch = dataclasses.replace(of_size(problem, 3), creepage=np.array([creepage, 0.0, -creepage]))
-    for law_name, law in LAWS.items():
-        contact, wear = integrate_wear(MODELS[name], law, batch, "patch" if law_name == "brr" else "cells")
-        forward, none, backward = wear.wear_rate
+    batch = with_creepage(repeated(problem, (3,)), np.array([creepage, 0.0, -creepage]))
+    for law in LAWS.values():
+        found = prediction(MODELS[name], law, batch)
+        forward, none, backward = found.wear_rate.magnitude
         assert forward > 0.0
         assert forward == backward
         assert none == 0.0
-        assert wear.wear_rate_error[1] == 0.0
-        assert contact.tangential_force[1] == 0.0
-        assert contact.tangential_force[0] == -contact.tangential_force[2]
-        assert contact.wear_index[0] == contact.wear_index[2]
-        assert np.isfinite(contact.mean_slip).all()
-        assert np.isfinite(contact.slip_area).all()
+        assert found.wear_rate_error.magnitude[1] == 0.0
+        assert found.tangential_force.magnitude[1] == 0.0
+        assert found.tangential_force.magnitude[0] == -found.tangential_force.magnitude[2]
+        assert found.wear_index.magnitude[0] == found.wear_index.magnitude[2]
+        assert found.mean_slip.magnitude[0] == found.mean_slip.magnitude[2]
+        assert np.isfinite(found.stick_ratio.magnitude).all()
 
 
 # --- Exemptions are earned -------------------------------------------------------------------------------------
@@ -348,18 +266,3 @@ def test_the_one_cell_slips_below_its_bound(name: str) -> None:
     contact = suros(name, 0.1)
     assert float(contact.traction[0]) < 0.2 * float(contact.traction_bound[0])
     assert float(contact.slip[0]) == pytest.approx(0.001, rel=EPS)
-
-
-def test_a_batch_keeps_the_invariants_point_by_point() -> None:
-    problem = wl.TwinDisc.suros().problem(
-        max_pressure=Q(np.array([[500.0], [1500.0]]), "MPa"),
-        creepage=Q(np.array([-0.3, -1e-3, 1e-6, 0.0123]), ""),
-        friction_coefficient=0.46,
-    )
-    for model in MODELS.values():
-        together = model.solve(problem)
-        for index in np.ndindex(problem.batch_shape):
-            alone = model.solve(problem[index])
-            for field in ("tangential_force", "wear_index", "patch_area", "mean_slip"):
-                # the nodes of a batch may hold zones without length, which change the order of a sum
-                assert getattr(together, field)[index] == pytest.approx(getattr(alone, field), rel=16 * EPS)

@@ -164,7 +164,8 @@ def _closed_form(
             return None
         total = total + slope * excess
     force = np.copysign(force * problem.track_width, problem.creepage)
-    return {"wear_rate": 0.5 * total / problem.half_width, "tangential_force": force}
+    rate = np.maximum(0.5 * total / problem.half_width, 0.0)  # ramps that cancel leave their rounding
+    return {"wear_rate": rate, "tangential_force": force}
 
 
 def rounding(law: WearLaw, problem: LineProblem, tangential_force: Array) -> Array:

@@ -63,7 +63,8 @@ class Kernel:
             return value  # type: ignore[no-any-return]
         if first.size == 1:
             return np.full(first.shape, self.scalar(*map(_number, arguments)))
-        return self.compiled(*arguments) if accelerated(first.size) else self.arrays(*arguments)
+        with np.errstate(over="ignore"):  # a threshold may lie infinitely far above what there is
+            return self.compiled(*arguments) if accelerated(first.size) else self.arrays(*arguments)
 
     @functools.cached_property
     def compiled(self) -> Callable[..., Array]:

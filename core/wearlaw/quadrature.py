@@ -85,11 +85,10 @@ class Zone:
 
     def angle_of(self, distance: Array) -> Array:
         """Return ψ at distances (batch, points) from the edge; what lies beyond the zone, and NaN, is at its end."""
-        span = self.span[..., None]
-        share = np.divide(distance, span, out=np.ones_like(distance), where=span > 0)
         inside = distance < self.length[..., None]  # False for NaN
-        angle = 2.0 * np.arcsin(np.sqrt(np.clip(np.where(inside, share, 1.0), 0.0, 1.0)))
-        return np.where(inside, angle, self.angle[..., None])
+        span = self.span[..., None]
+        share = np.divide(np.maximum(distance, 0.0), span, out=np.zeros_like(distance), where=inside & (span > 0.0))
+        return np.where(inside, 2.0 * np.arcsin(np.sqrt(share)), self.angle[..., None])
 
     def nodes(self, splits: Array | None = None, panels: int = 1) -> Nodes:
         """Return Gauss-Legendre nodes in ψ, as distances from the zone's edge in `from_trailing`.

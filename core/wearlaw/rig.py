@@ -159,7 +159,7 @@ class TwinDisc(Configuration):
             per_width = self._normal_force_per_width(arrays)
             half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
             max_pressure = hertz.max_pressure(per_width, half_width)
-        _check_scale(half_width, max_pressure)
+        _check_scale(half_width, max_pressure, arrays["friction_coefficient"])
         shape = arrays["creepage"].shape
         same = {name: np.broadcast_to(value, shape) for name, value in constants.items()} if shape else constants
         return LineProblem(
@@ -238,7 +238,11 @@ def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
     return Q(angular * 0.5 * diameter, "m/s")
 
 
-def _check_scale(half_width: Array, max_pressure: Array) -> None:
+LEAST_FRICTION = 1e-12
+"""The least friction coefficient; below it creepage over that of full slip overflows in formulas of fourth order."""
+
+
+def _check_scale(half_width: Array, max_pressure: Array, friction_coefficient: Array) -> None:
     """Refuse loads and sizes so far from any contact that floats overflow or lose their precision."""
     tiny = float(np.sqrt(np.finfo(np.float64).tiny))
     for name, value in (("half width", half_width), ("max pressure", max_pressure)):
@@ -248,3 +252,5 @@ def _check_scale(half_width: Array, max_pressure: Array) -> None:
                 f"the load gives a {name} of {low:g} to {high:g} in SI units,"
                 " which no contact has; check the units of the load and of the rig"
             )
+    if extremes(friction_coefficient)[0] < LEAST_FRICTION:
+        raise ConditionsError(f"friction_coefficient: must be at least {LEAST_FRICTION:g}, which no contact comes near")

@@ -43,7 +43,7 @@ def _change(base: Number, growth: Number, square: Number, v: Number) -> Number:
     value = circle * line * line - square
     first = line * (slope * line + 2.0 * rise)
     half_second = growth * rise + line * (2.0 * growth * slope - line)
-    return value * first / (first * first - value * half_second)
+    return value * first / (first * first - value * half_second + 1e-300)  # at the maximum itself all of it is zero
 
 
 def _roots(base: Array, growth: Array, top: Array, square: Array, v: Array) -> Array:

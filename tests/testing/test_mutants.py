@@ -11,10 +11,16 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.testing import wrong_contacts, wrong_declarations, wrong_laws
+from tests.testing import cells, wrong_contacts, wrong_declarations, wrong_fields, wrong_laws
 from wearlaw.testing import Check, checks, conformance
 
-WRONG: dict[Any, str] = {**wrong_laws.CAUGHT, **wrong_declarations.CAUGHT, **wrong_contacts.CAUGHT}
+WRONG: dict[Any, str] = {
+    **wrong_laws.CAUGHT,
+    **wrong_declarations.CAUGHT,
+    **wrong_contacts.CAUGHT,
+    **wrong_fields.CAUGHT,
+    **cells.CAUGHT,
+}
 
 
 def made(mutant: Any) -> Any:
@@ -30,15 +36,25 @@ def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any) -> Non
 
 
 def test_every_check_of_an_invariant_catches_a_mutant() -> None:
-    # Of the patch and of cells, with fields at any position and without: between them they are given every check.
-    laws = [wrong_laws.Linear(), wl.wear_law("brr")]
-    models: list[Any] = [*laws, wrong_contacts.Wrapped(), wl.contact_model("exact")]
+    # Of the patch and of cells, with ramps, with fields at any position, and with cells that can be refined: between
+    # them they are given every check.
+    models: list[Any] = [wrong_declarations.Ramps(), wl.wear_law("brr"), wl.contact_model("exact"), cells.Cells()]
     names = {check.name for model in models for check in checks(model)}
     assert names == set(WRONG.values())
 
 
 @conformance(wrong_laws.Linear())
 def test_a_minimal_law_passes(check: Check) -> None:
+    check()
+
+
+@conformance(wrong_declarations.Smooth())
+def test_a_smooth_law_passes(check: Check) -> None:
+    check()
+
+
+@conformance(wrong_declarations.Ramps())
+def test_a_law_of_ramps_passes(check: Check) -> None:
     check()
 
 

@@ -58,6 +58,107 @@ class JumpWithoutBreakpoint(HiddenJump):
         return {"wear_index_density": (4e6,)}
 
 
+class Smooth(Linear):
+    """The right one of those without a breakpoint: steep, saturating and turning in places, but smooth."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        w = contact.wear_index_density
+        activated = np.exp(-1e8 / (contact.pressure + 1e3))
+        turning = 2.0 + np.tanh(np.log((contact.slip_speed + 1e-9) / 0.2) / 0.01)
+        return SLOPE * 1e6 * np.log1p(w / 1e6) * (1.0 + w / 1e7) ** 1.5 * activated * turning
+
+
+class HiddenKink(Linear):
+    """A hundredth more of each further joule above 4 N/mm², undeclared."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        w = contact.wear_index_density
+        return SLOPE * (w + 0.01 * np.maximum(w - 4e6, 0.0))
+
+
+class SmallHiddenKink(Linear):
+    """A thousandth more for each e-fold of pressure above 900 MPa, undeclared."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        above = np.log(np.maximum(contact.pressure, 9e8) / 9e8)
+        return SLOPE * contact.wear_index_density * (1.0 + 0.001 * above)
+
+
+class KinkElsewhere(Linear):
+    """The kink is declared at 4 N/mm², but lies at 4.1 N/mm²."""
+
+    @property
+    def breakpoints(self) -> wl.BreakpointMap:
+        return {"wear_index_density": (4e6,)}
+
+    def rate(self, contact: wl.Contact) -> Any:
+        w = contact.wear_index_density
+        return SLOPE * (w + np.maximum(w - 4.1e6, 0.0))
+
+
+class SecondKink(KinkElsewhere):
+    """A declared kink, and a smaller one a tenth above it."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        w = contact.wear_index_density
+        return SLOPE * (w + np.maximum(w - 4e6, 0.0) + 0.1 * np.maximum(w - 4.4e6, 0.0))
+
+
+class Ramps(Linear):
+    """The right one of those with ramps: a threshold at 4 N/mm²."""
+
+    @property
+    def breakpoints(self) -> wl.BreakpointMap:
+        return {"wear_index_density": (4e6,)}
+
+    @property
+    def ramps(self) -> tuple[tuple[float, float], ...]:
+        return (0.0, SLOPE), (4e6, SLOPE)
+
+    def rate(self, contact: wl.Contact) -> Any:
+        w = contact.wear_index_density
+        return SLOPE * (w + np.maximum(w - 4e6, 0.0))
+
+
+class RampIsTooSteep(Ramps):
+    """The second ramp is steeper than the law, by a millionth."""
+
+    @property
+    def ramps(self) -> tuple[tuple[float, float], ...]:
+        return (0.0, SLOPE), (4e6, SLOPE * (1.0 + 1e-6))
+
+
+class RampIsMissing(Ramps):
+    """The ramps end at the threshold."""
+
+    @property
+    def ramps(self) -> tuple[tuple[float, float], ...]:
+        return ((0.0, SLOPE),)
+
+
+class RampWithoutBreakpoint(Ramps):
+    """Two ramps that cancel each other begin where no breakpoint is."""
+
+    @property
+    def ramps(self) -> tuple[tuple[float, float], ...]:
+        return (0.0, SLOPE), (4e6, SLOPE), (9e6, SLOPE), (9e6, -SLOPE)
+
+
+class NegativeThreshold(Ramps):
+    """A ramp without slope begins below zero."""
+
+    @property
+    def ramps(self) -> tuple[tuple[float, float], ...]:
+        return (0.0, SLOPE), (4e6, SLOPE), (-1.0, 0.0)
+
+
+class FallsWithSlip(Linear):
+    """Less wear for the same energy at high slip."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return SLOPE * contact.wear_index_density / (1.0 + (10.0 * contact.slip) ** 2)
+
+
 class FallsDespiteDeclaration(Linear):
     """Less wear above 4 N/mm², continuously."""
 
@@ -133,6 +234,15 @@ CAUGHT: dict[type[wl.WearLaw], str] = {
     JumpElsewhere: "rate_jumps_only_where_declared",
     JumpThatIsNone: "declared_jumps_exist",
     JumpWithoutBreakpoint: "jumps_are_breakpoints",
+    HiddenKink: "rate_has_kinks_only_where_declared",
+    SmallHiddenKink: "rate_has_kinks_only_where_declared",
+    KinkElsewhere: "rate_has_kinks_only_where_declared",
+    SecondKink: "rate_has_kinks_only_where_declared",
+    RampIsTooSteep: "ramps_sum_to_the_rate",
+    RampIsMissing: "ramps_sum_to_the_rate",
+    RampWithoutBreakpoint: "ramps_sum_to_the_rate",
+    NegativeThreshold: "ramps_sum_to_the_rate",
+    FallsWithSlip: "is_monotone_as_declared",
     FallsDespiteDeclaration: "is_monotone_as_declared",
     UnknownVariable: "declared_names_are_variables",
     Undocumented: "model_is_documented",

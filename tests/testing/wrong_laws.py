@@ -65,6 +65,43 @@ class MissingUnit(Linear):
         return 1e-9 * float(self.slope.magnitude) * contact.wear_index_density
 
 
+class WholePascals(Linear):
+    """A millionth more where the pressure is a whole number of pascals."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        whole = (contact.pressure > 0) & (contact.pressure == np.rint(contact.pressure))
+        return SLOPE * contact.wear_index_density * np.where(whole, 1.0 + 1e-6, 1.0)
+
+
+def _arrays(w: Any) -> Any:
+    return SLOPE * w
+
+
+@wl.kernel(_arrays)
+def nearly(w: float) -> float:
+    """Return a little more than its arrays."""
+    return 5e-9 * w * (1.0 + 1e-9)
+
+
+class KernelDiffers(Linear):
+    """The formula of a kernel for one point is not that of its arrays."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return nearly(contact.wear_index_density)
+
+
+class TwelveDigits(Linear):
+    """Loses four digits in a difference of large numbers."""
+
+    @property
+    def breakpoints(self) -> Any:
+        return None
+
+    def rate(self, contact: wl.Contact) -> Any:
+        w = contact.wear_index_density
+        return SLOPE * ((1.0 + 3e3) * w - 3e3 * w)
+
+
 class NodeOrder(Linear):
     """Wear accumulates from the leading edge."""
 
@@ -203,6 +240,9 @@ CAUGHT: dict[type[wl.WearLaw], str] = {
     ForwardOnly: "sign_of_creepage_does_not_matter",
     Offset: "no_slip_no_wear",
     MissingUnit: "units_of_parameters_do_not_matter",
+    WholePascals: "units_of_conditions_do_not_matter",
+    KernelDiffers: "acceleration_does_not_matter",
+    TwelveDigits: "precision_is_double",
     NodeOrder: "order_of_nodes_does_not_matter",
     BatchLeak: "batching_does_not_matter",
     NeighbourLeak: "each_node_wears_by_itself",

@@ -1,6 +1,7 @@
-"""Jumps and lost digits of a function of one number, for many such functions at once.
+"""Jumps, kinks and lost digits of a function of one number, for many such functions at once.
 
-A continuous function changes less and less over an interval that is halved again and again; a jump stays.
+A continuous function changes less and less over an interval that is halved again and again, and so does the slope of
+a smooth one; a jump stays, and so does the change of slope in a kink.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
+from wearlaw.testing.examples import SAME
 
 HALVINGS = 46
 """From 1/32 to 4e-16, the rounding of a number near 1."""
@@ -19,6 +21,22 @@ HALVINGS = 46
 JUMP = 1e-6
 """Share of the function's value that counts as a jump. What grows as steeply as a square root, the steepest onset of
 the theories of contact, changes by √(2^-46) = 1.2e-7 over the last interval."""
+
+FIRST_HALVINGS = 8
+"""Halvings after which an interval over which the function hardly changes is given up: in what is left, 1/256 of it,
+the function would have to undo its own jump."""
+
+HALVINGS_OF_KINKS = 24
+"""From 1/128 to h = 4.7e-10. There the slope of a smooth function whose logarithm has the slope n changes by the share
+n² h/2 of its value, which is below 1e-4 up to n = 600, and rounding of the values by 16 EPS, as many as `SAME` has,
+changes it by 8 · 16 EPS/h = 6e-5."""
+
+STEEP = 1e-4
+"""Share of the slope that counts as a kink: that of a smooth function whose logarithm has the slope n changes by n h/2
+over the last part, and that of one which turns over the share w of an e-fold by h/(2 w)."""
+
+UNDERFLOW = 1e-200
+"""Value below which a product of two factors may underflow, and lose its digits."""
 
 Indices: TypeAlias = NDArray[np.intp]
 
@@ -37,14 +55,19 @@ def find_jumps(function: Function, count: int, intervals: int = 32) -> list[tupl
     low, high = np.tile(edges[:-1], count), np.tile(edges[1:], count)
     at_low, at_high = function(index, low), function(index, high)
     size = np.maximum(np.abs(at_low), np.abs(at_high))
-    for _ in range(HALVINGS):
+    for halving in range(HALVINGS):
         middle = 0.5 * (low + high)
         at_middle = function(index, middle)
         left = _change(at_low, at_middle) >= _change(at_middle, at_high)
         low, at_low = np.where(left, low, middle), np.where(left, at_low, at_middle)
         high, at_high = np.where(left, middle, high), np.where(left, at_middle, at_high)
-    found = np.flatnonzero(np.abs(at_high - at_low) > JUMP * size)
-    return [(int(index[i]), float(high[i]), float(at_low[i]), float(at_high[i])) for i in found]
+        if halving >= FIRST_HALVINGS:
+            kept = np.flatnonzero(np.abs(at_high - at_low) > JUMP * size)
+            index, size = index[kept], size[kept]
+            low, high, at_low, at_high = low[kept], high[kept], at_low[kept], at_high[kept]
+        if not index.size:
+            break
+    return list(zip(index.tolist(), high.tolist(), at_low.tolist(), at_high.tolist(), strict=True))
 
 
 def _change(before: Array, behind: Array) -> Array:
@@ -53,29 +76,63 @@ def _change(before: Array, behind: Array) -> Array:
     return change
 
 
-def lost_digits(function: Callable[[float], Array], message: str) -> None:
-    """Assert that a function of a factor near 1 resolves changes of 1e-8, which single precision does not.
+def find_kinks(function: Function, threshold: Array, intervals: int = 128) -> list[tuple[int, float, float, float]]:
+    """Return the kinks of functions of one number: index, the arguments between which it lies, and its size.
 
-    With D(h) the change over h relative to the value, a smooth function has D(1e-8) = D(1e-5) to about 1e-5, and
-    double precision rounds D(1e-8) by about 1e-16/1e-8. Single precision, with its 6e-8, leaves 0 or 6 of it.
-    Entries where D(1e-4) and D(1e-5) differ hold a kink or a jump and are passed over; a kink within 1e-8 lies on
-    one side only.
+    [0, 1] is covered twice by parts of length 1/`intervals`, so that each kink lies well inside of one. In each, that
+    half is kept again and again, of the first, the middle and the last one, in which the slope changes most. A kink
+    then lies between a quarter and three quarters of what is left, where half of its change of slope or more shows.
+
+    Parameters
+    ----------
+    function : callable
+        The functions.
+    threshold : ndarray, (count,)
+        For each function, which change of slope, over the largest value in the part, counts as a kink. It must also
+        be `STEEP` of the slope itself, which may be steep where the value is small.
+    """
+    starts, width = np.arange(2 * intervals - 1) / (2.0 * intervals), 1.0 / intervals
+    index, low = np.repeat(np.arange(threshold.size), starts.size), np.tile(starts, threshold.size)
+    each = np.arange(low.size)
+    values = np.stack([function(index, low + 0.25 * quarter * width) for quarter in range(5)])
+    size = np.abs(values).max(axis=0)
+    for _ in range(HALVINGS_OF_KINKS):
+        chosen = np.abs(values[:-2] - 2.0 * values[1:-1] + values[2:]).argmax(axis=0)
+        low, width = low + 0.25 * width * chosen, 0.5 * width
+        kept = [values[chosen + quarter, each] for quarter in range(3)]
+        between = [function(index, low + quarter * width) for quarter in (0.25, 0.75)]
+        values = np.stack([kept[0], between[0], kept[1], between[1], kept[2]])
+    change = 2.0 / width * np.abs(values[0] - 2.0 * values[2] + values[4])
+    slope = np.abs(values[4] - values[0]) / width
+    found = np.flatnonzero((change > threshold[index] * size) & (change > STEEP * slope) & (size > UNDERFLOW))
+    return [(int(index[i]), float(low[i]), float(low[i] + width), float(change[i] / size[i])) for i in found]
+
+
+def lost_digits(function: Callable[[float], Array], message: str, rounding: float = SAME) -> None:
+    """Assert that a function of a factor near 1 is as exact as rounding allows, by changes of 1e-8.
+
+    With D(h) the change over h relative to the value, a smooth function has D(h) = e + c h + O(h²), where e is its
+    condition number, so that D(1e-5) - D(1e-8) is 1/9 of D(1e-4) - D(1e-5), and rounding of the value and of its
+    argument, (1 + |e|) `rounding` in both ends of the change, moves D(1e-8) by 2 (1 + |e|) `rounding`/1e-8. That is
+    7e-7 (1 + |e|) for 16 roundings; single precision, with its 6e-8, moves it by 6. A kink or jump between two of
+    the arguments breaks this on one side of 1 only.
     """
     here = function(1.0)
     lost = np.ones(here.shape, dtype=bool)
     worst = np.zeros(here.shape)
     for side in (-1.0, 1.0):
         coarse, middle, fine = (_slope(function, here, side * step) for step in (1e-4, 1e-5, 1e-8))
-        smooth = np.abs(coarse - middle) <= 0.01 * (1.0 + np.abs(middle))
-        lost &= smooth & (np.abs(fine - middle) > 0.1 * (1.0 + np.abs(middle)))
-        worst = np.maximum(worst, np.where(smooth, np.abs(fine - middle), 0.0))
+        allowed = np.abs(coarse - middle) / 8.0 + 2.0 * (1.0 + np.abs(middle)) * rounding / 1e-8
+        lost &= np.abs(fine - middle) > allowed
+        worst = np.maximum(worst, np.abs(fine - middle))
     assert not lost.any(), (
         f"{message}: relative to a change of 1e-8 it is off by {worst[lost].max():.2g} times that;"
-        " is it computed in single precision?"
+        " is it computed in single precision, or as a difference of large numbers?"
     )
 
 
 def _slope(function: Callable[[float], Array], here: Array, step: float) -> Array:
+    # The factor that is applied is a double, whose distance from 1 is not quite the step.
     change = function(1.0 + step) - here
-    slope: Array = np.divide(change, step * here, out=np.zeros_like(here), where=here != 0)
+    slope: Array = np.divide(change, ((1.0 + step) - 1.0) * here, out=np.zeros_like(here), where=here != 0)
     return slope

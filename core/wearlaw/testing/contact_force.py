@@ -10,7 +10,14 @@ from wearlaw.arrays import Array
 from wearlaw.line import LineProblem
 from wearlaw.models import ContactModel
 from wearlaw.testing.bisection import Indices, find_jumps
-from wearlaw.testing.contact_checks import friction_limit, random_problems, repeated, saturation, with_creepage
+from wearlaw.testing.contact_checks import (
+    error_of_force,
+    friction_limit,
+    random_problems,
+    repeated,
+    saturation,
+    with_creepage,
+)
 from wearlaw.testing.examples import SAME, assert_close, for_each
 from wearlaw.testing.strategies import line_problems
 
@@ -47,14 +54,17 @@ def force_stays_below_friction(model: ContactModel) -> None:
     def examine(problem: LineProblem) -> None:
         creepage = problem.creepage * np.logspace(0, 4, 9)
         force = model.solve(with_creepage(repeated(problem, creepage.shape), creepage)).tangential_force
-        limit = friction_limit(problem) * (1.0 + SAME)
+        limit = friction_limit(problem) * (1.0 + error_of_force(model))
         assert (force <= limit).all(), f"the force reaches {force.max() / friction_limit(problem):.9g} μN"
 
     for_each(line_problems(), examine)
 
 
 def force_is_continuous(model: ContactModel) -> None:
-    """Force and mean slip have no jump as the creepage grows, through full slip; one of 1/1000 is found."""
+    """Force and mean slip have no jump as the creepage grows, through full slip; one of 1/1000 is found.
+
+    Cells begin to slip as a whole: with them, the mean slip may jump by the accuracy times μa/R.
+    """
     points = 2
     problem = random_problems(points)
     low, decades = 1e-2 * saturation(problem), 3.0
@@ -63,11 +73,15 @@ def force_is_continuous(model: ContactModel) -> None:
         value: Array = getattr(model.solve(with_creepage(problem[index], low[index] * 10.0 ** (decades * share))), name)
         return value
 
+    # Where a cell begins to slip, the sum of the slips is off by a share of what it is in full slip.
+    cell = {"tangential_force": np.zeros(points), "mean_slip": model.accuracy * saturation(problem)}
     # Carter's force has a curvature of 2 at full slip, hence changes by 2 (3 ln 10/512/2)² = 1e-4 more in one half.
-    for name in ("tangential_force", "mean_slip"):
+    for name, allowed in cell.items():
         for point, share, before, behind in find_jumps(partial(solved, name), points, intervals=512):
             creepage = low[point] * 10.0 ** (decades * share)
-            raise AssertionError(f"{name} jumps from {before:.9g} to {behind:.9g} in SI units at creepage {creepage:g}")
+            assert abs(behind - before) <= allowed[point], (
+                f"{name} jumps from {before:.9g} to {behind:.9g} in SI units at creepage {creepage:g}"
+            )
 
 
 def zero_creepage_gives_nothing(model: ContactModel) -> None:
@@ -92,6 +106,15 @@ def wear_index_is_force_times_creepage(model: ContactModel) -> None:
     for_each(line_problems(), examine)
 
 
+def force_alone_is_that_of_the_contact(model: ContactModel) -> None:
+    """`tangential_force` gives what `solve` gives, with the sign of the creepage."""
+    for sign in (-1.0, 0.0, 1.0):
+        problem = random_problems(64)
+        problem = with_creepage(problem, sign * problem.creepage)
+        due = model.solve(problem).tangential_force
+        assert_close(model.tangential_force(problem), due, "what `tangential_force` gives")
+
+
 CHECKS = (
     force_is_odd_in_creepage,
     force_grows_with_creepage,
@@ -99,4 +122,5 @@ CHECKS = (
     force_is_continuous,
     zero_creepage_gives_nothing,
     wear_index_is_force_times_creepage,
+    force_alone_is_that_of_the_contact,
 )

@@ -5,19 +5,30 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 from wearlaw.errors import InputError
-from wearlaw.models import Claim, ContactModel, LineContactModel, Model, WearLaw
+from wearlaw.line_model import LineContactModel
+from wearlaw.models import Claim, ContactModel, Model, WearLaw
 from wearlaw.testing import (
+    acceleration,
     contact_checks,
+    contact_energy,
+    contact_fields,
     contact_force,
     contact_limits,
     declarations,
+    law_branches,
     law_checks,
-    law_precision,
     law_shape,
+    unit_checks,
 )
 from wearlaw.testing.roundtrip import RoundTrip
+
+CheckFunction: TypeAlias = Callable[..., None]
+
+COMMON: tuple[CheckFunction, ...] = (*declarations.COMMON, *unit_checks.CHECKS, *acceleration.COMMON)
+"""Checks of wear laws and contact models."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +75,7 @@ def checks(model: Model) -> Iterator[Check]:
     """Yield the checks of a wear law or contact model.
 
     A check of what the model does not claim is left out: of a claim in `ContactModel.exemptions`, of the nodes of
-    a law that is stated for the whole patch.
+    a law that is stated for the whole patch, of what is optional and not given.
 
     Parameters
     ----------
@@ -77,22 +88,9 @@ def checks(model: Model) -> Iterator[Check]:
         If it is neither.
     """
     if isinstance(model, WearLaw):
-        functions = [*law_shape.CHECKS, *law_checks.CHECKS, *law_precision.CHECKS]
-        idle = law_checks.OF_SEVERAL_NODES if model.scale == "patch" else law_checks.OF_THE_PATCH
-        functions = [function for function in functions if function not in idle]
-        found: list[Callable[..., None]] = [*functions, *declarations.COMMON, *declarations.OF_LAWS]
+        found = _of_law(model)
     elif isinstance(model, ContactModel):
-        tables: list[Mapping[Claim, tuple[Callable[..., None], ...]]] = [contact_limits.CLAIMS]
-        if isinstance(model, LineContactModel):
-            tables.append(contact_limits.CLAIMS_OF_FIELDS)
-        claimed = [f for table in tables for claim, of in table.items() if claim not in model.exemptions for f in of]
-        found = [
-            *contact_checks.CHECKS,
-            *contact_force.CHECKS,
-            *claimed,
-            *declarations.COMMON,
-            *declarations.OF_CONTACT_MODELS,
-        ]
+        found = _of_contact_model(model)
     else:
         raise InputError(f"checks: needs a wear law or a contact model, such as wl.wear_law('usfd'); got {model!r}")
     for function in found:
@@ -100,6 +98,39 @@ def checks(model: Model) -> Iterator[Check]:
     trip = RoundTrip(model)
     for way in (trip.through_toml, trip.through_json, trip.through_pickle):
         yield Check(f"round_trip_{way.__name__}", inspect.getdoc(way) or "", way)
+
+
+def _of_law(law: WearLaw) -> list[CheckFunction]:
+    idle = [*(law_checks.OF_SEVERAL_NODES if law.scale == "patch" else law_checks.OF_THE_PATCH)]
+    if law.breakpoints is None:
+        idle += law_branches.OF_BREAKPOINTS
+    if law.ramps is None:
+        idle += law_branches.OF_RAMPS
+    functions = [*law_shape.CHECKS, *law_checks.CHECKS, *law_branches.CHECKS]
+    return [*(function for function in functions if function not in idle), *COMMON, *declarations.OF_LAWS]
+
+
+def _of_contact_model(model: ContactModel) -> list[CheckFunction]:
+    tables: list[Mapping[Claim, tuple[CheckFunction, ...]]] = [contact_limits.CLAIMS, contact_energy.CLAIMS]
+    of_fields: list[CheckFunction] = []
+    if isinstance(model, LineContactModel):
+        tables.append(contact_energy.CLAIMS_OF_FIELDS)
+        of_fields += contact_fields.CHECKS
+        if type(model).crossings is not LineContactModel.crossings:
+            of_fields += contact_fields.OF_CROSSINGS
+        if type(model).excess_dissipation is not LineContactModel.excess_dissipation:
+            of_fields += contact_fields.OF_EXCESS
+    if model.refined() is not None:
+        tables.append(contact_energy.CLAIMS_OF_REFINED)
+    claimed = [f for table in tables for claim, of in table.items() if claim not in model.exemptions for f in of]
+    return [
+        *contact_checks.CHECKS,
+        *contact_force.CHECKS,
+        *claimed,
+        *of_fields,
+        *COMMON,
+        *declarations.OF_CONTACT_MODELS,
+    ]
 
 
 def _check(function: Callable[..., None], model: Model) -> Check:

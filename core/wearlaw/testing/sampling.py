@@ -11,6 +11,9 @@ from wearlaw.records import Contact
 
 EPS = float(np.finfo(np.float64).eps)
 
+_VALUES = ("pressure", "traction", "slip", "traction_bound", "area", "rolling_speed", "density")
+"""What a contact of the kit is made of; its totals follow."""
+
 _PRESSURE = (1e5, 1e10)
 _TRACTION = (1e-6, 1.0)
 _SLIP = (1e-8, 1.0)
@@ -76,16 +79,22 @@ def with_totals(
     )
 
 
-def random_contacts(points: int, nodes: int = 1, seed: int = 0) -> Contact:
-    """Return contacts at many random operating points; the same ones for the same seed."""
+def random_contacts(points: int, nodes: int = 1, seed: int = 0, loaded: bool = False) -> Contact:
+    """Return contacts at many random operating points; the same ones for the same seed.
+
+    With `loaded`, every other one has node values in the upper half of their ranges, those of discs at work: from
+    30 MPa, 1e-4 of slip and 0.1 mm².
+    """
     random = np.random.default_rng(seed)
-    return contact_from_shares(random.random((points, nodes, NODE_VALUES_DRAWN)), random.random((points, 4)))
+    shares, conditions = random.random((points, nodes, NODE_VALUES_DRAWN)), random.random((points, CONDITIONS_DRAWN))
+    if loaded:
+        shares[::2] = 0.5 + 0.5 * shares[::2]
+    return contact_from_shares(shares, conditions)
 
 
 def retotalled(contact: Contact, **changed: Array) -> Contact:
     """Return the contact with some of its node values changed and its sums computed anew."""
-    names = ("pressure", "traction", "slip", "traction_bound", "area", "rolling_speed", "density")
-    values: dict[str, Array] = {name: getattr(contact, name) for name in names}
+    values: dict[str, Array] = {name: getattr(contact, name) for name in _VALUES}
     return with_totals(**(values | changed))
 
 
@@ -127,8 +136,17 @@ def between(first: Contact, second: Contact, share: Array) -> Contact:
         value: Array = start * (end / start) ** part
         return value
 
-    names = ("pressure", "traction", "slip", "traction_bound", "area", "rolling_speed", "density")
-    return with_totals(**{name: mixed(name) for name in names})
+    return with_totals(**{name: mixed(name) for name in _VALUES})
+
+
+def e_folds(first: Contact, second: Contact) -> Array:
+    """Return by how many e-folds the values of contacts of one node differ, all together, of the batch shape."""
+    total: Array = sum(
+        np.abs(np.log(getattr(second, name) / getattr(first, name))).reshape(first.rolling_speed.shape)
+        for name in _VALUES
+        if name != "traction_bound"  # which a law has no part in
+    )
+    return total
 
 
 def forward(contact: Contact) -> Contact:

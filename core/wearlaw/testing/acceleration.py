@@ -1,0 +1,85 @@
+"""The check that compiled kernels, NumPy and one operating point at a time give the same."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.errors import InputError
+from wearlaw.kernels import accelerate
+from wearlaw.models import BreakpointMap, ContactModel, Model, WearLaw
+from wearlaw.pipeline import Pipeline
+from wearlaw.records import Contact
+from wearlaw.rig import TwinDisc
+from wearlaw.testing.contact_checks import SUM
+from wearlaw.testing.examples import SAME, assert_close
+from wearlaw.testing.sampling import random_contacts, rows
+from wearlaw.units import Q
+
+
+class Ramps(WearLaw):
+    """A law of two ramps, which takes whatever closed form a contact model has."""
+
+    name: ClassVar[str] = "ramps"
+    source: ClassVar[str] = "the conformance kit"
+
+    @property
+    def ramps(self) -> tuple[tuple[float, float], ...]:
+        """Two ramps, with the order of magnitude of those of steel."""
+        return (0.0, 5e-9), (1e7, -4e-9), (8e7, 6e-8)
+
+    @property
+    def breakpoints(self) -> BreakpointMap:
+        """Where the ramps begin."""
+        return {"wear_index_density": (1e7, 8e7)}
+
+    def rate(self, contact: Contact) -> Array:
+        """Return the sum of the ramps [kg/m/m²]."""
+        w = contact.wear_index_density
+        return sum((slope * np.maximum(w - threshold, 0.0) for threshold, slope in self.ramps), np.zeros_like(w))
+
+
+POINTS = 12
+"""Operating points."""
+
+
+def acceleration_does_not_matter(model: Model) -> None:
+    """Compiled kernels, NumPy and one operating point at a time give the same to rounding."""
+    try:
+        accelerate(False)
+        due, allowed = _results(model, slice(None))
+        alone = np.stack([_results(model, point)[0] for point in range(POINTS)], axis=-1)
+        assert_close(alone, due, "the result of one operating point at a time", SAME, allowed)
+        try:
+            accelerate(True)
+        except InputError:  # numba is not installed
+            return
+        found, _ = _results(model, slice(None))
+        assert_close(found, due, "the result with compiled kernels", SAME, allowed)
+    finally:
+        accelerate(None)
+
+
+def _results(model: Model, part: slice | int) -> tuple[Array, Array]:
+    """Return what a model computes at some of `POINTS` operating points, the last axis, or at one, and its rounding."""
+    if isinstance(model, WearLaw):
+        contact = random_contacts(POINTS)
+        rate = model.rate(contact)[:, 0] if isinstance(part, slice) else model.rate(rows(contact, [part]))[0, 0]
+        return rate, np.zeros_like(rate)
+    assert isinstance(model, ContactModel)
+    predict = Pipeline(contact=TwinDisc.suros() | model, wear_law=Ramps())
+    pressure, creepage = np.tile([0.3e9, 1.5e9], POINTS // 2), np.geomspace(1e-5, 0.5, POINTS)
+    found = predict(max_pressure=Q(pressure[part], "Pa"), creepage=Q(creepage[part], ""), friction_coefficient=0.46)
+    force, index, slip, rate = (
+        getattr(found, name).to_base_units().magnitude
+        for name in ("tangential_force", "wear_index", "mean_slip", "wear_rate")
+    )
+    # Every ramp is rounded as the whole dissipation is.
+    density = found.wear_index_density.m_as("N/m^2")
+    steepest = sum(abs(slope) for _, slope in Ramps().ramps)
+    return np.stack([force, index, slip, rate]), SUM * np.stack([force, index, slip, steepest * density])
+
+
+COMMON = (acceleration_does_not_matter,)

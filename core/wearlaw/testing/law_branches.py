@@ -1,0 +1,158 @@
+"""Checks of where a wear law branches, and of the digits it keeps."""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import partial
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.models import BreakpointMap, WearLaw
+from wearlaw.records import Contact
+from wearlaw.testing.bisection import Function, Indices, find_jumps, find_kinks, lost_digits
+from wearlaw.testing.examples import SAME, assert_close
+from wearlaw.testing.sampling import aimed, at_nodes, between, e_folds, forward, random_contacts, retotalled, rows
+
+PATHS = 64
+"""Paths between random contacts along which jumps and kinks are looked for."""
+
+KINK = 1e-4
+"""Change of slope that counts as a kink: of the rate, per e-fold of all values of the contact together."""
+
+AT_JUMP = 1e-10
+"""Relative distance from a declared jump at which it is taken to lie there: a position on a path that spans ten
+decades is known to 23 times rounding."""
+
+STEP = 1e-12
+"""Relative distance of the two sides of a jump: a continuous rate changes by a few times that."""
+
+
+class _Paths:
+    """Paths from one random contact to another, straight in the logarithm of every value."""
+
+    def __init__(self) -> None:
+        self.first, self.second = (forward(random_contacts(PATHS, seed=seed, loaded=True)) for seed in (1, 2))
+
+    def contact(self, index: Indices, share: Array) -> Contact:
+        return between(rows(self.first, index), rows(self.second, index), share)
+
+    def rate(self, law: WearLaw) -> Function:
+        return lambda index, share: law.rate(self.contact(index, share))[:, 0]
+
+    def ends(self, path: int, low: float, high: float) -> tuple[Contact, Contact]:
+        """Return the contacts at both ends of a piece of a path."""
+        start, end = (self.contact(np.array([path]), np.array([share])) for share in (low, high))
+        return start, end
+
+
+def rate_jumps_only_where_declared(law: WearLaw) -> None:
+    """Between any two contacts the rate is continuous, except where a variable passes a value in `jumps`."""
+    paths = _Paths()
+    for path, share, before, behind in find_jumps(paths.rate(law), PATHS):
+        values, _ = paths.ends(path, share, share)
+        assert _declared(law.jumps, values, values), (
+            f"the rate jumps from {before:.6g} to {behind:.6g} kg/m/m², not declared in `jumps`, at {_at(values)}"
+        )
+
+
+def rate_has_kinks_only_where_declared(law: WearLaw) -> None:
+    """Where a law declares its `breakpoints`, its slope is continuous everywhere else.
+
+    A kink is found if the slope changes by a thousandth of the rate per e-fold of the variable in which it lies: on
+    many paths that variable has more than a fifth of the e-folds of all values, and half of the change shows. What
+    turns smoothly over less than a ten-thousandth of a variable counts as a kink too.
+    """
+    paths = _Paths()
+    for path, low, high, change in find_kinks(paths.rate(law), KINK * e_folds(paths.first, paths.second)):
+        start, end = paths.ends(path, low, high)
+        assert _declared(law.breakpoints or {}, start, end), (
+            f"the slope of the rate jumps by {change:.2g} of the rate, over the length of a path between two contacts,"
+            f" not declared in `breakpoints`, at {_at(start)}"
+        )
+
+
+def _declared(values: BreakpointMap, start: Contact, end: Contact) -> bool:
+    """Return whether a variable passes one of its declared values between two contacts, or just outside of them."""
+    for name, declared in values.items():
+        low, high = sorted(float(at_nodes(contact, name)[0, 0]) for contact in (start, end))
+        margin = (high - low) + AT_JUMP * high
+        if any(low - margin <= value <= high + margin for value in declared):
+            return True
+    return False
+
+
+def _at(contact: Contact) -> str:
+    names = ("pressure", "traction", "slip", "slip_speed", "wear_index_density", "wear_index")
+    return ", ".join(f"{name} {float(at_nodes(contact, name)[0, 0]):.6g}" for name in names) + " in SI units"
+
+
+def declared_jumps_exist(law: WearLaw) -> None:
+    """At every value in `jumps` there is a contact at which the rate jumps."""
+    contact = forward(random_contacts(512, seed=3))
+    for name, jumps in law.jumps.items():
+        for jump in jumps:
+            below, above = (law.rate(aimed(contact, name, jump * (1.0 + side * STEP))) for side in (-1, 1))
+            step = np.abs(above - below) > 1e3 * STEP * np.maximum(np.abs(above), np.abs(below))
+            assert step.any(), f"`jumps` declares a jump at {name} = {jump:g}, but the rate is continuous there"
+
+
+def jumps_are_breakpoints(law: WearLaw) -> None:
+    """A declared jump is also a breakpoint, where the integration puts the border of a panel."""
+    breakpoints = law.breakpoints or {}
+    for name, jumps in law.jumps.items():
+        missing = set(jumps) - set(breakpoints.get(name, ()))
+        assert not missing, f"`jumps` has {name} = {sorted(missing)}, which `breakpoints` lacks"
+
+
+def precision_is_double(law: WearLaw) -> None:
+    """The rate is a float64 and exact to rounding, in steps of 1e-8 of each value of the contact."""
+    contact = random_contacts(256, seed=4)
+    rate = law.rate(contact)
+    assert rate.dtype == np.float64, f"the rate is of type {rate.dtype}, not float64"
+    for name in ("pressure", "traction", "slip", "rolling_speed", "density"):
+        lost_digits(partial(_rate_with, law, contact, name), f"the rate loses digits of {name}")
+    lost_digits(
+        lambda factor: law.rate(dataclasses.replace(contact, wear_index=contact.wear_index * factor)),
+        "the rate loses digits of wear_index",
+    )
+
+
+def _rate_with(law: WearLaw, contact: Contact, name: str, factor: float) -> Array:
+    return law.rate(retotalled(contact, **{name: getattr(contact, name) * factor}))
+
+
+def ramps_sum_to_the_rate(law: WearLaw) -> None:
+    """The ramps are the law: Σ slope · max(q·s - threshold, 0), with thresholds at zero or at breakpoints."""
+    ramps = law.ramps or ()
+    declared = np.array((law.breakpoints or {}).get("wear_index_density", ()))
+    for threshold, slope in ramps:
+        assert np.isfinite([threshold, slope]).all(), f"`ramps` has a threshold of {threshold}, a slope of {slope}"
+        assert threshold >= 0, f"`ramps` has a negative threshold, {threshold:g}"
+        at_breakpoint = (np.abs(declared - threshold) <= SAME * threshold).any()
+        assert threshold == 0 or at_breakpoint, f"`ramps` has a threshold at {threshold:g}, which `breakpoints` lacks"
+    contact = random_contacts(512)
+    for near in (None, *(threshold for threshold, _ in ramps if threshold > 0)):
+        if near is not None:
+            contact = aimed(contact, "wear_index_density", near * np.logspace(-1, 1, 512)[:, None])
+        w = contact.wear_index_density
+        terms = [slope * np.maximum(w - threshold, 0.0) for threshold, slope in ramps]
+        # A ramp rounds q·s once more than the law, and the sum as much as its largest term.
+        size = sum(abs(slope) * w for _, slope in ramps)
+        assert_close(sum(terms, np.zeros_like(w)), law.rate(contact), "the sum of the `ramps`", absolute=SAME * size)
+
+
+CHECKS = (
+    rate_jumps_only_where_declared,
+    rate_has_kinks_only_where_declared,
+    declared_jumps_exist,
+    jumps_are_breakpoints,
+    ramps_sum_to_the_rate,
+    precision_is_double,
+)
+
+OF_BREAKPOINTS = (rate_has_kinks_only_where_declared,)
+"""Checks that mean nothing for a law that does not say where it branches."""
+
+OF_RAMPS = (ramps_sum_to_the_rate,)
+"""Checks of a law that gives `ramps`."""

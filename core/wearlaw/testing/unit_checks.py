@@ -1,0 +1,142 @@
+"""Checks that a result does not depend on the units in which parameters and conditions were given.
+
+A value that is converted to another unit and back is off by four roundings to half of EPS, of two factors and two
+products. What that may do to a result is found by a step of `STEP` in each value: the condition number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import pint
+
+from wearlaw.arrays import Array
+from wearlaw.errors import WearlawError
+from wearlaw.models import ContactModel, Model, WearLaw
+from wearlaw.records import Contact
+from wearlaw.registry import application_registry
+from wearlaw.rig import TwinDisc
+from wearlaw.testing.contact_checks import random_problems
+from wearlaw.testing.examples import SAME, assert_close
+from wearlaw.testing.sampling import EPS, random_contacts
+from wearlaw.units import Q
+
+CONVERTED = 2.0 * EPS
+"""Relative error of a value that was converted to another unit and back."""
+
+STEP = 1e-6
+"""Relative step for the condition number."""
+
+POINTS = 64
+"""Operating points at which results are compared."""
+
+Values = Mapping[str, Array]
+
+
+def units_of_parameters_do_not_matter(model: Model) -> None:
+    """The result is the same when each parameter is given in base units, not in the unit that it was given in."""
+    registry = application_registry()
+    given = {name: value for name, value in model if isinstance(value, pint.Quantity)}
+    converted = {
+        name: Q(value.to_base_units().magnitude, str(value.to_base_units().units))
+        for name, value in given.items()
+        if value.units != registry.Quantity(1, value.units).to_base_units().units
+    }
+    due = _computed(model)
+    allowed = SAME * np.abs(due)
+    for name in converted:
+        steps = (_computed(other) for other in _near(model, name, given[name]))
+        allowed = allowed + CONVERTED / STEP * sum(np.abs(step - due) for step in steps)
+    found = _computed(model.model_copy(update=converted))
+    assert_close(found, due, "the result with parameters in base units", 0.0, allowed)
+
+
+def _near(model: Model, name: str, value: Any) -> Iterator[Model]:
+    """Yield the model with a parameter a step up and a step down, where it may have those values."""
+    for factor in (1.0 - STEP, 1.0 + STEP):
+        try:
+            yield model.model_copy(update={name: value * factor})
+        except WearlawError:  # another parameter bounds it
+            continue
+
+
+def _computed(model: Model) -> Array:
+    if isinstance(model, WearLaw):
+        return model.rate(random_contacts(POINTS))
+    assert isinstance(model, ContactModel)
+    return model.solve(random_problems(POINTS)).tangential_force
+
+
+def units_of_conditions_do_not_matter(model: Model) -> None:
+    """The same operating points, given in other units, have the same result: N and kN, Pa and MPa, ratio and %.
+
+    A contact model sees them through a rig, a wear law through `Contact.from_arrays`.
+    """
+    if isinstance(model, WearLaw):
+        _compare(_contacts(), lambda given: model.rate(Contact.from_arrays(**given)), OF_CONTACTS)
+        return
+    assert isinstance(model, ContactModel)
+    pipeline = TwinDisc.suros() | model
+
+    def solved(given: dict[str, Any]) -> Array:
+        solution = pipeline(**given, friction_coefficient=0.46)
+        return np.stack([solution.tangential_force.m_as("N"), solution.mean_slip.m_as("")])
+
+    random = np.random.default_rng(7)
+    creepage = random.integers(-2000, 2000, POINTS) * 1e-4
+    for load, (low, high) in LOADS.items():
+        values = {load: np.rint(random.uniform(low, high, POINTS)), "creepage": creepage}
+        _compare(values, solved, OF_CONDITIONS)
+
+
+def _contacts() -> Values:
+    """Return random contacts of one node, with whole numbers where a value is large."""
+    contact = random_contacts(POINTS)
+    names = ("pressure", "traction", "slip", "area", "rolling_speed", "density")
+    return {name: np.rint(value) if (value := getattr(contact, name)).max() > 1e3 else value for name in names}
+
+
+def _compare(values: Values, computed: Callable[[dict[str, Any]], Array], units: Mapping[str, tuple[str, str]]) -> None:
+    """Compare the result of values in SI with that of the same values in the customary units."""
+
+    def given(changed: str = "", factor: float = 1.0) -> dict[str, Any]:
+        return {name: Q(value * (factor if name == changed else 1.0), units[name][0]) for name, value in values.items()}
+
+    due = computed(given())
+    allowed = SAME * np.abs(due)
+    for name in values:
+        steps = (computed(given(name, factor)) for factor in (1.0 - STEP, 1.0 + STEP))
+        allowed = allowed + CONVERTED / STEP * sum(np.abs(step - due) for step in steps)
+    other = {name: Q(value.to(units[name][1]).magnitude, units[name][1]) for name, value in given().items()}
+    in_words = ", ".join(units[name][1] or "-" for name in values)
+    assert_close(computed(other), due, f"the result of values in {in_words} in place of SI", 0.0, allowed)
+
+
+LOADS = {
+    "normal_force": (1e2, 9e3),
+    "normal_force_per_width": (1e4, 9e5),
+    "max_pressure": (1e8, 1.5e9),
+}
+"""Loads of steel discs within their elastic limit, from low to high in SI."""
+
+OF_CONDITIONS = {
+    "normal_force": ("N", "kN"),
+    "normal_force_per_width": ("N/m", "N/mm"),
+    "max_pressure": ("Pa", "MPa"),
+    "creepage": ("", "%"),
+}
+"""Conditions with their SI units and others."""
+
+OF_CONTACTS = {
+    "pressure": ("Pa", "MPa"),
+    "traction": ("Pa", "N/mm^2"),
+    "slip": ("", "%"),
+    "area": ("m^2", "mm^2"),
+    "rolling_speed": ("m/s", "km/h"),
+    "density": ("kg/m^3", "g/cm^3"),
+}
+"""Values of a contact with their SI units and others."""
+
+CHECKS = (units_of_parameters_do_not_matter, units_of_conditions_do_not_matter)

@@ -1,0 +1,76 @@
+"""Contact models that solve on cells and give nothing in closed form: a right one, and wrong ones."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, ClassVar
+
+import numpy as np
+
+import wearlaw as wl
+
+
+class Cells(wl.ContactModel):
+    """Kalker's simplified theory with a parabolic bound, marched over equal cells; its force is a sum over them."""
+
+    name: ClassVar[str] = "cells"
+    source: ClassVar[str] = "J. J. Kalker, Vehicle System Dynamics 11 (1982) 1-13"
+    # Slip begins anywhere in a cell of 1/400 of the patch, where q·s is at most 9/8 of its mean in full slip.
+    accuracy: ClassVar[float] = 1e-2
+
+    cells: int = 400
+    """Number of cells [-]."""
+
+    def refined(self) -> Cells:
+        return self.model_copy(update={"cells": 2 * self.cells})
+
+    def solve(self, problem: wl.LineProblem) -> wl.Contact:
+        a, creepage = problem.half_width[..., None], problem.creepage[..., None]
+        x = a * ((2.0 * np.arange(self.cells) + 1.0) / self.cells - 1.0)
+        flexibility = 4.0 * a / (np.pi * problem.effective_modulus[..., None])
+        centre = (problem.friction_coefficient * 0.75 * problem.normal_force_per_width)[..., None] / a
+        bound = centre * (1.0 - (x / a) ** 2)
+        stuck = creepage / flexibility * (x + a)
+        slipping = np.abs(stuck) > bound
+        fields = wl.LineFields(
+            pressure=wl.hertz.pressure(x, a, problem.max_pressure[..., None]),
+            traction=np.where(slipping, np.copysign(bound, creepage), stuck),
+            slip=np.where(slipping, creepage + np.copysign(2.0 * flexibility * centre * x / a**2, x * creepage), 0.0),
+            traction_bound=bound,
+        )
+        return self.made(problem, fields, x, np.broadcast_to(2.0 * a / self.cells, x.shape))
+
+    def made(self, problem: wl.LineProblem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
+        force = (fields.traction * length).sum(axis=-1)
+        return wl.Contact.from_line(problem, fields, x=x, length=length, force_per_width=force)
+
+
+class LosesEnergyOnAnyCells(Cells):
+    """Half a per cent of the slip is missing, less than its accuracy, however fine the cells."""
+
+    def made(self, problem: wl.LineProblem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
+        return super().made(problem, dataclasses.replace(fields, slip=0.995 * fields.slip), x, length)
+
+
+class ForceIsNoSumOnAnyCells(Cells):
+    """The force is larger than the sum of the tractions by less than its accuracy, and the slip as much."""
+
+    def made(self, problem: wl.LineProblem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
+        contact = super().made(problem, dataclasses.replace(fields, slip=1.003 * fields.slip), x, length)
+        force, index = 1.003 * contact.tangential_force, 1.003 * contact.wear_index
+        return dataclasses.replace(contact, tangential_force=force, wear_index=index)
+
+
+class RefinedIsTheSame(Cells):
+    """What it calls refined has as many cells."""
+
+    def refined(self) -> Cells:
+        return self
+
+
+CAUGHT: dict[Any, str] = {
+    LosesEnergyOnAnyCells: "refined_nodes_improve_the_sums",
+    ForceIsNoSumOnAnyCells: "refined_nodes_improve_the_sums",
+    RefinedIsTheSame: "refined_nodes_improve_the_sums",
+}
+"""The check that must catch each."""
