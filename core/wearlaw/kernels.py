@@ -69,19 +69,14 @@ class Kernel:
     @functools.cached_property
     def compiled(self) -> Callable[..., Array]:
         """The scalar function, compiled by numba for arrays; kept on disk for later processes where there is room."""
-        numba, code = _numba(), self.scalar.__code__
+        numba = _numba()
         options = {"fastmath": {"contract"}}  # a multiplication and an addition with one rounding, as C compilers do
-        namespace = dict(self.scalar.__globals__)
-        for name in code.co_names:
-            if isinstance(namespace.get(name), FunctionType):
-                namespace[name] = numba.njit(**options)(namespace[name])
-        function = FunctionType(code, namespace, self.scalar.__name__)
-        function.__module__ = self.scalar.__module__
-        signatures = [numba.float64(*[numba.float64] * code.co_argcount)]
+        function = _with_compiled(self.scalar, numba.njit(**options))
+        signatures = [numba.float64(*[numba.float64] * function.__code__.co_argcount)]
         compiled: Callable[..., Array]
         try:
             compiled = numba.vectorize(signatures, cache=True, **options)(function)
-        except RuntimeError:  # no folder that numba may write to
+        except (RuntimeError, OSError):  # no folder that numba may write to, or no room there
             compiled = numba.vectorize(signatures, **options)(function)
         return compiled
 
@@ -97,6 +92,17 @@ def kernel(arrays: Callable[..., Array]) -> Callable[[Callable[..., float]], Ker
         functions of its module that do the same.
     """
     return lambda scalar: Kernel(scalar, arrays)
+
+
+def _with_compiled(function: Any, compiler: Callable[[FunctionType], Any]) -> FunctionType:
+    """Return a copy of a function that calls compiled copies of the functions of its module."""
+    namespace = dict(function.__globals__)
+    for name in function.__code__.co_names:
+        if isinstance(namespace.get(name), FunctionType):
+            namespace[name] = compiler(_with_compiled(namespace[name], compiler))
+    copy = FunctionType(function.__code__, namespace, function.__name__, function.__defaults__, function.__closure__)
+    copy.__module__ = function.__module__
+    return copy
 
 
 def _number(value: Array | float) -> float:

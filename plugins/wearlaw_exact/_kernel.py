@@ -28,7 +28,7 @@ only feels the square of that.
 """
 
 STEPS = 60
-"""Steps at most, of which two to four are needed."""
+"""Steps at most; two to four are needed, next to d = 1 more, since the first guess is far off a cube."""
 
 Number = TypeVar("Number", float, Array)
 
@@ -69,7 +69,8 @@ def _excess_arrays(
 ) -> Array:
     saturation = friction * half_width / radius
     scale, reduced = friction * max_pressure * saturation, creepage / saturation
-    level = threshold / scale
+    reduced, level = np.broadcast_arrays(reduced, threshold / scale)
+    shape, reduced, level = reduced.shape, reduced.ravel(), level.ravel()
     excess = np.zeros(reduced.shape)
     zone, mean = np.minimum(reduced, 1.0), np.maximum(2.0 - reduced, reduced)
     near = np.flatnonzero(level < zone * (mean + zone))  # which f stays below
@@ -90,7 +91,7 @@ def _excess_arrays(
     tails -= np.concatenate([height, height]) * v
     above = 0.5 * np.pi * mean - 2.0 * height - tails[: near.size] - tails[near.size :]
     excess[near] = zone * zone * np.maximum(above, 0.0)
-    return excess * scale * half_width
+    return excess.reshape(shape) * scale * half_width
 
 
 @wl.kernel(_excess_arrays)

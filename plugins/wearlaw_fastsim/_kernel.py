@@ -31,7 +31,7 @@ TINY = 1e-30
 """The least share of its range that a root is sought at, so that no power of it is zero."""
 
 STEPS = 60
-"""Steps at most, of which two to four are needed."""
+"""Steps at most; two to four are needed, next to d = 1 more."""
 
 
 def _change(base: Number, growth: float, zero: Number, level: Number, v: Number) -> Number:
@@ -56,7 +56,7 @@ def _root(base: Array, growth: float, zero: Array, level: Array, top: Array, sha
 
 
 def _parabolic_arrays(creepage: Array, slope: Array, centre: Array, half_width: Array, threshold: float) -> Array:
-    reduced, level = creepage / slope, threshold / (slope * centre)
+    reduced, level = np.broadcast_arrays(creepage / slope, threshold / (slope * centre))
     excess = np.zeros(reduced.shape)
     end, more = 2.0 * np.minimum(reduced, 1.0), 1.0 + reduced
     top = 2.0 * more / (2.0 + more + np.sqrt(reduced**2 + 3.0))

@@ -1,0 +1,270 @@
+"""What a contact model has from `LineContactModel`, and that its optional methods change nothing but the time."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+import wearlaw as wl
+from tests.core.cases import Linear
+from tests.strategies import EPS, LINE_MODELS, line_problems
+from wearlaw import Array, Q, result
+from wearlaw.quadrature import ORDER
+
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
+
+RIG = wl.TwinDisc.suros()
+every_model = pytest.mark.parametrize("name", LINE_MODELS)
+
+SUM = 64.0 * EPS
+"""A sum over the nodes of a zone, of which each carries some ten roundings that do not add up."""
+
+
+def mirrored(problem: wl.LineProblem) -> wl.LineProblem:
+    return dataclasses.replace(problem, creepage=-problem.creepage)
+
+
+def sweep(creepage: Array, **changes: Any) -> wl.LineProblem:
+    conditions: Any = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46, **changes}
+    return RIG.problem(creepage=Q(creepage, ""), **conditions)
+
+
+class Bare(wl.LineContactModel):
+    """A block that slips as a whole, with the methods that must be there and no other."""
+
+    name: ClassVar[str] = "bare"
+    source: ClassVar[str] = "the tests"
+
+    def slip_length(self, problem: wl.LineProblem) -> Array:
+        return np.where(problem.creepage > 0.0, 2.0 * problem.half_width, 0.0)
+
+    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
+        bound = np.broadcast_to(problem.friction_coefficient * problem.max_pressure, nodes.x.shape)
+        slip = np.broadcast_to(problem.creepage, nodes.x.shape)
+        return wl.LineFields(pressure=bound, traction=0.5 * bound, slip=slip, traction_bound=bound)
+
+    def tangential_force_per_width(self, problem: wl.LineProblem) -> Array:
+        force: Array = problem.friction_coefficient * problem.max_pressure * problem.half_width
+        return force
+
+
+# --- What the class gives ----------------------------------------------------------------------------------------
+
+
+def test_what_is_optional_is_not_known_by_default() -> None:
+    problem = sweep(np.array([0.01, 0.1]))
+    assert Bare().crossings(problem, "wear_index_density", np.full(2, 1e6)) is None
+    assert Bare().excess_dissipation(problem, 1e6) is None
+    assert Bare().square_roots_at == "slip_zone"
+    assert Bare().exemptions == {}
+
+
+def test_a_model_with_nothing_but_the_required_methods_predicts_wear() -> None:
+    predict = RIG | Bare() | wl.wear_law("usfd")
+    found = predict(max_pressure="1500 MPa", creepage=Q([-0.01, 0.0, 0.2], ""), friction_coefficient=0.46)
+    density = 0.5 * 0.46 * 1500.0 * np.array([0.01, 0.0, 0.2])  # q·s everywhere, in N/mm²
+    expected = np.minimum(5.3 * density, 55.0) + 61.9 * np.maximum(density - 77.26, 0.0)
+    assert found.wear_rate.m_as("ug/m/mm^2") == pytest.approx(expected, rel=SUM)
+
+
+@every_model
+@given(problem=line_problems())
+def test_the_force_has_the_sign_of_the_creepage_and_is_that_of_solve(name: str, problem: wl.LineProblem) -> None:
+    model = LINE_MODELS[name]
+    force = model.tangential_force(problem)
+    assert force == model.tangential_force_per_width(problem.forward()) * problem.track_width
+    assert model.tangential_force(mirrored(problem)) == -force
+    for each in (problem, mirrored(problem)):
+        assert model.solve(each).tangential_force == model.tangential_force(each)
+
+
+@every_model
+@given(problem=line_problems())
+def test_the_zones_share_the_patch(name: str, problem: wl.LineProblem) -> None:
+    model, patch = LINE_MODELS[name], 2.0 * problem.half_width
+    slip, stick = model.slip_zone(problem), model.stick_zone(problem)
+    assert slip.length == model.slip_length(problem)
+    assert slip.length + stick.length == pytest.approx(patch, rel=2 * EPS)
+    assert (model.slip_zone(mirrored(problem)).length, model.stick_zone(mirrored(problem)).length) == (
+        slip.length, stick.length,
+    )  # fmt: skip
+    assert slip.span == (patch if name.startswith("fastsim") else slip.length)
+    contact = model.solve(problem)
+    length = contact.area / problem.track_width
+    assert length.sum() == pytest.approx(float(patch), rel=SUM)
+    assert length[contact.slip != 0.0].sum() == pytest.approx(float(slip.length), rel=SUM)
+    border, rounding = float(problem.half_width - slip.length), 4 * EPS * float(problem.half_width)
+    sticks = contact.x[contact.slip == 0.0]
+    assert (sticks <= border + rounding).all()
+    assert (contact.x[contact.slip != 0.0] >= border - rounding).all()
+    assert np.abs(contact.x).max() <= float(problem.half_width) + rounding
+
+
+@every_model
+@pytest.mark.parametrize("shape", [(), (3,), (2, 3)])
+def test_the_contact_can_be_had_at_any_nodes(name: str, shape: tuple[int, ...]) -> None:
+    model, random = LINE_MODELS[name], np.random.default_rng(71)
+    problem = sweep(random.choice([-1.0, 1.0], shape) * 10.0 ** random.uniform(-4.0, -1.0, shape))
+    x = np.sort(random.uniform(-1.0, 1.0, (*shape, 7)), axis=-1) * problem.half_width[..., None]
+    nodes = wl.Nodes.at(x, problem.half_width)
+    nodes = dataclasses.replace(nodes, length=np.full(x.shape, 1e-6))
+    contact = model.at(problem, nodes)
+    fields = model.fields(problem.forward()[..., None], nodes)
+    sign = np.sign(problem.creepage)[..., None]
+    assert contact.x == pytest.approx(x, abs=2 * EPS * float(problem.half_width.max()))
+    assert (contact.area == 1e-6 * problem.track_width[..., None]).all()
+    assert (contact.pressure == fields.pressure).all()
+    assert (contact.traction == sign * fields.traction).all()
+    assert (contact.slip == sign * fields.slip).all()
+    assert (contact.traction_bound == fields.traction_bound).all()
+    assert (contact.tangential_force == model.tangential_force(problem)).all()
+
+
+@every_model
+def test_stick_and_full_slip_in_one_batch_are_what_they_are_alone(name: str) -> None:
+    model = LINE_MODELS[name]
+    problem = sweep(np.array([0.3, 1e-4, 0.0, -0.3, -0.005, 0.03]))
+    together = model.solve(problem)
+    assert together.patch_area == pytest.approx(problem.patch_area, rel=SUM)
+    for point, creepage in enumerate(problem.creepage):
+        alone = model.solve(problem[point])
+        assert together.tangential_force[point] == pytest.approx(alone.tangential_force, rel=4 * EPS)
+        dissipated = (together.traction * together.slip * together.area)[point].sum()
+        assert dissipated == pytest.approx(float((alone.traction * alone.slip * alone.area).sum()), rel=SUM)
+        assert together.mean_slip[point] == pytest.approx(alone.mean_slip, rel=SUM)
+        assert (np.sign(together.slip[point]) * np.sign(creepage) >= 0.0).all()
+    assert together.pressure.shape[-1] == 2 * ORDER
+    if "elliptic" not in name:  # of which a part always sticks
+        assert model.solve(problem[[0, 3]]).pressure.shape == (2, ORDER)
+
+
+@every_model
+def test_closed_forms_take_batches_of_any_shape(name: str) -> None:
+    model = LINE_MODELS[name]
+    problem = sweep(np.geomspace(1e-4, 0.3, 12).reshape(3, 4))
+    flat = problem.flatten()
+    methods: dict[str, Callable[[wl.LineProblem], Array | None]] = {
+        "slip_length": model.slip_length,
+        "tangential_force_per_width": model.tangential_force_per_width,
+        "excess_dissipation": lambda p: model.excess_dissipation(p, 1e6),
+        "crossings": lambda p: model.crossings(p, "slip", np.full(p.batch_shape, 1e-3)),
+    }
+    for name, method in methods.items():
+        found, due = method(problem), method(flat)
+        if due is None:
+            assert found is None, name
+            continue
+        assert found is not None, name
+        np.testing.assert_array_equal(found, due.reshape(3, 4, *due.shape[1:]), err_msg=name)
+
+
+# --- Closed forms against quadrature ---------------------------------------------------------------------------
+
+
+def without_closed_forms(model: wl.LineContactModel) -> wl.LineContactModel:
+    """Return a model with the same fields that knows neither crossings nor dissipation."""
+
+    class Plain(type(model)):  # type: ignore[misc]
+        crossings = wl.LineContactModel.crossings
+        excess_dissipation = wl.LineContactModel.excess_dissipation
+
+    plain: wl.LineContactModel = Plain(**{field: getattr(model, field) for field in type(model).model_fields})
+    return plain
+
+
+def operating_points(saturation: float) -> Array:
+    """Return creepages over the whole range of both signs, half of them next to full slip."""
+    random = np.random.default_rng(72)
+    anywhere, gap = 10.0 ** random.uniform(-7.0, 0.0, 300), 10.0 ** random.uniform(-12.0, -1.0, 300)
+    creepage = np.concatenate([anywhere, saturation * (1.0 + gap * random.choice([-1.0, 1.0], 300)), [0.0]])
+    signed: Array = creepage * random.choice([-1.0, 1.0], creepage.size)
+    return signed
+
+
+@pytest.mark.parametrize("fitted_for", ["global", "exact"])
+@pytest.mark.parametrize("name", [name for name in LINE_MODELS if "printed" not in name])
+def test_closed_forms_give_the_wear_that_quadrature_gives(name: str, fitted_for: str) -> None:
+    model, law = LINE_MODELS[name], wl.wear_law("usfd", fitted_for=fitted_for)
+    # ξ_sat = 2 μ p0/E*, and full slip of FASTSIM at 3/2 of it
+    saturation = 2.0 * 0.46 * 2.2e9 / float(sweep(np.array(0.1)).effective_modulus)
+    creepage = operating_points(saturation if name == "exact" else 1.5 * saturation)
+    conditions: Any = {"max_pressure": "2.2 GPa", "creepage": Q(creepage, ""), "friction_coefficient": 0.46}
+    closed, nodes = ((RIG | each | law)(**conditions) for each in (model, without_closed_forms(model)))
+    assert closed.tangential_force.m.tolist() == nodes.tangential_force.m.tolist()
+    # Each ramp alone is as large as its slope times the whole dissipation, from which the others are subtracted.
+    largest = sum(abs(slope) for _, slope in law.ramps or ()) * closed.wear_index_density.m_as("N/m^2")
+    apart = np.abs(closed.wear_rate.m_as("kg/m/m^2") - nodes.wear_rate.m_as("kg/m/m^2"))
+    assert (apart <= SUM * largest).all()
+    rate = closed.wear_rate.m_as("ug/m/mm^2")
+    assert np.count_nonzero(rate > 55.0) > 10
+    assert np.count_nonzero((rate < 55.0) & (rate > 0.0)) > 200
+
+
+@pytest.mark.parametrize("threshold", [1e-3, 1e4, 1e7, 1e8])
+@pytest.mark.parametrize("name", [name for name in LINE_MODELS if "printed" not in name])
+def test_the_energy_above_a_threshold_is_that_of_the_fields(name: str, threshold: float) -> None:
+    class Above(wl.WearLaw):
+        """The density above the threshold, of which quadrature alone knows the mean."""
+
+        name: ClassVar[str] = "above"
+        source: ClassVar[str] = "the tests"
+
+        @property
+        def breakpoints(self) -> wl.BreakpointMap:
+            return {"wear_index_density": (threshold,)}
+
+        def rate(self, contact: wl.Contact) -> Array:
+            return np.maximum(contact.wear_index_density - threshold, 0.0)
+
+    model = LINE_MODELS[name]
+    problem = sweep(np.abs(operating_points(0.0123)))
+    conditions: Any = {"max_pressure": "1500 MPa", "creepage": Q(problem.creepage, ""), "friction_coefficient": 0.46}
+    mean = (RIG | model | Above())(**conditions).wear_rate.m_as("kg/m/m^2")
+    excess = model.excess_dissipation(problem, threshold)
+    assert excess is not None
+    whole = model.tangential_force_per_width(problem) * problem.creepage
+    assert (np.abs(excess - mean * 2.0 * problem.half_width) <= SUM * whole).all()
+
+
+@pytest.mark.parametrize("name", [name for name in LINE_MODELS if "printed" not in name])
+@pytest.mark.parametrize("speed", ["4 m/s", "40 m/s"])  # with borders of the slip in full and in partial slip
+def test_where_slip_or_pressure_crosses_a_value_is_where_a_search_finds_it(name: str, speed: str) -> None:
+    model = LINE_MODELS[name]
+    conditions: Any = {
+        "max_pressure": "2.5 GPa", "creepage": Q(np.geomspace(1e-5, 1.0, 300), ""), "friction_coefficient": 0.46,
+    }  # fmt: skip
+    rig = wl.TwinDisc.suros(rolling_speed=speed)
+    closed, searched = (
+        (rig | each | wl.wear_law("kth"))(**conditions).wear_rate.m_as("kg/m/m^2")
+        for each in (model, without_closed_forms(model))
+    )
+    # what all means are held to; next to a border that the slip just reaches, rounding of where is enlarged most
+    np.testing.assert_allclose(closed, searched, rtol=1e-9)
+
+
+# --- Cells are a matter of output ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "law", [wl.wear_law("usfd"), wl.wear_law("kth"), Linear(slope=Q(1, "um"))], ids=lambda law: law.name
+)
+@every_model
+def test_a_finer_plot_does_not_change_the_wear(name: str, law: wl.WearLaw, monkeypatch: pytest.MonkeyPatch) -> None:
+    predict = RIG | LINE_MODELS[name] | law
+    conditions: Any = {
+        "max_pressure": "2.5 GPa", "creepage": Q(np.geomspace(1e-5, 0.5, 9), ""), "friction_coefficient": 0.46,
+    }  # fmt: skip
+    outputs = ("wear_rate", "wear_rate_error", "tangential_force", "stick_ratio", "mean_slip", "averaged_wear_index")
+    before = predict(**conditions)
+    due = {output: getattr(before, output).m.tobytes() for output in outputs}
+    for cells in (10, 1000):
+        monkeypatch.setattr(result, "PROFILE_CELLS", cells)
+        found = predict(**conditions)
+        assert found.profile.sizes["cell"] == cells
+        assert found.contact.x.shape[0] == 9
+        assert {output: getattr(found, output).m.tobytes() for output in outputs} == due

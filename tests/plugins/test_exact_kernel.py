@@ -1,0 +1,145 @@
+"""The energy that Carter's contact dissipates above a threshold, against integrals in fifty digits."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+
+from tests.plugins.excess import DIGITS, Density, Real, copies, crowded, shares
+from tests.strategies import EPS
+from wearlaw import Array
+from wearlaw_exact import _kernel
+from wearlaw_exact._kernel import excess_dissipation
+
+COPIES = copies(excess_dissipation)
+every_copy = pytest.mark.parametrize("copy", COPIES)
+
+ROUNDINGS = 8 * 0.5 * EPS
+"""Error as a share of the whole dissipation.
+
+The six terms of the sum come to less than five times the whole together, whatever the threshold, and each carries a
+rounding or two. Roots matter only by the square of their error.
+"""
+
+
+def density(reduced: Real) -> Density:
+    """Return q·s/(μp0 μa/R) by its factors (Johnson 1985, section 8.3), with d = ξR/(μa).
+
+    s/(μa/R) is √((x+a-c)² - c²)/a = √((2d-v)(2-v)) in partial slip, and d + x/a = d + 1 - v in full slip.
+    """
+    with mpmath.workdps(DIGITS):
+        d = mpmath.mpf(reduced)
+        if d < 1:
+            top = (2 + 3 * d - mpmath.sqrt((2 + 3 * d) ** 2 - 16 * d)) / 4
+            return Density(lambda v: mpmath.sqrt(abs(v * (2 * d - v))) * (2 - v), top, 2 * d)
+        top = 1 - (mpmath.sqrt(d * d + 8) - d) / 4
+        return Density(lambda v: mpmath.sqrt(abs(v * (2 - v))) * (d + 1 - v), top, mpmath.mpf(2))
+
+
+def whole(reduced: Array) -> Array:
+    """Return the whole dissipation T ξ over μp0 a μa/R: (π/2) d² (2-d), and (π/2) d in full slip."""
+    return 0.5 * math.pi * reduced * np.where(reduced < 1.0, reduced * (2.0 - reduced), 1.0)
+
+
+def apply(copy: str, reduced: Array, level: Array) -> Array:
+    """Return what a copy of the kernel gives in units where μ, p0, a and R are one."""
+    return COPIES[copy](reduced, *[np.ones_like(reduced)] * 4, level)
+
+
+@pytest.fixture(scope="module")
+def integrals() -> tuple[Array, Array, Array]:
+    """Return reduced creepages, thresholds, and the energy above these."""
+    random = np.random.default_rng(41)
+    reduced = crowded(random, 80)
+    densities = [density(d) for d in reduced]
+    level = shares(random, reduced.size) * [each.peak for each in densities]
+    return reduced, level, np.array([each.excess(at) for each, at in zip(densities, level, strict=True)])
+
+
+@every_copy
+def test_the_energy_above_a_threshold_is_its_integral(copy: str, integrals: tuple[Array, Array, Array]) -> None:
+    reduced, level, expected = integrals
+    error = np.abs(apply(copy, reduced, level) - expected).astype(float)
+    assert (error <= ROUNDINGS * whole(reduced)).all()
+    assert np.ptp(expected.astype(float) / whole(reduced)) > 0.99  # thresholds leave all of it, and nearly nothing
+
+
+@every_copy
+def test_what_is_not_above_the_maximum_is_zero(copy: str) -> None:
+    random = np.random.default_rng(42)
+    reduced = crowded(random, 200)
+    # squares of the level and of the maximum, of four factors, are compared
+    gap = 10.0 ** random.uniform(math.log10(8.0 * EPS), 3.0, reduced.size)
+    level = np.array([density(d).peak for d in reduced]) * (1.0 + gap)
+    assert (apply(copy, reduced, level) == 0.0).all()
+
+
+@every_copy
+def test_a_threshold_next_to_nothing_leaves_the_whole_dissipation(copy: str) -> None:
+    reduced = crowded(np.random.default_rng(43), 1_000)
+    for level in (1e-40, 1e-300):
+        error = np.abs(apply(copy, reduced, np.full_like(reduced, level)) - whole(reduced))
+        assert (error <= (ROUNDINGS + 2 * EPS) * whole(reduced)).all()  # that of the test has four roundings
+
+
+def test_values_in_si_are_reduced_as_in_the_literature() -> None:
+    random = np.random.default_rng(44)
+    size = 40
+    friction, pressure = random.uniform(0.05, 1.0, size), random.uniform(0.3e9, 4e9, size)
+    half_width, radius = random.uniform(1e-4, 1e-2, size), random.uniform(5e-3, 0.5, size)
+    columns = (crowded(random, size) * friction * half_width / radius, friction, pressure, half_width, radius)
+    threshold, expected, most = [], [], []
+    with mpmath.workdps(DIGITS):
+        for share, row in zip(shares(random, size), zip(*columns, strict=True), strict=True):
+            xi, mu, p0, a, r = map(mpmath.mpf, row)
+            unit = mu * p0 * (mu * a / r)
+            each = density(xi / (mu * a / r))
+            threshold.append(float(unit * each.peak * share))
+            expected.append(float(unit * a * each.excess(threshold[-1] / unit)))
+            most.append(float(unit * a * each.excess(0.0)))
+    for copy, formula in COPIES.items():
+        error = np.abs(formula(*columns, np.array(threshold)) - expected)
+        # Three roundings make d, of which the energy is the square at most, four the level, and four the product.
+        assert (error <= (ROUNDINGS + (2 * 3 + 4 + 4) * 0.5 * EPS) * np.array(most)).all(), copy
+
+
+def test_copies_of_the_formula_agree() -> None:
+    random = np.random.default_rng(45)
+    reduced = crowded(random, 20_000)
+    level = shares(random, reduced.size) * np.where(reduced < 1.0, 2.0 * reduced, 1.0 + reduced)
+    results = {copy: apply(copy, reduced, level) for copy in COPIES}
+    for copy, found in results.items():
+        assert (np.abs(found - results["scalar"]) <= 2.0 * ROUNDINGS * whole(reduced)).all(), copy
+
+
+@pytest.mark.parametrize(("steps", "everywhere"), [(8, False), (200, True)])
+def test_the_roots_are_found_before_the_last_step(
+    steps: int, everywhere: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    random = np.random.default_rng(46)
+    reduced = crowded(random, 5_000)
+    share = shares(random, reduced.size)
+    # At full slip the density falls like a cube, to which steps from below come close by doubling only.
+    easy = (np.abs(reduced - 1.0) > 0.1) & (share > 1e-6) | everywhere
+    reduced = reduced[easy]
+    level = share[easy] * np.where(reduced < 1.0, 2.0 * reduced, 1.0 + reduced)  # of the order of the maximum
+    due = {copy: apply(copy, reduced, level) for copy in ("scalar", "arrays")}
+    monkeypatch.setattr(_kernel, "STEPS", steps)
+    for copy, values in due.items():
+        assert (apply(copy, reduced, level) == values).all()
+    monkeypatch.setattr(_kernel, "STEPS", 1)
+    for copy, values in due.items():
+        assert not (apply(copy, reduced, level) == values).all()
+
+
+@every_copy
+def test_no_creepage_dissipates_nothing_beside_points_that_do(copy: str) -> None:
+    reduced = np.array([0.0, 0.5, 0.0, 1.0, 2.0, 0.0])
+    level = np.array([1e-9, 1e-3, 1.0, 1e-3, 10.0, 1e9])
+    got = apply(copy, reduced, level)
+    assert (got[[0, 2, 4, 5]] == 0.0).all()
+    assert (got[[1, 3]] > 0.0).all()
+    assert (apply(copy, np.zeros(3), np.full(3, 1e-9)) == 0.0).all()
