@@ -85,9 +85,9 @@ class Zone:
 
     def angle_of(self, distance: Array) -> Array:
         """Return ψ at distances (batch, points) from the edge; what lies beyond the zone, and NaN, is at its end."""
-        inside = distance < self.length[..., None]  # False for NaN
-        span = self.span[..., None]
-        share = np.divide(np.maximum(distance, 0.0), span, out=np.zeros_like(distance), where=inside & (span > 0.0))
+        length = self.length[..., None]
+        inside = (distance < length) & (length > 0.0)  # False for NaN
+        share = np.divide(np.maximum(distance, 0.0), self.span[..., None], out=np.zeros_like(distance), where=inside)
         return np.where(inside, 2.0 * np.arcsin(np.sqrt(share)), self.angle[..., None])
 
     def nodes(self, splits: Array | None = None, panels: int = 1) -> Nodes:
