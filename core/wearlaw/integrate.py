@@ -21,6 +21,7 @@ from wearlaw.arrays import Array
 from wearlaw.blocks import Columns, OnBlock, by_block
 from wearlaw.crossings import crossings
 from wearlaw.errors import ModelError
+from wearlaw.kernels import accelerated
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import ContactModel, Scale, WearLaw
@@ -28,8 +29,11 @@ from wearlaw.quadrature import join, remainder
 from wearlaw.records import NODE_VARIABLES, Contact
 from wearlaw.units import extremes
 
-BLOCK = 16384
-"""Operating points of a block in closed form: its arrays stay in the cache."""
+BLOCK = 8192
+"""Operating points of a block in closed form: its arrays stay in the cache, and in memory that is used again."""
+
+COMPILED_BLOCK = 16384
+"""The same with compiled kernels, which make fewer arrays."""
 
 NODE_BLOCK = 512
 """Operating points of a block with nodes."""
@@ -124,7 +128,9 @@ def integrate_wear(
                 on_block(problem, found["tangential_force"])
             _check_finite(model, found, problem)
             return WearTotals(wear_rate=found["wear_rate"])
-    block = BLOCK if closed else NODE_BLOCK
+    block = NODE_BLOCK
+    if closed:
+        block = COMPILED_BLOCK if accelerated(problem.creepage.size) else BLOCK
     found = by_block(problem.flatten(), block, columns, on_block, drop_force=isinstance(model, LineContactModel))
     found = {name: values.reshape(problem.batch_shape) for name, values in found.items()}
     _check_finite(model, found, problem)

@@ -207,9 +207,19 @@ def _check_interface(needed: object) -> None:
         )
 
 
+class _Manager(pluggy.PluginManager):
+    """A plugin manager that passes over names which are no hooks; looking at them all takes most of its time."""
+
+    def parse_hookspec_opts(self, module_or_class: Any, name: str) -> Any:
+        return super().parse_hookspec_opts(module_or_class, name) if name.startswith(f"{hookspecs.PROJECT}_") else None
+
+    def parse_hookimpl_opts(self, plugin: Any, name: str) -> Any:
+        return None if name.startswith("__") else super().parse_hookimpl_opts(plugin, name)
+
+
 def _load(entry_point: EntryPoint) -> pluggy.PluginManager:
     """Return a plugin manager that holds one plugin alone."""
-    manager = pluggy.PluginManager(hookspecs.PROJECT)
+    manager = _Manager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)
     plugin = entry_point.load()
     _check_interface(getattr(plugin, "wearlaw_interface", hookspecs.INTERFACE_VERSION))

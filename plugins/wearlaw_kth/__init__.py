@@ -27,10 +27,11 @@ class Coefficients(wl.Configuration):
     """At and above the upper slip speed."""
 
 
-LOW = Coefficients(high_pressure=300e-4, low_speed=1e-4, mid_speed=30e-4, high_speed=1e-4)
-MID = Coefficients(high_pressure=350e-4, low_speed=5.5e-4, mid_speed=35e-4, high_speed=5.5e-4)
-HIGH = Coefficients(high_pressure=400e-4, low_speed=10e-4, mid_speed=40e-4, high_speed=10e-4)
-PUBLISHED: dict[object, Coefficients] = {"low": LOW, "mid": MID, "high": HIGH}
+PUBLISHED = {
+    "low": {"high_pressure": 300e-4, "low_speed": 1e-4, "mid_speed": 30e-4, "high_speed": 1e-4},
+    "mid": {"high_pressure": 350e-4, "low_speed": 5.5e-4, "mid_speed": 35e-4, "high_speed": 5.5e-4},
+    "high": {"high_pressure": 400e-4, "low_speed": 10e-4, "mid_speed": 40e-4, "high_speed": 10e-4},
+}
 
 
 class KTH(wl.WearLaw):
@@ -81,6 +82,11 @@ class KTH(wl.WearLaw):
         return self
 
     @cached_property
+    def _k(self) -> Coefficients:
+        own = self.coefficient
+        return own if isinstance(own, Coefficients) else Coefficients(**PUBLISHED[own])
+
+    @cached_property
     def _si(self) -> tuple[float, float, float, float]:
         return (
             wl.scalar_si(self.hardness, "Pa"),
@@ -110,8 +116,7 @@ class KTH(wl.WearLaw):
     def rate(self, contact: wl.Contact) -> Array:
         """Return the wear rate at the nodes [kg/m/m²]."""
         hardness, threshold, lower, upper = self._si
-        k = self.coefficient if isinstance(self.coefficient, Coefficients) else PUBLISHED[self.coefficient]
-        speed = contact.slip_speed
+        k, speed = self._k, contact.slip_speed
         coefficient = np.select(
             [contact.pressure >= threshold, speed < lower, speed < upper],
             [k.high_pressure, k.low_speed, k.mid_speed],

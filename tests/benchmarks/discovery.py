@@ -85,7 +85,8 @@ def write_plugins(folder: Path) -> None:
 def run(code: str, folder: Path) -> str:
     """Return what a fresh process prints that has the plugins on its path."""
     path = os.pathsep.join(filter(None, (str(folder), os.environ.get("PYTHONPATH"))))
-    environment = {**os.environ, **THREADS, "PYTHONPATH": path}
+    compiled = {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": str(folder / "compiled")}
+    environment = {**os.environ, **THREADS, **compiled, "PYTHONPATH": path}
     return subprocess.run(
         [sys.executable, "-c", code], env=environment, stdout=subprocess.PIPE, check=True
     ).stdout.decode()
