@@ -72,7 +72,7 @@ def condition_arrays(conditions: dict[str, Any]) -> dict[str, Array]:
 
 def _broadcast(arrays: dict[str, Array]) -> dict[str, Array]:
     if not any(array.ndim for array in arrays.values()):
-        return {name: array[()] for name, array in arrays.items()}  # NumPy computes five times as fast with scalars
+        return arrays
     try:
         shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
     except ValueError:

@@ -169,9 +169,12 @@ def _closed_form(
         if excess is None:
             return None
         total = total + slope * excess
-    force = np.copysign(force * problem.track_width, problem.creepage)
-    rate = np.maximum(0.5 * total / problem.half_width, 0.0)  # ramps that cancel leave their rounding
-    return {"wear_rate": rate, "tangential_force": force}
+    force = force * problem.track_width
+    rate = 0.5 * total / problem.half_width
+    if extremes(rate)[0] < 0.0:  # ramps that cancel leave their rounding
+        rate = np.maximum(rate, 0.0)
+    signed = force if forward is problem else np.copysign(force, problem.creepage)
+    return {"wear_rate": rate, "tangential_force": signed}
 
 
 def rounding(law: WearLaw, problem: LineProblem, tangential_force: Array) -> Array:

@@ -238,16 +238,18 @@ def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
     return Q(angular * 0.5 * diameter, "m/s")
 
 
+TINY = float(np.sqrt(np.finfo(np.float64).tiny))
+"""The least length or pressure in SI whose square is a float of full precision."""
+
 LEAST_FRICTION = 1e-12
 """The least friction coefficient; below it creepage over that of full slip overflows in formulas of fourth order."""
 
 
 def _check_scale(half_width: Array, max_pressure: Array, friction_coefficient: Array) -> None:
     """Refuse loads and sizes so far from any contact that floats overflow or lose their precision."""
-    tiny = float(np.sqrt(np.finfo(np.float64).tiny))
     for name, value in (("half width", half_width), ("max pressure", max_pressure)):
         low, high = extremes(value)
-        if not (low > tiny and high < 1.0 / tiny):
+        if not (low > TINY and high < 1.0 / TINY):
             raise ConditionsError(
                 f"the load gives a {name} of {low:g} to {high:g} in SI units,"
                 " which no contact has; check the units of the load and of the rig"

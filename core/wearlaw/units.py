@@ -121,7 +121,8 @@ class Unit:
         Returns
         -------
         ndarray of float64
-            The value in the coherent SI unit of this dimension; memory is shared where nothing changes.
+            The value in the coherent SI unit of this dimension, a NumPy scalar if it has no axes; memory is shared where
+            nothing changes.
         """
         try:
             return self._checked(value)[1]
@@ -135,7 +136,7 @@ class Unit:
             factor = si_factor(quantity, self.unit)
         except UnitError as error:
             raise UnitError(f"got {_describe(Q(magnitude, str(quantity.units)))}, {error}") from None
-        in_si = magnitude if factor == 1.0 else np.asarray(magnitude * factor)
+        in_si = magnitude if factor == 1.0 else magnitude * factor
         if self._allows(in_si):
             return quantity, in_si
         for wrong, rule in self._rules(in_si):
@@ -210,7 +211,7 @@ class Unit:
 def real_array(value: object) -> NDArray[np.float64]:
     """Return `value` as float64, refusing what is no real number: booleans, complex, text, masked entries."""
     if type(value) is float:
-        return np.asarray(value)
+        return np.float64(value)  # type: ignore[return-value]  # computes as an array without axes, but faster
     if np.ma.is_masked(value):
         raise UnitError("masked entries have no value")
     if isinstance(value, pint.Quantity) or (
@@ -223,7 +224,7 @@ def real_array(value: object) -> NDArray[np.float64]:
         raise UnitError(f"{_describe(value)} is not an array of numbers") from None
     if array.dtype.kind not in "iuf":
         raise UnitError(f"{_describe(value)} is not a real number")
-    return array.astype(np.float64, copy=False)
+    return array.astype(np.float64, copy=False)[()]
 
 
 def coefficient(value: object, name: str) -> NDArray[np.float64]:

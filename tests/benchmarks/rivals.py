@@ -102,9 +102,11 @@ class Compiled:
 
     def __init__(self, flags: tuple[str, ...], compiler: str = "cc") -> None:
         with tempfile.TemporaryDirectory() as folder:
-            library = Path(folder) / "rivals.so"
+            compiled, library = Path(folder) / "rivals.o", Path(folder) / "rivals.so"
             source = Path(__file__).with_name("rivals.c")
-            subprocess.run([compiler, *flags, "-shared", "-fPIC", "-o", library, source, "-lm"], check=True)
+            subprocess.run([compiler, *flags, "-c", "-fPIC", "-o", compiled, source], check=True)
+            # Linked without the flags: with -ffast-math the library would flush the whole process's denormals to zero.
+            subprocess.run([compiler, "-shared", "-o", library, compiled, "-lm"], check=True)
             self._library = ctypes.CDLL(str(library))
         self._parameters = np.array(PARAMETERS)
 

@@ -125,3 +125,9 @@ def test_cells_converge_to_the_reference_with_their_number() -> None:
     # The rate falls to zero like a square root at the ends of the slip zone: order 3/2.
     for coarse, fine in itertools.pairwise(rms):
         assert fine < coarse / 10.0**1.25
+
+
+@needs_compiler
+def test_the_rivals_leave_the_arithmetic_of_the_process_alone() -> None:
+    rivals.Compiled(("-O3", "-ffast-math"))
+    assert np.array([5e-324]) * 1.0 > 0.0

@@ -317,3 +317,16 @@ def test_a_coefficient_may_be_given_in_percent() -> None:
 def test_real_array_keeps_the_memory_of_float64() -> None:
     values = np.arange(3.0)
     assert real_array(values) is values
+
+
+@pytest.mark.parametrize("value", [3.5, np.float64(3.5), np.array(3.5), np.array([1.0, 2.0])])
+def test_a_result_is_a_quantity_like_any_other(value: Any) -> None:
+    made, usual = from_si(value, "ug/m/mm^2"), Q(value * 1e3, "ug/m/mm^2")
+    assert type(made) is type(usual)
+    assert vars(made).keys() >= vars(usual).keys() - {"_dimensionality"}
+    assert np.all(made == usual)
+    assert made.units == usual.units
+    assert repr(made) == repr(usual)
+    assert np.all((2 * made).to("kg/m/m^2").m == 2.0 * np.asarray(value))
+    assert np.all(pickle.loads(pickle.dumps(made)) == made)
+    assert made.check("[mass]/[length]**3")
