@@ -98,7 +98,7 @@ def quantity_class(registry: pint.UnitRegistry[Any]) -> type[Any]:
     class ReadableQuantity(registry.Quantity):  # type: ignore[misc, name-defined]
         @classmethod
         def of(cls, magnitude: Any, container: Any) -> Any:
-            """Return the quantity without pint's checks of what is known to be right, which take three times as long."""
+            """Return the quantity without the checks of pint, which take most of the time."""
             made = object.__new__(cls)
             made._magnitude, made._units = magnitude, container
             return made

@@ -121,8 +121,8 @@ class Unit:
         Returns
         -------
         ndarray of float64
-            The value in the coherent SI unit of this dimension, a NumPy scalar if it has no axes; memory is shared where
-            nothing changes.
+            The value in the coherent SI unit of this dimension, a NumPy scalar if it has no axes; memory is shared
+            where nothing changes.
         """
         try:
             return self._checked(value)[1]
@@ -224,7 +224,8 @@ def real_array(value: object) -> NDArray[np.float64]:
         raise UnitError(f"{_describe(value)} is not an array of numbers") from None
     if array.dtype.kind not in "iuf":
         raise UnitError(f"{_describe(value)} is not a real number")
-    return array.astype(np.float64, copy=False)[()]
+    array = array.astype(np.float64, copy=False)
+    return array if array.ndim else array[()]
 
 
 def coefficient(value: object, name: str) -> NDArray[np.float64]:

@@ -56,8 +56,10 @@ def budgets(name: str, on: bool, rounds: int) -> list[Gate]:
     for count, spent in seconds.items():
         print(f"{name}: {count:.0e} points {1e9 * spent / count:9.1f} ns a point")
     print(f"{name}: time grows as points to the power {exponent:.3f}")
+    fastest, median = limits.scalar_seconds(on)
+    print(f"{name}: one prediction takes {1e6 * fastest:.1f} µs in the fastest round, {1e6 * median:.1f} in the median")
     return [
-        Gate(f"one prediction, {name} [µs]", 1e6 * limits.scalar_seconds(on), 60.0),
+        Gate(f"one prediction, {name}, fastest round [µs]", 1e6 * fastest, 60.0),
         Gate(f"unit checking of {limits.SWEEP:.0e} points, {name} [%]", 100.0 * share, 1.0),
         Gate(f"peak memory of {limits.MEMORY_POINTS:.0e} points, {name} [MiB]", peak, 300.0),
     ]
