@@ -106,7 +106,7 @@ def _with_compiled(function: Any, compiler: Callable[[FunctionType], Any]) -> Fu
 
 
 def _number(value: Array | float) -> float:
-    return value if isinstance(value, float) else value.item()
+    return float(value.item()) if isinstance(value, np.ndarray) else value
 
 
 @functools.cache

@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 import wearlaw as wl
 from tests.line import fields_at, slip_zone
@@ -21,11 +23,13 @@ class Searched(type(LINE_MODELS["exact"])):  # type: ignore[misc]
         return None
 
 
-MODELS = {**LINE_MODELS, "exact, searched": Searched()}
+MODELS: dict[str, wl.LineContactModel] = {**LINE_MODELS, "exact, searched": Searched()}
 EXACT = ("exact", "exact, searched")
 
 
-def find(name: str, problem: wl.LineProblem, breakpoints: dict[str, tuple[float, ...]]) -> tuple[Array, Array]:
+def find(
+    name: str, problem: wl.LineProblem, breakpoints: Mapping[str, tuple[float, ...]]
+) -> tuple[Array, NDArray[np.bool_]]:
     """Return the crossings of a batch of one axis as x, in the order of x, and which of them are there."""
     zone = MODELS[name].slip_zone(problem)
     angles = crossings(MODELS[name], problem, zone, breakpoints)[:, ::-1]

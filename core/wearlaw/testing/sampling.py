@@ -141,11 +141,10 @@ def between(first: Contact, second: Contact, share: Array) -> Contact:
 
 def e_folds(first: Contact, second: Contact) -> Array:
     """Return by how many e-folds the values of contacts of one node differ, all together, of the batch shape."""
-    total: Array = sum(
-        np.abs(np.log(getattr(second, name) / getattr(first, name))).reshape(first.rolling_speed.shape)
-        for name in _VALUES
-        if name != "traction_bound"  # which a law has no part in
-    )
+    total = np.zeros(first.rolling_speed.shape)
+    for name in _VALUES:
+        if name != "traction_bound":  # which a law has no part in
+            total += np.abs(np.log(getattr(second, name) / getattr(first, name))).reshape(total.shape)
     return total
 
 
