@@ -1,0 +1,74 @@
+"""What a figure shows, apart from how it is drawn: curves and points with their axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from wearlaw.arrays import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One curve, or a set of points, of a figure.
+
+    Attributes
+    ----------
+    label : str
+        What the legend calls it.
+    x, y : ndarray, (points,)
+        In the units that the labels of the axes give.
+    colour, dash : int
+        Numbers of its colour and its line style; the same number is the same style in all figures of a report.
+    low, high : ndarray, (points,), or None
+        The ends of a band about it.
+    points : bool
+        Whether it consists of measured points, which no line joins.
+    """
+
+    label: str
+    x: Array
+    y: Array
+    colour: int = 0
+    dash: int = 0
+    low: Array | None = None
+    high: Array | None = None
+    points: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """One axis of a panel: its label with the unit, its scale, and its ends where they are not those of the curves."""
+
+    label: str
+    scale: Literal["linear", "log"] = "linear"
+    ends: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """One pair of axes with its curves."""
+
+    x: Axis
+    y: Axis
+    curves: tuple[Curve, ...]
+    title: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class FigureData:
+    """A figure: its panels from left to right, and what a reader must know.
+
+    Attributes
+    ----------
+    name : str
+        The name of its file, an identifier.
+    title, caption : str
+        Plain text; the caption also says what is not shown, and why.
+    panels : tuple of Panel
+    """
+
+    name: str
+    title: str
+    panels: tuple[Panel, ...]
+    caption: str = field(default="")

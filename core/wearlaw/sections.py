@@ -1,0 +1,55 @@
+"""Sections that a plugin adds to the report of a study: claims that are checked, tables and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from wearlaw.curves import FigureData
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A statement of the literature, put to the test.
+
+    Attributes
+    ----------
+    statement : str
+        What is claimed.
+    where : str
+        Where: paper and section.
+    found : str
+        What was computed, with numbers and units.
+    holds : bool
+        Whether the numbers bear the statement out.
+    """
+
+    statement: str
+    where: str
+    found: str
+    holds: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """A section of a report.
+
+    Attributes
+    ----------
+    title, text : str
+        Plain text; blank lines separate paragraphs.
+    claims : tuple of Claim
+    tables : mapping of str to DataFrame
+        By the name of the file that a table gets, an identifier; units are in the heads of the columns.
+    figures : tuple of FigureData
+    """
+
+    title: str
+    text: str
+    claims: tuple[Claim, ...] = ()
+    tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
+    figures: tuple[FigureData, ...] = ()
