@@ -32,7 +32,7 @@ def by_block(
     if points == 0:
         raise ValueError("an empty batch has no totals")
     whole: Columns = {}
-    for part in _blocks(points, block):
+    for part in blocks(points, block):
         within = problem if points <= block else problem[part]
         columns = function(within)
         if on_block is not None:
@@ -48,5 +48,6 @@ def by_block(
     return whole
 
 
-def _blocks(points: int, block: int) -> Iterator[slice]:
+def blocks(points: int, block: int) -> Iterator[slice]:
+    """Return the operating points of each block."""
     return (slice(first, min(first + block, points)) for first in range(0, points, block))

@@ -46,7 +46,8 @@ def crossings(
     zone : Zone
         The slip zone.
     breakpoints : mapping of str to tuple of float
-        Names of node variables of `Contact` with SI values.
+        Names of node variables of `Contact` with SI values; an array (points, 1) in place of a value holds one for
+        each operating point.
 
     Returns
     -------
@@ -61,13 +62,13 @@ def crossings(
             found = _in_closed_form(model, problem, zone, name, value)
             if found is None:
                 searched = searched or _Variable(model, problem, zone, name)
-                found = zone.angle[:, None] * _searched(searched, value)
+                found = zone.angle[:, None] * _searched(searched, np.broadcast_to(value, (zone.angle.size, 1)))
             columns.append(found)
     return np.sort(np.concatenate(columns, axis=-1), axis=-1)
 
 
 def _in_closed_form(model: LineContactModel, problem: LineProblem, zone: Zone, name: str, value: float) -> Array | None:
-    level = np.full(problem.creepage.shape, value)
+    level = np.broadcast_to(value, (problem.creepage.size, 1))[:, 0]
     if name == "slip_speed":
         name, level = "slip", level / problem.rolling_speed
     distance = model.crossings(problem, cast(FieldVariable, name), level)
@@ -104,15 +105,15 @@ def _sample_shares() -> Array:
     return np.sort(np.concatenate([equal, equal[0] + near_end, equal[-1] - near_end]))
 
 
-def _searched(variable: _Variable, value: float) -> Array:
-    """Return the crossings of one breakpoint as shares of Ψ, of shape (points, CROSSINGS); 1 where there is none."""
+def _searched(variable: _Variable, value: Array) -> Array:
+    """Return the crossings of a breakpoint (points, 1), as shares of Ψ (points, CROSSINGS); 1 where there is none."""
     found = np.ones((variable.samples.shape[0], CROSSINGS))
     for point, column, low, high in (_sign_changes(variable, value), _hidden_humps(variable, value)):
         if point.size:
             from scipy.optimize import elementwise  # half of the time of `import wearlaw`, so only where it is used
 
             root = elementwise.find_root(
-                lambda share, who: variable.at(share, who) - value,
+                lambda share, who: variable.at(share, who) - value[who.astype(np.intp), 0],
                 (low, high),
                 args=(point.astype(np.float64),),
             )
@@ -124,7 +125,7 @@ Brackets: TypeAlias = tuple[NDArray[np.intp], NDArray[np.intp], Array, Array]
 """Operating points, columns of the result, and the shares between which a crossing lies; each of shape (m,)."""
 
 
-def _sign_changes(variable: _Variable, value: float) -> Brackets:
+def _sign_changes(variable: _Variable, value: Array) -> Brackets:
     above = variable.samples >= value
     changes = above[:, 1:] != above[:, :-1]
     order = changes.cumsum(axis=-1)
@@ -132,7 +133,7 @@ def _sign_changes(variable: _Variable, value: float) -> Brackets:
     return point, order[point, interval] - 1, variable.share[interval], variable.share[interval + 1]
 
 
-def _hidden_humps(variable: _Variable, value: float) -> Brackets:
+def _hidden_humps(variable: _Variable, value: Array) -> Brackets:
     """Return the brackets of crossings on both sides of a maximum that lies between two samples."""
     share, samples = variable.share, variable.samples
     top = samples.argmax(axis=-1).clip(1, share.size - 2)
@@ -140,7 +141,8 @@ def _hidden_humps(variable: _Variable, value: float) -> Brackets:
     left, middle, right = (samples[points, top + step] for step in (-1, 0, 1))
     # A smooth hump exceeds its highest sample by less than four times what that one exceeds its lower neighbour by,
     # for intervals of which one is no more than four times the next.
-    may_reach = (middle < value) & (value < middle + 4.0 * (middle - np.minimum(left, right)))
+    level = value[:, 0]
+    may_reach = (middle < level) & (level < middle + 4.0 * (middle - np.minimum(left, right)))
     point = points[may_reach & (middle >= np.maximum(left, right))]
     low, high = share[top[point] - 1], share[top[point] + 1]
     if point.size:
@@ -151,7 +153,7 @@ def _hidden_humps(variable: _Variable, value: float) -> Brackets:
             (low, share[top[point]], high),
             args=(point.astype(np.float64),),
         )
-        reaches = -peak.f_x > value
+        reaches = -peak.f_x > level[point]
         point, low, high, crest = point[reaches], low[reaches], high[reaches], peak.x[reaches]
     else:
         crest = low

@@ -78,7 +78,7 @@ def integrate_contact(model: ContactModel, problem: LineProblem) -> Array:
     """Return the tangential force [N]."""
     if isinstance(model, LineContactModel):
         force = model.tangential_force(problem)
-        _check_finite(model, {"tangential_force": force}, problem)
+        check_finite(model, {"tangential_force": force}, problem)
         return force
     flat = problem.flatten()
     columns = by_block(flat, NODE_BLOCK, lambda part: {"force": solve(model, part, model.scale).tangential_force})
@@ -119,21 +119,21 @@ def integrate_wear(
     closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
 
     def columns(part: LineProblem) -> Columns:
-        return (closed and _closed_form(*closed, part)) or _from_nodes(model, law, part, scale)
+        return (closed and closed_form(*closed, part)) or _from_nodes(model, law, part, scale)
 
     if closed and problem.batch_shape == ():  # scalars are computed as scalars
-        found = _closed_form(*closed, problem)
+        found = closed_form(*closed, problem)
         if found is not None:
             if on_block is not None:
                 on_block(problem, found["tangential_force"])
-            _check_finite(model, found, problem)
+            check_finite(model, found, problem)
             return WearTotals(wear_rate=found["wear_rate"])
     block = NODE_BLOCK
     if closed:
         block = COMPILED_BLOCK if accelerated(problem.creepage.size) else BLOCK
     found = by_block(problem.flatten(), block, columns, on_block, drop_force=isinstance(model, LineContactModel))
     found = {name: values.reshape(problem.batch_shape) for name, values in found.items()}
-    _check_finite(model, found, problem)
+    check_finite(model, found, problem)
     return WearTotals(**found)
 
 
@@ -141,7 +141,7 @@ def solve(model: ContactModel, problem: LineProblem, scale: Scale) -> Contact:
     """Return the contact of a model on its own nodes, or its patch mean where that is asked for."""
     contact = model.solve(problem)
     fields = ("pressure", "traction", "slip", "area", "tangential_force")
-    _check_finite(model, {name: getattr(contact, name) for name in fields}, problem)
+    check_finite(model, {name: getattr(contact, name) for name in fields}, problem)
     if scale == "patch" and model.scale != "patch":
         return contact.patch_mean()
     return contact
@@ -152,20 +152,20 @@ def contact_for(model: ContactModel, law: WearLaw, problem: LineProblem, scale: 
     if scale == "patch" or not isinstance(model, LineContactModel):
         return solve(model, problem, scale)
     slip = model.slip_zone(problem)
-    splits = _splits(model, law, problem)
+    splits = splits_of(model, law, problem)
     nodes = slip.nodes(panels=PANELS_UNDECLARED) if splits is None else slip.nodes(splits)
     return model.at(problem, join(model.stick_zone(problem).nodes().reversed(), nodes))
 
 
-def _closed_form(
+def closed_form(
     model: LineContactModel, ramps: tuple[tuple[float, float], ...], problem: LineProblem
 ) -> Columns | None:
     """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form."""
     forward = problem.forward()
     force = model.tangential_force_per_width(forward)
     total: Array | float = 0.0
-    for threshold, slope in ramps:
-        excess = model.excess_dissipation(forward, threshold) if threshold > 0.0 else force * forward.creepage
+    for threshold, slope in (map(_of_points, ramp) for ramp in ramps):
+        excess = model.excess_dissipation(forward, threshold) if np.any(threshold > 0.0) else force * forward.creepage
         if excess is None:
             return None
         total = total + slope * excess
@@ -175,6 +175,11 @@ def _closed_form(
         rate = np.maximum(rate, 0.0)
     signed = force if forward is problem else np.copysign(force, problem.creepage)
     return {"wear_rate": rate, "tangential_force": signed}
+
+
+def _of_points(number: float | Array) -> float | Array:
+    """Return a number, or one for each operating point, without the axis of the nodes."""
+    return number[:, 0] if isinstance(number, np.ndarray) and number.ndim == 2 else number
 
 
 def rounding(law: WearLaw, problem: LineProblem, tangential_force: Array) -> Array:
@@ -199,10 +204,10 @@ def _from_nodes(model: ContactModel, law: WearLaw, problem: LineProblem, scale: 
 
 def _over_slip_zone(model: LineContactModel, law: WearLaw, problem: LineProblem) -> Columns:
     """Return the mean of a law's rate, with as many panels as each operating point needs."""
-    splits = _splits(model, law, problem)
+    splits = splits_of(model, law, problem)
     rate, error = np.empty(problem.creepage.shape), np.empty(problem.creepage.shape)
     if splits is None:
-        rate, error = _panels(model, law, problem, None)
+        rate, error = over_panels(model, law, problem, None)
     else:
         end = model.slip_zone(problem).angle[:, None]
         needed = np.sum((splits > 0.0) & (splits < end), axis=-1)
@@ -210,11 +215,12 @@ def _over_slip_zone(model: LineContactModel, law: WearLaw, problem: LineProblem)
         for count in np.unique(needed):
             points = np.flatnonzero(needed == count)
             columns = first[points, None] + np.arange(count)
-            rate[points], error[points] = _panels(model, law, problem[points], splits[points[:, None], columns])
+            rate[points], error[points] = over_panels(model, law, problem[points], splits[points[:, None], columns])
     return {"wear_rate": rate, "wear_rate_error": error, "tangential_force": model.tangential_force(problem)}
 
 
-def _splits(model: LineContactModel, law: WearLaw, problem: LineProblem) -> Array | None:
+def splits_of(model: LineContactModel, law: WearLaw, problem: LineProblem) -> Array | None:
+    """Return ψ where a law branches in the slip zone, (points, k), or None if nothing is known of that."""
     breakpoints = law.breakpoints
     if breakpoints is None:
         return None
@@ -222,7 +228,9 @@ def _splits(model: LineContactModel, law: WearLaw, problem: LineProblem) -> Arra
     return crossings(model, problem.forward(), model.slip_zone(problem), per_node)
 
 
-def _panels(model: LineContactModel, law: WearLaw, problem: LineProblem, splits: Array | None) -> tuple[Array, Array]:
+def over_panels(
+    model: LineContactModel, law: WearLaw, problem: LineProblem, splits: Array | None
+) -> tuple[Array, Array]:
     """Return the mean of a law's rate over the patch and its error estimate, by panels of the slip zone."""
     zone = model.slip_zone(problem)
     nodes = zone.nodes(panels=PANELS_UNDECLARED) if splits is None else zone.nodes(splits)
@@ -256,7 +264,8 @@ def _thinning_error(contact: Contact, rate: Array) -> Array:
     return error
 
 
-def _check_finite(model: ContactModel, values: Columns, problem: LineProblem) -> None:
+def check_finite(model: ContactModel, values: Columns, problem: LineProblem) -> None:
+    """Raise a `ModelError` that names the operating points, if a value is not finite."""
     for name, value in values.items():
         low, high = extremes(value)
         if not (math.isfinite(low) and math.isfinite(high)):

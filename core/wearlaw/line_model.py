@@ -67,10 +67,10 @@ class LineContactModel(ContactModel):
         """
         return None
 
-    def excess_dissipation(self, problem: LineProblem, threshold: float) -> Array | None:  # noqa: ARG002
+    def excess_dissipation(self, problem: LineProblem, threshold: float | Array) -> Array | None:  # noqa: ARG002
         """Return ∫ max(q·s - threshold, 0) dx over the patch [N/m], of the batch shape, or None if not known.
 
-        `threshold` [N/m²] is positive.
+        `threshold` [N/m²] is positive; one number, or an array of the batch shape.
         """
         return None
 

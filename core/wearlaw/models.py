@@ -197,6 +197,10 @@ class WearLaw(Model):
     monotone_in: ClassVar[tuple[str, ...]] = ()
     """Variables of a `Contact` in which the rate never falls while the others stay as they are."""
 
+    varies: ClassVar[bool] = False
+    """Whether the formulas also hold where a field holds an array of shape (points, 1), one value for each operating
+    point of a batch. Fits and uncertainties then evaluate thousands of parameter sets at once; else one by one."""
+
     @abstractmethod
     def rate(self, contact: Contact) -> Array:
         """Return the mass lost per metre rolled and contact area [kg/m/m²], of the shape of the nodes.
@@ -271,6 +275,14 @@ class WearLaw(Model):
     def calibration(self) -> Calibration | None:
         """What the parameters were fitted to; None where they are not tied to a contact solution."""
         return None
+
+    def explicit(self) -> WearLaw:
+        """Return the same law with a number in place of each name that stands for published ones."""
+        return self
+
+    def fitted(self, calibration: Calibration) -> WearLaw:  # noqa: ARG002
+        """Return this law, whose parameters were fitted to a contact, knowing that; by default it does not."""
+        return self
 
     def band(self) -> tuple[WearLaw, WearLaw, WearLaw] | None:
         """Return the laws at the low, middle and high end of published parameter ranges, where there are any."""

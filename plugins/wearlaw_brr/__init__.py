@@ -34,6 +34,7 @@ class BRR(wl.WearLaw):
     )
     scale: ClassVar[Literal["patch", "any"]] = "patch"
     monotone_in: ClassVar[tuple[str, ...]] = ("wear_index",)
+    varies: ClassVar[bool] = True
 
     mild_slope: SectionPerForce = Field(default="0.25 mm^3/km/N", validate_default=True)
     """Slope of the mild regime, section × D over Tγ [mm³/km/N]."""
@@ -93,14 +94,14 @@ class BRR(wl.WearLaw):
     def rate(self, contact: wl.Contact) -> Array:
         """Return the wear rate of the one node [kg/m/m²]."""
         mild_slope, plateau, severe_slope, severe_offset, mild_limit, severe_limit = self._si
-        index = contact.wear_index
+        index = contact.per_node(contact.wear_index)
         section_times_diameter = np.select(
             [index < mild_limit, index < severe_limit],
             [mild_slope * index, plateau],
             severe_slope * index - severe_offset,
         )
-        rate = contact.density * np.pi * section_times_diameter / contact.patch_area
-        return np.broadcast_to(contact.per_node(rate), contact.pressure.shape)
+        density, area = contact.per_node(contact.density), contact.per_node(contact.patch_area)
+        return np.broadcast_to(density * np.pi * section_times_diameter / area, contact.pressure.shape)
 
 
 @wl.hookimpl

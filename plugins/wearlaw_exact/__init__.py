@@ -91,7 +91,7 @@ class Exact(wl.LineContactModel):
         partial = length - grown**2 / (c + np.sqrt(c**2 + grown**2))
         return np.where(length < 2.0 * a, partial, everywhere)[..., None]
 
-    def excess_dissipation(self, problem: wl.LineProblem, threshold: float) -> Array | None:
+    def excess_dissipation(self, problem: wl.LineProblem, threshold: float | Array) -> Array | None:
         """Return ∫ max(q·s - threshold, 0) dx [N/m] in closed form."""
         if self.slip == "as_printed":
             return None

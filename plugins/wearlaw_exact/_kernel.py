@@ -65,7 +65,7 @@ def _roots(base: Array, growth: Array, top: Array, square: Array, v: Array) -> A
 
 
 def _excess_arrays(
-    creepage: Array, friction: Array, max_pressure: Array, half_width: Array, radius: Array, threshold: float
+    creepage: Array, friction: Array, max_pressure: Array, half_width: Array, radius: Array, threshold: float | Array
 ) -> Array:
     saturation = friction * half_width / radius
     scale, reduced = friction * max_pressure * saturation, creepage / saturation

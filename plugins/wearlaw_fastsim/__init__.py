@@ -105,7 +105,7 @@ class Fastsim(wl.LineContactModel):
         distance: Array = 2.0 * a * np.sin(0.5 * np.arctan2(slope, grown)) ** 2
         return distance[..., None]
 
-    def excess_dissipation(self, problem: wl.LineProblem, threshold: float) -> Array:
+    def excess_dissipation(self, problem: wl.LineProblem, threshold: float | Array) -> Array:
         """Return ∫ max(q·s - threshold, 0) dx [N/m] in closed form."""
         excess = parabolic_excess if self.bound == "parabolic" else elliptic_excess
         centre = problem.friction_coefficient * self._bound_centre(problem)

@@ -55,7 +55,9 @@ def _root(base: Array, growth: float, zero: Array, level: Array, top: Array, sha
     return v
 
 
-def _parabolic_arrays(creepage: Array, slope: Array, centre: Array, half_width: Array, threshold: float) -> Array:
+def _parabolic_arrays(
+    creepage: Array, slope: Array, centre: Array, half_width: Array, threshold: float | Array
+) -> Array:
     reduced, level = np.broadcast_arrays(creepage / slope, threshold / (slope * centre))
     excess = np.zeros(reduced.shape)
     end, more = 2.0 * np.minimum(reduced, 1.0), 1.0 + reduced
@@ -109,7 +111,9 @@ def parabolic_excess(creepage: float, slope: float, centre: float, half_width: f
     return slope * centre * half_width * max(energy - level * (leading - trailing), 0.0)
 
 
-def _elliptic_arrays(creepage: Array, slope: Array, centre: Array, half_width: Array, threshold: float) -> Array:
+def _elliptic_arrays(
+    creepage: Array, slope: Array, centre: Array, half_width: Array, threshold: float | Array
+) -> Array:
     reduced, level = creepage / slope, threshold / (slope * centre)
     square = 1.0 + reduced**2
     whole = np.arctan(reduced) + reduced / square * (1.0 - 2.0 * np.minimum(level, 1.0))

@@ -51,6 +51,8 @@ class KTH(wl.WearLaw):
         "T. Jendel, Wear 253 (2002) 89-99; Tassini et al., Wear 268 (2010) 660-667, Table 2 and eq. (15)"
     )
 
+    varies: ClassVar[bool] = True
+
     coefficient: Literal["low", "mid", "high"] | Coefficients = "mid"
     """The published k are ranges: take their low end, middle or high end, or your own values."""
     hardness: wl.Stress = Field(default="2.625 GPa", validate_default=True)
@@ -105,6 +107,10 @@ class KTH(wl.WearLaw):
     def jumps(self) -> wl.BreakpointMap:
         """The rate jumps at every border of the map."""
         return self.breakpoints
+
+    def explicit(self) -> KTH:
+        """Return this law with its values of k as numbers."""
+        return self.model_copy(update={"coefficient": self._k})
 
     def band(self) -> tuple[KTH, KTH, KTH]:
         """Return this law at the low end, middle and high end of k; own values of k have no width."""

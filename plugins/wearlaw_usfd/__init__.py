@@ -68,6 +68,7 @@ class USFD(wl.WearLaw):
     name: ClassVar[str] = "usfd"
     source: ClassVar[str] = f"{TASSINI}, Tables 3 and 4"
     monotone_in: ClassVar[tuple[str, ...]] = ("wear_index_density",)
+    varies: ClassVar[bool] = True
 
     fitted_for: Literal["global", "exact", "fastsim"] | wl.Calibration = "global"
     """The contact solution to which the parameters were fitted. A name also chooses the published set that gives the
@@ -138,6 +139,10 @@ class USFD(wl.WearLaw):
     def calibration(self) -> wl.Calibration:
         """What the parameters were fitted to."""
         return calibrations()[self.fitted_for] if isinstance(self.fitted_for, str) else self.fitted_for
+
+    def fitted(self, calibration: wl.Calibration) -> USFD:
+        """Return the law with what its parameters were fitted to."""
+        return self.model_copy(update={"fitted_for": calibration})
 
     def rate(self, contact: wl.Contact) -> Array:
         """Return the wear rate at the nodes [kg/m/m²]."""

@@ -48,6 +48,11 @@ def test_a_minimal_law_passes(check: Check) -> None:
     check()
 
 
+@conformance(wrong_laws.Varies())
+def test_a_law_with_a_parameter_for_each_point_passes(check: Check) -> None:
+    check()
+
+
 @conformance(wrong_declarations.Smooth())
 def test_a_smooth_law_passes(check: Check) -> None:
     check()

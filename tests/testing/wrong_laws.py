@@ -234,7 +234,29 @@ class Raises(Linear):
         return SLOPE * contact.wear_index_density
 
 
+class Varies(Linear):
+    """The right one of those whose slope may differ from point to point."""
+
+    varies: ClassVar[bool] = True
+
+
+class OneForAll(Varies):
+    """The first point's slope at all points."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return np.ravel(wl.scalar_si(self.slope, "kg/m/N"))[0] * contact.wear_index_density
+
+
+class AxisOfPoints(Varies):
+    """One value of the slope a node, for want of the axis of the nodes."""
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return np.ravel(wl.scalar_si(self.slope, "kg/m/N")) * contact.wear_index[0] / contact.patch_area[0]
+
+
 CAUGHT: dict[type[wl.WearLaw], str] = {
+    OneForAll: "parameters_may_vary",
+    AxisOfPoints: "parameters_may_vary",
     WrongSign: "rate_is_never_negative",
     SignedSlip: "rate_is_never_negative",
     ForwardOnly: "sign_of_creepage_does_not_matter",

@@ -21,6 +21,7 @@ from wearlaw.testing import (
     law_branches,
     law_checks,
     law_shape,
+    law_varies,
     unit_checks,
 )
 from wearlaw.testing.roundtrip import RoundTrip
@@ -106,7 +107,9 @@ def _of_law(law: WearLaw) -> list[CheckFunction]:
         idle += law_branches.OF_BREAKPOINTS
     if law.ramps is None:
         idle += law_branches.OF_RAMPS
-    functions = [*law_shape.CHECKS, *law_checks.CHECKS, *law_branches.CHECKS]
+    if not law.varies:
+        idle += law_varies.CHECKS
+    functions = [*law_shape.CHECKS, *law_varies.CHECKS, *law_checks.CHECKS, *law_branches.CHECKS]
     return [*(function for function in functions if function not in idle), *COMMON, *declarations.OF_LAWS]
 
 
