@@ -46,7 +46,7 @@ class FunctionLaw(WearLaw):
     def rate(self, contact: Contact) -> Array:
         """Return the function's value at the nodes [kg/m/m²]."""
         arguments = [in_unit(self._at_nodes(contact, name), unit) for name, unit in self.inputs.items()]
-        parameters = {name: float(getattr(self, name).to(unit).magnitude) for name, unit in self.units.items()}
+        parameters = {name: getattr(self, name).to(unit).magnitude for name, unit in self.units.items()}
         value = np.asarray(type(self).function(*arguments, **parameters), dtype=np.float64)
         return np.broadcast_to(value * unit_in_si(self.returns), contact.pressure.shape)
 
@@ -77,6 +77,7 @@ def as_wear_law(
     jumps: Sequence[float] | Mapping[str, Sequence[float]] = (),
     parameters: Mapping[str, str] | None = None,
     monotone_in: Sequence[str] = (),
+    varies: bool = False,
     source: str,
 ) -> Callable[[Function], FunctionLaw]:
     """Return a decorator that makes a wear law of a function of plain numbers.
@@ -96,6 +97,9 @@ def as_wear_law(
         Its keyword arguments with their units; their defaults are the defaults of the law's fields.
     monotone_in : sequence of str
         Inputs in which it never falls.
+    varies : bool
+        Whether it also takes arrays (points, 1) for its parameters, as NumPy's functions do and `if` does not; see
+        `WearLaw.varies`.
     source : str
         The literature that it is taken from.
 
@@ -121,7 +125,7 @@ def as_wear_law(
         law: Any = create_model(function.__name__, __base__=FunctionLaw, __module__=function.__module__, **fields)
         law.__qualname__ = function.__qualname__
         law.__doc__ = inspect.getdoc(function) or f"The function {function.__name__} as a wear law."
-        law.name, law.source, law.monotone_in = function.__name__, source, tuple(monotone_in)
+        law.name, law.source, law.monotone_in, law.varies = function.__name__, source, tuple(monotone_in), varies
         law.function, law.inputs, law.returns = staticmethod(function), dict(inputs), returns
         law.units, law.declared = units, declared
         made: FunctionLaw = law()

@@ -13,9 +13,11 @@ The last two come with an error estimate. The number of cells of a plot has no p
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.blocks import Columns, OnBlock, by_block
@@ -193,7 +195,7 @@ def _from_nodes(model: ContactModel, law: WearLaw, problem: LineProblem, scale: 
 
     def columns(part: LineProblem) -> Columns:
         if scale == "cells" and isinstance(model, LineContactModel):
-            return _over_slip_zone(model, law, part)
+            return over_slip_zone(model, law, part)
         contact = solve(model, part, scale)
         rate = law.checked_rate(contact)
         error = _thinning_error(contact, rate) if scale == "cells" else EPS * np.abs(contact.mean(rate))
@@ -202,8 +204,16 @@ def _from_nodes(model: ContactModel, law: WearLaw, problem: LineProblem, scale: 
     return by_block(problem.flatten(), NODE_BLOCK, columns)
 
 
-def _over_slip_zone(model: LineContactModel, law: WearLaw, problem: LineProblem) -> Columns:
-    """Return the mean of a law's rate, with as many panels as each operating point needs."""
+def over_slip_zone(
+    model: LineContactModel,
+    law: WearLaw,
+    problem: LineProblem,
+    law_at: Callable[[NDArray[np.intp]], WearLaw] | None = None,
+) -> Columns:
+    """Return the mean of a law's rate, with as many panels as each operating point needs.
+
+    `law_at` gives the law at some of the operating points, where its parameters differ from one to the other.
+    """
     splits = splits_of(model, law, problem)
     rate, error = np.empty(problem.creepage.shape), np.empty(problem.creepage.shape)
     if splits is None:
@@ -215,7 +225,8 @@ def _over_slip_zone(model: LineContactModel, law: WearLaw, problem: LineProblem)
         for count in np.unique(needed):
             points = np.flatnonzero(needed == count)
             columns = first[points, None] + np.arange(count)
-            rate[points], error[points] = over_panels(model, law, problem[points], splits[points[:, None], columns])
+            own = law if law_at is None else law_at(points)
+            rate[points], error[points] = over_panels(model, own, problem[points], splits[points[:, None], columns])
     return {"wear_rate": rate, "wear_rate_error": error, "tangential_force": model.tangential_force(problem)}
 
 

@@ -84,6 +84,10 @@ class LineProblem:
         lowest = self.creepage.min() if self.creepage.ndim else self.creepage
         return self if lowest >= 0.0 else dataclasses.replace(self, creepage=np.abs(self.creepage))
 
+    def broadcast_to(self, shape: tuple[int, ...]) -> Self:
+        """Return the problem with a larger batch shape, to which its own broadcasts."""
+        return self._map(lambda array: np.broadcast_to(array, shape))
+
     def flatten(self) -> Self:
         """Return the problem with its batch as one axis."""
         return self._map(lambda array: array.reshape(-1))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Generic, Self, TypeVar, Unpack, overload
 
 from pydantic import model_validator
@@ -11,6 +11,7 @@ from pydantic import model_validator
 from wearlaw.arrays import Array
 from wearlaw.conditions import TwinDiscConditions
 from wearlaw.configuration import Configuration
+from wearlaw.distributions import Distribution, PublishedRange
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
 from wearlaw.integrate import integrate_contact, integrate_wear
 from wearlaw.line import LineProblem
@@ -19,6 +20,12 @@ from wearlaw.ranges import RangeWatch
 from wearlaw.result import ContactSolution, Prediction
 from wearlaw.rig import TwinDisc
 from wearlaw.specification import ContactModelField, WearLawField
+from wearlaw.units import QuantityLike
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from wearlaw.uncertainty import Uncertainty
 
 RigT = TypeVar("RigT", bound=TwinDisc)
 
@@ -75,7 +82,7 @@ class ContactPipeline(Configuration, Generic[RigT]):
     def __call__(self: ContactPipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> ContactSolution:
         """Return the contact under the given conditions; see `TwinDisc.problem` for these."""
         problem = self.rig.problem(**conditions)
-        _check_traction(self.contact_model, problem)
+        check_traction(self.contact_model, problem)
         self.rig.warn_of_plasticity(problem, stacklevel=2)
         force = integrate_contact(self.contact_model, problem)
         return ContactSolution(self.rig, self.contact_model, self.scale, problem, force)
@@ -125,7 +132,7 @@ class Pipeline(Configuration, Generic[RigT]):
             Which caller warnings name; 2 is the caller of this method.
         """
         rig, model, scale = self.contact.rig, self.contact.contact_model, self.contact.scale
-        _check_traction(model, problem)
+        check_traction(model, problem)
         rig.warn_of_plasticity(problem, stacklevel=stacklevel)
         watch = RangeWatch(self.wear_law)
 
@@ -137,6 +144,37 @@ class Pipeline(Configuration, Generic[RigT]):
         wear = integrate_wear(model, self.wear_law, problem, scale, see)
         watch.warn(stacklevel)
         return Prediction(rig, model, scale, problem, self.wear_law, wear)
+
+    def uncertainty(
+        self: Pipeline[TwinDisc],
+        *,
+        law: Mapping[str, Distribution | PublishedRange] | None = None,
+        samples: int = 2**14,
+        seed: int = 0,
+        **conditions: QuantityLike | ArrayLike | Distribution,
+    ) -> Uncertainty:
+        """Return how uncertain the wear rate is where conditions and parameters are.
+
+        Parameters
+        ----------
+        law : mapping of str to distribution, optional
+            Parameters of the wear law by name, such as {"q_s": wl.normal("55 ug/m/mm^2", "5 ug/m/mm^2")} or
+            {"coefficient": wl.published_range()}.
+        samples : int
+            How many samples to take, rounded up to a power of two.
+        seed : int
+            The same seed gives the same samples.
+        **conditions
+            Those of a prediction, of which any may be a distribution: `uniform`, `normal` or `lognormal`.
+
+        Raises
+        ------
+        InputError
+            If nothing is distributed, or a distribution is not possible there.
+        """
+        from wearlaw.uncertainty import Uncertainty
+
+        return Uncertainty(self, conditions, law or {}, samples, seed)
 
 
 def _check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
@@ -161,7 +199,8 @@ def _warn_of_calibration(scale: Scale, model: ContactModel, law: WearLaw) -> Non
         )
 
 
-def _check_traction(model: ContactModel, problem: LineProblem) -> None:
+def check_traction(model: ContactModel, problem: LineProblem) -> None:
+    """Refuse a measured traction for a contact model that has no use for it."""
     if problem.traction_coefficient is not None and not model.uses_measured_traction:
         raise ConditionsError(
             f"traction_coefficient: contact model '{model.name}' computes the traction itself; leave"

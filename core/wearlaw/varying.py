@@ -5,19 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.blocks import blocks
-from wearlaw.integrate import (
-    BLOCK,
-    NODE_BLOCK,
-    check_finite,
-    closed_form,
-    integrate_wear,
-    over_panels,
-    solve,
-    splits_of,
-)
+from wearlaw.integrate import BLOCK, NODE_BLOCK, check_finite, closed_form, integrate_wear, over_slip_zone, solve
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import ContactModel, Scale, WearLaw
@@ -43,12 +35,13 @@ def integrate_varying(
     ModelError
         If the model or the law breaks its contract.
     """
+    if not values:
+        return integrate_wear(model, law, problem, scale).wear_rate
     if not law.varies:
         return _one_law_at_a_time(model, law, values, problem, scale)
     rate = np.empty(problem.creepage.shape)
     for part in blocks(rate.size, NODE_BLOCK if law.ramps is None else BLOCK):
-        varied = per_point(law, {name: value[part] for name, value in values.items()})
-        rate[part] = _varying_block(model, varied, problem[part], scale)
+        rate[part] = _block(model, law, {name: value[part] for name, value in values.items()}, problem[part], scale)
     check_finite(model, {"wear_rate": rate}, problem)
     return rate
 
@@ -66,12 +59,16 @@ def _one_law_at_a_time(
     return rate
 
 
-def _varying_block(model: ContactModel, law: WearLaw, problem: LineProblem, scale: Scale) -> Array:
+def _block(model: ContactModel, law: WearLaw, values: Mapping[str, Array], problem: LineProblem, scale: Scale) -> Array:
+    varied = per_point(law, values)
     if scale == "patch" or not isinstance(model, LineContactModel):
         contact = solve(model, problem, scale)
-        return contact.mean(law.checked_rate(contact))
-    found = None if law.ramps is None else closed_form(model, law.ramps, problem)
-    if found is not None:
-        return found["wear_rate"]
-    rate, _ = over_panels(model, law, problem, splits_of(model, law, problem))
-    return rate
+        return contact.mean(varied.checked_rate(contact))
+    found = None if varied.ramps is None else closed_form(model, varied.ramps, problem)
+    if found is None:
+
+        def law_at(points: NDArray[np.intp]) -> WearLaw:
+            return per_point(law, {name: value[points] for name, value in values.items()})
+
+        found = over_slip_zone(model, varied, problem, law_at)
+    return found["wear_rate"]

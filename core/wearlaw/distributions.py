@@ -1,0 +1,92 @@
+"""Distributions of conditions and parameters that are not known exactly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.errors import InputError
+from wearlaw.units import Quantity, QuantityLike, parse, text_of
+
+Value = Quantity | float
+"""A value with its unit, or a plain number where the thing has none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Distribution:
+    """A distribution of one value, made by `uniform`, `normal` or `lognormal`.
+
+    Attributes
+    ----------
+    kind : str
+    first, second : Quantity or float
+        The ends of the uniform one, mean and standard deviation of the normal one, median and geometric standard
+        deviation of the lognormal one.
+    """
+
+    kind: Literal["uniform", "normal", "lognormal"]
+    first: Value
+    second: Value
+
+    def quantiles(self, probability: Array, first: float, second: float) -> Array:
+        """Return the values below which it lies with the given probabilities, for its two numbers in one unit."""
+        if self.kind == "uniform":
+            return first + (second - first) * probability
+        from scipy.special import ndtri  # scipy is loaded where it is used
+
+        deviates: Array = ndtri(probability)
+        if self.kind == "normal":
+            return first + second * deviates
+        return first * np.exp(np.log(second) * deviates)
+
+    def __str__(self) -> str:
+        first, second = (text_of(v) if isinstance(v, Quantity) else f"{v:g}" for v in (self.first, self.second))
+        return f"{self.kind}({first}, {second})"
+
+
+@dataclass(frozen=True)
+class PublishedRange:
+    """The range that the source of a law publishes for its parameters, as in `WearLaw.band`; see `published_range`."""
+
+
+def uniform(low: QuantityLike | float, high: QuantityLike | float) -> Distribution:
+    """Return the distribution in which all values from `low` to `high` are equally likely."""
+    return Distribution("uniform", _value(low), _value(high))
+
+
+def normal(mean: QuantityLike | float, standard_deviation: QuantityLike | float) -> Distribution:
+    """Return the normal distribution."""
+    return Distribution("normal", _value(mean), _value(standard_deviation))
+
+
+def lognormal(median: QuantityLike | float, geometric_standard_deviation: float) -> Distribution:
+    """Return the distribution of a positive value that scatters by a factor.
+
+    Parameters
+    ----------
+    median : Quantity, str or float
+        Half of the values lie below.
+    geometric_standard_deviation : float
+        The factor, above 1, to which two thirds of the values stay close to the median.
+    """
+    if not (np.ndim(geometric_standard_deviation) == 0 and 1.0 < geometric_standard_deviation < np.inf):
+        raise InputError(
+            f"geometric_standard_deviation: must be a factor above 1, such as 1.2; got {geometric_standard_deviation!r}"
+        )
+    return Distribution("lognormal", _value(median), float(geometric_standard_deviation))
+
+
+def published_range() -> PublishedRange:
+    """Return the range that the source of a law publishes for its parameters, all values in it equally likely.
+
+    Parameters that the source gives as ranges together, such as the coefficients of KTH, move through them together.
+    """
+    return PublishedRange()
+
+
+def _value(value: QuantityLike | float) -> Value:
+    found = parse(value) if isinstance(value, str) else value
+    return float(found) if isinstance(found, int | float) else found

@@ -1,0 +1,135 @@
+"""The inputs of a prediction that are not known exactly: each a distribution, with what moves with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import pint
+
+from wearlaw.arrays import Array
+from wearlaw.conditions import CONDITIONS, UNITS
+from wearlaw.distributions import Distribution, PublishedRange, uniform
+from wearlaw.errors import ConditionsError, InputError, did_you_mean
+from wearlaw.models import WearLaw
+from wearlaw.parameters import number_in_si, numbers
+from wearlaw.units import Unit, coefficient, shortened
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """One input with its distribution.
+
+    Attributes
+    ----------
+    name : str
+    distribution : Distribution
+    ends : dict of str to tuple of float
+        For each number that moves with it, the two numbers of the distribution in SI.
+    of_law : bool
+        Whether it belongs to the law and not to the conditions of the test.
+    shown : str
+        The distribution as it was given.
+    """
+
+    name: str
+    distribution: Distribution
+    ends: Mapping[str, tuple[float, float]]
+    of_law: bool
+    shown: str
+
+    def values(self, probability: Array) -> dict[str, Array]:
+        """Return the values in SI, by name, at probabilities."""
+        return {name: self.distribution.quantiles(probability, *ends) for name, ends in self.ends.items()}
+
+
+def condition(name: str, given: Distribution) -> Uncertain:
+    """Return a condition of the test that is not known exactly.
+
+    Raises
+    ------
+    ConditionsError
+        If there is no such condition.
+    UnitError
+        If the distribution has the wrong unit.
+    """
+    if name not in CONDITIONS:
+        raise ConditionsError(
+            f"{name}: unknown condition;{did_you_mean(name, CONDITIONS)} The conditions are: {', '.join(CONDITIONS)}"
+        )
+    if name in UNITS:
+        unit = UNITS[name]
+        first = float(unit.si(given.first, name))
+        second = (
+            given.second if given.kind == "lognormal" else float(Unit(unit.unit, positive=False).si(given.second, name))
+        )
+    else:
+        first, second = (float(coefficient(value, name)) for value in (given.first, given.second))
+    return Uncertain(name, given, {name: (first, _checked(name, given, first, float(second)))}, False, str(given))
+
+
+def parameter(name: str, given: object, law: WearLaw) -> Uncertain:
+    """Return a parameter of a law that is not known exactly.
+
+    Raises
+    ------
+    InputError
+        If the law has no such number or publishes no range for it, or the distribution is none.
+    UnitError
+        If the distribution has the wrong unit.
+    """
+    if isinstance(given, PublishedRange):
+        return _published(name, law)
+    if not isinstance(given, Distribution):
+        raise InputError(
+            f"{name}: must be a distribution, such as wl.normal(5.3, 0.5) with its unit, or wl.published_range();"
+            f" got {shortened(given)}"
+        )
+    known = numbers(law.explicit())
+    if name not in known:
+        hint = did_you_mean(name, known)
+        raise InputError(f"wear law '{law.name}' has no number '{name}';{hint} There are: {', '.join(known)}")
+    number, ends = known[name], (given.first, given.second)
+    if isinstance(number, pint.Quantity):
+        unit = Unit(str(number.units), positive=False)
+        first = float(unit.si(given.first, name))
+        second = given.second if given.kind == "lognormal" else unit.si(given.second, name)
+    else:
+        first, second = (float(coefficient(end, name)) for end in ends)
+    return Uncertain(name, given, {name: (first, _checked(name, given, first, float(second)))}, True, str(given))
+
+
+def _published(name: str, law: WearLaw) -> Uncertain:
+    """Return the numbers of a field that a law's source gives as ranges; they move through them together."""
+    band = law.band()
+    if band is None:
+        raise InputError(f"{name}: the source of wear law '{law.name}' publishes no ranges; give a distribution")
+    low, _, high = ({field: number_in_si(value) for field, value in numbers(end.explicit()).items()} for end in band)
+    ends = {
+        field: (low[field], high[field])
+        for field in low
+        if low[field] != high[field] and (field == name or field.startswith(f"{name}."))
+    }
+    if not ends:
+        ranges = sorted({field.partition(".")[0] for field in low if low[field] != high[field]})
+        raise InputError(
+            f"{name}: wear law '{law.name}' has no published range of it; there are: {', '.join(ranges) or 'none'}"
+        )
+    return Uncertain(name, uniform(0.0, 1.0), ends, True, "published_range()")
+
+
+def _checked(name: str, given: Distribution, first: float, second: float) -> float:
+    if given.kind == "uniform" and not second > first:
+        raise InputError(f"{name}: the upper end of {given} must lie above the lower one")
+    if given.kind == "normal" and not second > 0.0:
+        raise InputError(f"{name}: the standard deviation of {given} must be positive")
+    if given.kind == "lognormal" and not first > 0.0:
+        raise InputError(f"{name}: the median of {given} must be positive")
+    return second
+
+
+def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], list[Uncertain]]:
+    """Return the conditions that are known, and those that are distributed."""
+    known = {name: value for name, value in conditions.items() if not isinstance(value, Distribution)}
+    return known, [condition(name, value) for name, value in conditions.items() if isinstance(value, Distribution)]

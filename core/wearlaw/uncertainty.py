@@ -1,0 +1,220 @@
+"""How uncertain a prediction is where conditions and parameters are: quasi-random samples and Sobol indices."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.conditions import UNITS
+from wearlaw.distributions import Distribution, PublishedRange
+from wearlaw.errors import ConditionsError, InputError, UnitError
+from wearlaw.grid import SI_UNITS
+from wearlaw.integrate import integrate_contact
+from wearlaw.pipeline import check_traction
+from wearlaw.ranges import RangeWatch
+from wearlaw.uncertain import Uncertain, parameter, split
+from wearlaw.units import WEAR_RATE, Q, Quantity, coefficient, from_si
+from wearlaw.varying import integrate_varying
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+    from wearlaw.curves import FigureData
+    from wearlaw.line import LineProblem
+    from wearlaw.pipeline import Pipeline
+    from wearlaw.rig import TwinDisc
+
+MOST_SAMPLES = 2**22
+"""The most samples that are taken on."""
+
+SEQUENCES = 8
+"""Randomised sequences whose spread gives the error of the Sobol indices."""
+
+INSIDE = 2.0**-54
+"""The least distance of a probability from 0 and 1, where a normal distribution is infinite."""
+
+
+class Uncertainty:
+    """The wear rate where some conditions and parameters are distributed; made by `Pipeline.uncertainty`.
+
+    What it returns has the shape of the conditions that are not distributed.
+
+    Attributes
+    ----------
+    samples : int
+        How many there are: a power of two, as Sobol sequences need it.
+    inputs : tuple of Uncertain
+        What is distributed.
+    """
+
+    def __init__(
+        self,
+        predict: Pipeline[TwinDisc],
+        conditions: Mapping[str, Any],
+        law: Mapping[str, Distribution | PublishedRange],
+        samples: int,
+        seed: int,
+    ) -> None:
+        if isinstance(samples, bool) or not isinstance(samples, int) or not 2 <= samples <= MOST_SAMPLES:
+            raise InputError(f"samples: must be a whole number from 2 to {MOST_SAMPLES}, got {samples!r}")
+        self._predict = predict
+        self._law = predict.wear_law.explicit()
+        self._known, uncertain = split(conditions)
+        uncertain += [parameter(name, given, predict.wear_law) for name, given in law.items()]
+        if not uncertain:
+            raise InputError(
+                'nothing is uncertain; give a condition as a distribution, such as creepage=wl.uniform("0.5 %", "1 %"),'
+                " or a parameter by law={...}"
+            )
+        self.inputs: tuple[Uncertain, ...] = tuple(uncertain)
+        self.samples = 1 << (samples - 1).bit_length()
+        self._seed = seed
+
+    @cached_property
+    def wear_rate(self) -> Quantity:
+        """The samples of the wear rate [kg/m/m²]; they are the last axis."""
+        from scipy.stats import qmc
+
+        sequence = qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
+        probability = sequence.random_base2(self.samples.bit_length() - 1).T
+        return from_si(self._rates(probability, stacklevel=4), WEAR_RATE)
+
+    @property
+    def median(self) -> Quantity:
+        """The wear rate that half of the samples exceed [kg/m/m²]."""
+        return self._quantile(0.5)
+
+    def interval(self, confidence: float = 0.95) -> tuple[Quantity, Quantity]:
+        """Return the ends of the interval that leaves out as many samples below as above [kg/m/m²].
+
+        Parameters
+        ----------
+        confidence : float
+            The share of the samples inside, between 0 and 1.
+        """
+        if not 0.0 < confidence < 1.0:
+            raise InputError(f"confidence: must lie between 0 and 1, such as 0.95; got {confidence!r}")
+        return self._quantile(0.5 - 0.5 * confidence), self._quantile(0.5 + 0.5 * confidence)
+
+    def sobol(self) -> pd.DataFrame:
+        """Return which share of the variance of the wear rate each input explains.
+
+        First order: by itself; total: also together with others. Each is the mean over several randomised sequences,
+        which also give its standard error. It predicts (inputs + 2) × `samples` times.
+
+        Notes
+        -----
+        A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270, as implemented by scipy.
+
+        Raises
+        ------
+        InputError
+            If the conditions that are not distributed hold more than one operating point, or the rate does not vary.
+        """
+        import pandas as pd
+        from scipy.stats import sobol_indices, uniform
+
+        if self.shape:
+            raise InputError("sobol: needs one operating point; give each condition that is not distributed one value")
+        if np.ptp(self.wear_rate.magnitude) == 0.0:
+            raise InputError("sobol: the wear rate is the same in all samples, so that there is no variance to explain")
+        every: list[Any] = [uniform()] * len(self.inputs)
+        size = max(self.samples // SEQUENCES, 2)
+        found = [
+            sobol_indices(func=lambda x: self._rates(x)[None, :], n=size, dists=every, rng=rng)
+            for rng in np.random.default_rng(self._seed).spawn(SEQUENCES)
+        ]
+        table = {}
+        for order in ("first_order", "total_order"):
+            shares = np.array([np.ravel(getattr(one, order)) for one in found])
+            table |= {order: shares.mean(axis=0), f"{order}_error": shares.std(axis=0, ddof=1) / np.sqrt(SEQUENCES)}
+        return pd.DataFrame(table, index=pd.Index([one.name for one in self.inputs], name="input"))
+
+    def figure_data(self) -> FigureData:
+        """Return what `plot` draws."""
+        from wearlaw.uncertainty_figure import figure_data
+
+        return figure_data(self)
+
+    def plot(self) -> Figure:
+        """Return a figure: the cumulative distribution, or the band of 95 % along the one axis of the conditions."""
+        from wearlaw.figures import draw
+
+        return draw(self.figure_data())
+
+    def _quantile(self, probability: float) -> Quantity:
+        rates = self.wear_rate
+        return Q(np.quantile(rates.magnitude, probability, axis=-1), str(rates.units))
+
+    @property
+    def title(self) -> str:
+        """What is predicted, in words."""
+        return f"Wear rate by {self._law.name} on {self._predict.contact.contact_model.name}"
+
+    @cached_property
+    def known(self) -> dict[str, Array]:
+        """The conditions that are not distributed, in SI."""
+        return {
+            name: UNITS[name].si(value, name) if name in UNITS else coefficient(value, name)
+            for name, value in self._known.items()
+        }
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the conditions that are not distributed."""
+        try:
+            return np.broadcast_shapes(*(array.shape for array in self.known.values()))
+        except ValueError:
+            shapes = ", ".join(f"{name} {array.shape}" for name, array in self.known.items())
+            raise ConditionsError(f"the shapes of the conditions do not broadcast: {shapes}") from None
+
+    def _problem(self, sampled: Mapping[str, Array]) -> LineProblem:
+        """Return the contact problem at all operating points and samples, the latter along the last axis."""
+        known = {name: array[..., None] for name, array in self.known.items()}
+        given = {name: Q(si, SI_UNITS[name]) if name in SI_UNITS else si for name, si in (known | sampled).items()}
+        try:
+            return self._predict.contact.rig.problem(**given)  # type: ignore[arg-type]
+        except UnitError as error:
+            if not sampled:
+                raise
+            raise InputError(
+                f"{error}\nThe values are samples of its distribution; choose one without such values, such as"
+                " wl.lognormal or wl.uniform"
+            ) from None
+
+    def _rates(self, probability: Array, stacklevel: int | None = None) -> Array:
+        """Return the wear rates [kg/m/m²] at probabilities (inputs, samples) of the inputs, of the shape of all.
+
+        With a `stacklevel`, warn of samples outside the range of the law or of elastic contact.
+        """
+        inside = np.clip(probability, INSIDE, 1.0 - INSIDE)
+        conditions: dict[str, Array] = {}
+        of_law: dict[str, Array] = {}
+        for one, row in zip(self.inputs, inside, strict=True):
+            (of_law if one.of_law else conditions).update(one.values(row))
+        problem = self._problem(conditions)
+        shape = (*self.shape, probability.shape[-1])
+        flat = problem.broadcast_to(shape).flatten()
+        varied = {name: np.broadcast_to(values, shape).reshape(-1) for name, values in of_law.items()}
+        contact = self._predict.contact
+        check_traction(contact.contact_model, flat)
+        if stacklevel is not None:
+            contact.rig.warn_of_plasticity(flat, stacklevel=stacklevel)
+            watch = RangeWatch(self._law)
+            watch.see(flat, integrate_contact(contact.contact_model, flat))
+            watch.warn(stacklevel)
+        rates = integrate_varying(contact.contact_model, self._law, varied, flat, contact.scale)
+        return rates.reshape(shape)
+
+    def __repr__(self) -> str:
+        lines = [f"Uncertainty of the wear rate, {self.samples} samples"]
+        if not self.shape:
+            low, high = self.interval()
+            lines += [f"{'median':20} {self.median!r}", f"{'95 % of the samples':20} {low!r} to {high!r}"]
+        lines += [f"{one.name:20} {one.shown}" for one in self.inputs]
+        return "\n  ".join(lines)

@@ -1,0 +1,69 @@
+"""The figure of an uncertain prediction: its cumulative distribution, or its band along an axis."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.errors import InputError
+from wearlaw.units import from_si
+from wearlaw.variables import UNITS, label
+
+if TYPE_CHECKING:
+    from wearlaw.uncertainty import Uncertainty
+
+CONFIDENCE = 0.95
+"""The share of the samples that is marked."""
+
+STEPS = 512
+"""Points of the cumulative distribution."""
+
+
+def figure_data(uncertainty: Uncertainty) -> FigureData:
+    """Return the cumulative distribution of one operating point, or the band along the one axis of several.
+
+    Raises
+    ------
+    InputError
+        If the conditions have more than one axis.
+    """
+    inputs = ", ".join(f"{one.name} {one.shown}" for one in uncertainty.inputs)
+    panel = _along_axis(uncertainty) if uncertainty.shape else _cumulative(uncertainty)
+    caption = f"{uncertainty.samples} samples of {inputs}."
+    return FigureData("uncertainty", f"{uncertainty.title}", (panel,), caption)
+
+
+def _cumulative(uncertainty: Uncertainty) -> Panel:
+    rates = _plain(uncertainty.wear_rate)
+    share = (np.arange(STEPS) + 0.5) / STEPS
+    low, high = (_plain(end)[None] for end in uncertainty.interval(CONFIDENCE))
+    median = _plain(uncertainty.median)[None]
+    tail = 0.5 - 0.5 * CONFIDENCE
+    curves = (
+        Curve("wear rate", np.quantile(rates, share), share),
+        Curve(f"median and {CONFIDENCE:.0%} of the samples", np.concatenate([low, median, high]),
+              np.array([tail, 0.5, 1.0 - tail]), colour=1, points=True),
+    )  # fmt: skip
+    y = PlotAxis("share of the samples below [-]", ends=(0.0, 1.0))
+    return Panel(PlotAxis(label("wear_rate")), y, curves)
+
+
+def _along_axis(uncertainty: Uncertainty) -> Panel:
+    axes = {name: values for name, values in uncertainty.known.items() if values.size > 1}
+    if len(axes) != 1:
+        raise InputError(f"plot: needs one condition with several values, or none; there are {', '.join(axes)}")
+    ((name, values),) = axes.items()
+    x = from_si(values.reshape(-1), UNITS[name]).magnitude
+    order = np.argsort(x)
+    low, high = (_plain(end)[order] for end in uncertainty.interval(CONFIDENCE))
+    median = _plain(uncertainty.median)[order]
+    curve = Curve(f"median, with {CONFIDENCE:.0%} of the samples", x[order], median, low=low, high=high)
+    return Panel(PlotAxis(label(name)), PlotAxis(label("wear_rate")), (curve,))
+
+
+def _plain(quantity: object) -> Array:
+    magnitude: Array = np.asarray(quantity.to(UNITS["wear_rate"]).magnitude)  # type: ignore[attr-defined]
+    return magnitude
