@@ -20,7 +20,7 @@ from wearlaw.ranges import RangeWatch
 from wearlaw.result import ContactSolution, Prediction
 from wearlaw.rig import TwinDisc
 from wearlaw.specification import ContactModelField, WearLawField
-from wearlaw.units import QuantityLike
+from wearlaw.units import Quantity, QuantityLike
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -86,6 +86,33 @@ class ContactPipeline(Configuration, Generic[RigT]):
         self.rig.warn_of_plasticity(problem, stacklevel=2)
         force = integrate_contact(self.contact_model, problem)
         return ContactSolution(self.rig, self.contact_model, self.scale, problem, force)
+
+    def creepage_for(
+        self: ContactPipeline[TwinDisc],
+        *,
+        tangential_force: QuantityLike | None = None,
+        traction_coefficient: ArrayLike | None = None,
+        **conditions: QuantityLike | ArrayLike,
+    ) -> Quantity:
+        """Return the creepage at which the contact transmits a traction [-], of its sign and of the broadcast shape.
+
+        Parameters
+        ----------
+        tangential_force : Quantity or str, optional
+            T [N].
+        traction_coefficient : array_like of float, optional
+            T/N [-], in place of `tangential_force`.
+        **conditions
+            The load and the friction coefficient, as in `TwinDisc.problem`.
+
+        Raises
+        ------
+        ConditionsError
+            If no creepage, or more than one, transmits so much: at μN and above.
+        """
+        from wearlaw.inverse import creepage_for
+
+        return creepage_for(self, tangential_force, traction_coefficient, conditions)
 
 
 class Pipeline(Configuration, Generic[RigT]):

@@ -1,0 +1,84 @@
+"""The creepage at which a contact transmits a given tangential force."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.errors import ConditionsError, UnitError
+from wearlaw.units import Quantity, Unit, from_si, real_array
+
+if TYPE_CHECKING:
+    from wearlaw.pipeline import ContactPipeline
+    from wearlaw.rig import TwinDisc
+
+SMALLEST = 1e-30
+"""The least creepage that is searched; what is below counts as none."""
+
+
+def creepage_for(
+    contact: ContactPipeline[TwinDisc],
+    tangential_force: object,
+    traction_coefficient: object,
+    conditions: Mapping[str, Any],
+) -> Quantity:
+    """Return the creepage [-] with which a contact transmits a traction; see `ContactPipeline.creepage_for`."""
+    if (tangential_force is None) == (traction_coefficient is None):
+        raise ConditionsError("give either tangential_force or traction_coefficient")
+    problem = contact.rig.problem(**conditions, creepage=from_si(0.0, ""))
+    if tangential_force is None:
+        target = _finite(traction_coefficient)
+    else:
+        target = Unit("N", positive=False).si(tangential_force, "tangential_force") / problem.normal_force
+    try:
+        shape = np.broadcast_shapes(problem.batch_shape, target.shape)
+    except ValueError:
+        raise ConditionsError(
+            f"the shapes of the traction {target.shape} and of the conditions {problem.batch_shape} do not broadcast"
+        ) from None
+    flat = problem.broadcast_to(shape).flatten()
+    due = np.abs(np.broadcast_to(target, shape).reshape(-1))
+
+    def lacking(log_creepage: Array, point: Array) -> Array:
+        """Return by how much T/N falls short, for points as floats, as `find_root` hands them on."""
+        index = point.astype(np.intp)
+        at = dataclasses.replace(flat[index], creepage=np.exp(log_creepage))
+        return due[index] - contact.contact_model.tangential_force(at) / at.normal_force
+
+    points = np.arange(due.size, dtype=np.float64)
+    short = lacking(np.zeros(due.size), points)
+    if (short >= 0.0).any():
+        raise _beyond_reach(contact, due, due - short, np.flatnonzero(short >= 0.0)[0], shape)
+    creepage = np.zeros(due.size)
+    start = np.full(due.size, np.log(SMALLEST))
+    search = np.flatnonzero(lacking(start, points) > 0.0)
+    if search.size:
+        from scipy.optimize import elementwise  # half of the time of `import wearlaw`, so only where it is used
+
+        root = elementwise.find_root(lacking, (start[search], np.zeros(search.size)), args=(points[search],))
+        creepage[search] = np.exp(root.x)
+    return from_si(np.copysign(creepage.reshape(shape), target), "%")
+
+
+def _finite(traction_coefficient: object) -> Array:
+    try:
+        target = real_array(traction_coefficient)
+        if not np.isfinite(target).all():
+            raise UnitError("must be finite")
+    except UnitError as error:
+        raise UnitError(f"traction_coefficient: {error}; give T/N as plain numbers, such as 0.3") from None
+    return target
+
+
+def _beyond_reach(
+    contact: ContactPipeline[TwinDisc], due: Array, reached: Array, first: int, shape: tuple[int, ...]
+) -> ConditionsError:
+    where = f" at index {[int(i) for i in np.unravel_index(first, shape)]}" if shape else ""
+    return ConditionsError(
+        f"a traction coefficient of {due[first]:.6g}{where} belongs to no creepage: with contact model"
+        f" '{contact.contact_model.name}' it stays below {reached[first]:.6g}, at full slip; ask for less"
+    )
