@@ -71,14 +71,24 @@ def condition_arrays(conditions: dict[str, Any]) -> dict[str, Array]:
 
 
 def _broadcast(arrays: dict[str, Array]) -> dict[str, Array]:
-    if not any(array.ndim for array in arrays.values()):
+    """Return the arrays in one shape, as views that cannot be written to."""
+    shapes = {array.shape for array in arrays.values()}
+    if shapes == {()}:
         return arrays
     try:
-        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+        (shape,) = shapes if len(shapes) == 1 else (np.broadcast_shapes(*shapes),)
     except ValueError:
-        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-        raise ConditionsError(f"the shapes of the conditions do not broadcast: {shapes}") from None
+        shown = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        raise ConditionsError(f"the shapes of the conditions do not broadcast: {shown}") from None
     if 0 in shape:
         empty = next(name for name, array in arrays.items() if array.size == 0)
         raise ConditionsError(f"{empty}: is empty; give at least one value")
-    return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
+    return {name: _read_only(array, shape) for name, array in arrays.items()}
+
+
+def _read_only(array: Array, shape: tuple[int, ...]) -> Array:
+    if array.shape != shape:
+        return np.broadcast_to(array, shape)
+    view = array.view()
+    view.setflags(write=False)
+    return view

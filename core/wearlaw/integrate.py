@@ -23,13 +23,13 @@ from wearlaw.arrays import Array
 from wearlaw.blocks import Columns, OnBlock, by_block
 from wearlaw.crossings import crossings
 from wearlaw.errors import ModelError
+from wearlaw.extremes import extremes
 from wearlaw.kernels import accelerated
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import ContactModel, Scale, WearLaw
 from wearlaw.quadrature import join, remainder
 from wearlaw.records import NODE_VARIABLES, Contact
-from wearlaw.units import extremes
 
 BLOCK = 8192
 """Operating points of a block in closed form: its arrays stay in the cache, and in memory that is used again."""
@@ -167,12 +167,13 @@ def closed_form(
     force = model.tangential_force_per_width(forward)
     total: Array | float = 0.0
     for threshold, slope in (map(_of_points, ramp) for ramp in ramps):
-        excess = model.excess_dissipation(forward, threshold) if np.any(threshold > 0.0) else force * forward.creepage
+        above = _any_positive(threshold)
+        excess = model.excess_dissipation(forward, threshold) if above else force * forward.creepage
         if excess is None:
             return None
-        total = total + slope * excess
+        total += 0.5 * slope * excess
     force = force * problem.track_width
-    rate = 0.5 * total / problem.half_width
+    rate = total / problem.half_width
     if extremes(rate)[0] < 0.0:  # ramps that cancel leave their rounding
         rate = np.maximum(rate, 0.0)
     signed = force if forward is problem else np.copysign(force, problem.creepage)
@@ -182,6 +183,10 @@ def closed_form(
 def _of_points(number: float | Array) -> float | Array:
     """Return a number, or one for each operating point, without the axis of the nodes."""
     return number[:, 0] if isinstance(number, np.ndarray) and number.ndim == 2 else number
+
+
+def _any_positive(number: float | Array) -> bool:
+    return bool((number > 0.0).any()) if isinstance(number, np.ndarray) else number > 0.0
 
 
 def rounding(law: WearLaw, problem: LineProblem, tangential_force: Array) -> Array:

@@ -68,17 +68,13 @@ class Kernel:
 
     @functools.cached_property
     def compiled(self) -> Callable[..., Array]:
-        """The scalar function, compiled by numba for arrays; kept on disk for later processes where there is room."""
+        """The scalar function, compiled by numba for arrays."""
         numba = _numba()
         options = {"fastmath": {"contract"}}  # a multiplication and an addition with one rounding, as C compilers do
         function = _with_compiled(self.scalar, numba.njit(**options))
-        signatures = [numba.float64(*[numba.float64] * function.__code__.co_argcount)]
-        compiled: Callable[..., Array]
-        try:
-            compiled = numba.vectorize(signatures, cache=True, **options)(function)
-        except (RuntimeError, OSError):  # no folder that numba may write to, or no room there
-            compiled = numba.vectorize(signatures, **options)(function)
-        return compiled
+        signature = numba.float64(*[numba.float64] * function.__code__.co_argcount)
+        made: Callable[..., Array] = compiled("vectorize", function, signature, **options)
+        return made
 
 
 def kernel(arrays: Callable[..., Array]) -> Callable[[Callable[..., float]], Kernel]:
@@ -92,6 +88,15 @@ def kernel(arrays: Callable[..., Array]) -> Callable[[Callable[..., float]], Ker
         functions of its module that do the same.
     """
     return lambda scalar: Kernel(scalar, arrays)
+
+
+def compiled(compiler: str, function: Callable[..., Any], signature: object, **options: Any) -> Any:
+    """Return what a compiler of numba makes of a function, kept on disk for later processes where there is room."""
+    compile_ = getattr(_numba(), compiler)
+    try:
+        return compile_([signature], cache=True, **options)(function)
+    except (RuntimeError, OSError):  # no folder that numba may write to, or no room there
+        return compile_([signature], **options)(function)
 
 
 def _with_compiled(function: Any, compiler: Callable[[FunctionType], Any]) -> FunctionType:

@@ -8,10 +8,11 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.errors import RangeWarning
+from wearlaw.extremes import extremes
 from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
 from wearlaw.records import UNITS
-from wearlaw.units import extremes, from_si
+from wearlaw.units import from_si
 
 
 class RangeWatch:
@@ -31,8 +32,10 @@ class RangeWatch:
             lowest, highest = extremes(values)
             seen = self.seen[name]
             seen.lowest, seen.highest = min(seen.lowest, lowest), max(seen.highest, highest)
-            if lowest < low or highest > high:
-                seen.outside += int(np.count_nonzero((values < low) | (values > high)))
+            if lowest < low:
+                seen.outside += int(np.count_nonzero(values < low))
+            if highest > high:
+                seen.outside += int(np.count_nonzero(values > high))
 
     def warn(self, stacklevel: int) -> None:
         """Warn of what has been seen; `stacklevel` 1 is the caller."""

@@ -68,7 +68,12 @@ def symbol(unit: Any, style: str) -> str:
 
     Since version 0.26 pint writes the Greek letter mu, which looks the same and is another character.
     """
-    return format(unit, style).replace("\u03bc", "\u00b5")
+    return _symbol(unit._REGISTRY, unit._units, style)
+
+
+@functools.lru_cache(maxsize=512)
+def _symbol(registry: pint.UnitRegistry[Any], container: Any, style: str) -> str:
+    return format(registry.Unit(container), style).replace("\u03bc", "\u00b5")
 
 
 def quantity(magnitude: Any, unit: str) -> Any:

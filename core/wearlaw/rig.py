@@ -14,6 +14,7 @@ from wearlaw.arrays import Array
 from wearlaw.conditions import TwinDiscConditions, condition_arrays
 from wearlaw.configuration import Configuration
 from wearlaw.errors import CompositionError, ConditionsError, InputError, RangeWarning, UnitError
+from wearlaw.extremes import extremes
 from wearlaw.line import LineProblem
 from wearlaw.material import Material, steel
 from wearlaw.models import ContactModel
@@ -25,7 +26,6 @@ from wearlaw.units import (
     QuantityLike,
     Speed,
     Unit,
-    extremes,
     from_si,
     parse,
     scalar_si,

@@ -16,6 +16,7 @@ import pint
 from pydantic_core import core_schema
 
 from wearlaw.errors import UnitError
+from wearlaw.extremes import extremes
 from wearlaw.registry import application_registry, quantity, quantity_from_si, si_factor, symbol, unit_in_si
 
 if TYPE_CHECKING:
@@ -149,9 +150,9 @@ class Unit:
         """Return whether no rule is broken, from the extremes alone; an array that is empty or has NaN is not sure."""
         if in_si.size == 0:
             return False
-        low, high = extremes(in_si)
-        above = low > 0.0 if self.positive else low >= -self._limit_in_si
-        return above and high <= self._limit_in_si and (self.infinite or (low > -np.inf and high < np.inf))
+        (low, high), limit = extremes(in_si), self._limit_in_si
+        above = low > 0.0 if self.positive else low >= -limit
+        return above and high <= limit and (self.infinite or (low > -np.inf and high < np.inf))
 
     @property
     def _limit_in_si(self) -> float:
@@ -265,14 +266,6 @@ def from_si(value: NDArray[np.float64] | float, unit: str) -> Quantity:
     """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
     result: Quantity = quantity_from_si(value, unit)
     return result
-
-
-def extremes(array: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the smallest and the largest entry; NaN if any is."""
-    if array.ndim == 0:
-        value = float(array)
-        return value, value
-    return float(array.min()), float(array.max())
 
 
 Length = Annotated[Quantity, Unit("mm")]

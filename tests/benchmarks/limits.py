@@ -20,6 +20,12 @@ from wearlaw.conditions import condition_arrays
 DECADES = (10**3, 10**4, 10**5, 10**6, 10**7)
 SWEEP = 10**5
 MEMORY_POINTS = 10**6
+PAGE = resource.getpagesize()
+WARM_UP, KEPT = 5, 20
+"""Sweeps before and while page faults are counted."""
+
+RESULTS = 5
+"""Arrays of a prediction: load per width, half-width, maximum pressure, and the wear rate in SI and in its unit."""
 
 
 def scalar_seconds(on: bool, rounds: int = 101, calls: int = 100) -> tuple[float, float]:
@@ -51,13 +57,27 @@ def rim(on: bool, rounds: int) -> Times:
 
 def peak_memory(on: bool) -> tuple[float, float]:
     """Return the peak memory [MiB] of a fresh process after a small sweep and after that of `MEMORY_POINTS`."""
+    before, after = _in_fresh_process("peaks", on)
+    return before, after
+
+
+def page_faults(on: bool) -> tuple[float, float]:
+    """Return the minor page faults of a warm sweep of `SWEEP` points, and how many of them its results account for.
+
+    The results of all sweeps are kept, so that each needs new memory for its own, and only for them unless temporaries
+    go back to the system.
+    """
+    (faults,) = _in_fresh_process("faults", on)
+    return faults, RESULTS * SWEEP * np.dtype(np.float64).itemsize / PAGE
+
+
+def _in_fresh_process(what: str, on: bool) -> list[float]:
     # The peak that a process reports includes that of the one which started it, so a small one does that.
     launcher = "import subprocess, sys; sys.exit(subprocess.run(sys.argv[1:]).returncode)"
-    command = [sys.executable, "-c", launcher, sys.executable, "-m", "tests.benchmarks.limits", str(int(on))]
+    command = [sys.executable, "-c", launcher, sys.executable, "-m", "tests.benchmarks.limits", what, str(int(on))]
     project = Path(__file__).parents[2]
     printed = subprocess.run(command, cwd=project, stdout=subprocess.PIPE, text=True, check=True).stdout
-    before, after = printed.split()
-    return float(before), float(after)
+    return [float(number) for number in printed.split()]
 
 
 def linearity(on: bool) -> tuple[dict[int, float], float]:
@@ -81,9 +101,7 @@ def _peak_mib() -> float:
     return peak / (2**20 if sys.platform == "darwin" else 2**10)
 
 
-def _print_peaks(on: bool) -> None:
-    warnings.simplefilter("ignore", RangeWarning)
-    accelerator(on)
+def _print_peaks() -> None:
     predict = pipeline()
     _sweep(predict, workload(DECADES[0]).conditions())
     before = _peak_mib()
@@ -91,5 +109,17 @@ def _print_peaks(on: bool) -> None:
     print(before, _peak_mib())
 
 
+def _print_faults() -> None:
+    predict, conditions, kept = pipeline(), workload(SWEEP).conditions(), []
+    for number in range(WARM_UP + KEPT):
+        if number == WARM_UP:
+            before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+        prediction = predict(**conditions)
+        kept.append((prediction, prediction.wear_rate))
+    print((resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before) / KEPT)
+
+
 if __name__ == "__main__":
-    _print_peaks(sys.argv[1] == "1")
+    warnings.simplefilter("ignore", RangeWarning)
+    accelerator(sys.argv[2] == "1")
+    {"peaks": _print_peaks, "faults": _print_faults}[sys.argv[1]]()

@@ -17,6 +17,7 @@ from tests.benchmarks.points import WORKLOAD
 from tests.benchmarks.report import Gate
 from tests.benchmarks.timing import modes
 from wearlaw import RangeWarning
+from wearlaw.integrate import BLOCK
 
 ROUNDS = 15
 DOCS = Path(__file__).parents[2] / "docs"
@@ -52,6 +53,10 @@ def budgets(name: str, on: bool, rounds: int) -> list[Gate]:
     print(
         f"{name}: peak memory {before:.0f} MiB before the sweep of {limits.MEMORY_POINTS:.0e} points, {peak:.0f} after"
     )
+    faults, pages = limits.page_faults(on)
+    print(
+        f"{name}: a warm sweep of {limits.SWEEP:.0e} points has {faults:.1f} page faults, its results fill {pages:.1f}"
+    )
     seconds, exponent = limits.linearity(on)
     for count, spent in seconds.items():
         print(f"{name}: {count:.0e} points {1e9 * spent / count:9.1f} ns a point")
@@ -61,6 +66,10 @@ def budgets(name: str, on: bool, rounds: int) -> list[Gate]:
     return [
         Gate(f"one prediction, {name}, fastest round [µs]", 1e6 * fastest, 60.0),
         Gate(f"unit checking of {limits.SWEEP:.0e} points, {name} [%]", 100.0 * share, 1.0),
+        # fewer than one temporary of one block would cost
+        Gate(
+            f"page faults of temporaries of {limits.SWEEP:.0e} points, {name}", faults - pages, BLOCK * 8 / limits.PAGE
+        ),
         Gate(f"peak memory of {limits.MEMORY_POINTS:.0e} points, {name} [MiB]", peak, 300.0),
     ]
 
