@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from threading import RLock
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import pint
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from wearlaw.docstrings import field_docstrings, place_of_statement
 from wearlaw.errors import ConfigurationError, FrozenError, Problem, did_you_mean
 from wearlaw.units import shortened, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
+    from inspect import Signature
 
-    from pydantic_core import ErrorDetails
+    from pydantic import GetJsonSchemaHandler
+    from pydantic_core import CoreSchema, ErrorDetails
 
 ConfigurationT = TypeVar("ConfigurationT", bound="Configuration")
 
@@ -30,11 +34,33 @@ class Configuration(BaseModel):
         extra="forbid",
         allow_inf_nan=False,
         validate_default=True,
-        use_attribute_docstrings=True,
+        defer_build=True,
         ser_json_inf_nan="strings",
     )
 
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        found = handler(schema)
+        properties = handler.resolve_ref_schema(found).get("properties", {})
+        for name, text in field_docstrings(cls).items():
+            for key in {name, cls.model_fields[name].alias} & properties.keys():
+                properties[key] |= {"description": text} if text else {}
+        return found
+
     if not TYPE_CHECKING:  # checkers keep the signature that pydantic derives from the fields
+
+        @classmethod
+        def __pydantic_init_subclass__(cls, **options: Any) -> None:
+            super().__pydantic_init_subclass__(**options)
+            cls._place = place_of_statement(cls)
+            if not cls.__pydantic_complete__:
+                cls.__signature__ = _Signature()
+
+        @classmethod
+        def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
+            """Build the validators, in one thread at a time; without being called that happens at the first use."""
+            with _BUILDING:  # pydantic before 2.14 has no lock of its own
+                return super().model_rebuild(_parent_namespace_depth=_parent_namespace_depth + 1, **options)
 
         def __init__(self, /, **fields: Any) -> None:
             try:
@@ -100,6 +126,18 @@ class Configuration(BaseModel):
     def __repr_args__(self) -> Any:
         for name, value in super().__repr_args__():
             yield name, _Text(text_of(value)) if isinstance(value, pint.Quantity) else value
+
+
+_BUILDING = RLock()
+
+
+class _Signature:
+    """The signature of a class without validators yet; pydantic makes it from the fields as it builds them."""
+
+    def __get__(self, instance: object, owner: type[BaseModel]) -> Signature:
+        if instance is None and owner.model_rebuild(raise_errors=False) is not False:
+            return owner.__signature__
+        raise AttributeError("__signature__")
 
 
 def parts(value: object) -> Iterator[Configuration]:

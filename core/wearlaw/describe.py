@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import inspect
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import pint
 
 from wearlaw import plugins
+from wearlaw.docstrings import field_docstrings
 from wearlaw.errors import InputError
 from wearlaw.models import ContactModel, Model, WearLaw
 from wearlaw.records import UNITS
@@ -21,7 +22,10 @@ def describe(model: type[Model]) -> str:
     """Return what a user must know of a model: theory, source, fields with defaults, and what it declares."""
     lines = [_headline(model), "", inspect.getdoc(model) or "", "", *_wrapped("source: ", model.source), "", "fields:"]
     default = _default(model)
-    lines += [line for name in model.model_fields for line in _field(model, name, default)] or ["  none"]
+    schema = model.model_json_schema(by_alias=False).get("properties", {})
+    for name, text in field_docstrings(model).items():
+        lines += _field(name, default, _choices(schema[name]), text)
+    lines += [] if schema else ["  none"]
     lines += ["", "declares:", *(f"  {text}" for text in _declared(default))]
     return "\n".join(lines)
 
@@ -40,13 +44,11 @@ def _default(model: type[Model]) -> Model | None:
         return None
 
 
-def _field(model: type[Model], name: str, default: Model | None) -> Iterator[str]:
-    value = getattr(default, name, None)
-    yield f"  {name} = {_shown(value)}" if default is not None else f"  {name} (must be given)"
-    choices = _choices(model, name)
+def _field(name: str, default: Model | None, choices: Sequence[str], description: str) -> Iterator[str]:
+    yield f"  {name} = {_shown(getattr(default, name))}" if default is not None else f"  {name} (must be given)"
     if choices:
         yield f"      one of {', '.join(choices)}"
-    yield from _wrapped("      ", model.model_fields[name].description or "")
+    yield from _wrapped("      ", description)
 
 
 def _shown(value: Any) -> str:
@@ -55,9 +57,8 @@ def _shown(value: Any) -> str:
     )
 
 
-def _choices(model: type[Model], name: str) -> list[str]:
+def _choices(schema: Mapping[str, Any]) -> list[str]:
     """Return the words that a field may be, from its JSON Schema."""
-    schema = model.model_json_schema()["properties"][name]
     options: list[Mapping[str, Any]] = [schema, *schema.get("anyOf", [])]
     return [repr(word) for option in options for word in option.get("enum", [])]
 

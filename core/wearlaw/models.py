@@ -3,8 +3,6 @@
 A model is its configuration: a frozen pydantic record whose fields carry units and whose methods compute.
 """
 
-from __future__ import annotations
-
 import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -30,6 +28,9 @@ Claim: TypeAlias = Literal["traction_bound", "stick", "energy_balance", "saturat
 
 BreakpointMap: TypeAlias = Mapping[str, tuple[float, ...]]
 """Variables of a `Contact` with the SI values at which a law branches."""
+
+QUADRATURE = 5e-8
+"""Accuracy of the quadrature of `LineContactModel`; its worst case is a slip zone just short of the whole patch."""
 
 
 class Model(Configuration, ABC):
@@ -67,10 +68,6 @@ class ContactModel(Model):
     uses_measured_traction: ClassVar[bool] = False
     """Whether the model can use a measured traction coefficient."""
 
-    accuracy: ClassVar[float] = 5e-8
-    """Relative error of sums over the nodes that `solve` returns, for pressure, traction and dissipation. The default
-    is that of the quadrature of `LineContactModel`, whose worst case is a slip zone just short of the whole patch."""
-
     @abstractmethod
     def solve(self, problem: LineProblem) -> Contact:
         """Return the solved contact on nodes of the model's choice, of shape (batch, nodes)."""
@@ -79,12 +76,17 @@ class ContactModel(Model):
         """Return T [N] with the sign of the creepage, of the batch shape; that of `solve`, unless known without it."""
         return self.solve(problem).tangential_force
 
-    def refined(self) -> ContactModel | None:
+    def refined(self) -> "ContactModel | None":
         """Return the same theory on twice as fine nodes, or None, the default, if the model has no such choice.
 
         The checks then hold the model to errors of its sums that fall with refinement, at the least in first order.
         """
         return None
+
+    @property
+    def accuracy(self) -> float:
+        """Relative error of sums over the nodes that `solve` returns, for pressure, traction and dissipation."""
+        return QUADRATURE
 
     @property
     def exemptions(self) -> Mapping[Claim, str]:
@@ -112,7 +114,7 @@ class Calibration(Configuration):
     """Literature."""
 
     @model_validator(mode="after")
-    def _range_has_units(self) -> Calibration:
+    def _range_has_units(self) -> "Calibration":
         self.range_in_si  # noqa: B018  raises where it is wrong
         return self
 
@@ -276,14 +278,14 @@ class WearLaw(Model):
         """What the parameters were fitted to; None where they are not tied to a contact solution."""
         return None
 
-    def explicit(self) -> WearLaw:
+    def explicit(self) -> "WearLaw":
         """Return the same law with a number in place of each name that stands for published ones."""
         return self
 
-    def fitted(self, calibration: Calibration) -> WearLaw:  # noqa: ARG002
+    def fitted(self, calibration: Calibration) -> "WearLaw":  # noqa: ARG002
         """Return this law, whose parameters were fitted to a contact, knowing that; by default it does not."""
         return self
 
-    def band(self) -> tuple[WearLaw, WearLaw, WearLaw] | None:
+    def band(self) -> "tuple[WearLaw, WearLaw, WearLaw] | None":
         """Return the laws at the low, middle and high end of published parameter ranges, where there are any."""
         return None

@@ -59,7 +59,7 @@ _SCHEMA = WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "object", "requ
 ContactModelField = Annotated[
     ContactModel,
     BeforeValidator(_maker(plugins.contact_model)),
-    PlainSerializer(specification, when_used="json"),
+    PlainSerializer(specification, return_type=dict[str, Any], when_used="json"),
     _SCHEMA,
 ]
 """A field that takes a contact model, its name, or a table of its name and options."""
@@ -67,7 +67,7 @@ ContactModelField = Annotated[
 WearLawField = Annotated[
     WearLaw,
     BeforeValidator(_maker(plugins.wear_law)),
-    PlainSerializer(specification, when_used="json"),
+    PlainSerializer(specification, return_type=dict[str, Any], when_used="json"),
     _SCHEMA,
 ]
 """A field that takes a wear law, its name, or a table of its name and options."""

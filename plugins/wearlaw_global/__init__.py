@@ -27,6 +27,11 @@ class Global(wl.ContactModel):
     """The contact model that gives T where no traction coefficient was measured."""
 
     @property
+    def accuracy(self) -> float:
+        """That of the model that T is taken from."""
+        return self.total_from.accuracy
+
+    @property
     def exemptions(self) -> Mapping[wl.Claim, str]:
         """The one cell slips at any creepage; the rest follows the model that T is taken from."""
         stick = "the one cell slips as a whole, with a traction below its bound"

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import copy
 import functools
+import inspect
 import pickle
+import subprocess
+import sys
+import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
@@ -169,3 +174,53 @@ def test_a_copy_of_a_model_that_keeps_what_it_computed_computes_it_anew() -> Non
     law = Keeps(slope="1 m")  # type: ignore[arg-type]
     assert law.doubled == 2.0
     assert law.model_copy(update={"slope": "3 m"}).doubled == 6.0
+
+
+def test_a_class_shows_its_fields_as_signature_before_and_after_it_is_used() -> None:
+    class First(wl.Configuration):
+        a: float
+
+    class Second(First):
+        b: float = 1.0
+
+    assert First(a=1.0).a == 1.0
+    for _ in range(2):
+        assert list(inspect.signature(Second).parameters) == ["a", "b"]
+        assert Second(a=1.0).b == 1.0
+    assert list(inspect.signature(First).parameters) == ["a"]
+
+
+def test_a_class_that_waits_for_a_type_has_a_signature_once_that_is_there() -> None:
+    class Waits(wl.Configuration):
+        later: Later
+
+    assert list(inspect.signature(Waits).parameters) != ["later"]
+
+    class Later(wl.Configuration):
+        a: float = 1.0
+
+    Waits.model_rebuild()
+    assert list(inspect.signature(Waits).parameters) == ["later"]
+    assert Waits(later=Later()).later.a == 1.0
+
+
+def test_many_threads_may_use_a_class_first() -> None:
+    class Shared(wl.Configuration):
+        disc: wl.Disc
+        rig: wl.TwinDisc | None = None
+
+    start = threading.Barrier(8)
+
+    def make(number: int) -> str:
+        start.wait()
+        return repr(Shared(disc=disc(diameter=Q(number + 1, "mm"))).disc.diameter)
+
+    with ThreadPoolExecutor(8) as pool:
+        assert list(pool.map(make, range(8))) == [f"{n + 1}.000 mm" for n in range(8)]
+
+
+def test_a_record_can_be_read_where_its_class_was_not_used_before() -> None:
+    code = "import pickle, sys; made = pickle.load(sys.stdin.buffer); print(made.model_dump_json())"
+    made = disc()
+    printed = subprocess.run([sys.executable, "-c", code], input=pickle.dumps(made), stdout=subprocess.PIPE, check=True)
+    assert wl.Disc.model_validate_json(printed.stdout) == made

@@ -11,6 +11,7 @@ import wearlaw as wl
 from tests.core import cases
 from wearlaw import plugins
 from wearlaw.describe import describe
+from wearlaw.docstrings import field_docstrings
 from wearlaw.models import Model
 
 MODELS: dict[str, type[Model]] = {**wl.contact_models(), **wl.wear_laws()}
@@ -101,10 +102,10 @@ def test_the_theory_the_source_and_every_field_with_its_explanation_are_said(nam
     for expected in (inspect.getdoc(model), f"source: {model.source}"):
         assert expected is not None
         assert " ".join(expected.split()) in text
-    for field, info in model.model_fields.items():
+    for field, description in field_docstrings(model).items():
         assert f" {field} = " in text
-        assert info.description
-        assert " ".join(info.description.split()) in text
+        assert description
+        assert " ".join(description.split()) in text
 
 
 def test_no_line_of_the_fields_is_wider_than_a_screen() -> None:

@@ -199,6 +199,54 @@ def test_one_name_of_two_distributions_is_an_error_that_names_both(install: Inst
     assert wl.wear_law("usfd").name == "usfd"
 
 
+def test_one_module_of_two_distributions_is_an_error_that_names_both(install: Install, tmp_path: Path) -> None:
+    install("one_plugin", LAW.format(name="twin"), version="1.5")
+    install("other_plugin", "", version="2.5")
+    (tmp_path / "other_plugin-2.5.dist-info" / "entry_points.txt").write_text("[wearlaw]\nother = one_plugin\n")
+    with pytest.raises(wl.UnknownModelError, match=r"by one_plugin 1\.5 .* and other_plugin 2\.5 \(plugin 'other'\)"):
+        wl.wear_law("twin")
+
+
+def test_a_plugin_answers_for_itself_alone(install: Install) -> None:
+    install("one_plugin", LAW.format(name="one"))
+    install("other_plugin", LAW.format(name="other"))
+    found = plugins.installed().wear_laws
+    assert [str(found.origin(name)).split()[0] for name in ("one", "other")] == ["one_plugin", "other_plugin"]
+    assert set(wl.wear_laws()) == FIRST_PARTY_LAWS | {"one", "other"}
+
+
+def test_a_plugin_may_implement_a_hook_of_a_later_wearlaw_and_return_nothing(install: Install) -> None:
+    hooks = """
+    @wl.hookimpl(optionalhook=True)
+    def wearlaw_of_tomorrow():
+        return []
+
+    @wl.hookimpl(specname="wearlaw_materials")
+    def _materials():
+        return {"outside_steel": wl.steel()}
+
+    @wl.hookimpl
+    def wearlaw_cases():
+        return None
+    """
+    install("outside_plugin", LAW.format(name="outside") + hooks)
+    assert "outside" in wl.wear_laws()
+    assert "outside_steel" in wl.materials()
+
+
+def test_a_long_readme_does_not_disguise_a_distribution(install: Install, tmp_path: Path) -> None:
+    install("outside_plugin", LAW.format(name="outside"), version="3.2")
+    with (tmp_path / "outside_plugin-3.2.dist-info" / "METADATA").open("a") as file:
+        file.write("Summary: Name: another\n\nName: a-third\nVersion: 9\n")
+    assert str(plugins.installed().wear_laws.origin("outside")).startswith("outside_plugin 3.2 ")
+
+
+def test_a_distribution_without_metadata_stands_in_nobodys_way(install: Install, tmp_path: Path) -> None:
+    install("outside_plugin", LAW.format(name="outside"))
+    (tmp_path / "outside_plugin-1.0.dist-info" / "METADATA").unlink()
+    assert str(plugins.installed().wear_laws.origin("outside")).startswith("unnamed unknown ")
+
+
 def test_an_outside_model_cannot_take_a_first_party_name_silently(install: Install) -> None:
     install("usurper", LAW.format(name="usfd"))
     with pytest.raises(wl.UnknownModelError, match=r"by usurper 1\.0 .* and wearlaw "):
@@ -221,6 +269,7 @@ def test_of_two_copies_of_a_distribution_the_first_on_the_path_counts(
     write_distribution(tmp_path / "later", "doubled_plugin", LAW.format(name="doubled"), version="1.0")
     monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path / "later")])
     assert str(plugins.installed().wear_laws.origin("doubled")).startswith("doubled_plugin 2.0 ")
+    assert wl.wear_law("doubled").name == "doubled"
 
 
 @pytest.mark.parametrize(

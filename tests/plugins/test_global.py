@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 from tests.strategies import EPS, LINE_MODELS, line_problems, log_uniform, saturation_creepage, with_creepage
+from tests.testing.cells import Cells
 from wearlaw import Q
+from wearlaw.testing import checks
 
 SUROS = wl.TwinDisc.suros()
 CONDITIONS = {"normal_force": Q(7.4143, "kN"), "friction_coefficient": 0.46}
@@ -87,3 +89,13 @@ def test_the_exemptions_follow_the_model_that_the_total_is_from() -> None:
 def test_an_unknown_model_for_the_total_is_refused_by_name() -> None:
     with pytest.raises(wl.ConfigurationError, match=r"total_from: no contact model is called 'exakt'.*'exact'"):
         wl.contact_model("global", total_from="exakt")
+
+
+def test_its_force_is_as_exact_as_that_of_the_model_it_is_taken_from() -> None:
+    model = wl.contact_model("global", total_from=Cells())
+    assert model.accuracy == Cells().accuracy
+    held_to_friction = {"force_stays_below_friction", "traction_keeps_its_bound", "full_slip_is_reached"}
+    checked = [check for check in checks(model) if check.name in held_to_friction]
+    assert len(checked) == len(held_to_friction)
+    for check in checked:
+        check()

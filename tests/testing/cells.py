@@ -61,6 +61,13 @@ class ForceIsNoSumOnAnyCells(Cells):
         return dataclasses.replace(contact, tangential_force=force, wear_index=index)
 
 
+class MoreTractionThanTheBoundOnAnyCells(Cells):
+    """In slip, the traction is above its bound by half a per cent, less than the accuracy of the sums."""
+
+    def made(self, problem: wl.LineProblem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
+        return super().made(problem, dataclasses.replace(fields, traction=1.005 * fields.traction), x, length)
+
+
 class RefinedIsTheSame(Cells):
     """What it calls refined has as many cells."""
 
@@ -71,6 +78,7 @@ class RefinedIsTheSame(Cells):
 CAUGHT: dict[Any, str] = {
     LosesEnergyOnAnyCells: "refined_nodes_improve_the_sums",
     ForceIsNoSumOnAnyCells: "refined_nodes_improve_the_sums",
+    MoreTractionThanTheBoundOnAnyCells: "traction_keeps_its_bound",
     RefinedIsTheSame: "refined_nodes_improve_the_sums",
 }
 """The check that must catch each."""

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from wearlaw.arrays import Array
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
-from wearlaw.models import ContactModel
+from wearlaw.models import QUADRATURE, ContactModel
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import Contact
 from wearlaw.testing.bisection import lost_digits
@@ -55,7 +55,12 @@ def error_of_force(model: ContactModel) -> float:
 
     It is rounding; but where a model declares an accuracy of its own, its force is a sum over its nodes as well.
     """
-    return SAME if model.accuracy == ContactModel.accuracy else model.accuracy
+    return SAME if model.accuracy == QUADRATURE else model.accuracy
+
+
+def error_of_traction(model: ContactModel) -> float:
+    """Return the relative error of a traction in full slip: rounding, but that of the force where it is its mean."""
+    return error_of_force(model) if model.scale == "patch" else SAME
 
 
 def solutions(model: ContactModel, problem: LineProblem) -> list[Contact]:

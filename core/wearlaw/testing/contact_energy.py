@@ -9,7 +9,7 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
-from wearlaw.models import Claim, ContactModel
+from wearlaw.models import QUADRATURE, Claim, ContactModel
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import Contact
 from wearlaw.testing.contact_checks import SUM, friction_limit, random_problems, saturation, with_creepage
@@ -38,7 +38,7 @@ def slip_dissipates_the_energy_fed_in(model: ContactModel) -> None:
         rounding = SUM / np.maximum(slipping, SUM)
         due = contact.tangential_force * problem.creepage
         # A slip zone may be shorter than a cell: the error of sums over cells is a share of what full slip dissipates.
-        whole = due if model.accuracy == ContactModel.accuracy else friction_limit(problem) * problem.creepage
+        whole = due if model.accuracy == QUADRATURE else friction_limit(problem) * problem.creepage
         allowed = model.accuracy * whole
         assert_close(_dissipated(contact), due, "the energy dissipated per metre", rounding, allowed)
 
@@ -87,7 +87,7 @@ def refined_nodes_improve_the_sums(model: ContactModel) -> None:
     coarse, fine = (chosen.solve(problem) for chosen in (models[0], models[-1]))
     for name, error in (("energy", _energy_error), ("traction", _traction_error)):
         before, behind = error(coarse), error(fine)
-        assert behind <= max(CHANCE * before / 2**REFINEMENTS, ContactModel.accuracy), (
+        assert behind <= max(CHANCE * before / 2**REFINEMENTS, QUADRATURE), (
             f"the sum of {name} is off by {before:.2g}, and still by {behind:.2g} on {2**REFINEMENTS} times finer nodes"
         )
 

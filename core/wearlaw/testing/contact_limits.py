@@ -13,6 +13,7 @@ from wearlaw.models import Claim, ContactModel
 from wearlaw.testing.contact_checks import (
     SUM,
     error_of_force,
+    error_of_traction,
     friction_limit,
     saturation,
     solutions,
@@ -27,7 +28,7 @@ def traction_keeps_its_bound(model: ContactModel) -> None:
 
     def examine(problem: LineProblem) -> None:
         for contact in solutions(model, problem):
-            over = np.abs(contact.traction) > contact.traction_bound * (1.0 + SAME)
+            over = np.abs(contact.traction) > contact.traction_bound * (1.0 + error_of_traction(model))
             share = np.abs(contact.traction[over]) / contact.traction_bound[over]
             assert not over.any(), f"the traction is {share} times its bound at x = {contact.x[over]}"
 
@@ -52,7 +53,7 @@ def full_slip_is_reached(model: ContactModel) -> None:
     def examine(problem: LineProblem) -> None:
         contact = model.solve(with_creepage(problem, 100.0 * saturation(problem)))
         assert_close(contact.tangential_force, friction_limit(problem), "the force in full slip", error_of_force(model))
-        assert_close(contact.traction, contact.traction_bound, "the traction in full slip")
+        assert_close(contact.traction, contact.traction_bound, "the traction in full slip", error_of_traction(model))
         assert (contact.slip != 0).all(), "a node sticks in full slip"
         assert_close(contact.mean_slip, 100.0 * saturation(problem), "the mean slip in full slip", model.accuracy)
 

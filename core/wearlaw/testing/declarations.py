@@ -8,6 +8,7 @@ from typing import Any, get_args
 import numpy as np
 import pint
 
+from wearlaw.docstrings import field_docstrings
 from wearlaw.models import Claim, ContactModel, Model, WearLaw
 from wearlaw.records import NODE_VARIABLES
 from wearlaw.testing.examples import for_each
@@ -25,8 +26,7 @@ def model_is_documented(model: Model) -> None:
     assert cls.name.isidentifier(), f"the name must be an identifier, got {cls.name!r}"
     assert (cls.__doc__ or "").strip(), f"{cls.__name__} has no docstring"
     assert str(getattr(cls, "source", "")).strip(), f"{cls.__name__} names no source"
-    for name, field in cls.model_fields.items():
-        description = field.description or ""
+    for name, description in field_docstrings(cls).items():
         assert description.strip(), f"the field '{name}' has no docstring"
         if isinstance(getattr(model, name), (float, pint.Quantity)):
             assert "[" in description, f"the docstring of the field '{name}' names no unit, such as [N/m²] or [-]"
