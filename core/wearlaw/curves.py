@@ -37,7 +37,7 @@ class Curve:
 
 
 @dataclass(frozen=True, eq=False)
-class Axis:
+class PlotAxis:
     """One axis of a panel: its label with the unit, its scale, and its ends where they are not those of the curves."""
 
     label: str
@@ -49,8 +49,8 @@ class Axis:
 class Panel:
     """One pair of axes with its curves."""
 
-    x: Axis
-    y: Axis
+    x: PlotAxis
+    y: PlotAxis
     curves: tuple[Curve, ...]
     title: str = ""
 

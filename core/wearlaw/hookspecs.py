@@ -6,7 +6,7 @@ names marked `@wearlaw.hookimpl`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import pluggy
@@ -14,6 +14,8 @@ import pluggy
 if TYPE_CHECKING:
     from wearlaw.material import Material
     from wearlaw.models import ContactModel, WearLaw
+    from wearlaw.sections import Section
+    from wearlaw.study import Study
 
 PROJECT = "wearlaw"
 
@@ -51,3 +53,13 @@ def wearlaw_materials() -> Mapping[str, Material]:  # type: ignore[empty-body]
 @hookspec
 def wearlaw_cases() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Return the texts of case files by name."""
+
+
+@hookspec
+def wearlaw_tests() -> Mapping[str, str]:  # type: ignore[empty-body]
+    """Return by name the texts of CSV files with wear tests."""
+
+
+@hookspec
+def wearlaw_sections() -> Mapping[str, Callable[[Study], Section]]:  # type: ignore[empty-body]
+    """Return by name what makes a section of a report from the results of a case."""

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import functools
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
+from importlib.metadata import Distribution, EntryPoint, PackageNotFoundError, distributions, version
 from itertools import chain
 from typing import Any
 
 import pluggy
+from packaging.utils import canonicalize_name
 
 from wearlaw import hookspecs
 from wearlaw.configuration import Configuration, known_as
@@ -34,12 +35,15 @@ class Installed:
     parameter_sets: Shelf[WearLaw] = field(default_factory=lambda: Shelf("parameter set", WearLaw))  # type: ignore[type-abstract]
     materials: Shelf[Material] = field(default_factory=lambda: Shelf("material", Material))
     cases: Shelf[str] = field(default_factory=lambda: Shelf("case", str))
+    test_sets: Shelf[str] = field(default_factory=lambda: Shelf("test set", str))
+    sections: Shelf[Callable[..., Any]] = field(default_factory=lambda: Shelf("section", Callable))  # type: ignore[arg-type]
     plugins: list[Origin] = field(default_factory=list)
     broken: list[Broken] = field(default_factory=list)
 
     def shelves(self) -> tuple[Shelf[Any], ...]:
         """Return what there is of each kind."""
-        return self.contact_models, self.wear_laws, self.parameter_sets, self.materials, self.cases
+        models = (self.contact_models, self.wear_laws, self.parameter_sets)
+        return *models, self.materials, self.cases, self.test_sets, self.sections
 
     def listing(self) -> list[tuple[str, str, Origin]]:
         """Return kind, name and origin of everything that plugins provide."""
@@ -68,16 +72,18 @@ _under_way: list[Installed] = []
 
 def _discover(found: Installed) -> None:
     """Load all plugins: first the models of all of them, then what is given by name and may look up models."""
-    loaded: list[tuple[pluggy.PluginManager, Origin]] = []
+    manager = _Manager(hookspecs.PROJECT)
+    manager.add_hookspecs(hookspecs)
+    loaded: list[tuple[_Plugin, Origin]] = []
     for entry_point, origin in _entry_points():
         found.plugins.append(origin)
         with _isolated(found, origin):
-            manager = _load(entry_point)
-            _add_models(manager, origin, found)
-            loaded.append((manager, origin))
-    for manager, origin in loaded:
+            plugin = _Plugin(manager, _load(manager, entry_point, origin))
+            _add_models(plugin, origin, found)
+            loaded.append((plugin, origin))
+    for plugin, origin in loaded:
         with _isolated(found, origin):
-            _add_named(manager, origin, found)
+            _add_named(plugin, origin, found)
 
 
 @contextmanager
@@ -187,14 +193,20 @@ def require(needed: Mapping[str, str]) -> None:
 
 def _entry_points() -> list[tuple[EntryPoint, Origin]]:
     """Return what the installed distributions name; of two copies of one, the first on `sys.path` counts."""
-    given = entry_points(group=hookspecs.PROJECT)
-    metadata = {dist: dist.metadata for dist in {one.dist for one in given} if dist is not None}  # parsed once each
-    found = [
-        (one, Origin(one.name, metadata[one.dist]["Name"], metadata[one.dist]["Version"]))
-        for one in given
-        if one.dist is not None
-    ]
-    return sorted(found, key=lambda pair: (pair[1].distribution, pair[1].entry_point))
+    found: dict[str, list[tuple[EntryPoint, Origin]]] = {}
+    for distribution in distributions():
+        if f"[{hookspecs.PROJECT}]" in (distribution.read_text("entry_points.txt") or ""):  # few are; parse no others
+            name, version = _name_and_version(distribution)
+            points = distribution.entry_points.select(group=hookspecs.PROJECT)
+            found.setdefault(canonicalize_name(name), [(point, Origin(point.name, name, version)) for point in points])
+    return sorted(chain.from_iterable(found.values()), key=lambda pair: (pair[1].distribution, pair[1].entry_point))
+
+
+def _name_and_version(distribution: Distribution) -> tuple[str, str]:
+    """Return what the metadata begins with; `distribution.metadata` would parse the README behind it as well."""
+    text = distribution.read_text("METADATA") or distribution.read_text("PKG-INFO") or ""
+    header = dict(line.partition(": ")[::2] for line in text.partition("\n\n")[0].splitlines())
+    return header.get("Name", "unnamed"), header.get("Version", "unknown")
 
 
 def _check_interface(needed: object) -> None:
@@ -208,41 +220,60 @@ def _check_interface(needed: object) -> None:
 
 
 class _Manager(pluggy.PluginManager):
-    """A plugin manager that passes over names which are no hooks; looking at them all takes most of its time."""
+    """A plugin manager that looks closer at marked names only; to look at all takes most of the time of pluggy."""
 
     def parse_hookspec_opts(self, module_or_class: Any, name: str) -> Any:
-        return super().parse_hookspec_opts(module_or_class, name) if name.startswith(f"{hookspecs.PROJECT}_") else None
+        return getattr(getattr(module_or_class, name), f"{hookspecs.PROJECT}_spec", None)
 
     def parse_hookimpl_opts(self, plugin: Any, name: str) -> Any:
-        return None if name.startswith("__") else super().parse_hookimpl_opts(plugin, name)
+        marked = hasattr(getattr(plugin, name, None), f"{hookspecs.PROJECT}_impl")
+        return super().parse_hookimpl_opts(plugin, name) if marked else None
 
 
-def _load(entry_point: EntryPoint) -> pluggy.PluginManager:
-    """Return a plugin manager that holds one plugin alone."""
-    manager = _Manager(hookspecs.PROJECT)
-    manager.add_hookspecs(hookspecs)
+def _load(manager: pluggy.PluginManager, entry_point: EntryPoint, origin: Origin) -> object:
+    """Return a plugin, or raise what is wrong with it."""
     plugin = entry_point.load()
     _check_interface(getattr(plugin, "wearlaw_interface", hookspecs.INTERFACE_VERSION))
-    manager.register(plugin, entry_point.name)
-    manager.check_pending()
+    if not manager.is_registered(plugin):  # else another distribution names it too, and both provide its models
+        manager.register(plugin, str(origin))
+    try:
+        manager.check_pending()
+    except pluggy.PluginValidationError:
+        manager.unregister(plugin)
+        raise
     if not manager.get_hookcallers(plugin):
         raise TypeError("it implements no hook; mark its functions with @wearlaw.hookimpl")
-    return manager
+    return plugin
 
 
-def _add_models(manager: pluggy.PluginManager, origin: Origin, found: Installed) -> None:
-    for model in chain.from_iterable(manager.hook.wearlaw_contact_models()):
+@dataclass(frozen=True)
+class _Plugin:
+    """A plugin that can be asked alone, so that its errors are its own."""
+
+    manager: pluggy.PluginManager
+    registered: object
+
+    def answers(self, hook: str) -> list[Any]:
+        """Return what it returns from a hook."""
+        asked = [one for one in getattr(self.manager.hook, hook).get_hookimpls() if one.plugin is self.registered]
+        return [answer for one in asked if (answer := one.function()) is not None]
+
+
+def _add_models(plugin: _Plugin, origin: Origin, found: Installed) -> None:
+    for model in chain.from_iterable(plugin.answers("wearlaw_contact_models")):
         add_model(found.contact_models, ContactModel, model, origin)
-    for law in chain.from_iterable(manager.hook.wearlaw_wear_laws()):
+    for law in chain.from_iterable(plugin.answers("wearlaw_wear_laws")):
         add_model(found.wear_laws, WearLaw, law, origin)
 
 
-def _add_named(manager: pluggy.PluginManager, origin: Origin, found: Installed) -> None:
-    answers: list[tuple[Shelf[Any], list[Mapping[str, Any]]]] = [
-        (found.parameter_sets, manager.hook.wearlaw_parameter_sets()),
-        (found.materials, manager.hook.wearlaw_materials()),
-        (found.cases, manager.hook.wearlaw_cases()),
-    ]
-    for shelf, mappings in answers:
-        for name, item in chain.from_iterable(mapping.items() for mapping in mappings):
+def _add_named(plugin: _Plugin, origin: Origin, found: Installed) -> None:
+    shelves: dict[str, Shelf[Any]] = {
+        "wearlaw_parameter_sets": found.parameter_sets,
+        "wearlaw_materials": found.materials,
+        "wearlaw_cases": found.cases,
+        "wearlaw_tests": found.test_sets,
+        "wearlaw_sections": found.sections,
+    }
+    for hook, shelf in shelves.items():
+        for name, item in chain.from_iterable(mapping.items() for mapping in plugin.answers(hook)):
             shelf.add(name, known_as(name, item) if isinstance(item, Configuration) else item, origin)

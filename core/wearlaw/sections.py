@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Claim:
+class CheckedClaim:
     """A statement of the literature, put to the test.
 
     Attributes
@@ -42,7 +42,7 @@ class Section:
     ----------
     title, text : str
         Plain text; blank lines separate paragraphs.
-    claims : tuple of Claim
+    claims : tuple of CheckedClaim
     tables : mapping of str to DataFrame
         By the name of the file that a table gets, an identifier; units are in the heads of the columns.
     figures : tuple of FigureData
@@ -50,6 +50,6 @@ class Section:
 
     title: str
     text: str
-    claims: tuple[Claim, ...] = ()
+    claims: tuple[CheckedClaim, ...] = ()
     tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
     figures: tuple[FigureData, ...] = ()

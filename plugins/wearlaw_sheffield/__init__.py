@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from importlib import resources
+from collections.abc import Callable
+from pathlib import Path
 
 import wearlaw as wl
 
@@ -16,5 +17,42 @@ def wearlaw_materials() -> dict[str, wl.Material]:
 @wl.hookimpl
 def wearlaw_cases() -> dict[str, str]:
     """Return the study of Tassini et al., Wear 268 (2010) 660-667."""
-    file = resources.files("wearlaw_sheffield") / "tassini2010.toml"
-    return {"tassini2010": file.read_text(encoding="utf-8")}
+    return {"tassini2010": _text("tassini2010.toml")}
+
+
+@wl.hookimpl
+def wearlaw_tests() -> dict[str, str]:
+    """Return the measured traction of Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478."""
+    return {"lewis2004": _text("lewis2004.csv")}
+
+
+@wl.hookimpl
+def wearlaw_sections() -> dict[str, Callable[[wl.Study], wl.Section]]:
+    """Return the tables of the paper, its claims put to the test, and the fit of its Table 4."""
+    return {
+        "tassini2010_tables": _tables,
+        "tassini2010_claims": _claims,
+        "tassini2010_table_4": _table_4,
+    }
+
+
+def _text(file: str) -> str:
+    return Path(__file__).with_name(file).read_text(encoding="utf-8")
+
+
+def _tables(study: wl.Study) -> wl.Section:
+    from wearlaw_sheffield.tables import section
+
+    return section(study)
+
+
+def _claims(study: wl.Study) -> wl.Section:
+    from wearlaw_sheffield.claims import section
+
+    return section(study)
+
+
+def _table_4(study: wl.Study) -> wl.Section:
+    from wearlaw_sheffield.table_4 import section
+
+    return section(study)

@@ -7,54 +7,53 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 import wearlaw as wl
 from wearlaw import Array, Q
 
 WEAR_RATE = "ug/m/mm^2"
 
+HIGHEST = 25.0
+"""The highest creepage of the paper's simulations [%]."""
+
 
 @dataclass(frozen=True)
 class Bench:
-    """A rig under one load and with one friction coefficient, at creepages from nearly none to the largest of a sweep.
-
-    Attributes
-    ----------
-    rig : TwinDisc
-    normal_force_per_width : Quantity
-        P [N/m].
-    friction_coefficient : float
-    highest_creepage : float
-        [%].
-    """
+    """A rig under one load and with one friction coefficient, at the creepages of the paper, 0.001 to 25 %."""
 
     rig: wl.TwinDisc
     normal_force_per_width: wl.Quantity
     friction_coefficient: float
-    highest_creepage: float
 
     @classmethod
     def of(cls, study: wl.Study) -> Bench:
-        """Return the conditions of a study's sweep "creepage".
+        """Return the rig of a study under the load and with the friction coefficient of its sweep "creepage".
 
         Raises
         ------
         InputError
-            If the study has no such sweep, or there is more to it than a range of positive creepages.
+            If the study has no such sweep, several loads in it, or not all wear regimes up to 25 % creepage.
         """
         sweep = study.sweep("creepage")
-        if sweep["normal_force_per_width"].size > 1 or sweep["friction_coefficient"].size > 1:
-            raise wl.InputError("sweeps.creepage: must have one load and one friction_coefficient; put others elsewhere")
-        highest = float(sweep["creepage"].max())
-        if highest <= 0.0:
-            raise wl.InputError("sweeps.creepage: must reach a positive creepage")
-        load = Q(float(sweep["normal_force_per_width"].item()), sweep["normal_force_per_width"].attrs["units"])
-        return cls(study.case.rig, load, float(sweep["friction_coefficient"].item()), highest)
+        loads, frictions = sweep["normal_force_per_width"], np.unique(sweep["friction_coefficient"])
+        if np.unique(loads).size > 1 or frictions.size > 1:
+            raise wl.InputError("sweeps.creepage: must have one load and one friction_coefficient; give a single one")
+        bench = cls(study.case.rig, Q(float(loads.values.flat[0]), loads.attrs["units"]), float(frictions[0]))
+        _, catastrophic = bench.usfd_borders
+        if not (bench.full_slip < HIGHEST and bench.wear_index[-1] > catastrophic):
+            raise wl.InputError(
+                f"sweeps.creepage: at its load, the wear index reaches {bench.wear_index[-1]:.4g} N at {HIGHEST:g} %"
+                f" creepage, and catastrophic wear, which the claims are also about, begins at {catastrophic:.4g} N"
+            )
+        return bench
 
     @cached_property
     def creepage(self) -> Array:
-        """Creepages [%]: as many in each decade up to 1 %, then as many in each percent; 0.01 % apart or less."""
-        return np.append(np.geomspace(1e-3, 1.0, 600, endpoint=False), np.arange(1.0, self.highest_creepage, 0.01))
+        """Creepages [%], at most 0.02 % apart; those where the patch means have a kink in full slip are among them."""
+        regular = np.append(np.geomspace(1e-3, 1.0, 400, endpoint=False), np.linspace(1.0, HIGHEST, 1201))
+        kinks = np.array([self.full_slip, *(100.0 * border / self.full_force for border in self.usfd_borders)])
+        return np.union1d(regular, kinks[kinks < HIGHEST])
 
     def predict(self, model: wl.ContactModel | str, law: wl.WearLaw, creepage: Array | float) -> wl.Prediction:
         """Return the prediction at creepages [%], also with parameters that were fitted for another contact."""
@@ -77,6 +76,17 @@ class Bench:
         contact = self.predict(model, wl.wear_law("usfd"), self.creepage if creepage is None else creepage)
         return np.asarray(contact.traction_coefficient.to("").magnitude) / self.friction_coefficient
 
+    def rate_at_loads(self, model: str, law: wl.WearLaw, loads: Array) -> Array:
+        """Return the wear rate [µg/m/mm²] at loads [kN/m] and 1 % creepage."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wl.WearlawWarning)
+            prediction = (self.rig | wl.contact_model(model) | law)(
+                normal_force_per_width=Q(loads, "kN/m"),
+                creepage=Q(1.0, "%"),
+                friction_coefficient=self.friction_coefficient,
+            )
+        return np.asarray(prediction.wear_rate.to(WEAR_RATE).magnitude)
+
     @cached_property
     def wear_index(self) -> Array:
         """Tγ [N] at the creepages of the bench, with the traction of the exact theory."""
@@ -86,7 +96,7 @@ class Bench:
     @cached_property
     def patch_area(self) -> float:
         """[mm²]."""
-        return float(self.predict("global", wl.wear_law("usfd"), 1.0).patch_area.to("mm^2").magnitude)
+        return float(1e6 * self._problem.patch_area)
 
     @cached_property
     def rolling_speed(self) -> float:
@@ -94,14 +104,22 @@ class Bench:
         return wl.scalar_si(self.rig.rolling_speed, "m/s")
 
     @cached_property
-    def full_slip(self) -> float:
-        """The creepage of full slip in the exact theory, ξ_sat = μa/R [%]."""
-        problem = self.rig.problem(
+    def _problem(self) -> wl.LineProblem:
+        return self.rig.problem(
             normal_force_per_width=self.normal_force_per_width,
             creepage=Q(1, "%"),
             friction_coefficient=self.friction_coefficient,
         )
-        return float(100.0 * self.friction_coefficient * problem.half_width / problem.relative_radius)
+
+    @cached_property
+    def full_slip(self) -> float:
+        """The creepage of full slip in the exact theory, ξ_sat = μa/R [%]."""
+        return float(100.0 * self.friction_coefficient * self._problem.half_width / self._problem.relative_radius)
+
+    @cached_property
+    def full_force(self) -> float:
+        """The tangential force in full slip, μN [N]."""
+        return float(self.friction_coefficient * self._problem.normal_force)
 
     @cached_property
     def usfd_borders(self) -> tuple[float, float]:
@@ -109,19 +127,7 @@ class Bench:
         mild, severe = (wl.wear_law("usfd").breakpoints or {})["wear_index_density"]
         return mild * 1e-6 * self.patch_area, severe * 1e-6 * self.patch_area
 
-
-def first_crossing(x: Array, above: Array, below: Array) -> float | None:
-    """Return the first x at which `above - below` changes its sign, by linear interpolation; None if nowhere."""
-    difference = above - below
-    changes = np.flatnonzero(np.sign(difference[:-1]) * np.sign(difference[1:]) < 0)
-    if changes.size == 0:
-        return None
-    i = int(changes[0])
-    share = difference[i] / (difference[i] - difference[i + 1])
-    return float(x[i] + share * (x[i + 1] - x[i]))
-
-
-def largest(relative: Array, x: Array) -> tuple[float, float]:
-    """Return the entry of largest magnitude and where it is."""
-    i = int(np.abs(relative).argmax())
-    return float(relative[i]), float(x[i])
+    def between(self, lowest: float, highest: float) -> NDArray[np.bool_]:
+        """Return which creepages have a wear index [N] in a range, its ends included."""
+        rounding = 1e-9
+        return (self.wear_index >= lowest * (1.0 - rounding)) & (self.wear_index <= highest * (1.0 + rounding))

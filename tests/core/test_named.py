@@ -44,6 +44,10 @@ LAB = """
     @wl.hookimpl
     def wearlaw_cases():
         return {"lab_study": "title = 'A study of the lab'"}
+
+    @wl.hookimpl
+    def wearlaw_tests():
+        return {"lab_tests": "creepage [%],max_pressure [MPa],wear_rate [ug/m/mm^2]\\n1,1500,30\\n"}
 """
 POINT: Any = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46}
 RIG = wl.TwinDisc.suros()
@@ -107,6 +111,41 @@ def test_cases_of_plugins_are_shipped_cases(install: Install) -> None:  # noqa: 
     assert case_text("lab_study") == "title = 'A study of the lab'"
     with pytest.raises(wl.CaseError, match="case 'lab_study' is wrong in:\n  rig: is missing"):
         load_case("lab_study")
+
+
+def test_tests_of_plugins_are_shipped_tests(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    tests = wl.read_tests("lab_tests")
+    assert tests.wear_rate.to("kg/m^3").magnitude == pytest.approx(30e-3, rel=1e-15)
+    assert tests.source == "lab_tests"
+    with pytest.raises(wl.DataError, match=r"did you mean 'lab_tests'\? Shipped tests: lab_tests, lewis2004"):
+        wl.read_tests("lab_test")
+
+
+def test_wrong_tests_of_a_plugin_are_refused_where_they_are_read(install: Install) -> None:  # noqa: F811
+    install("lab", LAB.replace("1,1500,30", "1,0,30"))
+    with pytest.raises(
+        wl.DataError, match=r"the tests 'lab_tests' are wrong in:\n  line 2, column 'max_pressure \[MPa"
+    ):
+        wl.read_tests("lab_tests")
+
+
+def test_two_sets_of_tests_of_one_name_are_refused_with_both_plugins(install: Install) -> None:  # noqa: F811
+    install("lab", LAB.replace("lab_tests", "lewis2004"))
+    with pytest.raises(
+        wl.UnknownModelError, match=r"test set 'lewis2004' is .* more than once, by lab 1\.0 .* and wear"
+    ):
+        wl.read_tests("lewis2004")
+
+
+def test_the_provenance_names_where_tests_come_from(install: Install, tmp_path: Path) -> None:  # noqa: F811
+    install("lab", LAB, version="1.2.3")
+    path = tmp_path / "own.csv"
+    path.write_text("creepage [%],normal_force [kN],wear_rate [ug/m/mm^2]\n1,7,30\n", encoding="utf-8")
+    expected: dict[str, dict[str, str]] = {"lab_tests": {"lab_tests": "lab 1.2.3"}, str(path): {}}
+    for tests, said in expected.items():
+        assert provenance(case(measured={"label": "m", "tests": tests}))["test_sets"] == said
+    assert provenance(case())["test_sets"] == {}
 
 
 LAB_STUDY = """
@@ -185,6 +224,7 @@ def test_two_cases_of_one_name_are_refused_with_both_plugins(install: Install) -
         ('"soft_steel"', '"soft steel"', "the name of a material must be an identifier, got 'soft steel'"),
         ("wl.steel(youngs_modulus=", "dict(youngs_modulus=", "material 'soft_steel' must be a Material, got {"),
         ("\"title = 'A study of the lab'\"", "3", "case 'lab_study' must be a str, got 3"),
+        ('"lab_tests"', '"lab-tests"', "the name of a test set must be an identifier, got 'lab-tests'"),
     ],
 )
 def test_what_is_not_of_its_kind_is_left_out_with_the_reason(

@@ -1,0 +1,249 @@
+"""What the paper claims of the three laws beside each other, all on the patch means."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw_sheffield.bench import Bench
+from wearlaw_sheffield.wording import CLOSE, SIMILAR, first_crossing, largest, percent
+
+LOWEST = 5.0
+"""The wear index [N] from which laws are compared in mild wear; towards zero any two powers of creepage part."""
+
+KTH_K = {"low": "the low end", "mid": "the middle", "high": "the high end"}
+"""Where in its published range the coefficient k of KTH is taken."""
+
+
+def law_claims(bench: Bench) -> tuple[wl.CheckedClaim, ...]:
+    """Return the claims."""
+    return (
+        brr_close_in_mild(bench),
+        *(kth_close_in_mild(bench, k) for k in KTH_K),
+        brr_above_in_severe(bench),
+        *(kth_above_in_severe(bench, k) for k in KTH_K),
+        brr_comes_closer(bench),
+        brr_jumps(bench),
+        brr_plateau_is_shorter(bench),
+        kth_proportional(bench),
+        kth_linear(bench),
+        usfd_quadratic(bench),
+        brr_like_usfd(bench),
+        straight_in_full_slip(bench),
+    )
+
+
+def _usfd(bench: Bench) -> Array:
+    return bench.rate("global", wl.wear_law("usfd"))
+
+
+def _brr(bench: Bench) -> Array:
+    return bench.rate("global", wl.wear_law("brr"))
+
+
+def _kth(bench: Bench, k: str = "mid") -> Array:
+    return bench.rate("global", wl.wear_law("kth", coefficient=k))
+
+
+def _mild(bench: Bench) -> NDArray[np.bool_]:
+    return bench.between(LOWEST, bench.usfd_borders[0])
+
+
+def _severe(bench: Bench) -> NDArray[np.bool_]:
+    return bench.between(*bench.usfd_borders)
+
+
+def brr_close_in_mild(bench: Bench) -> wl.CheckedClaim:
+    """Compare BRR with USFD in mild wear."""
+    ratio = (_brr(bench) / _usfd(bench))[_mild(bench)]
+    return wl.CheckedClaim(
+        statement="In mild wear all three laws give about the same, here BRR and USFD (close).",
+        where="Section 5.1.1, Figure 6b",
+        found=f"Up to {bench.usfd_borders[0]:.1f} N, BRR is {ratio.min():.3f} to {ratio.max():.3f} times USFD.",
+        holds=bool(ratio.max() < CLOSE and ratio.min() > 1.0 / CLOSE),
+    )
+
+
+def kth_close_in_mild(bench: Bench, k: str) -> wl.CheckedClaim:
+    """Compare KTH with USFD in mild wear."""
+    everywhere = _kth(bench, k) / _usfd(bench)
+    first = float(np.interp(LOWEST, bench.wear_index, everywhere))
+    ratio = np.array([first, *everywhere[_mild(bench)]])
+    return wl.CheckedClaim(
+        statement=f"In mild wear all three laws give about the same, here KTH, k at {KTH_K[k]} of its range, and USFD"
+        f" (close from {LOWEST:g} N on).",
+        where="Section 5.1.1, Figure 6b",
+        found=f"KTH is {first:.3g} times USFD at {LOWEST:g} N, and {ratio[-1]:.3g} times at"
+        f" {bench.usfd_borders[0]:.1f} N; below {LOWEST:g} N"
+        " they part without bound, since KTH falls with the creepage and USFD with its square.",
+        holds=bool(ratio.max() < CLOSE and ratio.min() > 1.0 / CLOSE),
+    )
+
+
+def brr_above_in_severe(bench: Bench) -> wl.CheckedClaim:
+    """Compare BRR with USFD in severe wear."""
+    severe = _severe(bench)
+    index = bench.wear_index[severe]
+    ratio = (_brr(bench) / _usfd(bench))[severe]
+    border = wl.wear_law("brr").jumps["wear_index"][0]
+    return wl.CheckedClaim(
+        statement="In severe wear BRR lies above USFD.",
+        where="Section 5.1.1, Figure 6c",
+        found=f"From {index[0]:.1f} to {index[-1]:.0f} N, BRR is {ratio[0]:.3g} times USFD at first,"
+        f" {ratio[index < border].max():.3g} times before its jump at {border:g} N, and {ratio.max():.3g} times at the"
+        " end.",
+        holds=bool(ratio.min() > 1.0),
+    )
+
+
+def kth_above_in_severe(bench: Bench, k: str) -> wl.CheckedClaim:
+    """Compare KTH with USFD in severe wear."""
+    severe = _severe(bench)
+    index, kth, usfd = bench.wear_index[severe], _kth(bench, k)[severe], _usfd(bench)[severe]
+    crossing = first_crossing(index, kth, usfd)
+    changes = "" if crossing is None else f"; they cross at {crossing:.1f} N"
+    return wl.CheckedClaim(
+        statement=f"In severe wear KTH, k at {KTH_K[k]} of its range, lies above USFD.",
+        where="Section 5.1.1, Figure 6c",
+        found=f"KTH is {kth[0] / usfd[0]:.3g} times USFD at {index[0]:.1f} N and {kth[-1] / usfd[-1]:.3g} times at"
+        f" {index[-1]:.0f} N{changes}.",
+        holds=bool((kth > usfd).all()),
+    )
+
+
+def brr_comes_closer(bench: Bench) -> wl.CheckedClaim:
+    """Compare BRR with USFD in catastrophic wear, and find where they cross."""
+    begin = bench.usfd_borders[1]
+    beyond = bench.between(begin, np.inf)
+    index, brr, usfd = bench.wear_index[beyond], _brr(bench)[beyond], _usfd(bench)[beyond]
+    crossing = first_crossing(index, brr, usfd)
+    at_700 = float(np.interp(700.0, index, brr / usfd))
+    where = "do not cross" if crossing is None else f"cross at {crossing:.0f} N"
+    return wl.CheckedClaim(
+        statement="In catastrophic wear BRR still lies above the tests, but comes closer to them above 700 N (here"
+        " close to USFD, which was fitted to them).",
+        where="Section 5.1.1, Figure 6a",
+        found=f"BRR is {brr[0] / usfd[0]:.3g} times USFD at {begin:.0f} N and {at_700:.3g} times at 700 N; up to"
+        f" {index[-1]:.0f} N they {where}.",
+        holds=bool(brr[0] > usfd[0] and 1.0 < at_700 < CLOSE and crossing is not None and crossing > 700.0),
+    )
+
+
+def brr_jumps(bench: Bench) -> wl.CheckedClaim:
+    """Give the rates on both sides of the jump."""
+    brr, border = wl.wear_law("brr"), 200.0
+    creepage = float(np.interp(border, bench.wear_index, bench.creepage))
+    before, after = bench.rate("global", brr, creepage * np.array([1.0 - 1e-6, 1.0 + 1e-6]))
+    return wl.CheckedClaim(
+        statement="The equations of BRR do not meet at Tγ = 200 N: the rate jumps there.",
+        where="Table 1",
+        found=f"From {before:.4g} to {after:.4g} µg/m/mm², a factor of {after / before:.3g}.",
+        holds=brr.jumps["wear_index"] == (border,) and bool(after > 1.01 * before),
+    )
+
+
+def brr_plateau_is_shorter(bench: Bench) -> wl.CheckedClaim:
+    """Compare the ranges of the severe regimes."""
+    mild, severe = (wl.wear_law("brr").breakpoints or {})["wear_index"]
+    begin, end = bench.usfd_borders
+    return wl.CheckedClaim(
+        statement="The main difference of BRR from USFD is that its severe regime is shorter, so that it gives more"
+        " wear at high W.I.",
+        where="Section 6",
+        found=f"The rate is constant from {mild:g} to {severe:g} N in BRR, from {begin:.1f} to {end:.0f} N in USFD.",
+        holds=bool(severe - mild < end - begin),
+    )
+
+
+def kth_proportional(bench: Bench) -> wl.CheckedClaim:
+    """Look at KTH over the wear index in partial slip, and from full slip to 20 % creepage."""
+    share = _kth(bench) / bench.wear_index
+    share = share / share[np.searchsorted(bench.creepage, bench.full_slip)]
+    full = (bench.creepage >= bench.full_slip) & (bench.creepage <= 20.0)
+    most, _ = largest(share[full] - 1.0, bench.creepage[full])
+    border, at_lowest = bench.full_force * bench.full_slip / 100.0, float(np.interp(LOWEST, bench.wear_index, share))
+    return wl.CheckedClaim(
+        statement="KTH keeps roughly the same proportionality between W.I. and wear rate within each wear regime (up"
+        f" to the 20 % creepage of the tests; similar from {LOWEST:g} N on).",
+        where="Section 5.1.1",
+        found=f"In full slip, from {border:.1f} N, the wear rate over W.I. is constant within {100 * abs(most):.2f} %;"
+        f" below, in mild wear, it is {at_lowest:.3g} times as much at {LOWEST:g} N.",
+        holds=bool(abs(most) < SIMILAR and at_lowest - 1.0 < SIMILAR),
+    )
+
+
+def _exponent(bench: Bench, rate: Array) -> Array:
+    """Return the power of the creepage with which a rate grows, d ln(rate) / d ln ξ."""
+    return np.asarray(np.gradient(np.log(rate), np.log(bench.creepage)))
+
+
+def kth_linear(bench: Bench) -> wl.CheckedClaim:
+    """Look at the power with which global KTH grows in partial slip."""
+    exponent = _exponent(bench, _kth(bench))[bench.creepage < bench.full_slip]
+    return wl.CheckedClaim(
+        statement="In partial slip KTH is linear in the creepage (the exponent is 1 to two digits).",
+        where="Section 6, Figure 10",
+        found=f"d ln(rate)/d ln ξ is {exponent.min():.3f} to {exponent.max():.3f}.",
+        holds=bool(np.abs(exponent - 1.0).max() < 0.005),
+    )
+
+
+def usfd_quadratic(bench: Bench) -> wl.CheckedClaim:
+    """Look at the power with which global USFD grows in partial slip."""
+    partial = bench.creepage < 0.98 * bench.full_slip
+    exponent, creepage = _exponent(bench, _usfd(bench))[partial], bench.creepage[partial]
+    rounded_to_two = float(creepage[exponent >= 1.5].max(initial=0.0))
+    listed = ", ".join(f"{float(np.interp(x, creepage, exponent)):.2f} at {x:g} %" for x in (0.01, *PARTIAL_SLIP))
+    return wl.CheckedClaim(
+        statement="In partial slip USFD grows with the square of the creepage (the exponent rounds to 2 over more than"
+        " half of the range of partial slip).",
+        where="Section 6, Figure 10",
+        found=f"d ln(rate)/d ln ξ is {listed}, since T bends; it rounds to 2 up to {rounded_to_two:.2f} % of the"
+        f" {bench.full_slip:.2f} % of partial slip.",
+        holds=rounded_to_two > 0.5 * bench.full_slip,
+    )
+
+
+PARTIAL_SLIP = (0.1, 0.5, 1.0)
+"""Creepages in partial slip at which the exponent is given [%]."""
+
+
+def brr_like_usfd(bench: Bench) -> wl.CheckedClaim:
+    """Compare the growth of BRR with that of USFD in partial slip."""
+    partial = bench.creepage < bench.full_slip
+    ratio = (_brr(bench) / _usfd(bench))[partial]
+    return wl.CheckedClaim(
+        statement="Against creepage BRR behaves as USFD does (in partial slip their ratio is constant: the same).",
+        where="Section 6",
+        found=f"BRR is {ratio.min():.4g} to {ratio.max():.4g} times USFD.",
+        holds=bool(ratio.max() / ratio.min() - 1.0 < 0.02),
+    )
+
+
+def straight_in_full_slip(bench: Bench) -> wl.CheckedClaim:
+    """Fit straight lines to USFD and KTH within each regime in full slip."""
+    begin, end = (float(np.interp(w, bench.wear_index, bench.creepage)) for w in bench.usfd_borders)
+    speed = (wl.wear_law("kth").breakpoints or {})["slip_speed"][0] / bench.rolling_speed * 100.0
+    ranges = {
+        "USFD mild": (_usfd(bench), bench.full_slip, begin),
+        "USFD severe": (_usfd(bench), begin, end),
+        "USFD catastrophic": (_usfd(bench), end, bench.creepage[-1]),
+        "KTH below 0.2 m/s": (_kth(bench), bench.full_slip, speed),
+    }
+    slopes, worst = {}, 0.0
+    for name, (rate, low, high) in ranges.items():
+        inside = (bench.creepage > low) & (bench.creepage < high)
+        x, y = bench.creepage[inside], rate[inside]
+        line = np.polynomial.Polynomial.fit(x, y, 1)
+        slopes[name] = round(float(line.convert().coef[1]), 9)
+        worst = max(worst, float(np.abs(y - line(x)).max() / y.max()))
+    listed = ", ".join(f"{name} {slope:.4g}" for name, slope in slopes.items())
+    return wl.CheckedClaim(
+        statement="In full slip USFD and KTH are linear in the creepage (a straight line in each regime: the same).",
+        where="Section 6",
+        found=f"Slopes in µg/m/mm² per % of creepage: {listed}. No rate is off its line by more than"
+        f" {percent(worst).lstrip('+')} of the largest.",
+        holds=worst < 1e-3,
+    )

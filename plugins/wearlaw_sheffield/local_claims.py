@@ -1,0 +1,210 @@
+"""What the paper claims of the laws on the cells of a local solution, beside the patch means."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import wearlaw as wl
+from wearlaw import Q
+from wearlaw_sheffield.bench import Bench
+from wearlaw_sheffield.wording import SAME, SIMILAR, largest, percent
+
+TESTED = (0.2, 20.0)
+"""The creepages of the public tests [%]."""
+
+GIVEN = np.array([0.2, 0.5, 1.0, 10.0, 19.0, 20.0])
+"""Creepages at which rates on cells are compared in words [%]."""
+
+LOADS = np.geomspace(74.14, 14829.0, 1500)
+"""Loads of the paper's second simulation [kN/m]."""
+
+THEORY = {"exact": "the exact theory", "fastsim": "FASTSIM"}
+
+PATCH = {"global": "the patch means", "exact": "the cells of the exact theory"}
+
+
+def local_claims(bench: Bench) -> tuple[wl.CheckedClaim, ...]:
+    """Return the claims."""
+    return (
+        kth_same_on_both_theories(bench),
+        kth_local_like_global(bench),
+        *(usfd_good_in_mild_and_severe(bench, model) for model in THEORY),
+        usfd_too_high_in_catastrophic(bench),
+        lower_slip_speed(bench),
+        upper_slip_speed(bench),
+        pressure_threshold(bench),
+        *(thresholds_beyond_tests(bench, model) for model in PATCH),
+        *(corrected_like_global(bench, model) for model in THEORY),
+    )
+
+
+def _apart(bench: Bench, one: str, other: str, law: wl.WearLaw) -> str:
+    """Return in words how far the rates of a law on two contact models are apart at some creepages."""
+    shares = bench.rate(one, law, GIVEN) / bench.rate(other, law, GIVEN) - 1.0
+    return ", ".join(f"{percent(float(share))} at {x:g} %" for share, x in zip(shares, GIVEN, strict=True))
+
+
+def kth_same_on_both_theories(bench: Bench) -> wl.CheckedClaim:
+    """Compare KTH on the cells of both theories."""
+    law = wl.wear_law("kth")
+    x = bench.creepage[(bench.creepage >= TESTED[0]) & (bench.creepage <= TESTED[1])]
+    shares = bench.rate("fastsim", law, x) / bench.rate("exact", law, x) - 1.0
+    most, at = largest(shares, x)
+    return wl.CheckedClaim(
+        statement="The local KTH is the same with the exact and the simplified theory (creepages of the public tests,"
+        f" {TESTED[0]:g} to {TESTED[1]:g} %).",
+        where="Section 5.1.2, Figure 7",
+        found=f"On FASTSIM it differs by {percent(most)} at most, at {at:.2f} % creepage;"
+        f" {_apart(bench, 'fastsim', 'exact', law)}. In partial slip all the wear is where the patch slips; at the top"
+        " some cells pass 0.2 m/s first.",
+        holds=bool(abs(most) < SAME),
+    )
+
+
+def kth_local_like_global(bench: Bench) -> wl.CheckedClaim:
+    """Compare KTH on the cells of the exact theory with KTH on the patch means, over creepage and over load."""
+    law = wl.wear_law("kth")
+    x = bench.creepage[(bench.creepage >= TESTED[0]) & (bench.creepage <= TESTED[1])]
+    local, mean = bench.rate("exact", law, x), bench.rate("global", law, x)
+    most, at = largest(local / mean - 1.0, x)
+    partial = x < bench.full_slip
+    absolute = float(np.abs(local - mean)[partial].max())
+    by_load = bench.rate_at_loads("exact", law, LOADS) / bench.rate_at_loads("global", law, LOADS) - 1.0
+    most_by_load, load = largest(by_load, LOADS)
+    return wl.CheckedClaim(
+        statement="The local KTH is very similar to the global KTH (creepages of the public tests,"
+        f" {TESTED[0]:g} to {TESTED[1]:g} %, exact theory).",
+        where="Sections 5.1.2 and 6",
+        found=f"It differs by {percent(most)} at most, at {at:.2f} % creepage; {_apart(bench, 'exact', 'global', law)}."
+        f" In partial slip, where cells that stick do not wear, that is {absolute:.2g} µg/m/mm² at most. Over the load,"
+        f" at 1 % creepage, it differs by {percent(most_by_load)} at most, at {load:.0f} kN/m, where cells in the"
+        " middle are above 2.1 GPa and the mean pressure is not.",
+        holds=bool(abs(most) < SIMILAR),
+    )
+
+
+def usfd_good_in_mild_and_severe(bench: Bench, model: str) -> wl.CheckedClaim:
+    """Compare USFD with its global parameters on cells and on patch means, in mild and severe wear."""
+    law = wl.wear_law("usfd")
+    inside = (bench.creepage >= TESTED[0]) & bench.between(0.0, bench.usfd_borders[1])
+    x = bench.creepage[inside]
+    shares = bench.rate(model, law, x) / bench.rate("global", law, x) - 1.0
+    most, at = largest(shares, x)
+    first = float(x[np.abs(shares) > SIMILAR][0]) if abs(most) > SIMILAR else np.inf
+    lowest = int(shares.argmin())
+    rising = x[(shares > SIMILAR)].min(initial=np.inf)
+    return wl.CheckedClaim(
+        statement=f"USFD on the cells of {THEORY[model]}, with its global parameters, is a good approximation in mild"
+        " and severe wear (of USFD on the patch means, which was fitted to the tests).",
+        where="Section 5.1.2, Figure 7",
+        found=f"It differs by less than {100 * SIMILAR:.0f} % up to {first:.2f} % creepage, by"
+        f" {percent(float(shares[lowest]))} at {x[lowest]:.2f} %, and is more than {100 * SIMILAR:.0f} % too high from"
+        f" {rising:.1f} % on, where cells in the middle wear catastrophically; {percent(most)} at {at:.1f} %.",
+        holds=bool(abs(most) < SIMILAR),
+    )
+
+
+def usfd_too_high_in_catastrophic(bench: Bench) -> wl.CheckedClaim:
+    """Compare USFD with its global parameters on the cells of both theories and on patch means."""
+    law, begin = wl.wear_law("usfd"), bench.usfd_borders[1]
+    x = bench.creepage[bench.between(begin, np.inf)]
+    mean, exact, fastsim = (bench.rate(model, law, x) for model in ("global", "exact", "fastsim"))
+    at = np.array([15.0, 20.0, 25.0])
+    listed = "; ".join(
+        f"{THEORY[model]}: " + ", ".join(
+            f"{rate:.0f} ({percent(float(rate / of - 1.0))}) at {c:g} %"
+            for rate, of, c in zip(bench.rate(model, law, at), bench.rate("global", law, at), at, strict=True)
+        )
+        for model in THEORY
+    )  # fmt: skip
+    return wl.CheckedClaim(
+        statement="In catastrophic wear USFD on cells, with its global parameters, is too high, more so with the"
+        " simplified theory.",
+        where="Section 5.1.2, Figures 7 and 8",
+        found=f"In µg/m/mm², and against the patch means: {listed}.",
+        holds=bool((fastsim > exact).all() and (exact > mean).all()),
+    )
+
+
+def lower_slip_speed(bench: Bench) -> wl.CheckedClaim:
+    """Find the creepage at which the slip speed reaches the lower threshold of KTH."""
+    lower, _ = (wl.wear_law("kth").breakpoints or {})["slip_speed"]
+    creepage = 100.0 * lower / bench.rolling_speed
+    return wl.CheckedClaim(
+        statement="A slip velocity of 0.2 m/s is a creepage above 20 % (20 to 21 %).",
+        where="Section 5.2",
+        found=f"{lower:g} m/s is {creepage:.2f} % of the rolling speed of {bench.rolling_speed:.3f} m/s.",
+        holds=20.0 < creepage < 21.0,
+    )
+
+
+def upper_slip_speed(bench: Bench) -> wl.CheckedClaim:
+    """Find the creepage at which the slip speed reaches the upper threshold of KTH."""
+    _, upper = (wl.wear_law("kth").breakpoints or {})["slip_speed"]
+    creepage, highest = 100.0 * upper / bench.rolling_speed, float(bench.creepage[-1])
+    return wl.CheckedClaim(
+        statement="The threshold of 0.7 m/s lies outside the range of creepage.",
+        where="Section 5.2",
+        found=f"{upper:g} m/s is {creepage:.1f} % creepage; the range ends at {highest:g} %.",
+        holds=creepage > highest,
+    )
+
+
+def _load_of_mean_pressure(bench: Bench, pressure: float) -> tuple[float, float]:
+    """Return the loads [kN/m] at which the mean and the maximum pressure reach a value [Pa]."""
+    loads = [
+        bench.rig.problem(max_pressure=Q(highest, "Pa"), creepage=Q(1, "%"), friction_coefficient=0.3)
+        for highest in (pressure * 4.0 / np.pi, pressure)
+    ]
+    mean, highest = (float(problem.normal_force_per_width) / 1e3 for problem in loads)
+    return mean, highest
+
+
+def pressure_threshold(bench: Bench) -> wl.CheckedClaim:
+    """Find the load at which the pressure reaches the threshold of KTH."""
+    (threshold,) = (wl.wear_law("kth").breakpoints or {})["pressure"]
+    mean, highest = _load_of_mean_pressure(bench, threshold)
+    return wl.CheckedClaim(
+        statement="The normal pressure of 2.1 GPa is a normal force of 2300 kN/m (similar).",
+        where="Section 5.2",
+        found=f"The mean pressure is {threshold / 1e9:g} GPa at {mean:.0f} kN/m, {percent(mean / 2300.0 - 1.0)} from"
+        f" the paper's value; the maximum pressure at {highest:.0f} kN/m. The paper's is a mean pressure.",
+        holds=abs(mean / 2300.0 - 1.0) < SIMILAR,
+    )
+
+
+def thresholds_beyond_tests(bench: Bench, model: str) -> wl.CheckedClaim:
+    """Compare the thresholds of KTH with the largest slip speed and pressure in the tests."""
+    breakpoints = wl.wear_law("kth").breakpoints or {}
+    lower, (threshold,) = breakpoints["slip_speed"][0], breakpoints["pressure"]
+    contact = bench.predict(model, wl.wear_law("kth"), TESTED[1]).contact
+    speed, pressure = float(contact.slip_speed.max()), float(contact.pressure.max())
+    highest = float(contact.slip.max()) - TESTED[1] / 100.0
+    return wl.CheckedClaim(
+        statement="The thresholds of KTH lie above the creepages and forces of the tests, and had no effect there"
+        f" (on {PATCH[model]}).",
+        where="Section 5.2",
+        found=f"At {TESTED[1]:g} % creepage the slip speed reaches {speed:.3f} m/s, and the pressure"
+        f" {pressure / 1e9:.3f} GPa; the slip speed reaches {lower:g} m/s at"
+        f" {100.0 * (lower / bench.rolling_speed - highest):.2f} % creepage.",
+        holds=speed < lower and pressure < threshold,
+    )
+
+
+def corrected_like_global(bench: Bench, model: str) -> wl.CheckedClaim:
+    """Compare USFD with the corrected parameters on cells with USFD on the patch means."""
+    law = wl.wear_law("usfd", fitted_for=model)
+    shares = bench.rate(model, law) / bench.rate("global", wl.wear_law("usfd")) - 1.0
+    parts = []
+    for low, high in ((TESTED[0], 14.0), (14.0, 19.0), (19.0, bench.creepage[-1])):
+        inside = (bench.creepage >= low) & (bench.creepage <= high)
+        ends = f"{percent(float(shares[inside].min()))} to {percent(float(shares[inside].max()))}"
+        parts.append(f"{ends} from {low:g} to {high:g} %")
+    tested = bench.creepage >= TESTED[0]
+    return wl.CheckedClaim(
+        statement=f"With the corrected parameters of Table 4, USFD on the cells of {THEORY[model]} overlaps with USFD"
+        " on the patch means.",
+        where="Section 5.2, Table 4, Figure 8",
+        found=f"It differs by {', '.join(parts)} creepage.",
+        holds=bool(np.abs(shares[tested]).max() < SIMILAR),
+    )

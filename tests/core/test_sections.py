@@ -1,0 +1,174 @@
+"""Sections that plugins add to a report: how they are found, asked for and made."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from pathlib import Path
+from typing import Any
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+
+import wearlaw as wl
+from tests.core.cases import SWEEP, assert_refused, case, table, wearlaw, write
+from tests.core.test_plugins import FIRST_PARTY_LAWS, Install, install  # noqa: F401  (a fixture)
+from wearlaw import plugins
+from wearlaw.case import Case, case_schema
+from wearlaw.study import provenance, run, used
+
+LAB = """
+    import warnings
+
+    import wearlaw as wl
+
+    def highest(study):
+        rate = float(study.sweep("creepage")["wear_rate"].max())
+        claim = wl.CheckedClaim("It wears little.", "section 3", f"It reaches {rate:.1f}.", rate < 60.0)
+        return wl.Section("Highest", "One paragraph.", claims=(claim,))
+
+    def warned(study):
+        warnings.warn("beyond all tests", wl.RangeWarning)
+        warnings.warn("beyond all tests", wl.RangeWarning)
+        return wl.Section("Warned", f"It has {len(study.pairs)} pairs.")
+
+    def needs_load(study):
+        return wl.Section("Loads", str(study.sweep("lod")))
+
+    def wrong(study):
+        return "Highest"
+
+    @wl.hookimpl
+    def wearlaw_sections():
+        return {"highest": highest, "warned": warned, "needs_load": needs_load, "wrong": wrong}
+"""
+
+OURS = ["tassini2010_claims", "tassini2010_table_4", "tassini2010_tables"]
+
+
+def test_the_sections_of_the_study_come_from_a_plugin_like_any_other() -> None:
+    assert list(plugins.installed().sections.items()) == OURS
+    assert ("section", OURS[0], plugins.installed().sections.origin(OURS[0])) in plugins.installed().listing()
+    printed = wearlaw("plugins").stdout.splitlines()
+    assert [line.split()[1] for line in printed if line.startswith("section ")] == OURS
+
+
+def test_a_study_holds_the_sections_in_the_order_of_the_case(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    study = run(case(sections=["warned", "highest"]))
+    assert [section.title for section in study.sections] == ["Warned", "Highest"]
+    (claim,) = study.sections[1].claims
+    rate = float(study.sweeps["creepage"]["wear_rate"].max())
+    assert claim == wl.CheckedClaim("It wears little.", "section 3", f"It reaches {rate:.1f}.", rate < 60.0)
+    assert study.sections[0].text == "It has 5 pairs."
+    assert run(case()).sections == ()
+
+
+def test_a_warning_becomes_one_note_of_the_section(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    without = run(case()).notes
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert run(case(sections=["warned"])).notes == (*without, "section 'warned': beyond all tests")
+
+
+def test_what_a_section_cannot_do_names_it_and_its_plugin(install: Install) -> None:  # noqa: F811
+    install("lab", LAB, version="1.2.3")
+    with pytest.raises(wl.InputError) as caught:
+        run(case(sections=["needs_load"], sweeps={"load": SWEEP}))
+    assert str(caught.value) == (
+        "section 'needs_load' of lab 1.2.3 (plugin 'lab'): the case has no sweep 'lod';"
+        " did you mean 'load'? add [sweeps.lod]"
+    )
+    assert "Dimensions" in run(case(sections=["needs_load"], sweeps={"lod": SWEEP})).sections[0].text
+
+
+def test_what_is_no_section_is_the_plugins_fault(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    with pytest.raises(wl.ModelError, match=r"section 'wrong' of lab 1\.0 .* must be a Section, got 'Highest'"):
+        run(case(sections=["wrong"]))
+
+
+def test_the_command_line_ends_with_one_line_and_leaves_no_folder(
+    install: Install,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    install("lab", LAB)
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path / "own.toml", table(sections=["needs_load"]))
+    assert_refused(wearlaw("run", "own.toml"), "section 'needs_load' of lab 1.0 (plugin 'lab'): the case has no sweep")
+    assert not (tmp_path / "own-results").exists()
+
+
+@pytest.mark.parametrize(
+    ("sections", "message"),
+    [
+        (
+            ["highest", "higest"],
+            "sections.1: no section is called 'higest'; did you mean 'highest'? Installed: highest, ",
+        ),
+        (["highest", "highest"], "sections: 'highest' is listed twice; leave one out"),
+        ([3], "sections.0: input should be a valid string, got 3"),
+        ("highest", "sections: input should be a valid tuple, got 'highest'"),
+    ],
+)
+def test_wrong_sections_are_named_when_the_case_is_read(
+    install: Install,  # noqa: F811
+    sections: Any,
+    message: str,
+) -> None:
+    install("lab", LAB)
+    with pytest.raises(wl.ConfigurationError) as error:
+        case(sections=sections)
+    assert message in str(error.value)
+
+
+def test_two_sections_of_one_name_are_refused_with_both_plugins(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    install("other", LAB)
+    with pytest.raises(
+        wl.ConfigurationError, match=r"'highest' is provided more than once, by lab 1\.0 .* and other 1"
+    ):
+        case(sections=["highest"])
+
+
+@pytest.mark.parametrize(
+    ("hook", "cause"),
+    [
+        ("return {'of_lab': 3}", "TypeError: section 'of_lab' must be a Callable, got 3"),
+        ("return {'of lab': print}", "TypeError: the name of a section must be an identifier, got 'of lab'"),
+        ("raise KeyError('lost')", "KeyError: 'lost'"),
+    ],
+)
+def test_a_plugin_whose_hook_is_wrong_is_left_out_and_the_others_work(
+    install: Install,  # noqa: F811
+    hook: str,
+    cause: str,
+) -> None:
+    install("lab", LAB)
+    install("broken", f"import wearlaw as wl\n@wl.hookimpl\ndef wearlaw_sections():\n    {hook}\n")
+    with pytest.warns(wl.PluginWarning, match="left out: broken 1.0"):
+        found = plugins.installed()
+    assert cause in found.broken[0].cause
+    assert {"highest", "warned", *OURS} <= set(found.sections.items())
+    assert set(wl.wear_laws()) == FIRST_PARTY_LAWS
+
+
+def test_the_provenance_names_where_sections_come_from(install: Install) -> None:  # noqa: F811
+    install("lab", LAB, version="1.2.3")
+    asked = case(sections=["warned", "highest"])
+    assert used(asked)["section"] == {"highest": "lab 1.2.3", "warned": "lab 1.2.3"}
+    assert list(used(asked)["section"]) == ["highest", "warned"]
+    assert provenance(asked)["sections"] == used(asked)["section"]
+    (sweep,) = run(asked).sweeps.values()
+    assert json.loads(sweep.attrs["provenance"])["sections"] == used(asked)["section"]
+
+
+def test_sections_survive_json_and_are_in_the_schema(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    asked = case(sections=["warned", "highest"])
+    assert Case.model_validate_json(asked.model_dump_json(by_alias=True)) == asked
+    validator = jsonschema.Draft202012Validator(case_schema())
+    assert validator.is_valid(table(sections=["warned", "highest"]))
+    assert not validator.is_valid(table(sections=["higest"]))
