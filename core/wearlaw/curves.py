@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 from wearlaw.arrays import Array
@@ -66,9 +66,12 @@ class FigureData:
     title, caption : str
         Plain text; the caption also says what is not shown, and why.
     panels : tuple of Panel
+    bands : str
+        What the bands about curves are, where there are any.
     """
 
     name: str
     title: str
     panels: tuple[Panel, ...]
-    caption: str = field(default="")
+    caption: str = ""
+    bands: str = "published range of parameters"

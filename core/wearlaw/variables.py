@@ -12,6 +12,7 @@ UNITS = {
     "tangential_force": "N",
     "traction_coefficient": "",
     "wear_index": "N",
+    "averaged_wear_index": "N",
     "wear_index_density": "N/mm^2",
     "stick_ratio": "",
     "mean_slip": "%",
@@ -32,6 +33,12 @@ UNITS = {
 NAMES = {
     "wear_rate": "wear rate",
     "wear_index": "wear index Tγ",
+    "averaged_wear_index": "averaged wear index",
+    "wear_index_density": "wear index over area Tγ/A",
+    "tangential_force": "tangential force T",
+    "stick_ratio": "stick ratio",
+    "mean_slip": "mean slip",
+    "half_width": "half width of the patch a",
     "creepage": "creepage",
     "normal_force": "normal force",
     "normal_force_per_width": "normal force per width",
@@ -41,6 +48,7 @@ NAMES = {
     "x": "position x, leading edge left",
     "pressure": "pressure p",
     "traction": "traction q",
+    "traction_bound": "traction bound",
     "slip": "relative slip s",
 }
 """What an axis of a figure or the head of a column calls a variable."""
@@ -49,6 +57,7 @@ OF_CONTACT = (
     "tangential_force",
     "traction_coefficient",
     "wear_index",
+    "averaged_wear_index",
     "wear_index_density",
     "stick_ratio",
     "mean_slip",
@@ -59,7 +68,7 @@ OF_POINT = ("half_width", "max_pressure", "normal_force", "normal_force_per_widt
 """Variables of the operating point alone."""
 
 
-def label(variable: str) -> str:
-    """Return a variable's name with its unit, as in "creepage [%]"."""
-    unit = UNITS[variable].replace("ug", "µg").replace("mm^2", "mm²")
-    return f"{NAMES[variable]} [{unit or '-'}]"
+def label(*variables: str) -> str:
+    """Return the names of variables of one unit, with it, as in "creepage [%]"."""
+    unit = UNITS[variables[0]].replace("ug", "µg").replace("mm^2", "mm²")
+    return f"{', '.join(NAMES[variable] for variable in variables)} [{unit or '-'}]"

@@ -1,4 +1,4 @@
-"""The pictures of a study, by the data that they draw."""
+"""Drawing with matplotlib: every curve, band and point of the data, on the axes and in the style that they ask for."""
 
 from __future__ import annotations
 
@@ -10,196 +10,146 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tests.core import cases
-from tests.core.cases import Install, case
-from wearlaw.figures import figures
-from wearlaw.study import Study, run
+from tests.core.cases import case
+from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures import LINES, PALETTE, draw
+from wearlaw.study import run
 
-MEASURED = {"label": "_$points$", "source": "s", "creepage": ["0.5 %", "2 %"], "traction_coefficient": [0.3, 0.4]}
-LOADS = {"from": "500 MPa", "to": "1500 MPa", "points": 3}
-
-
-@pytest.fixture(scope="module")
-def study() -> Study:
-    by_load = {**cases.POINT, "max_pressure": LOADS, "friction_coefficient": [0.3, 0.4]}
-    return run(case(sweeps={"creepage": cases.SWEEP, "load": by_load}, measured=MEASURED))
+X = np.array([1.0, 2.0, 4.0])
 
 
-def draw(study: Study, name: str) -> Figure:
+def curve(label: str = "a", **changes: Any) -> Curve:
+    return Curve(**{"label": label, "x": X, "y": 10.0 * X, **changes})
+
+
+def panel(*curves: Curve, **changes: Any) -> Panel:
+    return Panel(**{"x": PlotAxis("load [N]"), "y": PlotAxis("wear [g]"), "curves": curves or (curve(),), **changes})
+
+
+def drawn(*panels: Panel, title: str = "A figure") -> Figure:
     """Return a figure, drawn to the end, so that what is wrong with it shows."""
-    figure = figures(study)[name]()
+    figure = draw(FigureData("name", title, panels or (panel(),)))
     figure.draw_without_rendering()
     return figure
 
 
-def data(line: Any) -> tuple[Any, Any]:
-    return line.get_xdata(), line.get_ydata()
+def axes_of(*curves: Curve, **changes: Any) -> Axes:
+    (axes,) = drawn(panel(*curves, **changes)).axes
+    return axes
 
 
-def lines(axes: Axes) -> dict[str, Any]:
-    return {str(line.get_label()): line for line in axes.get_lines()}
+def legend_of(figure: Figure) -> Any:
+    (legend,) = figure.legends
+    return legend
 
 
-def assert_draws(line: Any, x: Any, y: Any) -> None:
-    np.testing.assert_array_equal(data(line), (x, y))
+def names(figure: Figure) -> list[str]:
+    return [text.get_text() for text in legend_of(figure).get_texts()]
 
 
-def test_a_study_has_these_figures(study: Study) -> None:
-    assert list(figures(study)) == [
-        "creepage_wear_rate_against_wear_index",
-        "creepage_wear_rate_against_creepage",
-        "creepage_traction_against_creepage",
-        "load_wear_rate_against_wear_index",
-        "load_wear_rate_against_max_pressure",
-        "partial_slip_along_the_patch",
-    ]
+def test_a_curve_is_drawn_as_it_is_in_the_colour_and_line_style_of_its_numbers() -> None:
+    first, second = axes_of(curve("a", colour=1, dash=2), curve("b", y=X, colour=len(PALETTE), dash=len(LINES))).lines
+    np.testing.assert_array_equal(first.get_xydata(), np.column_stack([X, 10.0 * X]))
+    np.testing.assert_array_equal(second.get_xydata(), np.column_stack([X, X]))
+    assert (first.get_color(), first.get_linestyle()) == (PALETTE[1], LINES[2])
+    assert (second.get_color(), second.get_linestyle()) == (PALETTE[0], LINES[0]), "numbers start again"
+    assert first.get_marker() in ("", "None")
 
 
-@pytest.mark.parametrize(
-    ("name", "x", "xlabel"),
-    [
-        ("creepage_wear_rate_against_creepage", "creepage", "creepage [%]"),
-        ("creepage_wear_rate_against_wear_index", "wear_index", "wear index Tγ [N]"),
-        ("load_wear_rate_against_max_pressure", "max_pressure", "maximum pressure [MPa]"),
-        ("load_wear_rate_against_wear_index", "wear_index", "wear index Tγ [N]"),
-    ],
-)
-def test_wear_rate_is_drawn_for_every_pair_as_the_dataset_has_it(study: Study, name: str, x: str, xlabel: str) -> None:
-    (axes,) = draw(study, name).axes
-    assert (axes.get_xlabel(), axes.get_ylabel()) == (xlabel, "wear rate [µg/m/mm²]")
-    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
-    sweep = study.sweeps["creepage"]
-    if name.startswith("load"):
-        sweep = study.sweeps["load"].isel(friction_coefficient=1)
-        assert axes.get_title() == "A small study\nfriction coefficient 0.4"
-    else:
-        assert axes.get_title() == "A small study"
-    drawn = lines(axes)
-    assert list(drawn) == list(sweep.pair.values)
-    for pair, line in drawn.items():
-        along = sweep[x]
-        if x == "wear_index":
-            along = along.sel(contact_model=pair.split(" on ")[1])
-        assert_draws(line, along, sweep.wear_rate.sel(pair=pair))
+def test_no_two_colours_and_no_two_line_styles_are_alike() -> None:
+    assert len(set(PALETTE)) == len(PALETTE)
+    assert len(set(LINES)) == len(LINES)
 
 
-def test_colour_tells_the_law_and_line_style_the_contact_model(study: Study) -> None:
-    (axes,) = draw(study, "creepage_wear_rate_against_creepage").axes
-    drawn = lines(axes)
-    colours = {pair: line.get_color() for pair, line in drawn.items()}
-    styles = {pair: line.get_linestyle() for pair, line in drawn.items()}
-    for one in drawn:
-        for other in drawn:
-            (law, model), (other_law, other_model) = one.split(" on "), other.split(" on ")
-            assert (colours[one] == colours[other]) == (law == other_law)
-            assert (styles[one] == styles[other]) == (model == other_model)
+def test_a_curve_of_one_point_has_a_marker() -> None:
+    (line,) = axes_of(curve(x=X[:1], y=X[:1])).lines
+    assert line.get_marker() == "o"
 
 
-def test_the_band_of_a_law_is_drawn_and_only_where_there_is_one(study: Study) -> None:
-    (axes,) = draw(study, "creepage_wear_rate_against_creepage").axes
-    sweep = study.sweeps["creepage"]
-    bands = axes.collections
-    assert len(bands) == 2
-    for band, pair in zip(bands, ["kth on global", "kth on exact"], strict=True):
-        corners = {tuple(corner) for corner in np.asarray(band.get_paths()[0].vertices)}
-        one = sweep.sel(pair=pair)
-        for edge in (one.wear_rate_low, one.wear_rate_high):
-            assert set(zip(sweep.creepage.values, edge.values, strict=True)) <= corners
-    legend = axes.get_legend()
-    assert legend is not None
-    assert legend.get_title().get_text() == "bands: published range of parameters"
+def test_measured_points_are_not_joined() -> None:
+    (points,) = axes_of(curve(points=True, colour=6)).lines
+    assert (points.get_linestyle(), points.get_marker(), points.get_color()) == ("None", "o", "#000000")
 
 
-def test_without_a_band_the_legend_does_not_speak_of_one() -> None:
-    without = run(case(wear_laws=["usfd"], profiles={}))
-    (axes,) = draw(without, "creepage_wear_rate_against_creepage").axes
-    legend = axes.get_legend()
-    assert legend is not None
-    assert not axes.collections
-    assert legend.get_title().get_text() in ("", "None")
+def test_a_band_is_filled_between_its_ends() -> None:
+    (band,) = axes_of(curve(low=X, high=20.0 * X)).collections
+    corners = {tuple(corner) for corner in np.asarray(band.get_paths()[0].vertices)}
+    assert corners == {*zip(X, X, strict=True), *zip(X, 20.0 * X, strict=True)}
 
 
-def test_traction_is_drawn_for_every_contact_model_with_the_measured_points(study: Study) -> None:
-    (axes,) = draw(study, "creepage_traction_against_creepage").axes
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("creepage [%]", "traction coefficient T/N [-]")
-    assert axes.get_ylim()[0] == 0.0
-    *models, points = axes.get_lines()
-    sweep = study.sweeps["creepage"]
-    assert [line.get_label() for line in models] == ["global", "exact"]
-    for line in models:
-        expected = sweep.traction_coefficient.sel(contact_model=line.get_label())
-        np.testing.assert_allclose(data(line), (sweep.creepage, expected), rtol=1e-14)
-    np.testing.assert_allclose(data(points), ([0.5, 2.0], [0.3, 0.4]), rtol=1e-14)
-    assert points.get_linestyle() == "None"
-    legend = axes.get_legend()
-    assert legend is not None
-    assert [text.get_text() for text in legend.get_texts()] == ["global", "exact", r" _\$points\$"]
+def test_the_uncertainty_of_points_is_drawn_as_bars() -> None:
+    axes = axes_of(curve(points=True, low=9.0 * X, high=12.0 * X))
+    (bars,) = axes.collections
+    segments = np.array(bars.get_segments())  # type: ignore[attr-defined]
+    np.testing.assert_array_equal(segments[:, :, 0], np.column_stack([X, X]))
+    np.testing.assert_allclose(segments[:, :, 1], np.column_stack([9.0 * X, 12.0 * X]), rtol=1e-15)
 
 
-def test_stresses_and_slip_are_drawn_along_the_patch(study: Study) -> None:
-    stresses, slip = draw(study, "partial_slip_along_the_patch").axes
-    assert stresses.get_ylabel() == "stress [MPa] (thin: bound)"
-    assert (slip.get_xlabel(), slip.get_ylabel()) == ("position x, leading edge left [mm]", "relative slip s [%]")
-    profile = study.profiles["partial_slip"].sel(contact_model="exact")
-    pressure, traction, bound = stresses.get_lines()
-    assert (pressure.get_label(), traction.get_label()) == ("pressure p", "q, exact")
-    assert_draws(pressure, profile.x, profile.pressure)
-    assert_draws(traction, profile.x, profile.traction)
-    assert_draws(bound, profile.x, profile.traction_bound)
-    assert_draws(lines(slip)["exact"], profile.x, profile.slip)
+def test_the_legend_says_what_bands_are_only_where_there_are_bands() -> None:
+    ends: dict[str, Any] = {"low": X, "high": 20.0 * X}
+    with_band, points, plain = (drawn(panel(c)) for c in (curve(**ends), curve(points=True, **ends), curve()))
+    assert legend_of(with_band).get_title().get_text() == "bands: published range of parameters"
+    for without in (points, plain):
+        assert legend_of(without).get_title().get_text() in ("", "None")
 
 
-def test_a_model_with_nodes_of_its_own_is_drawn_on_these(monkeypatch: pytest.MonkeyPatch) -> None:
-    install: Install = cases.installer(monkeypatch)
-    install(cases.Coarse)
-    both = run(case(contact_models=["coarse", "exact"], wear_laws=["kth"]))
-    stresses, slip = draw(both, "partial_slip_along_the_patch").axes
-    drawn = {label: len(line.get_xdata()) for axes in (stresses, slip) for label, line in lines(axes).items()}
-    assert drawn["pressure p"] == drawn["q, coarse"] == drawn["coarse"] == 7
-    assert drawn["q, exact"] == drawn["exact"] == 200
+def test_axes_have_their_labels_scales_and_ends() -> None:
+    axes = axes_of(x=PlotAxis("a [N]", "log", (0.5, 8.0)), y=PlotAxis("b [-]", "linear", (-1.0, 7.0)), title="(a)")
+    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_title()) == ("a [N]", "b [-]", "(a)")
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
+    assert (axes.get_xlim(), axes.get_ylim()) == ((0.5, 8.0), (-1.0, 7.0))
 
 
-@pytest.mark.parametrize(
-    "creepage",
-    ["1 %", "0 %", "-1 %", ["0 %", "1 %"], {"from": "-1 %", "to": "1 %", "points": 5}],
-    ids=["one point", "no creepage", "negative", "from zero", "through zero"],
-)
-def test_every_creepage_is_drawn_without_a_warning(creepage: Any) -> None:
+def test_without_ends_all_of_the_curves_is_seen() -> None:
+    axes = axes_of(y=PlotAxis("b", "log"))
+    assert axes.get_xlim()[0] <= 1.0 < 4.0 <= axes.get_xlim()[1]
+    assert 0.0 < axes.get_ylim()[0] <= 10.0 < 40.0 <= axes.get_ylim()[1]
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5])
+def test_panels_stand_in_rows_of_two_in_their_order_with_an_odd_one_over_the_first_row(count: int) -> None:
+    figure = drawn(*(panel(title=str(number)) for number in range(count)))
+    assert [axes.get_title() for axes in figure.axes] == [str(number) for number in range(count)]
+    boxes = [axes.get_position() for axes in figure.axes]
+    assert [(-box.y0, box.x0) for box in boxes] == sorted((-box.y0, box.x0) for box in boxes)
+    widths = [round(box.width, 1) for box in boxes]
+    assert widths == ([0.9] if count % 2 else []) + [0.4] * (count - count % 2)
+
+
+def test_one_legend_below_names_each_curve_of_all_panels_once() -> None:
+    figure = drawn(panel(curve("a"), curve("b")), panel(curve("b"), curve("c", points=True, low=X, high=20.0 * X)))
+    assert names(figure) == ["a", "b", "c"]
+    box = legend_of(figure).get_window_extent()
+    for axes in figure.axes:
+        around = axes.get_tightbbox()
+        assert around is not None
+        assert box.y1 <= around.y0
+
+
+@pytest.mark.parametrize("count", [1, 9])
+@pytest.mark.parametrize("length", [5, 40, 120])
+def test_the_legend_is_not_wider_than_the_figure(count: int, length: int) -> None:
+    figure = drawn(panel(*(curve(f"{number:{length}}") for number in range(count))))
+    box = legend_of(figure).get_window_extent()
+    whole = figure.bbox
+    assert whole.x0 <= box.x0 < box.x1 <= whole.x1
+    assert whole.y0 <= box.y0
+
+
+@pytest.mark.parametrize("text", [r"a $\nonsense$ b", "5 $ and 6 $", "_under^score", "100 % {x}"])
+def test_texts_are_shown_as_they_are_written(text: str) -> None:
+    figure = drawn(panel(curve(text), x=PlotAxis(text), y=PlotAxis(text), title=text), title=text)
+    (axes,) = figure.axes
+    shown = [figure.get_suptitle(), axes.get_title(), axes.get_xlabel(), axes.get_ylabel(), *names(figure)]
+    assert [one.replace(r"\$", "$").strip() for one in shown] == [text] * 5
+
+
+@pytest.mark.parametrize("creepage", [cases.SWEEP["creepage"], "1 %", "0 %", ["0 %", "-1 %"]])
+def test_every_figure_of_a_study_can_be_drawn_without_a_warning(creepage: Any) -> None:
     """Warnings are errors in the tests."""
-    point = {**cases.POINT, "creepage": creepage}
-    profile = {**cases.POINT, "creepage": "0 %" if isinstance(creepage, dict) else "-1 %"}
-    drawn = run(case(sweeps={"s": point}, profiles={"p": profile}, measured=MEASURED))
-    for name in figures(drawn):
-        draw(drawn, name)
-
-
-def test_one_operating_point_is_drawn_with_a_marker() -> None:
-    one = run(case(sweeps={"point": cases.POINT}, profiles={}))
-    for name in ("point_wear_rate_against_creepage", "point_traction_against_creepage"):
-        for line in draw(one, name).axes[0].get_lines():
-            assert len(data(line)[0]) == 1
-            assert line.get_marker() == "o"
-
-
-def test_negative_creepage_is_drawn_as_magnitude() -> None:
-    back = run(case(sweeps={"back": {**cases.POINT, "creepage": ["-2 %", "-1 %"]}}, profiles={}))
-    (axes,) = draw(back, "back_traction_against_creepage").axes
-    for line in axes.get_lines():
-        creepage, traction = data(line)
-        np.testing.assert_array_equal(creepage, [2.0, 1.0])
-        assert (traction > 0.0).all()
-
-
-def test_measured_traction_is_drawn_against_creepage() -> None:
-    conditions = {**cases.POINT, "creepage": ["1 %", "2 %"], "traction_coefficient": [0.1, 0.2]}
-    measured = run(case(sweeps={"m": conditions}, profiles={}))
-    (axes,) = draw(measured, "m_traction_against_creepage").axes
-    assert axes.get_title() == "A small study\ntraction coefficient T/N 0.2"
-    np.testing.assert_allclose(data(axes.get_lines()[0]), ([1.0, 2.0], [0.2, 0.2]), rtol=1e-14)
-
-
-@pytest.mark.parametrize("title", [r"a $\nonsense$ b", "5 $ and 6 $", "_under^score", "100 % {x}"])
-def test_a_title_is_shown_as_it_is_written(title: str) -> None:
-    named = run(case(title=title, contact_models=["exact"], wear_laws=["kth"], sweeps={"s": cases.POINT}))
-    for name in ("s_wear_rate_against_creepage", "partial_slip_along_the_patch"):
-        shown = draw(named, name).axes[0].get_title()
-        assert shown.replace(r"\$", "$").strip() == title
+    study = run(case(sweeps={"creepage": {**cases.POINT, "creepage": creepage}}))
+    for figure in study.figures:
+        made = draw(figure)
+        made.draw_without_rendering()
+        assert made.get_suptitle() == "A small study"
+        assert [len(axes.lines) for axes in made.axes] == [len(panel.curves) for panel in figure.panels]

@@ -1,0 +1,215 @@
+"""What the figures of a study show: those that its case asks for, or else one of each kind for all that it holds.
+
+The line style tells the contact model. The colour tells the wear law where a figure shows wear rates, the variable
+along the patch or where several are shown, and else the contact model too. Bands show the published range of a law's
+parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wearlaw.case import labels
+from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figure_spec import OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
+from wearlaw.measured_points import measured_points
+from wearlaw.study import axes_of, main_axis
+from wearlaw.units import from_si
+from wearlaw.variables import NAMES, UNITS, label
+
+if TYPE_CHECKING:
+    import xarray
+
+    from wearlaw.arrays import Array
+    from wearlaw.grid import Grid
+    from wearlaw.study import Study
+
+MEASURED = 6
+"""The colour of measured points."""
+
+
+def figures_of(study: Study) -> tuple[FigureData, ...]:
+    """Return what each figure of a study shows."""
+    asked = study.case.figures or dict(_usual(study))
+    return tuple(_figure(study, name, spec) for name, spec in asked.items())
+
+
+def _usual(study: Study) -> Iterator[tuple[str, FigureSpec]]:
+    """Give the figures of a case that asks for none: wear and traction over each sweep, and each patch."""
+    for name, sweep in study.sweeps.items():
+        axis = main_axis(sweep)
+        for x in ("wear_index", axis):
+            spec = FigureSpec(sweep=name, x=x, y=("wear_rate",), x_scale="log", y_scale="log")
+            yield f"{name}_wear_rate_against_{x}", spec
+        if axis == "creepage":
+            measured = study.case.measured is not None
+            spec = FigureSpec(sweep=name, x=axis, y=("traction_coefficient",), x_scale="log", measured=measured)
+            yield f"{name}_traction_against_creepage", spec
+    for name, profile in study.profiles.items():
+        if profile:
+            panels = (Window(y=("pressure", "traction", "traction_bound")), Window(y=("slip",)))
+            yield f"{name}_along_the_patch", FigureSpec(profile=name, panels=panels)
+
+
+def _figure(study: Study, name: str, spec: FigureSpec) -> FigureData:
+    grid = study.case.sweeps[spec.sweep] if spec.sweep else study.case.profiles[spec.profile or ""]
+    axis = axis_along(grid, spec.x) if spec.sweep else ""
+    fixed = _conditions(grid, axis)
+    heads = [text for condition, text in fixed.items() if condition in grid.axes()]
+    panels = []
+    for window in spec.windows():
+        curves = _over_sweep(study, spec, window, axis) if spec.sweep else _along_the_patch(study, spec, window)
+        title = ", ".join(filter(None, (window.title, *heads)))
+        panels.append(Panel(*_axes(spec.x, window, curves), curves=tuple(curves), title=title))
+    caption = spec.caption or f"At {', '.join(fixed.values())}."
+    return FigureData(name=name, title=spec.title or study.case.title, panels=tuple(panels), caption=caption)
+
+
+def _conditions(grid: Grid, axis: str) -> dict[str, str]:
+    """Return the conditions that a figure does not run along, each with its value; other axes at their middle."""
+    found = {}
+    for name, si in grid.conditions().items():
+        if name != axis:
+            value = from_si(si if si.ndim == 0 else si[si.size // 2], UNITS[name]).magnitude
+            found[name] = f"{NAMES[name]} {value:.5g} {UNITS[name]}".rstrip()
+    return found
+
+
+def _over_sweep(study: Study, spec: FigureSpec, window: Window, axis: str) -> list[Curve]:
+    """Return the wear rate of each pair, or other variables of each contact model."""
+    sweep = study.sweeps[spec.sweep or ""]
+    line = sweep.isel({other: sweep.sizes[other] // 2 for other in axes_of(sweep) if other != axis})
+    if not axes_of(line):
+        line = line.set_coords("creepage").expand_dims("creepage")
+    shown = window.shown
+    if shown == ("wear_rate",):
+        curves = [_rate(study, line, spec.x, pair) for pair in spec.pairs or line.pair.values.tolist()]
+    else:
+        models = spec.contact_models or line.contact_model.values.tolist()
+        curves = [_of_contact(study, line, spec.x, shown, y, model) for y in shown for model in models]
+    return curves + [_measured(study, spec.x, y) for y in shown if spec.measured]
+
+
+def _rate(study: Study, line: xarray.Dataset, x: str, pair: str) -> Curve:
+    one = line.sel(pair=pair)
+    low, high = one.wear_rate_low.values, one.wear_rate_high.values
+    has_band = bool((high > low).any())
+    return Curve(
+        pair,
+        _magnitude(line, x, one.pair_contact_model.item()),
+        one.wear_rate.values,
+        *_style(study, pair),
+        low=low if has_band else None,
+        high=high if has_band else None,
+    )
+
+
+def _of_contact(study: Study, line: xarray.Dataset, x: str, shown: tuple[str, ...], variable: str, model: str) -> Curve:
+    along = _magnitude(line, x, model)
+    dash = _dash(study, model)
+    return Curve(
+        label=model if len(shown) == 1 else f"{NAMES[variable]}, {model}",
+        x=along,
+        y=np.broadcast_to(_magnitude(line, variable, model), along.shape),
+        colour=dash if len(shown) == 1 else shown.index(variable),
+        dash=dash,
+    )
+
+
+def _magnitude(line: xarray.Dataset, variable: str, model: str) -> Array:
+    """Return the magnitude of a variable; what depends on the contact is that of one contact model."""
+    values = line[variable]
+    magnitude: Array = abs(values.sel(contact_model=model) if "contact_model" in values.dims else values).values
+    return magnitude
+
+
+def _measured(study: Study, x: str, y: str) -> Curve:
+    """Return measured points, as magnitudes like all that is drawn over a sweep."""
+    measured = study.case.measured
+    assert measured is not None
+    values = measured_points(measured.data, study.case.rig)
+    along, across = abs(values[x]), abs(values[y])
+    there = np.isfinite(along) & np.isfinite(across)
+    uncertainty = measured.data.wear_rate_uncertainty if y == "wear_rate" else None
+    spread = np.zeros(across.shape) if uncertainty is None else uncertainty.to(UNITS[y]).magnitude
+    return Curve(
+        measured.label,
+        along[there],
+        across[there],
+        MEASURED,
+        low=None if uncertainty is None else (across - spread)[there],
+        high=None if uncertainty is None else (across + spread)[there],
+        points=True,
+    )
+
+
+def _along_the_patch(study: Study, spec: FigureSpec, window: Window) -> list[Curve]:
+    """Return variables along the patch: wear rate for each pair, others for each contact model that resolves it."""
+    profile = study.profiles[spec.profile or ""]
+    curves = []
+    for variable in window.shown:
+        if variable == "creepage":
+            creepage = from_si(study.case.profiles[spec.profile or ""].conditions()[variable], UNITS[variable])
+            level = np.full(2, creepage.magnitude)
+            curves.append(Curve(NAMES[variable], profile.x.values[[0, -1]], level, OF_PROFILE.index(variable)))
+        elif variable == "wear_rate":
+            for pair in spec.pairs or profile.pair.values.tolist():
+                one = profile.wear_rate.sel(pair=pair).dropna("x")
+                curves.append(Curve(pair, one.x.values, one.values, *_style(study, pair)))
+        else:
+            models = spec.contact_models or profile.contact_model.values.tolist()
+            alike = 1 if variable == "pressure" else None
+            curves += [_field(study, profile, variable, model) for model in models[:alike]]
+    return curves
+
+
+def _field(study: Study, profile: xarray.Dataset, variable: str, model: str) -> Curve:
+    """Return a field along the patch; the pressure is Hertz's for all contact models alike."""
+    one = profile[variable].sel(contact_model=model).dropna("x")
+    colour = OF_PROFILE.index(variable)
+    if variable == "pressure":
+        return Curve(NAMES[variable], one.x.values, one.values, colour)
+    return Curve(f"{NAMES[variable]}, {model}", one.x.values, one.values, colour, _dash(study, model))
+
+
+def _dash(study: Study, model: str) -> int:
+    return labels(study.case.contact_models).index(model)
+
+
+def _style(study: Study, label_of_pair: str) -> tuple[int, int]:
+    """Return the colour of a pair's wear law and the dash of its contact model."""
+    (pair,) = (pair for pair in study.pairs if pair.label == label_of_pair)
+    return labels(study.case.wear_laws).index(pair.wear_law), _dash(study, pair.contact_model)
+
+
+def _axes(x: str, window: Window, curves: list[Curve]) -> tuple[PlotAxis, PlotAxis]:
+    """Return the axes of a panel."""
+    x_ends = ends(x, window.x_range) if window.x_range else None
+    seen = _seen(curves, x_ends)
+    positive = seen[seen > 0]
+    # A logarithmic axis would hide all that is not positive, as at zero creepage.
+    x_scale: Scale = "log" if window.x_scale == "log" and any((c.x > 0).any() for c in curves) else "linear"
+    y_scale: Scale = "log" if window.y_scale == "log" and positive.size else "linear"
+    y_ends: tuple[float, float] | None
+    if window.y_range:
+        y_ends = ends(window.shown[0], window.y_range)
+    elif y_scale == "log":
+        y_ends = (positive.min() / 1.5, positive.max() * 1.5) if x_ends else None
+    else:
+        y_ends = (0.0, 1.05 * seen.max()) if positive.size and seen.min() >= 0.0 else None
+    return PlotAxis(label(x), x_scale, x_ends), PlotAxis(label(*window.shown), y_scale, y_ends)
+
+
+def _seen(curves: list[Curve], x_ends: tuple[float, float] | None) -> Array:
+    """Return all finite values of curves and bands between two ends of the x axis."""
+    low, high = x_ends or (-np.inf, np.inf)
+    values = [
+        y[(low <= curve.x) & (curve.x <= high) & np.isfinite(y)]
+        for curve in curves
+        for y in (curve.y, curve.low, curve.high)
+        if y is not None
+    ]
+    return np.concatenate(values)
