@@ -33,7 +33,7 @@ def figure_data(uncertainty: Uncertainty) -> FigureData:
     inputs = ", ".join(f"{one.name} {one.shown}" for one in uncertainty.inputs)
     panel = _along_axis(uncertainty) if uncertainty.shape else _cumulative(uncertainty)
     caption = f"{uncertainty.samples} samples of {inputs}."
-    return FigureData("uncertainty", f"{uncertainty.title}", (panel,), caption)
+    return FigureData("uncertainty", uncertainty.title, (panel,), caption, f"{CONFIDENCE:.0%} of the samples")
 
 
 def _cumulative(uncertainty: Uncertainty) -> Panel:
@@ -60,7 +60,7 @@ def _along_axis(uncertainty: Uncertainty) -> Panel:
     order = np.argsort(x)
     low, high = (_plain(end)[order] for end in uncertainty.interval(CONFIDENCE))
     median = _plain(uncertainty.median)[order]
-    curve = Curve(f"median, with {CONFIDENCE:.0%} of the samples", x[order], median, low=low, high=high)
+    curve = Curve("median", x[order], median, low=low, high=high)
     return Panel(PlotAxis(label(name)), PlotAxis(label("wear_rate")), (curve,))
 
 

@@ -1,0 +1,108 @@
+"""A fit as a figure: what was measured, what is fitted, and the band that the bootstrap replicates span."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.line import LineProblem
+from wearlaw.observations import Observations, contact_of, predictions, wear_index_density
+from wearlaw.units import Q, in_unit
+from wearlaw.variables import UNITS, label
+
+if TYPE_CHECKING:
+    from wearlaw.fit_result import Fit
+
+BETWEEN = 8
+"""Points of a curve from one test to the next."""
+
+MOST_SAMPLES = 200
+"""Replicates that make a band; more change it less than can be seen."""
+
+SAME = 1e-3
+"""Relative difference up to which loads or friction coefficients of tests are drawn as one curve."""
+
+
+def figure_data(fit: Fit) -> FigureData:
+    """Return a panel for each kind of measurement: wear rates against Tγ/A, tractions against creepage."""
+    panels = tuple(_panel(fit, one) for one in fit.observations)
+    band = f"band: {fit.confidence:.0%} of the bootstrap replicates" if fit.samples else "no bootstrap, no band"
+    apart = (
+        "" if all(_one_series(one.problem) for one in fit.observations) else "; the tests differ in load or friction"
+    )
+    names = ", ".join(fit.parameters)
+    return FigureData(
+        "fit",
+        f"Fit of {names}",
+        panels,
+        f"{names} fitted to {fit.tests.source or 'tests'}; {band}{apart}.",
+        f"{fit.confidence:.0%} of the bootstrap replicates",
+    )
+
+
+def _panel(fit: Fit, one: Observations) -> Panel:
+    x = "wear_index_density" if one.observable == "wear_rate" else "creepage"
+    measured = Curve("measured", _along(fit, one.problem, x), _shown(one, one.measured), colour=6, points=True)
+    scale: Literal["log", "linear"] = (
+        "log" if one.observable == "wear_rate" and (one.measured > 0.0).all() else "linear"
+    )
+    axes = PlotAxis(label(x), scale), PlotAxis(label(one.observable), scale)
+    return Panel(*axes, (_fitted(fit, one, x), measured))
+
+
+def _fitted(fit: Fit, one: Observations, x: str) -> Curve:
+    """Return the fitted values: as a curve through the tests, or at each of them where their loads differ."""
+    together = _one_series(one.problem)
+    problem = _between(fit, one) if together else one.problem
+    along = _along(fit, problem, x)
+    order = np.argsort(along, kind="stable")
+
+    def at(values: dict[str, Array]) -> Array:
+        return _shown(one, predictions(one.observable, fit.predict, problem, values))[:, order]
+
+    best = at(fit.values_in_si())[0]
+    low = high = None
+    if fit.samples:
+        values = fit.values_in_si(fit.samples)
+        count = len(next(iter(values.values())))
+        chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).round().astype(int))
+        tail = 0.5 - 0.5 * fit.confidence
+        low, high = np.quantile(at({name: some[chosen] for name, some in values.items()}), [tail, 1.0 - tail], axis=0)
+    return Curve("fitted", along[order], best, low=low, high=high, points=not together)
+
+
+def _one_series(problem: LineProblem) -> bool:
+    arrays = (problem.normal_force_per_width, problem.friction_coefficient)
+    return all(np.ptp(array) <= SAME * np.abs(array).mean() for array in arrays)
+
+
+def _between(fit: Fit, one: Observations) -> LineProblem:
+    """Return operating points at the tests and between them, in the order of their creepage."""
+    problem = one.problem
+    order = np.argsort(np.abs(problem.creepage), kind="stable")
+    places = np.arange(order.size, dtype=np.float64)
+    fine = np.linspace(0.0, places[-1], BETWEEN * (order.size - 1) + 1)
+
+    def filled(values: Array) -> Array:
+        return np.interp(fine, places, values[order])
+
+    conditions: Any = {
+        "normal_force_per_width": Q(filled(problem.normal_force_per_width), "N/m"),
+        "creepage": Q(filled(np.abs(problem.creepage)), ""),
+        "friction_coefficient": filled(problem.friction_coefficient),
+    }
+    if problem.traction_coefficient is not None:
+        conditions["traction_coefficient"] = filled(problem.traction_coefficient)
+    return contact_of(fit.predict).rig.problem(**conditions)
+
+
+def _along(fit: Fit, problem: LineProblem, x: str) -> Array:
+    si = np.abs(problem.creepage) if x == "creepage" else wear_index_density(fit.predict, problem)
+    return in_unit(si, UNITS[x])
+
+
+def _shown(one: Observations, values: Array) -> Array:
+    return in_unit(values, UNITS[one.observable])

@@ -1,0 +1,173 @@
+"""From the best fit and its replicates to what a user reads: the law with its calibration, intervals, provenance."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from wearlaw import plugins
+from wearlaw.arrays import Array
+from wearlaw.configuration import known_name
+from wearlaw.errors import ConfigurationError, FitError
+from wearlaw.fit_result import Fit
+from wearlaw.fit_task import Task
+from wearlaw.free_parameters import FRICTION, FreeParameters
+from wearlaw.intervals import Replicates, covariance, student_intervals, studentised_intervals
+from wearlaw.least_squares import Solutions
+from wearlaw.models import Calibration, Model, WearLaw
+from wearlaw.observations import FLOOR, Observations, contact_of, named, wear_index_density
+from wearlaw.parameters import changed
+from wearlaw.pipeline import Pipeline
+from wearlaw.rig import TwinDisc
+from wearlaw.units import Quantity, in_unit
+from wearlaw.version import __version__
+
+DIGITS = 4
+"""Significant digits of the stated range of a fitted law, which is rounded outwards."""
+
+
+def summarise(task: Task, best: Solutions, replicates: Replicates | None, confidence: float, seed: int) -> Fit:
+    """Return the fit of a task.
+
+    Raises
+    ------
+    FitError
+        If the fitted parameters do not make a law, or predict no wear where some was measured.
+    """
+    free, theta = task.free, best.theta[0]
+    values = free.columns(best.theta)
+    parameters = {name: free.quantity(name, float(value[0])) for name, value in values.items()}
+    observations = tuple(_with_friction(one, values) for one in task.observations)
+    law = _fitted_law(task, parameters, values, observations)
+    by_student = student_intervals(best, confidence)
+    ends = by_student if replicates is None else studentised_intervals(best, replicates, confidence)
+    samples = {} if replicates is None else free.columns(replicates.theta)
+    slopes = free.slopes(theta)
+    chi2, aic = _sums(task, best)
+    provenance = _provenance(task, law, replicates, seed, chi2, confidence)
+    return Fit(
+        parameters=parameters,
+        intervals=_pairs(free, ends),
+        covariance_intervals=_pairs(free, by_student),
+        interval_method="Student's t" if replicates is None else "studentised bootstrap",
+        confidence=confidence,
+        covariance=covariance(best)[0] * np.outer(slopes, slopes),
+        law=law,
+        predict=task.predict if law is None else Pipeline(contact=contact_of(task.predict), wear_law=law),
+        tests=task.tests,
+        scatter=task.scatter,
+        chi2=chi2,
+        aic=aic,
+        samples={name: free.quantity(name, one) for name, one in samples.items()},
+        provenance=provenance,
+        observations=observations,
+    )
+
+
+def _pairs(free: FreeParameters, ends: tuple[Array, Array]) -> dict[str, tuple[Quantity, Quantity]]:
+    low, high = (free.values(end) for end in ends)
+    return {
+        name: (free.quantity(name, float(low[i])), free.quantity(name, float(high[i])))
+        for i, name in enumerate(free.names)
+    }
+
+
+def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observations:
+    if FRICTION not in values:
+        return one
+    friction = np.broadcast_to(values[FRICTION], one.measured.shape)
+    return dataclasses.replace(one, problem=dataclasses.replace(one.problem, friction_coefficient=friction))
+
+
+def _fitted_law(
+    task: Task, parameters: Mapping[str, Quantity], values: Mapping[str, Array], observations: Sequence[Observations]
+) -> WearLaw | None:
+    if not isinstance(task.predict, Pipeline):
+        return None
+    law = task.predict.wear_law
+    one = observations[0]
+    nothing = one.predicted(values)[0] <= FLOOR
+    if one.scatter == "relative" and nothing.any():
+        raise FitError(f"the best fit predicts no wear in {named(one.tests, nothing)}; leave these tests out")
+    of_law = {
+        name: float(value.magnitude) if isinstance(like, float) else value
+        for (name, value), like in zip(parameters.items(), task.free.like, strict=True)
+        if name != FRICTION
+    }
+    try:
+        return changed(law, of_law).fitted(_calibration(task, one))
+    except ConfigurationError as error:
+        raise FitError(f"the best fit is no law, which bounds may help: {error}") from None
+
+
+def _calibration(task: Task, one: Observations) -> Calibration:
+    """Return what the parameters were fitted to."""
+    contact = contact_of(task.predict)
+    density = in_unit(wear_index_density(task.predict, one.problem), "N/mm^2")
+    low, high = _rounded(float(density.min()), math.floor), _rounded(float(density.max()), math.ceil)
+    of = f" of {task.tests.source}" if task.tests.source else ""
+    return Calibration(
+        contact_model=contact.contact_model.name,
+        scale=contact.scale,
+        options=_options(contact.contact_model),
+        materials=_materials(contact.rig),
+        stated_range=(("wear_index_density", f"{low!r} N/mm^2", f"{high!r} N/mm^2"),),
+        source=f"fitted to {one.measured.size} tests{of}",
+    )
+
+
+def _options(model: Model) -> tuple[tuple[str, str], ...]:
+    """Return the choices of a contact model, which make another theory of it."""
+    fields = ((name, getattr(model, name)) for name in type(model).model_fields)
+    return tuple((name, value) for name, value in fields if isinstance(value, str))
+
+
+def _materials(rig: TwinDisc) -> str:
+    names = [known_name(disc.material) or repr(disc.material) for disc in (rig.disc_1, rig.disc_2)]
+    return f"{names[0]} on {names[1]}" if names[0] != names[1] else f"both discs {names[0]}"
+
+
+def _rounded(value: float, rounding: Callable[[float], int]) -> float:
+    """Return a value with few significant digits, rounded up or down."""
+    if value == 0.0:
+        return 0.0
+    place = DIGITS - 1 - math.floor(math.log10(abs(value)))
+    return float(f"{rounding(value * 10.0**place)}e{-place}")
+
+
+def _sums(task: Task, best: Solutions) -> tuple[float, float]:
+    """Return the sum of squares and Akaike's criterion, with a scatter of its own for each kind of measurement."""
+    squares = (best.residuals[0] / task.weights) ** 2
+    parameters = len(task.free.names)
+    if task.scatter == "uncertainty" and len(task.observations) == 1:
+        return float(squares.sum()), float(squares.sum()) + 2.0 * parameters
+    kinds = [squares[task.groups == number] for number in range(len(task.observations))]
+    tiny = float(np.finfo(np.float64).tiny)
+    likelihood = sum(kind.size * math.log(max(float(kind.mean()), tiny)) for kind in kinds)
+    return float(squares.sum()), likelihood + 2.0 * (parameters + len(kinds))
+
+
+def _provenance(
+    task: Task, law: WearLaw | None, replicates: Replicates | None, seed: int, chi2: float, confidence: float
+) -> dict[str, Any]:
+    """Return where a fit comes from, as a table that TOML can hold."""
+    model = contact_of(task.predict).contact_model
+    found = plugins.installed()
+    origin = {} if law is None else {"wear_law": found.wear_laws.distribution(law.name, type(law))}
+    return {
+        "wearlaw": __version__,
+        **origin,
+        "contact_model": found.contact_models.distribution(model.name, type(model)),
+        "tests": task.tests.source,
+        "measurements": {one.observable: one.measured.size for one in task.observations},
+        "free": list(task.free.names),
+        "scatter": task.scatter,
+        "chi2": chi2,
+        "seed": seed,
+        "bootstrap": 0 if replicates is None else len(replicates.theta),
+        "confidence": confidence,
+    }

@@ -1,0 +1,124 @@
+"""A fit on its way: what is fitted to what, and the best fit of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wearlaw.arrays import Array
+from wearlaw.errors import FitError
+from wearlaw.free_parameters import FRICTION, FreeParameters
+from wearlaw.identification import refuse_undetermined, where_tested
+from wearlaw.least_squares import Bounds, Solutions, refine, search
+from wearlaw.observations import AnyPipeline, Observations, Scatter, observe
+from wearlaw.pipeline import ContactPipeline, Pipeline
+from wearlaw.units import QuantityLike
+from wearlaw.wear_tests import WearTests
+
+NEAR = 10.0
+"""How far from its first value a parameter starts at the most, up and down."""
+
+ROUNDS = 3
+"""How often the weights of two kinds of measurement are set by their scatter about the fit."""
+
+LEAST_GROUP = 4
+"""Measurements of a kind from which their scatter is estimated."""
+
+
+@dataclass
+class Task:
+    """What is fitted to what, and the weights of the residuals."""
+
+    predict: AnyPipeline
+    tests: WearTests
+    scatter: Scatter
+    free: FreeParameters
+    observations: list[Observations]
+    weights: Array
+
+    @classmethod
+    def of(
+        cls,
+        predict: AnyPipeline,
+        tests: WearTests,
+        free: Sequence[str],
+        friction: float | None,
+        scatter: Literal["relative", "absolute"],
+        bounds: Mapping[str, tuple[QuantityLike | float, QuantityLike | float]],
+    ) -> Task:
+        """Return what is to be done, or refuse it."""
+        law = None
+        if isinstance(predict, Pipeline):
+            law = predict.wear_law.explicit()
+            predict = Pipeline(contact=predict.contact, wear_law=law)
+        elif not isinstance(predict, ContactPipeline):
+            raise FitError(f"predict: give a rig with a contact model, and a wear law or none, not {predict!r}")
+        fits_friction = FRICTION in free
+        first = _first_friction(tests, friction) if fits_friction else friction
+        parameters = FreeParameters.of(law, [free] if isinstance(free, str) else free, first, bounds)
+        stated = law is not None and tests.wear_rate_uncertainty is not None
+        chosen: Scatter = "uncertainty" if stated else scatter
+        observations = observe(predict, tests, first, fits_friction, chosen)
+        count = sum(one.measured.size for one in observations)
+        if count <= len(parameters.names):
+            raise FitError(
+                f"tests: {count} measurement{'s' if count > 1 else ''} cannot tell {len(parameters.names)} parameters"
+                f" ({', '.join(parameters.names)}) and their scatter; give more tests, or free fewer parameters"
+            )
+        return cls(predict, tests, chosen, parameters, observations, np.ones(count))
+
+    @property
+    def groups(self) -> NDArray[np.intp]:
+        """The number of the kind of each measurement, (n,)."""
+        return np.repeat(np.arange(len(self.observations)), [one.measured.size for one in self.observations])
+
+    def model(self, theta: Array) -> Array:
+        """Return the weighted residuals (sets, n) of scaled parameters (sets, p)."""
+        values = self.free.columns(theta)
+        return np.concatenate([one.residuals(values) for one in self.observations], axis=-1) * self.weights
+
+    def solve(self, starts: int, seed: int) -> Solutions:
+        """Return the best fit, or refuse it if the tests do not determine it."""
+        bounds, first = self.free.bounds, np.zeros(len(self.free.names))
+        target = np.zeros(self.weights.size)
+        reach = np.where(self.free.positive, math.log(NEAR), NEAR)
+        fits = search(self.model, target, first, bounds, Bounds(-reach, reach), starts, seed)
+        best = min(fits, key=lambda one: float(one.cost[0]))
+        if len(self.observations) > 1:
+            for _ in range(ROUNDS):
+                self._weigh(best)
+                best = refine(self.model, target, best.theta[0], bounds)
+            fits = [refine(self.model, target, one.theta[0], bounds) for one in fits]
+        if not best.converged[0]:
+            raise FitError("the fit has not converged; give bounds, or a law whose parameters are nearer to the tests")
+        refuse_undetermined(best, fits, self.free, where_tested(self.observations))
+        return best
+
+    def _weigh(self, best: Solutions) -> None:
+        """Weigh each kind of measurement by its scatter about the fit."""
+        residuals, groups = best.residuals[0] / self.weights, self.groups
+        for group in np.unique(groups):
+            own = residuals[groups == group]
+            scatter = math.sqrt(float(np.mean(own**2)))
+            if own.size >= LEAST_GROUP and scatter > 0.0:
+                self.weights[groups == group] = 1.0 / scatter
+
+
+def _first_friction(tests: WearTests, given: float | None) -> float:
+    """Return a friction coefficient to start from: the given one, that of the tests, or the greatest traction."""
+    traction = tests.columns.get("traction_coefficient")
+    if traction is None or np.isnan(traction).all():
+        raise FitError(
+            "free: the friction coefficient is fitted to measured traction, and the tests hold none; add a column"
+            " 'traction_coefficient', 'tangential_force [N]' or 'frictional_heat [W]', or give friction_coefficient"
+        )
+    if given is not None:
+        return float(given)
+    if tests.friction_coefficient is not None:
+        return float(np.mean(tests.friction_coefficient))
+    return float(np.nanmax(traction))

@@ -1,0 +1,146 @@
+"""Fitting the parameters of a wear law, and the friction coefficient, to tests: `fit`."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Literal
+
+import numpy as np
+
+from wearlaw.errors import ConfigurationError, FitError, FitWarning
+from wearlaw.fit_result import Fit
+from wearlaw.fit_summary import summarise
+from wearlaw.fit_task import Task
+from wearlaw.intervals import DECIDED_ALONE, Replicates, leverage, replicate
+from wearlaw.least_squares import Solutions
+from wearlaw.observations import AnyPipeline, contact_of, named
+from wearlaw.units import QuantityLike
+from wearlaw.wear_tests import WearTests
+
+AT_BOUND = 1e-6
+"""Distance from a bound, over that between both, at which a fit lies on it."""
+
+USABLE = 0.95
+"""Share of the replicates that must have converged and determine each parameter, for the intervals to be trusted."""
+
+
+def fit(
+    predict: AnyPipeline,
+    tests: WearTests,
+    free: Sequence[str],
+    *,
+    friction_coefficient: float | None = None,
+    scatter: Literal["relative", "absolute"] = "relative",
+    bounds: Mapping[str, tuple[QuantityLike | float, QuantityLike | float]] | None = None,
+    starts: int = 256,
+    bootstrap: int = 1000,
+    seed: int = 0,
+    confidence: float = 0.95,
+    on_progress: Callable[[int], None] | None = None,
+) -> Fit:
+    """Fit parameters of a wear law, and the friction coefficient, to tests by weighted least squares.
+
+    Parameters
+    ----------
+    predict : Pipeline or ContactPipeline
+        What predicts the tests. Parameters that are not free stay those of its law. Without a law, the friction
+        coefficient is fitted to the measured traction.
+    tests : WearTests
+        Those without a wear rate have no say in the parameters of the law.
+    free : sequence of str
+        Numbers among the fields of the law, with a dot for nested ones as in "coefficient.low_speed", and
+        "friction_coefficient", one for all tests, which is fitted to the traction.
+    friction_coefficient : float, optional
+        μ of tests that do not hold it, or the first value where it is free.
+    scatter : str
+        "relative": measurements scatter by a factor, and the residual is ln(predicted/measured). "absolute": it is
+        predicted - measured. Where the tests state an uncertainty of the wear rate, it is (predicted - measured) over
+        that, whatever is given here.
+    bounds : mapping of str to pair, optional
+        Least and greatest values; without, a hundredth and a hundred times the first value.
+    starts : int
+        Starting points besides the given law, within a factor of ten of it.
+    bootstrap : int
+        Replicates of the bootstrap; 0 for intervals by Student's t alone.
+    seed : int
+        Of all random numbers; the same seed gives the same fit.
+    confidence : float
+        Of the intervals.
+    on_progress : callable, optional
+        Called with the number of replicates done, after each batch of them.
+
+    Raises
+    ------
+    FitError
+        If a parameter is not known or not determined by the tests, there are too few of them, or no fit is found.
+
+    Notes
+    -----
+    G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989, chapters 2, 5 and 14.
+    """
+    _check_settings(starts, bootstrap, confidence, scatter)
+    task = Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
+    replicates = None
+    try:
+        best = task.solve(starts, seed)
+        if bootstrap:
+            replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
+    except ConfigurationError as error:
+        raise FitError(f"on the way to a fit, a law was refused: {error}; give bounds that keep clear of it") from None
+    contact_of(predict).rig.warn_of_plasticity(task.observations[0].problem, stacklevel=2)
+    found = summarise(task, best, replicates, confidence, seed)
+    _warn(task, best, replicates)
+    return found
+
+
+def _check_settings(starts: int, bootstrap: int, confidence: float, scatter: str) -> None:
+    if scatter not in ("relative", "absolute"):
+        raise FitError(f'scatter: must be "relative" or "absolute", got {scatter!r}')
+    if not 0.0 < confidence < 1.0:
+        raise FitError(f"confidence: must lie between 0 and 1, such as 0.95, got {confidence!r}")
+    for name, value in (("starts", starts), ("bootstrap", bootstrap)):
+        if value < 0:
+            raise FitError(f"{name}: must not be negative, got {value!r}")
+
+
+def _warn(task: Task, best: Solutions, replicates: Replicates | None) -> None:
+    """Warn of what makes a fit less certain than its intervals say; the caller of `fit` is named."""
+    for text in (*_at_bounds(task, best), *_decided_alone(task, best), *_unreliable(task, replicates)):
+        warnings.warn(text, FitWarning, stacklevel=3)
+
+
+def _at_bounds(task: Task, best: Solutions) -> Iterator[str]:
+    bounds, theta = task.free.bounds, best.theta[0]
+    margin = AT_BOUND * (bounds.high - bounds.low)
+    ended = (theta <= bounds.low + margin) | (theta >= bounds.high - margin)
+    if ended.any():
+        names = ", ".join(name for name, at in zip(task.free.names, ended, strict=True) if at)
+        yield (
+            f"the best fit lies at a bound of {names}, whose interval then means nothing; give wider bounds, or free"
+            " fewer parameters"
+        )
+
+
+def _decided_alone(task: Task, best: Solutions) -> Iterator[str]:
+    alone = leverage(best) > DECIDED_ALONE
+    for number, one in enumerate(task.observations):
+        which = alone[task.groups == number]
+        if which.any():
+            yield (
+                f"the fit meets {named(one.tests, which)} whatever is measured there: so few tests decide a parameter"
+                " that nothing checks it, and its interval rests on the scatter of the others"
+            )
+
+
+def _unreliable(task: Task, replicates: Replicates | None) -> Iterator[str]:
+    if replicates is None:
+        return
+    usable = np.mean(replicates.standard_errors > 0.0, axis=0)
+    lost = [
+        f"{name} ({1.0 - share:.0%})" for name, share in zip(task.free.names, usable, strict=True) if share < USABLE
+    ]
+    if lost:
+        yield f"some bootstrap replicates do not determine {', '.join(lost)}; their intervals may be too narrow"
+    if replicates.converged < USABLE:
+        yield f"only {replicates.converged:.0%} of the bootstrap replicates have converged; the intervals are rough"

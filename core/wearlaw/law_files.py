@@ -1,0 +1,65 @@
+"""Wear laws in files: a table of the law and one of where its parameters come from."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from wearlaw import plugins
+from wearlaw.errors import ConfigurationError, InputError, OutputError
+from wearlaw.models import WearLaw
+from wearlaw.specification import specification
+
+
+def write_wear_law(path: str | os.PathLike[str], law: WearLaw, provenance: Mapping[str, Any]) -> None:
+    """Write a law into a TOML file that is there whole or not at all; `read_wear_law` reads it.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
+    """
+    import tomli_w
+
+    target = Path(path)
+    text = tomli_w.dumps({"wear_law": specification(law), "provenance": dict(provenance)})
+    temporary = target.with_name(f".{target.name}.{os.getpid()}")
+    try:
+        try:
+            temporary.write_text(text, encoding="utf-8", newline="\n")
+            os.replace(temporary, target)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except OSError as error:
+        raise OutputError(f"cannot write '{path}': {error.strerror or error}") from None
+
+
+def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
+    """Return the wear law that a TOML file describes in its table ``[wear_law]``.
+
+    Parameters
+    ----------
+    path : str or path-like
+        A file such as `Fit.to_toml` writes: ``model`` names the law, and its fields follow.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, is not TOML, or does not describe a law of an installed plugin.
+    """
+    try:
+        fields = tomllib.loads(Path(path).read_text(encoding="utf-8")).get("wear_law")
+    except OSError as error:
+        raise InputError(f"cannot read wear law '{path}': {error.strerror or error}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"wear law '{path}' is not valid TOML: {error}") from None
+    if not isinstance(fields, dict) or not isinstance(fields.get("model"), str):
+        raise InputError(f"wear law '{path}' needs a table [wear_law] with the name of the law, as in model = \"usfd\"")
+    name = fields.pop("model")
+    try:
+        return plugins.wear_law(name, **fields)
+    except ConfigurationError as error:
+        raise InputError(f"wear law '{path}' is wrong in:" + "".join(f"\n  {p}" for p in error.problems)) from None

@@ -1,0 +1,267 @@
+"""Least squares within bounds, for one set of data and for thousands at once.
+
+All functions take a *model* of many parameter sets: from θ of shape (sets, p) to what it predicts for the n tests,
+(sets, n). Parameters are meant to be scaled: of order one, or logarithms of ratios.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wearlaw.arrays import Array
+
+Model: TypeAlias = Callable[[Array], Array]
+"""From parameter sets (sets, p) to predictions (sets, n)."""
+
+STEP = float(np.sqrt(np.finfo(np.float64).eps))
+"""Step of the difference quotients: its error and that of rounding are about equal."""
+
+TOLERANCE = 1e-8
+"""Change of the parameters, and relative change of the sum of squares, below which a fit has converged."""
+
+ITERATIONS = 100
+"""Iterations after which a fit has not converged; smooth problems take about ten."""
+
+REFINED = 4
+"""How many of the starting points of `search` are refined, besides the one that is given."""
+
+SOFTEST, STIFFEST = 1e-12, 1e12
+"""Least and greatest damping. A step that does not help at the greatest one is as small as rounding: where the model
+has a kink, the best fit may lie on it, and the gradient then does not vanish."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bounds:
+    """The least and the greatest parameters, each of shape (p,)."""
+
+    low: Array
+    high: Array
+
+    def clip(self, theta: Array) -> Array:
+        """Return the nearest parameters within the bounds."""
+        return np.clip(theta, self.low, self.high)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solutions:
+    """The best fits to many sets of data.
+
+    Attributes
+    ----------
+    theta : ndarray, (sets, p)
+        Parameters.
+    residuals : ndarray, (sets, n)
+        Prediction minus target.
+    jacobian : ndarray, (sets, n, p)
+        Derivatives of the predictions.
+    converged : ndarray of bool, (sets,)
+    """
+
+    theta: Array
+    residuals: Array
+    jacobian: Array
+    converged: NDArray[np.bool_]
+
+    @property
+    def cost(self) -> Array:
+        """Sum of the squares of the residuals, (sets,)."""
+        return _squares(self.residuals)
+
+
+def jacobian(model: Model, theta: Array, predicted: Array, bounds: Bounds) -> Array:
+    """Return the derivatives of the predictions by difference quotients within the bounds, in one batch.
+
+    Parameters
+    ----------
+    model : callable
+        The model.
+    theta : ndarray, (sets, p)
+        Parameters.
+    predicted : ndarray, (sets, n)
+        What the model predicts there.
+    bounds : Bounds
+
+    Returns
+    -------
+    ndarray, (sets, n, p)
+    """
+    sets, count = theta.shape
+    step = STEP * np.maximum(np.abs(theta), 1.0)
+    step = np.where(theta + step > bounds.high, -step, step)
+    moved = theta[:, None, :] + step[:, None, :] * np.eye(count)
+    taken = np.einsum("mpp->mp", moved) - theta  # what the rounding of the sum has left of the step
+    changed = model(moved.reshape(-1, count)).reshape(sets, count, -1)
+    quotient: Array = ((changed - predicted[:, None, :]) / taken[:, :, None]).swapaxes(1, 2)
+    return quotient
+
+
+def fit_many(model: Model, targets: Array, start: Array, bounds: Bounds) -> Solutions:
+    """Fit many sets of data at once, by Levenberg's and Marquardt's method projected to the bounds.
+
+    Parameters
+    ----------
+    model : callable
+        The model.
+    targets : ndarray, (sets, n)
+        What it should predict.
+    start : ndarray, (sets, p)
+        First parameters, within the bounds.
+    bounds : Bounds
+
+    Notes
+    -----
+    Nocedal and Wright, Numerical Optimization, 2nd edition 2006, section 10.3; the damping follows Nielsen's rule
+    (H. B. Nielsen, Damping parameter in Marquardt's method, IMM-REP-1999-05).
+    """
+    state = _State(model, targets, bounds.clip(start), bounds)
+    for _ in range(ITERATIONS):
+        if not state.active.size:
+            break
+        state.advance()
+    return Solutions(state.theta, state.residuals, state.jacobian, state.converged)
+
+
+def refine(model: Model, target: Array, start: Array, bounds: Bounds) -> Solutions:
+    """Fit one set of data by the trust-region method of scipy; `target` is of shape (n,), `start` of shape (p,)."""
+    from scipy import optimize
+
+    def predicted(theta: Array) -> Array:
+        one: Array = model(theta[None])[0]
+        return one
+
+    def slopes(theta: Array) -> Array:
+        one: Array = jacobian(model, theta[None], model(theta[None]), bounds)[0]
+        return one
+
+    least_squares: Any = optimize.least_squares
+    found = least_squares(
+        lambda theta: predicted(theta) - target,
+        start,
+        jac=slopes,
+        bounds=(bounds.low, bounds.high),
+        method="trf",
+        x_scale="jac",
+        xtol=TOLERANCE,
+        ftol=1e-15,
+        gtol=1e-15,
+        max_nfev=ITERATIONS * 10,
+    )
+    theta = bounds.clip(found.x)
+    converged = np.array([found.status > 0])
+    return Solutions(theta[None], (predicted(theta) - target)[None], slopes(theta)[None], converged)
+
+
+def search(
+    model: Model, target: Array, start: Array, bounds: Bounds, near: Bounds, starts: int, seed: int
+) -> list[Solutions]:
+    """Fit one set of data from several starting points.
+
+    Parameters
+    ----------
+    model : callable
+        The model.
+    target : ndarray, (n,)
+        What it should predict.
+    start : ndarray, (p,)
+        The first starting point.
+    bounds : Bounds
+        Within which the parameters stay.
+    near : Bounds
+        Within which the other starting points lie, evenly (Latin hypercube).
+    starts : int
+        How many others; they are evaluated in one batch, and the best few refined.
+    seed : int
+        Of the Latin hypercube.
+
+    Returns
+    -------
+    list of Solutions
+        The refined fits, the one from `start` first.
+    """
+    from scipy.stats import qmc
+
+    chosen = [bounds.clip(start)]
+    if starts:
+        shares = qmc.LatinHypercube(start.size, rng=np.random.default_rng(seed)).random(starts)
+        points = bounds.clip(near.low + shares * (near.high - near.low))
+        with np.errstate(over="ignore"):
+            cost = _squares(model(points) - target)
+        chosen += list(points[np.argsort(cost, kind="stable")[:REFINED]])
+    return [refine(model, target, point, bounds) for point in chosen]
+
+
+class _State:
+    """Where the fits stand; those that have not ended are `active`."""
+
+    def __init__(self, model: Model, targets: Array, theta: Array, bounds: Bounds) -> None:
+        self.model, self.targets, self.bounds = model, targets, bounds
+        self.theta = theta.copy()
+        predicted = model(self.theta)
+        self.residuals = predicted - targets
+        self.jacobian = jacobian(model, self.theta, predicted, bounds)
+        sets, count = theta.shape
+        self.damping, self.growth = np.full(sets, 1e-3), np.full(sets, 2.0)
+        self.scale = np.zeros((sets, count))
+        self.converged = np.zeros(sets, dtype=bool)
+        self.active = np.arange(sets)
+
+    def advance(self) -> None:
+        """Try one step of every active fit."""
+        who = self.active
+        theta, slopes, residuals = self.theta[who], self.jacobian[who], self.residuals[who]
+        moved = self.bounds.clip(theta + self._step(who, theta, slopes, residuals))
+        step = moved - theta
+        predicted = self.model(moved)
+        tried = predicted - self.targets[who]
+        linear = residuals + np.einsum("mnp,mp->mn", slopes, step)
+        before = _squares(residuals)
+        with np.errstate(invalid="ignore"):  # a model that overflows has not got better
+            gain, hoped = before - _squares(tried), before - _squares(linear)
+            better = gain > 0.0
+        self._set_damping(who, better, gain, hoped)
+        still = np.abs(step).max(axis=-1) <= TOLERANCE
+        little = better & (gain <= TOLERANCE**2 * before)
+        stiff = ~better & (self.damping[who] >= STIFFEST)
+        self._accept(who[better], moved[better], tried[better], predicted[better])
+        ended = still | little | stiff
+        self.converged[who[ended]] = True
+        self.active = who[~ended]
+
+    def _step(self, who: NDArray[np.intp], theta: Array, slopes: Array, residuals: Array) -> Array:
+        """Return the damped steps; parameters that press against a bound stay."""
+        normal = slopes.swapaxes(1, 2) @ slopes
+        gradient = np.einsum("mnp,mn->mp", slopes, residuals)
+        pressed = ((theta <= self.bounds.low) & (gradient > 0.0)) | ((theta >= self.bounds.high) & (gradient < 0.0))
+        self.scale[who] = np.maximum(self.scale[who], np.einsum("mpp->mp", normal))
+        scale = self.scale[who]
+        scale = np.maximum(scale, STEP * scale.max(axis=-1, keepdims=True))
+        scale = np.where(scale > 0.0, scale, 1.0)
+        held = pressed[:, :, None] | pressed[:, None, :]
+        damped = np.where(held, 0.0, normal)
+        diagonal = np.where(pressed, 1.0, np.einsum("mpp->mp", damped) + self.damping[who, None] * scale)
+        index = np.arange(theta.shape[1])
+        damped[:, index, index] = diagonal
+        solved = np.linalg.solve(damped, np.where(pressed, 0.0, gradient)[..., None])
+        return -solved[..., 0]
+
+    def _set_damping(self, who: NDArray[np.intp], better: NDArray[np.bool_], gain: Array, hoped: Array) -> None:
+        ratio = np.divide(gain, hoped, out=np.zeros_like(gain), where=better & (hoped > 0.0))
+        softer = np.maximum(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3)
+        factor = np.where(better, softer, self.growth[who])
+        self.damping[who] = np.clip(self.damping[who] * factor, SOFTEST, STIFFEST)
+        self.growth[who] = np.where(better, 2.0, 2.0 * self.growth[who])
+
+    def _accept(self, who: NDArray[np.intp], theta: Array, residuals: Array, predicted: Array) -> None:
+        if who.size:
+            self.theta[who], self.residuals[who] = theta, residuals
+            self.jacobian[who] = jacobian(self.model, theta, predicted, self.bounds)
+
+
+def _squares(values: Array) -> Array:
+    squares: Array = np.einsum("mn,mn->m", values, values)
+    return squares

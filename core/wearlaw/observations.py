@@ -1,0 +1,214 @@
+"""What tests measured beside what a pipeline predicts for them, for many parameter sets at once."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wearlaw.arrays import Array
+from wearlaw.errors import FitError
+from wearlaw.free_parameters import FRICTION
+from wearlaw.integrate import integrate_contact, integrate_wear
+from wearlaw.line import LineProblem
+from wearlaw.pipeline import ContactPipeline, Pipeline
+from wearlaw.rig import TwinDisc
+from wearlaw.units import in_unit
+from wearlaw.variables import UNITS
+from wearlaw.varying import integrate_varying
+from wearlaw.wear_tests import WearTests
+
+Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
+"""How measurements scatter: by a factor, by an amount, or as their stated uncertainties say."""
+
+Observable: TypeAlias = Literal["wear_rate", "traction_coefficient"]
+
+AnyPipeline: TypeAlias = Pipeline[TwinDisc] | ContactPipeline[TwinDisc]
+
+FLOOR = 1e-300
+"""In place of a prediction of zero, whose logarithm no step could leave."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Observations:
+    """One kind of measurement, and how it is predicted.
+
+    Attributes
+    ----------
+    observable : str
+        "wear_rate" [kg/m/m²] or "traction_coefficient" [-].
+    pipeline : Pipeline or ContactPipeline
+        What predicts it.
+    tests : WearTests
+        Those in which it was measured, each with a label.
+    measured : ndarray, (n,)
+        In SI.
+    problem : LineProblem
+        Their contact problems, with a batch of one axis, (n,).
+    scatter : str
+        How the measurements scatter.
+    unit : ndarray, (n,)
+        What the residuals are divided by; 1 for relative scatter.
+    """
+
+    observable: Observable
+    pipeline: AnyPipeline
+    tests: WearTests
+    measured: Array
+    problem: LineProblem
+    scatter: Scatter
+    unit: Array
+
+    def predicted(self, values: Mapping[str, Array]) -> Array:
+        """Return what is predicted for parameters in SI, each (sets,), of shape (sets, n)."""
+        return predictions(self.observable, self.pipeline, self.problem, values)
+
+    def residuals(self, values: Mapping[str, Array]) -> Array:
+        """Return the residuals for parameters in SI, each (sets,), of shape (sets, n)."""
+        return self.compare(self.predicted(values))
+
+    def compare(self, predicted: Array) -> Array:
+        """Return the residuals of predictions (..., n)."""
+        if self.scatter == "relative":
+            return np.log(np.maximum(predicted, FLOOR) / self.measured)
+        return (predicted - self.measured) / self.unit
+
+    def in_shown_unit(self, predicted: Array) -> Array:
+        """Return the residuals (n,) as they are shown: those of absolute scatter in the unit of the measurement."""
+        if self.scatter == "absolute":
+            return in_unit(predicted - self.measured, UNITS[self.observable])
+        return self.compare(predicted)
+
+
+def predictions(
+    observable: Observable, pipeline: AnyPipeline, problem: LineProblem, values: Mapping[str, Array]
+) -> Array:
+    """Return wear rates [kg/m/m²] or traction coefficients at n operating points for many parameter sets.
+
+    Parameters
+    ----------
+    observable : str
+        Which of the two.
+    pipeline : Pipeline or ContactPipeline
+    problem : LineProblem
+        With a batch of one axis, (n,).
+    values : mapping of str to ndarray, (sets,)
+        Parameters in SI.
+
+    Returns
+    -------
+    ndarray, (sets, n)
+    """
+    sets, points = len(next(iter(values.values()))), problem.creepage.size
+    problem = problem[np.tile(np.arange(points), sets)]
+    if FRICTION in values:
+        problem = dataclasses.replace(problem, friction_coefficient=np.repeat(values[FRICTION], points))
+    of_law = {name: np.repeat(value, points) for name, value in values.items() if name != FRICTION}
+    contact = contact_of(pipeline)
+    model = contact.contact_model
+    if observable == "traction_coefficient" or not isinstance(pipeline, Pipeline):
+        predicted = np.abs(integrate_contact(model, problem)) / problem.normal_force
+    elif of_law:
+        predicted = integrate_varying(model, pipeline.wear_law, of_law, problem, contact.scale)
+    else:
+        predicted = integrate_wear(model, pipeline.wear_law, problem, contact.scale).wear_rate
+    return predicted.reshape(sets, points)
+
+
+def wear_index_density(pipeline: AnyPipeline, problem: LineProblem) -> Array:
+    """Return the patch mean of Tγ/A [N/m²], of the batch shape."""
+    force = integrate_contact(contact_of(pipeline).contact_model, problem)
+    density: Array = np.abs(force * problem.creepage) / problem.patch_area
+    return density
+
+
+def contact_of(pipeline: AnyPipeline) -> ContactPipeline[TwinDisc]:
+    """Return the rig with its contact model."""
+    return pipeline.contact if isinstance(pipeline, Pipeline) else pipeline
+
+
+def observe(
+    pipeline: AnyPipeline, tests: WearTests, friction: float | None, fits_friction: bool, scatter: Scatter
+) -> list[Observations]:
+    """Return what is fitted: wear rates, where there is a law, and tractions, where they tell the friction.
+
+    Raises
+    ------
+    FitError
+        If the tests do not hold what is needed.
+    """
+    found = []
+    if isinstance(pipeline, Pipeline):
+        found.append(_observe("wear_rate", pipeline, tests, friction, fits_friction, scatter))
+    if fits_friction:
+        of_traction: Scatter = "absolute" if scatter == "absolute" else "relative"
+        found.append(_observe("traction_coefficient", pipeline, tests, friction, True, of_traction))
+    return found
+
+
+def _observe(
+    observable: Observable,
+    pipeline: AnyPipeline,
+    tests: WearTests,
+    friction: float | None,
+    fits_friction: bool,
+    scatter: Scatter,
+) -> Observations:
+    values = tests.columns.get(observable, np.full(len(tests), np.nan))
+    there = ~np.isnan(values)
+    if not there.any():
+        raise FitError(f"tests: none of the {len(tests)} tests has a {observable.replace('_', ' ')}, which is fitted")
+    labels = tuple(label or f"number {number}" for number, label in enumerate(tests.labels, 1))
+    selected, measured = dataclasses.replace(tests, labels=labels)[there], values[there]
+    if scatter == "relative":
+        _refuse_zeros(observable, selected, measured)
+    contact = contact_of(pipeline)
+    conditions = selected.conditions(contact.contact_model, friction)
+    if fits_friction:  # a measured traction would take the place of the one that the friction coefficient gives
+        conditions = {**conditions, FRICTION: friction}
+        conditions.pop("traction_coefficient", None)
+    problem = contact.rig.problem(**conditions)
+    unit = _unit(selected, measured, scatter)
+    return Observations(observable, pipeline, selected, measured, problem, scatter, unit)
+
+
+def _unit(tests: WearTests, measured: Array, scatter: Scatter) -> Array:
+    if scatter == "relative":
+        return np.ones_like(measured)
+    if scatter == "absolute":
+        return np.full_like(measured, np.sqrt(np.mean(measured**2)) or 1.0)
+    stated = tests.columns["wear_rate_uncertainty"]
+    if np.isnan(stated).any():
+        raise FitError(
+            f"wear_rate_uncertainty: is missing in {named(tests, np.isnan(stated))}; give it for every test with a"
+            " wear rate, or for none"
+        )
+    return stated
+
+
+def _refuse_zeros(observable: Observable, tests: WearTests, measured: Array) -> None:
+    zero = measured <= 0.0
+    name = observable.replace("_", " ")
+    if zero.any():
+        raise FitError(
+            f"{observable}: is zero in {named(tests, zero)}, but is taken to scatter by a factor, and no factor leads"
+            f' to zero; leave these tests out, or fit with scatter="absolute"'
+        )
+    still = np.asarray(tests.creepage.magnitude) == 0.0
+    if still.any():
+        raise FitError(
+            f"creepage: is zero in {named(tests, still)}, where the predicted {name} is zero, whatever the parameters;"
+            " leave these tests out"
+        )
+
+
+def named(tests: WearTests, which: NDArray[np.bool_]) -> str:
+    """Return which tests are meant."""
+    numbers = np.flatnonzero(which)
+    shown = [tests.labels[i] for i in numbers[:5]]
+    more = f" and {numbers.size - 5} more" if numbers.size > 5 else ""
+    return f"test{'s' if numbers.size > 1 else ''} {', '.join(shown)}{more}"

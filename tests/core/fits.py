@@ -1,0 +1,58 @@
+"""Made-up tests that the tests of fitting share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from wearlaw import Q
+
+RIG = wl.TwinDisc.suros()
+EXACT, GLOBAL = RIG | wl.contact_model("exact"), RIG | wl.contact_model("global")
+ALL = ("m_m", "q_s", "m_c", "tr_sc")
+CREEPAGE = np.concatenate([np.geomspace(0.1, 1.3, 7), np.linspace(2.0, 13.0, 6), np.linspace(15.0, 20.0, 7)])
+PRESSURE, FRICTION = Q(1500, "MPa"), 0.46
+
+
+def usfd(contact: str) -> Any:
+    return RIG | wl.contact_model(contact) | wl.wear_law("usfd", fitted_for=contact)
+
+
+def made_up(predict: Any, scatter: float = 0.0, seed: int = 0, creepage: Any = CREEPAGE, **more: Any) -> wl.WearTests:
+    """Return tests that follow a pipeline but for lognormal scatter."""
+    conditions: Any = {
+        "creepage": Q(creepage, "%"),
+        "max_pressure": PRESSURE,
+        "friction_coefficient": np.full(len(creepage), FRICTION),
+    }
+    factor = np.exp(scatter * np.random.default_rng(seed).standard_normal(len(creepage)))
+    return wl.WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * factor, **more)
+
+
+def traction_tests(traction: Any, creepage: Any, **more: Any) -> wl.WearTests:
+    return wl.WearTests.from_arrays(
+        creepage=Q(creepage, "%"), max_pressure=PRESSURE, traction_coefficient=traction, **more
+    )
+
+
+def in_microgram(quantity: Any) -> Any:
+    return quantity.to("ug/m/mm^2").magnitude
+
+
+@wl.as_wear_law(
+    inputs={"wear_index_density": "N/mm^2"},
+    returns="ug/m/mm^2",
+    breakpoints={},
+    parameters={"offset": "ug/m/mm^2", "slope": "ug/m/N"},
+    source="made up",
+)
+def sloping(wear_index_density: Any, *, offset: float = 1.0, slope: float = 2.0) -> Any:
+    return offset + slope * wear_index_density
+
+
+def refused(says: str, predict: Any, tests: wl.WearTests, free: Any, **settings: Any) -> None:
+    with pytest.raises(wl.FitError, match=says):
+        wl.fit(predict, tests, free=free, **{"bootstrap": 0, **settings})

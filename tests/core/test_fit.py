@@ -1,0 +1,399 @@
+"""Fitting laws and friction to tests, against closed forms, known parameters and the literature."""
+
+from __future__ import annotations
+
+import pickle
+import tomllib
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from scipy import stats
+
+import wearlaw as wl
+from tests.core.fits import (
+    ALL,
+    CREEPAGE,
+    EXACT,
+    FRICTION,
+    GLOBAL,
+    PRESSURE,
+    RIG,
+    in_microgram,
+    made_up,
+    sloping,
+    traction_tests,
+    usfd,
+)
+from wearlaw import Q
+
+
+@pytest.mark.parametrize("contact", ["global", "exact", "fastsim"])
+@pytest.mark.parametrize("scatter", ["relative", "absolute"])
+def test_the_parameters_that_made_the_tests_are_found_again(contact: str, scatter: Any) -> None:
+    predict = usfd(contact)
+    # No test depends on m_c and tr_sc where the search begins: another starting point must find them.
+    wrong = predict.wear_law.model_copy(
+        update={"m_m": Q(9.0, "ug/m/N"), "q_s": Q(30.0, "ug/m/mm^2"), "tr_sc": Q(200.0, "N/mm^2")}
+    )
+    start = wl.Pipeline(contact=predict.contact, wear_law=wrong)
+    fit = wl.fit(start, made_up(predict), free=ALL, scatter=scatter, bootstrap=0)
+    for name in ALL:
+        true = getattr(predict.wear_law, name)
+        assert fit.parameters[name].units == true.units
+        # Fits to data without scatter converge quadratically, so that what is left is far below their tolerance, 1e-8.
+        assert fit.parameters[name].magnitude == pytest.approx(true.magnitude, rel=1e-7)
+
+
+def test_the_refits_of_table_4_are_reproduced() -> None:
+    # Least squares of the cells to the global law over creepage to 20.5 % at 741.43 kN/m, with μ = 0.46. The last
+    # digits depend on the spacing of the creepage: 0.1 % here.
+    creepage = np.linspace(0.1, 20.5, 205)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.RangeWarning)
+        tests = made_up(usfd("global"), creepage=creepage)
+    for contact, expected in {"exact": (53.0, 84.3, 92.7), "fastsim": (55.2, 94.9, 108.7)}.items():
+        fit = wl.fit(usfd(contact), tests, free=ALL[1:], scatter="absolute", bootstrap=0)
+        assert fit.law is not None
+        assert fit.law.calibration is not None
+        assert fit.law.calibration.contact_model == contact
+        found = [value.magnitude for value in fit.parameters.values()]
+        assert found == pytest.approx(expected, rel=3e-3)
+
+
+def test_one_factor_is_fitted_as_a_mean_of_logarithms() -> None:
+    predict = GLOBAL | wl.wear_law("kth")
+    creepage = np.linspace(1.0, 15.0, 9)  # slower than 0.2 m/s, where the map has one field
+    tests = made_up(predict, 0.3, seed=1, creepage=creepage)
+    fit = wl.fit(predict, tests, free=["coefficient.low_speed"], bootstrap=0)
+    ratio = np.log(
+        in_microgram(tests.wear_rate)
+        / in_microgram(predict(**tests.conditions(predict.contact.contact_model)).wear_rate)
+    )
+    exact = 5.5e-4 * np.exp(ratio.mean())
+    assert fit.parameters["coefficient.low_speed"].magnitude == pytest.approx(exact, rel=1e-7)
+    reach = stats.t.ppf(0.975, 8) * ratio.std(ddof=1) / 3.0
+    ends = [end.magnitude for end in fit.intervals["coefficient.low_speed"]]
+    assert ends == pytest.approx([exact * np.exp(-reach), exact * np.exp(reach)], rel=1e-6)
+    assert fit.interval_method == "Student's t"
+    assert fit.rms.magnitude == pytest.approx(ratio.std(), rel=1e-6)
+    law: Any = fit.law
+    assert law.coefficient.low_speed == pytest.approx(exact, rel=1e-7)
+    assert law.coefficient.mid_speed == 35e-4
+
+
+@pytest.mark.parametrize("stated", [False, True], ids=["absolute", "uncertainty"])
+def test_one_factor_is_fitted_as_a_weighted_mean(stated: bool) -> None:
+    predict = GLOBAL | wl.wear_law("kth")
+    creepage = np.linspace(1.0, 15.0, 9)
+    plain = made_up(predict, 0.3, seed=1, creepage=creepage)
+    uncertainty = np.linspace(1.0, 20.0, 9) if stated else np.ones(9)
+    more: Any = {"wear_rate_uncertainty": Q(uncertainty, "ug/m/mm^2")} if stated else {}
+    tests = made_up(predict, 0.3, seed=1, creepage=creepage, **more)
+    fit = wl.fit(predict, tests, free=["coefficient.low_speed"], scatter="relative" if stated else "absolute")
+    measured = in_microgram(plain.wear_rate)
+    predicted = in_microgram(predict(**plain.conditions(predict.contact.contact_model)).wear_rate)
+    factor = np.sum(predicted * measured / uncertainty**2) / np.sum(predicted**2 / uncertainty**2)
+    assert fit.parameters["coefficient.low_speed"].magnitude == pytest.approx(5.5e-4 * factor, rel=1e-7)
+    residual = (factor * predicted - measured) / uncertainty
+    np.testing.assert_allclose(fit.residuals["residual"], residual, rtol=1e-5, atol=1e-6 * residual.max())
+    assert fit.scatter == ("uncertainty" if stated else "absolute")
+    assert fit.rms.magnitude == pytest.approx(np.sqrt(np.mean(residual**2)), rel=1e-6)
+    assert f"{fit.rms.units:~C}" == ("" if stated else "µg/m/mm**2")
+    if stated:
+        assert fit.chi2 == pytest.approx(np.sum(residual**2), rel=1e-6)
+        assert fit.aic == pytest.approx(fit.chi2 + 2.0)
+
+
+def test_friction_in_full_slip_is_the_mean_of_the_traction() -> None:
+    traction = np.array([0.469, 0.449, 0.449, 0.450, 0.499])
+    tests = traction_tests(traction, [3.0, 7.5, 10.0, 15.0, 20.0])
+    fit = wl.fit(EXACT, tests, free=["friction_coefficient"], scatter="absolute", bootstrap=0)
+    assert fit.parameters["friction_coefficient"].magnitude == pytest.approx(traction.mean(), rel=1e-7)
+    # By the delta method about the logarithm: μ exp(±t s/(μ √n)).
+    reach = stats.t.ppf(0.975, 4) * traction.std(ddof=1) / np.sqrt(5.0) / traction.mean()
+    ends = [end.magnitude for end in fit.intervals["friction_coefficient"]]
+    assert ends == pytest.approx([traction.mean() * np.exp(-reach), traction.mean() * np.exp(reach)], rel=1e-6)
+    relative = wl.fit(EXACT, tests, free="friction_coefficient", bootstrap=0)
+    assert relative.parameters["friction_coefficient"].magnitude == pytest.approx(stats.gmean(traction), rel=1e-7)
+    assert relative.law is None
+    assert relative.predict == EXACT
+    with pytest.raises(wl.FitError, match="no law to write"):
+        relative.to_toml("nowhere.toml")
+
+
+def test_friction_and_law_are_fitted_together_each_by_its_own_scatter() -> None:
+    predict = usfd("exact")
+    conditions: Any = {"creepage": Q(CREEPAGE, "%"), "max_pressure": PRESSURE, "friction_coefficient": 0.4}
+    r = predict(**conditions)
+    generator = np.random.default_rng(8)
+    tests = traction_tests(
+        r.traction_coefficient.magnitude * np.exp(0.002 * generator.standard_normal(20)),
+        CREEPAGE,
+        wear_rate=r.wear_rate * np.exp(0.2 * generator.standard_normal(20)),
+    )
+    fit = wl.fit(predict, tests, free=["q_s", "friction_coefficient"], bootstrap=200)
+    alone = wl.fit(EXACT, tests, free=["friction_coefficient"], bootstrap=200)
+    # The wear scatters a hundred times as much as the traction, and says as good as nothing of the friction.
+    both, one = (found.parameters["friction_coefficient"].magnitude for found in (fit, alone))
+    error = alone.standard_errors["friction_coefficient"].magnitude
+    assert abs(both - one) < 0.2 * error
+    assert error < 0.4 * 0.002
+    assert fit.intervals["q_s"][0] < Q(55, "ug/m/mm^2") < fit.intervals["q_s"][1]
+    assert list(fit.residuals["observable"].unique()) == ["wear_rate [ug/m/mm^2]", "traction_coefficient"]
+    drawn = fit.figure_data().panels[0].curves[1].x
+    again: Any = fit.predict(**{**conditions, "friction_coefficient": both})
+    np.testing.assert_allclose(drawn, again.wear_index_density.magnitude, rtol=1e-9)
+    assert [panel.y.label for panel in fit.figure_data().panels] == [
+        "wear rate [µg/m/mm²]",
+        "traction coefficient T/N [-]",
+    ]
+
+
+def test_a_measured_traction_does_not_stand_in_for_a_friction_that_is_free() -> None:
+    traction = np.array([0.2, 0.35, 0.44, 0.45, 0.45])
+    tests = traction_tests(traction, [0.5, 1.0, 3.0, 10.0, 20.0])
+    of_global, of_exact = (
+        wl.fit(contact, tests, free=["friction_coefficient"], bootstrap=0).parameters for contact in (GLOBAL, EXACT)
+    )
+    # The global model takes its total from the exact one, unless the traction is given.
+    assert of_global["friction_coefficient"].magnitude == pytest.approx(
+        of_exact["friction_coefficient"].magnitude, rel=1e-9
+    )
+
+
+def test_a_traction_that_was_measured_is_used_by_the_contact_that_can() -> None:
+    predict = usfd("global")
+    creepage = np.linspace(0.2, 1.0, 6)
+    traction = np.linspace(0.05, 0.3, 6)
+    conditions: Any = {"creepage": Q(creepage, "%"), "max_pressure": PRESSURE, "friction_coefficient": 0.46}
+    rate = predict(**conditions, traction_coefficient=traction).wear_rate
+    fit = wl.fit(predict, traction_tests(traction, creepage, wear_rate=rate, friction_coefficient=0.46), free=["m_m"])
+    assert fit.parameters["m_m"].magnitude == pytest.approx(5.3, rel=1e-7)
+
+
+def test_tests_without_a_wear_rate_have_no_say() -> None:
+    predict = usfd("global")
+    tests = made_up(predict, 0.1)
+    rate = tests.wear_rate.magnitude.copy()
+    rate[[3, 9]] = np.nan
+    conditions: Any = {"creepage": tests.creepage, "max_pressure": PRESSURE, "friction_coefficient": FRICTION}
+    gaps = wl.WearTests.from_arrays(**conditions, wear_rate=Q(rate, "ug/m/mm^2"))
+    rest = tests[~np.isnan(rate)]
+    first, second = (wl.fit(predict, some, free=ALL, bootstrap=50) for some in (gaps, rest))
+    assert first.parameters == second.parameters
+    assert first.intervals == second.intervals
+    assert len(first.residuals) == 18
+    assert first.residuals["label"].tolist()[:4] == ["number 1", "number 2", "number 3", "number 5"]
+
+
+def test_what_is_not_free_stays() -> None:
+    predict = usfd("exact")
+    fit = wl.fit(predict, made_up(predict, 0.1), free=["q_s"], bootstrap=0)
+    law: Any = fit.law
+    assert (law.m_m, law.m_c, law.tr_sc) == (predict.wear_law.m_m, predict.wear_law.m_c, predict.wear_law.tr_sc)
+    assert law.q_s == fit.parameters["q_s"] != predict.wear_law.q_s
+
+
+@pytest.fixture(scope="module")
+def exact_fit() -> wl.Fit:
+    predict = usfd("exact")
+    return wl.fit(predict, made_up(predict, 0.1, source="made up"), free=ALL, bootstrap=300)
+
+
+def test_the_fitted_law_knows_what_it_was_fitted_to(exact_fit: wl.Fit) -> None:
+    law: Any = exact_fit.law
+    calibration = law.calibration
+    assert calibration.source == "fitted to 20 tests of made up"
+    assert calibration.scale == "cells"
+    assert calibration.options == (("slip", "consistent"),)
+    assert calibration.covers(EXACT.contact_model, "cells")
+    (low, high) = calibration.range_in_si["wear_index_density"]
+    contact = exact_fit.predict(creepage=Q(CREEPAGE, "%"), max_pressure=PRESSURE, friction_coefficient=FRICTION)
+    tested = contact.wear_index_density.to("N/m^2").magnitude
+    assert low <= tested.min() < 1.001 * low
+    assert high >= tested.max() > 0.999 * high
+    with pytest.warns(wl.CalibrationWarning, match="fitted for the cells of contact_model"):
+        _ = RIG | wl.contact_model("fastsim") | law
+    with pytest.warns(wl.RangeWarning, match="1 of 1"):
+        exact_fit.predict(creepage="25 %", max_pressure=PRESSURE, friction_coefficient=FRICTION)
+
+
+def test_the_fitted_pipeline_predicts_what_the_residuals_say(exact_fit: wl.Fit) -> None:
+    table = exact_fit.residuals
+    predicted: Any = exact_fit.predict(creepage=Q(CREEPAGE, "%"), max_pressure=PRESSURE, friction_coefficient=FRICTION)
+    np.testing.assert_allclose(table["predicted"], predicted.wear_rate.magnitude, rtol=1e-9)
+    np.testing.assert_allclose(table["residual"], np.log(table["predicted"] / table["measured"]), atol=1e-12)
+    np.testing.assert_allclose(table["measured"], exact_fit.tests.wear_rate.magnitude, rtol=1e-12)
+    np.testing.assert_allclose(table["creepage [%]"], CREEPAGE, rtol=1e-12)
+    assert exact_fit.chi2 == pytest.approx(np.sum(table["residual"] ** 2), rel=1e-9)
+    assert exact_fit.aic == pytest.approx(20 * np.log(exact_fit.chi2 / 20) + 2 * 5, rel=1e-9)
+
+
+def test_standard_errors_and_correlations_are_those_of_the_covariance(exact_fit: wl.Fit) -> None:
+    reach = stats.t.ppf(0.975, 16)
+    for name, (low, high) in exact_fit.covariance_intervals.items():
+        value, error = exact_fit.parameters[name].magnitude, exact_fit.standard_errors[name].magnitude
+        # The interval is symmetric in the logarithm.
+        assert high.magnitude == pytest.approx(value * np.exp(reach * error / value), rel=1e-9)
+        assert low.magnitude == pytest.approx(value * np.exp(-reach * error / value), rel=1e-9)
+    assert np.diag(exact_fit.correlation) == pytest.approx(1.0)
+    assert exact_fit.correlation[2, 3] > 0.5  # a steeper rise that begins later
+    assert np.abs(exact_fit.correlation).max() <= 1.0 + 1e-12
+
+
+def test_a_fit_is_determined_by_its_seed(exact_fit: wl.Fit) -> None:
+    predict, tests = usfd("exact"), exact_fit.tests
+    again = wl.fit(predict, tests, free=ALL, bootstrap=300)
+    other = wl.fit(predict, tests, free=ALL, bootstrap=300, seed=1)
+    assert again.parameters == exact_fit.parameters
+    assert again.intervals == exact_fit.intervals
+    assert other.intervals != exact_fit.intervals
+    for name in ALL:  # the best fit does not depend on where the search began
+        assert other.parameters[name].magnitude == pytest.approx(exact_fit.parameters[name].magnitude, rel=1e-6)
+
+
+def test_a_fit_prints_its_parameters_with_units_and_intervals(exact_fit: wl.Fit) -> None:
+    lines = repr(exact_fit).splitlines()
+    assert lines[0] == "Fit to 20 wear rates, 16 degrees of freedom, relative scatter"
+    low, high = exact_fit.intervals["tr_sc"]
+    value = exact_fit.parameters["tr_sc"].magnitude
+    assert lines[4].split() == [
+        "tr_sc",
+        f"{value:.4g}",
+        f"({low.magnitude:.3g}",
+        "to",
+        f"{high.magnitude:.3g})",
+        "N/mm²",
+    ]
+    assert lines[-1].split(maxsplit=1) == ["intervals", "95%, studentised bootstrap"]
+    table = exact_fit.table().set_index("parameter")
+    assert table.loc["tr_sc", "value"] == value
+    assert table.loc["tr_sc", "unit"] == "N/mm**2"
+    assert (table["low"] < table["value"]).all()
+    assert (table["value"] < table["high"]).all()
+
+
+def test_a_fit_survives_pickling(exact_fit: wl.Fit) -> None:
+    copy = pickle.loads(pickle.dumps(exact_fit))
+    assert repr(copy) == repr(exact_fit)
+    assert copy.law == exact_fit.law
+
+
+def test_a_law_that_was_written_reads_back_equal(exact_fit: wl.Fit, tmp_path: Path) -> None:
+    path = tmp_path / "my-usfd.toml"
+    path.write_text("an older file")
+    exact_fit.to_toml(path)
+    assert wl.read_wear_law(path) == exact_fit.law
+    assert [file.name for file in tmp_path.iterdir()] == ["my-usfd.toml"]
+    provenance = tomllib.loads(path.read_text(encoding="utf-8"))["provenance"]
+    assert provenance["wearlaw"] == wl.__version__
+    assert provenance["wear_law"] == f"wearlaw {wl.__version__}"
+    assert (provenance["tests"], provenance["measurements"]) == ("made up", {"wear_rate": 20})
+    assert (provenance["free"], provenance["seed"], provenance["bootstrap"]) == (list(ALL), 0, 300)
+    assert provenance["chi2"] == exact_fit.chi2
+
+
+def test_a_file_that_cannot_be_written_leaves_what_was_there(exact_fit: wl.Fit, tmp_path: Path) -> None:
+    with pytest.raises(wl.OutputError, match="No such file"):
+        exact_fit.to_toml(tmp_path / "no" / "folder.toml")
+    folder = tmp_path / "taken"
+    folder.mkdir()
+    with pytest.raises(wl.OutputError, match="taken"):
+        exact_fit.to_toml(folder)
+    assert [file.name for file in tmp_path.iterdir()] == ["taken"]
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[wear_law", "not valid TOML"),
+        ("[case]", r"needs a table \[wear_law\]"),
+        ("[wear_law]\nq_s = '55 ug/m/mm^2'", "name of the law"),
+        ("[wear_law]\nmodel = 'usdf'", "did you mean 'usfd'"),
+        ("[wear_law]\nmodel = 'usfd'\nq_s = '55 N'", "q_s: got 55.00 N"),
+    ],
+)
+def test_a_file_that_describes_no_law_is_refused(text: str, says: str, tmp_path: Path) -> None:
+    path = tmp_path / "law.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(wl.InputError, match=says):
+        wl.read_wear_law(path)
+
+
+def test_a_missing_file_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(wl.InputError, match="No such file"):
+        wl.read_wear_law(tmp_path / "law.toml")
+
+
+def test_the_figure_holds_the_measurements_and_a_curve_through_the_fit_with_a_band(exact_fit: wl.Fit) -> None:
+    (panel,) = exact_fit.figure_data().panels
+    curve, points = panel.curves
+    np.testing.assert_allclose(points.y, exact_fit.tests.wear_rate.magnitude, rtol=1e-12)
+    assert points.points
+    assert not curve.points
+    assert curve.low is not None
+    assert curve.high is not None
+    assert (np.diff(curve.x) > 0.0).all()
+    assert ((curve.low <= curve.y) & (curve.y <= curve.high)).mean() > 0.95
+    # The curve passes through what is predicted for the tests.
+    predicted = exact_fit.residuals["predicted"].to_numpy()
+    assert np.interp(points.x, curve.x, curve.y) == pytest.approx(predicted, rel=1e-9)
+    assert isinstance(exact_fit.plot(), Figure)
+
+
+def test_tests_at_several_loads_are_drawn_as_points() -> None:
+    predict = usfd("exact")
+    conditions: Any = {
+        "creepage": Q(np.geomspace(0.2, 8.0, 8), "%"),
+        "max_pressure": Q(np.tile([900.0, 1500.0], 4), "MPa"),
+        "friction_coefficient": np.full(8, 0.4),
+    }
+    tests = wl.WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * np.linspace(0.9, 1.1, 8))
+    fit = wl.fit(predict, tests, free=["m_m"], bootstrap=0)
+    figure = fit.figure_data()
+    fitted = figure.panels[0].curves[0]
+    assert fitted.points
+    assert fitted.low is None
+    assert "differ in load" in figure.caption
+    assert isinstance(fit.plot(), Figure)
+
+
+def test_progress_is_told() -> None:
+    told: list[int] = []
+    predict = usfd("global")
+    wl.fit(predict, made_up(predict, 0.1), free=["m_m"], bootstrap=300, on_progress=told.append)
+    assert sum(told) == 300
+
+
+def test_a_law_of_your_own_may_have_negative_parameters() -> None:
+    predict = GLOBAL | sloping
+    creepage = np.linspace(2.0, 15.0, 8)
+    # The offset that made the tests is negative; a straight line is fitted by linear algebra.
+    true = GLOBAL | sloping.model_copy(update={"offset": Q(-5.0, "ug/m/mm^2")})
+    tests = made_up(true, 0.05, seed=3, creepage=creepage)
+    fit = wl.fit(predict, tests, free=["offset", "slope"], scatter="absolute", bootstrap=20)
+    density = true(**tests.conditions(GLOBAL.contact_model)).wear_index_density.magnitude
+    slope, offset = np.polyfit(density, in_microgram(tests.wear_rate), 1)
+    assert fit.parameters["offset"].magnitude == pytest.approx(offset, rel=1e-6)
+    assert fit.parameters["slope"].magnitude == pytest.approx(slope, rel=1e-6)
+    line = stats.linregress(density, in_microgram(tests.wear_rate))
+    assert fit.standard_errors["offset"].magnitude == pytest.approx(line.intercept_stderr, rel=1e-5)
+    assert fit.provenance["wear_law"] == "not installed"
+
+
+def test_the_law_that_made_the_tests_has_the_better_information_criterion() -> None:
+    tests = made_up(usfd("global"), 0.1)
+    true = wl.fit(usfd("global"), tests, free=ALL, bootstrap=0)
+    other = wl.fit(GLOBAL | wl.wear_law("kth"), tests, free=["coefficient.low_speed"], bootstrap=0)
+    assert true.aic < other.aic - 10.0
+
+
+def test_named_values_of_a_law_are_numbers_when_fitted() -> None:
+    predict = EXACT | wl.wear_law("kth", coefficient="low")
+    tests = made_up(EXACT | wl.wear_law("kth"), creepage=np.linspace(1.0, 5.0, 6))
+    fit = wl.fit(predict, tests, free=["coefficient.low_speed"], bootstrap=0)
+    assert fit.parameters["coefficient.low_speed"].magnitude == pytest.approx(5.5e-4, rel=1e-7)

@@ -1,0 +1,204 @@
+"""What a fit refuses, and what it warns of."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.core.fits import (
+    ALL,
+    CREEPAGE,
+    FRICTION,
+    GLOBAL,
+    PRESSURE,
+    RIG,
+    made_up,
+    refused,
+    sloping,
+    traction_tests,
+    usfd,
+)
+from wearlaw import Q
+
+
+def test_tests_for_which_the_best_fit_predicts_no_wear_are_refused() -> None:
+    predict = GLOBAL | sloping.model_copy(update={"offset": Q(-5.0, "ug/m/mm^2")})
+    tests = made_up(GLOBAL | sloping, 0.1, creepage=np.array([0.3, 3.0, 6.0, 9.0]))
+    bounds = {"slope": ("1 ug/m/N", "3 ug/m/N")}
+    refused("predicts no wear in test number 1;", predict, tests, ["slope"], bounds=bounds)
+
+
+def test_a_pressure_beyond_the_elastic_limit_is_warned_of() -> None:
+    predict = usfd("global")
+    tests = wl.WearTests.from_arrays(
+        creepage=Q([1.0, 2.0, 3.0], "%"),
+        max_pressure="1.9 GPa",
+        friction_coefficient=0.4,
+        wear_rate=Q([45.0, 54.0, 56.0], "ug/m/mm^2"),
+    )
+    with pytest.warns(wl.RangeWarning, match="beyond the material's elastic limit") as caught:
+        wl.fit(predict, tests, free=["q_s"], bootstrap=0)
+    assert caught[0].filename == __file__
+
+
+class Narrow(wl.WearLaw):
+    """A law that allows its parameter little, and is fitted one parameter set at a time."""
+
+    name: ClassVar[str] = "narrow"
+    source: ClassVar[str] = "made up"
+    k: Annotated[wl.Quantity, wl.Unit("ug/m/N", limit=8.0)]
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return wl.scalar_si(self.k, "kg/m/N") * contact.wear_index_density
+
+
+def test_a_law_that_is_refused_on_the_way_asks_for_bounds() -> None:
+    predict = GLOBAL | Narrow(k=Q(5.0, "ug/m/N"))
+    tests = made_up(GLOBAL | Narrow(k=Q(6.0, "ug/m/N")), creepage=np.linspace(1.0, 5.0, 6))
+    with pytest.raises(wl.FitError, match=r"(?s)must not exceed 8.*give bounds"):
+        wl.fit(predict, tests, free=["k"], bootstrap=0)
+    fit = wl.fit(predict, tests, free=["k"], bootstrap=0, bounds={"k": ("1 ug/m/N", Q(7.9, "ug/m/N"))})
+    assert fit.parameters["k"].magnitude == pytest.approx(6.0, rel=1e-7)
+
+
+def test_parameters_that_are_not_known_are_refused() -> None:
+    predict, tests = usfd("global"), made_up(usfd("global"), 0.1)
+    refused("no number 'q_z'; did you mean 'q_s'.*m_m, q_s, m_c, tr_sc, friction_coefficient", predict, tests, ["q_z"])
+    refused("'fitted_for' of wear law 'usfd' is a str and no number", predict, tests, ["fitted_for"])
+    refused("'q_s' is given twice", predict, tests, ["q_s", "q_s"])
+    refused("name at least one", predict, tests, [])
+    refused("without a wear law there is only 'friction_coefficient'", GLOBAL, tests, ["q_s"])
+    refused("give a rig with a contact model", RIG, tests, ["q_s"])
+    kth = GLOBAL | wl.wear_law("kth")
+    refused("'coefficient' of wear law 'kth' is a Coefficients.*coefficient.low_speed", kth, tests, ["coefficient"])
+
+
+def test_settings_that_cannot_be_are_refused() -> None:
+    predict, tests = usfd("global"), made_up(usfd("global"), 0.1)
+    refused("scatter: must be", predict, tests, ["q_s"], scatter="log")
+    refused("confidence: must lie", predict, tests, ["q_s"], confidence=95)
+    refused("bootstrap: must not be negative", predict, tests, ["q_s"], bootstrap=-1)
+    refused("starts: must not be negative", predict, tests, ["q_s"], starts=-1)
+    refused("'m_m' is not free", predict, tests, ["q_s"], bounds={"m_m": ("1 ug/m/N", "2 ug/m/N")})
+    refused("q_s: got 1.000 N", predict, tests, ["q_s"], bounds={"q_s": ("1 N", "2 N")})
+    refused("q_s: got the bare number 1", predict, tests, ["q_s"], bounds={"q_s": (1.0, 2.0)})
+    refused(
+        "greater than zero and in ascending order",
+        predict,
+        tests,
+        ["q_s"],
+        bounds={"q_s": ("0 ug/m/mm^2", "2 ug/m/mm^2")},
+    )
+    flat = GLOBAL | sloping.model_copy(update={"offset": Q(0.0, "ug/m/mm^2")})
+    refused("first value of 'offset' is zero", flat, tests, ["offset"])
+
+
+def test_too_few_tests_are_refused() -> None:
+    predict, tests = usfd("global"), made_up(usfd("global"), 0.1)
+    refused("4 measurements cannot tell 4 parameters", predict, tests[[0, 8, 14, 19]], ALL)
+    refused("1 measurement cannot tell 1 parameter", predict, tests[[3]], ["m_m"])
+
+
+def test_rates_of_zero_are_refused_where_scatter_is_by_a_factor() -> None:
+    predict, tests = usfd("global"), made_up(usfd("global"))
+    rate = tests.wear_rate.magnitude.copy()
+    rate[[2, 4]] = 0.0
+    conditions: Any = {"creepage": tests.creepage, "max_pressure": PRESSURE, "friction_coefficient": FRICTION}
+    zeros = wl.WearTests.from_arrays(
+        **conditions, wear_rate=Q(rate, "ug/m/mm^2"), labels=[f"T{number}" for number in range(20)]
+    )
+    refused('zero in tests T2, T4.*scatter="absolute"', predict, zeros, ["q_s"])
+    wl.fit(predict, zeros, free=["q_s"], scatter="absolute", bootstrap=0)
+    still = np.where(np.arange(20) == 5, 0.0, CREEPAGE)
+    conditions["creepage"] = Q(still, "%")
+    refused(
+        "creepage: is zero in test number 6",
+        predict,
+        wl.WearTests.from_arrays(**conditions, wear_rate=tests.wear_rate),
+        ["q_s"],
+    )
+
+
+def test_measurements_that_are_not_there_are_refused() -> None:
+    predict = usfd("exact")
+    only_traction = traction_tests(np.full(5, 0.4), np.linspace(3.0, 9.0, 5), friction_coefficient=0.4)
+    refused("none of the 5 tests has a wear rate", predict, only_traction, ["q_s"])
+    refused("fitted to measured traction, and the tests hold none", predict, made_up(predict), ["friction_coefficient"])
+    with pytest.raises(wl.ConditionsError, match=r"friction_coefficient=0\.46"):
+        wl.fit(predict, traction_tests(np.full(5, 0.4), np.arange(1.0, 6.0), wear_rate="5 ug/m/mm^2"), free=["q_s"])
+    uncertainty = Q([1.0, np.nan, 1.0, 1.0, 1.0], "ug/m/mm^2")
+    gap = wl.WearTests.from_arrays(
+        creepage=Q(np.arange(1.0, 6.0), "%"),
+        max_pressure=PRESSURE,
+        friction_coefficient=0.4,
+        wear_rate="5 ug/m/mm^2",
+        wear_rate_uncertainty=uncertainty,
+    )
+    refused("is missing in test number 2", predict, gap, ["q_s"])
+
+
+@pytest.mark.parametrize("contact", ["global", "exact"])
+def test_parameters_of_a_regime_without_tests_are_refused(contact: str) -> None:
+    predict = usfd(contact)
+    for seed in range(3):
+        tests = made_up(predict, 0.1, seed=seed, creepage=np.geomspace(0.1, 12.0, 15))
+        refused(r"depends? on m_c and tr_sc.*creepage 0.1000 % to 12.00 %", predict, tests, ALL)
+    refused("depends on m_c at the best fit", predict, tests, ["m_m", "m_c"])
+
+
+def test_parameters_of_which_only_a_combination_matters_are_refused() -> None:
+    predict = GLOBAL | wl.wear_law("kth")
+    tests = made_up(predict, 0.1, creepage=np.linspace(1.0, 15.0, 9))
+    refused(
+        "only a combination of coefficient.low_speed and hardness",
+        predict,
+        tests,
+        ["coefficient.low_speed", "hardness"],
+    )
+    one_catastrophic = made_up(usfd("global"), 0.1, creepage=np.append(np.geomspace(0.1, 12.0, 12), 17.0))
+    refused("only a combination of m_c and tr_sc", usfd("global"), one_catastrophic, ALL)
+
+
+def test_a_fit_no_better_than_without_its_parameters_is_refused() -> None:
+    # Tests of the first two regimes; the law that is given begins with a third one in their scatter.
+    predict = usfd("global")
+    near = predict.wear_law.model_copy(update={"tr_sc": Q(64, "N/mm^2"), "m_c": Q(1, "ug/m/N")})
+    tests = made_up(predict, 0.1, seed=2, creepage=np.linspace(0.5, 13.0, 20))
+    rate = tests.wear_rate * np.where(np.arange(20) >= 17, 1.15, 1.0)
+    conditions: Any = {"creepage": tests.creepage, "max_pressure": PRESSURE, "friction_coefficient": FRICTION}
+    tests = wl.WearTests.from_arrays(**conditions, wear_rate=rate)
+    refused("no worse than chance allows", wl.Pipeline(contact=predict.contact, wear_law=near), tests, ALL)
+
+
+def test_a_fit_at_a_bound_is_warned_of_and_the_caller_is_named() -> None:
+    predict, tests = usfd("global"), made_up(usfd("global"), 0.1)
+    with pytest.warns(wl.FitWarning, match="at a bound of q_s") as caught:
+        wl.fit(predict, tests, free=["q_s"], bootstrap=0, bounds={"q_s": ("70 ug/m/mm^2", "80 ug/m/mm^2")})
+    assert caught[0].filename == __file__
+
+
+def test_a_test_that_decides_a_parameter_alone_is_warned_of() -> None:
+    predict = usfd("global")
+    tests = made_up(predict, 0.1, creepage=np.append(np.geomspace(0.1, 12.0, 12), 17.0))
+    with pytest.warns(wl.FitWarning, match="meets test number 13 whatever is measured"):
+        wl.fit(predict, tests, free=["m_m", "q_s", "m_c"], bootstrap=0)
+
+
+def test_a_fit_that_does_not_converge_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("wearlaw.least_squares.ITERATIONS", 0.2)
+    predict = usfd("exact")
+    refused("has not converged", predict, made_up(predict, 0.1), ALL, starts=0, bounds={})
+
+
+def test_values_that_make_no_law_are_refused() -> None:
+    # A plateau that begins, at q_s/m_m = 84.9 N/mm², behind the third regime.
+    predict = usfd("global")
+    tests = made_up(predict, creepage=np.linspace(1.0, 20.0, 12))
+    w = predict(**tests.conditions(GLOBAL.contact_model)).wear_index_density.magnitude
+    rate = Q(np.minimum(5.3 * w, 450.0) + 61.9 * np.maximum(w - 77.26, 0.0), "ug/m/mm^2")
+    conditions: Any = {"creepage": tests.creepage, "max_pressure": PRESSURE, "friction_coefficient": FRICTION}
+    high = wl.WearTests.from_arrays(**conditions, wear_rate=rate)
+    refused("the best fit is no law.*tr_sc must not lie below", predict, high, ["q_s"])
