@@ -11,66 +11,24 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
 import pint
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from wearlaw import plugins
-from wearlaw.arrays import Array
-from wearlaw.conditions import CREEPAGE
 from wearlaw.configuration import Configuration, known_as
 from wearlaw.errors import CaseError, ConfigurationError, InputError, did_you_mean
+from wearlaw.figure_check import Contents
+from wearlaw.figure_spec import FigureSpec
 from wearlaw.grid import Grid
+from wearlaw.measured_points import known_variables
+from wearlaw.measurement import Measurement
 from wearlaw.models import Model
 from wearlaw.rig import Disc, TwinDisc
 from wearlaw.specification import ContactModelField, MaterialField, WearLawField
-from wearlaw.units import Length, Quantity, Speed, Unit, coefficient, scalar_si, text_of
+from wearlaw.units import Length, Quantity, Speed, Unit, text_of
 
-
-class Measurement(Configuration):
-    """Measured traction, to be shown beside the predicted one.
-
-    It is given as `traction_coefficient`, or as the `frictional_heat` of tests under one `normal_force`, which is
-    T ξ V.
-    """
-
-    label: str
-    """What the legend calls it."""
-    source: str
-    """Where the numbers come from."""
-    creepage: tuple[str, ...]
-    """Creepage of each test."""
-    traction_coefficient: tuple[float, ...] | None = None
-    """T/N of each test [-]."""
-    frictional_heat: tuple[str, ...] | None = None
-    """Heat generated in each test [W]."""
-    normal_force: Annotated[Quantity, Unit("N")] | None = None
-    """Load of the tests whose heat is given [N]."""
-
-    @model_validator(mode="after")
-    def _complete(self) -> Measurement:
-        given = self.frictional_heat if self.traction_coefficient is None else self.traction_coefficient
-        if given is None or (self.traction_coefficient is not None and self.frictional_heat is not None):
-            raise ValueError("give either traction_coefficient or frictional_heat")
-        if (self.frictional_heat is None) != (self.normal_force is None):
-            raise ValueError("normal_force belongs to frictional_heat: give both or none")
-        if not given:
-            raise ValueError("creepage is empty; give at least one test")
-        if len(given) != len(self.creepage):
-            raise ValueError(f"there are {len(self.creepage)} values of creepage, but {len(given)} measured ones")
-        self.points(TwinDisc.suros())
-        return self
-
-    def points(self, rig: TwinDisc) -> tuple[Array, Array]:
-        """Return the creepage [-] and the traction coefficient [-] of each test."""
-        creepage = np.array([float(CREEPAGE.si(text, "creepage")) for text in self.creepage])
-        if self.traction_coefficient is not None:
-            return creepage, coefficient(self.traction_coefficient, "traction_coefficient")
-        heat = np.array([float(Unit("W").si(text, "frictional_heat")) for text in self.frictional_heat or ()])
-        if self.normal_force is None or not (creepage > 0).all():
-            raise InputError("creepage: traction follows from frictional heat only where the creepage is positive")
-        slip_speed = creepage * scalar_si(rig.rolling_speed, "m/s")
-        return creepage, heat / (slip_speed * scalar_si(self.normal_force, "N"))
+CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
+"""The names under which a run writes its case, and the tests that it was given as a file."""
 
 
 class Preset(Configuration):
@@ -105,10 +63,20 @@ def _rig(value: Any) -> Any:
     return Preset(**value).rig() if isinstance(value, dict) and "preset" in value else value
 
 
+RigField = Annotated[TwinDisc, BeforeValidator(_rig)]
+"""A field that takes a rig, a table of its fields, or one of a preset with what differs from it."""
+
+
 def _models(value: Any) -> Any:
     if not (isinstance(value, (list, tuple)) and value):
         raise InputError(f"must be a list of names, or of tables with a name and options; got {value!r}")
     return value
+
+
+def _section(name: str) -> str:
+    found = plugins.installed()
+    found.sections.find(name, found.broken)
+    return name
 
 
 ModelList = (BeforeValidator(_models), Field(json_schema_extra={"minItems": 1}))
@@ -121,7 +89,7 @@ class Case(Configuration):
     """What the study is called in its results."""
     plugins: dict[str, str] = Field(default_factory=dict)
     """The distributions that the case needs, each with a version range such as ">=1.2,<2"; "" for any version."""
-    rig: Annotated[TwinDisc, BeforeValidator(_rig)]
+    rig: RigField
     """The test rig; `preset = "suros"` starts from that rig and overrides what else is given."""
     contact_models: Annotated[tuple[ContactModelField, ...], *ModelList]
     """The contact models, each a name or a table of its name and options."""
@@ -132,7 +100,11 @@ class Case(Configuration):
     profiles: dict[str, Grid] = Field(default_factory=dict)
     """Single operating points at which stresses and slip along the patch are shown, each under a name."""
     measured: Measurement | None = None
-    """Measured traction."""
+    """Tests of a lab, to be shown beside the predictions."""
+    sections: tuple[Annotated[str, AfterValidator(_section)], ...] = ()
+    """The sections that plugins add to the report, by name."""
+    figures: dict[str, FigureSpec] = Field(default_factory=dict)
+    """The figures, each under the name of its file; one of each kind for each sweep and profile where not given."""
 
     @model_validator(mode="before")
     @classmethod
@@ -155,7 +127,23 @@ class Case(Configuration):
                 raise ValueError(f"profiles.{name}: a profile is at one operating point; give each condition one value")
         labels(self.contact_models)
         labels(self.wear_laws)
+        twice = sorted({name for name in self.sections if self.sections.count(name) > 1})
+        if twice:
+            raise ValueError(f"sections: '{twice[0]}' is listed twice; leave one out")
+        wrong = list(self._contents().problems(self.figures))
+        if wrong:
+            raise ConfigurationError(self.subject(), wrong)
         return self
+
+    def _contents(self) -> Contents:
+        return Contents(
+            rig=self.rig,
+            contact_models=dict(zip(labels(self.contact_models), self.contact_models, strict=True)),
+            wear_laws=dict(zip(labels(self.wear_laws), self.wear_laws, strict=True)),
+            sweeps=self.sweeps,
+            profiles=self.profiles,
+            measured=known_variables(self.measured.data) if self.measured else (),
+        )
 
 
 def labels(models: Sequence[Model]) -> list[str]:
@@ -224,6 +212,7 @@ def case_schema() -> dict[str, Any]:
         for name, law in plugins.parameter_sets().items()
         for choice in ({"const": name}, {**_model_schema(name, type(law), definitions), "required": ["model"]})
     ]
+    schema["properties"]["sections"]["items"] = {"enum": list(plugins.installed().sections.items())}
     preset = Preset.model_json_schema()
     definitions.update(preset.pop("$defs", {}))
     schema["properties"]["rig"] = {"anyOf": [{"$ref": "#/$defs/TwinDisc"}, preset]}
@@ -257,9 +246,34 @@ def load_case(name_or_path: str) -> Case:
     """
     text = case_text(name_or_path)
     try:
-        case = Case(**tomllib.loads(text))
+        case = Case(**_beside(name_or_path, tomllib.loads(text)))
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"case '{name_or_path}' is not valid TOML: {error}") from None
     except ConfigurationError as error:
         raise CaseError(f"case '{name_or_path}' is wrong in:" + "".join(f"\n  {p}" for p in error.problems)) from None
     return known_as(name_or_path, case) if name_or_path in plugins.installed().cases.providers else case
+
+
+def _beside(name_or_path: str, fields: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields of a case with the path of its tests, which starts at the case file, as it is from here."""
+    found, measured = plugins.installed(), fields.get("measured")
+    if isinstance(measured, dict) and name_or_path not in found.cases.providers:
+        tests = measured.get("tests")
+        if isinstance(tests, str) and tests not in found.test_sets.providers:
+            return {**fields, "measured": {**measured, "tests": str(Path(name_or_path).parent / tests)}}
+    return fields
+
+
+def written(case: Case) -> dict[str, str]:
+    """Return the files that let a case run again in any folder, by name: the case with every default, and its tests.
+
+    Tests that a plugin ships are none of them.
+    """
+    import tomli_w
+
+    fields = case.model_dump(mode="json", by_alias=True, exclude_none=True)
+    files = {}
+    if case.measured is not None and not case.measured.shipped:
+        fields["measured"]["tests"] = TESTS_FILE
+        files[TESTS_FILE] = case.measured.text
+    return {CASE_FILE: tomli_w.dumps(fields), **files}

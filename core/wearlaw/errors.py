@@ -36,6 +36,35 @@ class CaseError(InputError):
     """A case file is missing, is not TOML, or is wrong in one of its fields."""
 
 
+class DataError(InputError):
+    """Tests of a lab cannot be used: their file is missing or wrong, or values are.
+
+    Attributes
+    ----------
+    subject : str
+        What is wrong.
+    problems : tuple of str
+        Every problem, each with where it is, not only the first one.
+    """
+
+    MOST = 20
+    """How many problems the message lists."""
+
+    def __init__(self, subject: str, problems: Iterable[str] = ()) -> None:
+        self.subject = subject
+        self.problems = tuple(problems)
+        super().__init__(subject, self.problems)
+
+    def __str__(self) -> str:
+        more = len(self.problems) - self.MOST
+        listed = [*self.problems[: self.MOST], *([f"... and {more} more"] if more > 0 else [])]
+        return self.subject + "".join(f"\n  {problem}" for problem in listed)
+
+
+class FitError(InputError):
+    """Parameters cannot be fitted: they are not known, or the tests do not determine them."""
+
+
 class FrozenError(InputError, AttributeError):
     """A setting of a record that never changes was assigned or deleted."""
 
@@ -96,6 +125,10 @@ class CalibrationWarning(WearlawWarning):
 
 class RangeWarning(WearlawWarning):
     """A model is used outside the range for which its source states it."""
+
+
+class FitWarning(WearlawWarning):
+    """A fit is there, but is less certain than its numbers say."""
 
 
 class PluginWarning(WearlawWarning):

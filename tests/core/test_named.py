@@ -202,7 +202,7 @@ def test_a_run_says_what_it_used(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("wearlaw.figures.figures", lambda _: {})
+    monkeypatch.setattr("wearlaw.output.write_figures", lambda *_: [])
     install("lab", LAB, version="1.2.3")
     (tmp_path / "own.toml").write_text(LAB_STUDY)
     monkeypatch.chdir(tmp_path)

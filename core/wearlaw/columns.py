@@ -1,0 +1,151 @@
+"""The columns of a table of wear tests: their units, which of them go together, and what each may hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.conditions import LOADS
+from wearlaw.errors import UnitError
+from wearlaw.registry import si_factor
+from wearlaw.units import WEAR_RATE, Q
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class Column(NamedTuple):
+    """What a column holds: the unit in which it is shown, the sign of its values, and the most in magnitude in SI."""
+
+    unit: str
+    sign: Literal["positive", "not negative", "any"] = "positive"
+    limit: float = np.inf
+
+    def wrong(self, si: Array) -> Iterator[tuple[NDArray[np.bool_], str]]:
+        """Give where each rule is broken, and the rule; missing values break none."""
+        yield np.isinf(si), "must be finite"
+        if self.sign == "positive":
+            yield si <= 0, "must be greater than zero"
+        if self.sign == "not negative":
+            yield si < 0, "must not be negative"
+        yield abs(si) > self.limit, f"must not exceed {100.0 * self.limit:g} % in magnitude; is its unit right?"
+
+
+COLUMNS = {
+    "creepage": Column("%", "any", 1.0),
+    "normal_force": Column("kN"),
+    "normal_force_per_width": Column("kN/m"),
+    "max_pressure": Column("MPa"),
+    "friction_coefficient": Column(""),
+    "traction_coefficient": Column(""),
+    "tangential_force": Column("N"),
+    "frictional_heat": Column("W"),
+    "rolling_speed": Column("m/s"),
+    "wear_rate": Column(WEAR_RATE, "not negative"),
+    "wear_rate_uncertainty": Column(WEAR_RATE),
+}
+"""All columns of numbers."""
+
+DERIVED = ("tangential_force", "frictional_heat")
+"""The columns from which a traction coefficient follows."""
+
+TRACTIONS = ("traction_coefficient", *DERIVED)
+"""The columns that give the measured traction."""
+
+COMPLETE = ("creepage", *LOADS, "friction_coefficient")
+"""The columns that need a value for every test."""
+
+
+def head(name: str) -> str:
+    """Return the head of a column with its usual unit, as in "creepage [%]"."""
+    unit = COLUMNS[name].unit
+    return f"{name} [{unit}]" if unit else name
+
+
+def factor(name: str, unit: str) -> float:
+    """Return the factor from a unit to the SI unit of a column.
+
+    Raises
+    ------
+    UnitError
+        If the unit is not known, or not of the column's dimension.
+    """
+    due = COLUMNS[name].unit
+    advice = f"give it in {due} or another unit of that dimension" if due else "give it as a plain number"
+    try:
+        return si_factor(Q(1.0, unit), due)
+    except UnitError as error:
+        reason = str(error) if str(error).startswith("'") else f"got '{unit}', {error}"
+        raise UnitError(f"{reason}; {advice}") from None
+
+
+def faulty_columns(names: Sequence[str] | Mapping[str, object]) -> list[str]:
+    """Return what is wrong with a choice of columns, whatever they hold."""
+    loads, tractions = ([name for name in kind if name in names] for kind in (LOADS, TRACTIONS))
+    derived = [name for name in DERIVED if name in names]
+    faults = []
+    if "creepage" not in names:
+        faults.append(f"creepage: is missing; add a column '{head('creepage')}'")
+    if len(loads) != 1:
+        choice = ", ".join(map(head, LOADS))
+        faults.append(f"give exactly one load of {choice}; got {' and '.join(loads) or 'none of them'}")
+    if len(tractions) > 1:
+        faults.append(f"{' and '.join(tractions)}: all give the traction; keep one of them")
+    if derived and loads and loads != ["normal_force"]:
+        faults.append(
+            f"{derived[0]}: T/N follows from it only where the load is normal_force, not {loads[0]}, which takes a"
+            " track width; give normal_force or traction_coefficient"
+        )
+    if "frictional_heat" in names and "rolling_speed" not in names:
+        faults.append(
+            f"frictional_heat: is T × creepage × rolling speed; add a column '{head('rolling_speed')}' beside it"
+        )
+    if "rolling_speed" in names and "frictional_heat" not in names:
+        faults.append("rolling_speed: is that of the rig; it is only due here beside frictional_heat, so leave it out")
+    if "wear_rate_uncertainty" in names and "wear_rate" not in names:
+        faults.append("wear_rate_uncertainty: has no wear_rate that it belongs to")
+    if "wear_rate" not in names and not tractions:
+        faults.append(f"nothing is measured; add a column '{head('wear_rate')}' or 'traction_coefficient'")
+    return faults
+
+
+def faulty(columns: Mapping[str, Array]) -> list[tuple[int, str, str]]:
+    """Return the test, the column and the broken rule of each value that cannot be."""
+    faults = []
+    for name, values in columns.items():
+        for wrong, rule in COLUMNS[name].wrong(values):
+            faults += [(int(i), name, rule) for i in np.flatnonzero(wrong)]
+        if name in COMPLETE:
+            faults += [(int(i), name, "is missing; every test needs it") for i in np.flatnonzero(np.isnan(values))]
+    heat = columns.get("frictional_heat")
+    if heat is not None:
+        without = ~np.isnan(heat) & np.isnan(columns.get("rolling_speed", heat))
+        faults += [(int(i), "rolling_speed", "is missing; frictional_heat needs it") for i in np.flatnonzero(without)]
+    return faults or _faulty_traction(columns)
+
+
+def _faulty_traction(columns: Mapping[str, Array]) -> list[tuple[int, str, str]]:
+    """Return where no traction coefficient follows from what was measured, as at zero creepage."""
+    derived = [name for name in DERIVED if name in columns]
+    needed = {"creepage", "normal_force", *(["rolling_speed"] if "frictional_heat" in derived else [])}
+    if len(derived) != 1 or not columns.keys() >= needed:
+        return []
+    traction = with_traction(columns)["traction_coefficient"]
+    wrong = ~np.isnan(columns[derived[0]]) & ~((traction > 0) & np.isfinite(traction))
+    rule = "gives a traction coefficient of {:g}; check the creepage and the units"
+    return [(int(i), derived[0], rule.format(traction[i])) for i in np.flatnonzero(wrong)]
+
+
+def with_traction(columns: Mapping[str, Array]) -> dict[str, Array]:
+    """Return columns with the traction coefficient in the place of what it follows from."""
+    kept = {name: values for name, values in columns.items() if name not in (*DERIVED, "rolling_speed")}
+    with np.errstate(divide="ignore", over="ignore", under="ignore"):  # `faulty` refuses what comes of it
+        force = columns.get("tangential_force")
+        if "frictional_heat" in columns:
+            force = columns["frictional_heat"] / (abs(columns["creepage"]) * columns["rolling_speed"])
+        if force is not None:
+            kept["traction_coefficient"] = force / columns["normal_force"]
+    return {name: np.array(kept[name]) for name in COLUMNS if name in kept}

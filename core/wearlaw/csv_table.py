@@ -1,0 +1,185 @@
+"""Taking a CSV file apart as spreadsheets write it: header, separator and rows, with the lines they stand in."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import NamedTuple
+
+import numpy as np
+
+from wearlaw.columns import COLUMNS, factor, faulty_columns, head
+from wearlaw.errors import DataError, UnitError, did_you_mean
+
+TEXTS = ("label", "comment")
+"""The columns of text."""
+
+_HEAD = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?")
+
+
+class Row(NamedTuple):
+    """The cells of a row, and the line in which it begins."""
+
+    line: int
+    cells: list[str]
+
+
+class Head(NamedTuple):
+    """One column: its head in the file, its place from the left, its name if it has one, and its unit in SI."""
+
+    text: str
+    place: int
+    name: str
+    factor: float
+
+
+class Table(NamedTuple):
+    """What a file holds."""
+
+    source: str
+    separator: str
+    heads: list[Head]
+    rows: list[Row]
+
+
+@dataclass
+class Problems:
+    """Collects what is wrong in a file, each with its line."""
+
+    found: list[tuple[int, str]] = field(default_factory=list)
+    cells: set[tuple[int, str]] = field(default_factory=set)
+    """Line and column of the cells that something is said about."""
+
+    def add(self, line: int, column: str, message: str) -> None:
+        """Add a problem, but no second one about the same cell."""
+        if not column or (line, column) not in self.cells:
+            self.cells.add((line, column))
+            where = f"line {line}, column '{column}'" if column else f"line {line}"
+            self.found.append((line, f"{where}: {message}"))
+
+    def texts(self) -> list[str]:
+        """Return all problems in the order of the file."""
+        return [text for _, text in sorted(self.found, key=lambda one: one[0])]
+
+
+def table_of(text: str, name: str, wrong: Problems) -> Table:
+    """Return the header and the rows that have a cell for each column of it; note what is wrong with the others."""
+    source, separator, lines, start = _preamble(text)
+    try:
+        rows = list(_rows(lines, start, separator))
+    except csv.Error as error:
+        raise DataError(f"the tests '{name}' cannot be read as CSV: {error}") from None
+    if not rows:
+        raise DataError(f"the tests '{name}' are empty; begin with a header such as: {head('creepage')}, ...")
+    heads = _heads(rows[0], wrong)
+    if not any(one.name for one in heads):
+        known = ", ".join([*map(head, COLUMNS), *TEXTS])
+        raise DataError(
+            f"the tests '{name}' are wrong in:", [f"line {rows[0].line}: is no header; the columns are: {known}"]
+        )
+    table = Table(source, separator, heads, [])
+    table.rows.extend(row for row in rows[1:] if any(map(str.strip, row.cells)) and _fits(row, table, wrong))
+    if not table.rows and not wrong.found:
+        wrong.add(rows[0].line, "", "no test follows the header")
+    return table
+
+
+def _preamble(text: str) -> tuple[str, str, list[str], int]:
+    """Return the source that the comments state, the separator of cells, all lines, and which is the header."""
+    lines = io.StringIO(text, newline=None).readlines()
+    source = separator = ""
+    for number, line in enumerate(lines):
+        stripped = line.strip()
+        if re.fullmatch("sep=[,;|]?", stripped):
+            separator = stripped[4:] or "\t"
+        elif stripped.startswith(("#", '"#')):
+            key, _, value = _comment(stripped).partition(":")
+            source = value.strip() if key.casefold() == "source" else source
+        elif stripped.strip(",;"):
+            found = next((mark for mark in ";\t" if mark in line), ",")
+            return source, separator or found, lines, number
+    return source, ",", lines, len(lines)
+
+
+def _comment(line: str) -> str:
+    """Return a comment without the quotes and separators that a spreadsheet adds to it."""
+    quoted = re.match(r'"((?:[^"]|"")*)', line)
+    text = quoted[1].replace('""', '"') if quoted else line.rstrip(",;\t ")
+    return text.lstrip("# ")
+
+
+def _rows(lines: list[str], start: int, separator: str) -> Iterator[Row]:
+    reader = csv.reader(lines[start:], delimiter=separator, skipinitialspace=True)
+    line = start + 1
+    for cells in reader:
+        yield Row(line, cells)
+        line = start + reader.line_num + 1
+
+
+def _heads(header: Row, wrong: Problems) -> list[Head]:
+    """Return the columns, and note what is wrong with them, or with which of them there are."""
+    texts = [cell.strip() for cell in header.cells]
+    while texts and not texts[-1]:
+        texts.pop()
+    heads = [Head(text, place, *_meaning(header.line, text, place, wrong)) for place, text in enumerate(texts)]
+    names = [one.name for one in heads if one.name]
+    for one in heads:
+        if names.count(one.name) > 1:
+            wrong.add(header.line, one.text, "is there more than once; keep one of them")
+    meant = [name for one in heads if not one.name for name in get_close_matches(_bare(one.text), COLUMNS, n=1)]
+    for fault in faulty_columns([*names, *meant]):
+        wrong.add(header.line, "", fault)
+    return heads
+
+
+def _bare(text: str) -> str:
+    """Return the head of a column without its unit, however that is written."""
+    return re.split(r"[\[(]", text)[0].strip()
+
+
+def _meaning(line: int, text: str, place: int, wrong: Problems) -> tuple[str, float]:
+    """Return the name of a column, "" if it is none, and the factor from its unit to SI, NaN if that is wrong."""
+    match = _HEAD.fullmatch(text)
+    name, unit = (match["name"], match["unit"]) if match else (text, None)
+    if not text:
+        wrong.add(line, "", f"the head of column {place + 1} is empty")
+    elif name not in (*COLUMNS, *TEXTS):
+        bracket = " write the unit in square brackets;" if "(" in name else ""
+        known = [*COLUMNS, *TEXTS]
+        hint = did_you_mean(_bare(text), known)
+        wrong.add(line, text, f"unknown column;{bracket}{hint} The columns are: {', '.join(known)}")
+    elif name in TEXTS:
+        if unit is not None:
+            wrong.add(line, text, "is text and takes no unit")
+        return name, np.nan
+    elif COLUMNS[name].unit and not unit:
+        wrong.add(line, text, f"has no unit; write it as '{head(name)}'")
+        return name, np.nan
+    else:
+        try:
+            return name, factor(name, "" if unit in (None, "-") else str(unit))
+        except UnitError as error:
+            wrong.add(line, text, str(error))
+        return name, np.nan
+    return "", np.nan
+
+
+def _fits(row: Row, table: Table, wrong: Problems) -> bool:
+    """Return whether a row has a cell for each column, and none but empty ones beyond."""
+    due, cells = len(table.heads), row.cells
+    beyond = len("".join(cells[due:]).strip()) > 0
+    if len(cells) >= due and not beyond:
+        return True
+    hint = ""
+    if cells[0].startswith("#"):
+        hint = "; comments go above the header"
+    elif any("\n" in cell for cell in cells):
+        hint = "; a quotation mark in it may have no partner"
+    elif beyond and table.separator == ",":
+        hint = "; with decimal commas, separate cells by ';'"
+    wrong.add(row.line, "", f"has {len(cells)} cells, but the header has {due}{hint}")
+    return False

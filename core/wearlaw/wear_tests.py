@@ -1,0 +1,248 @@
+"""Wear tests of a lab: what was set, what was measured, one test an entry, missing measurements marked.
+
+`read_tests` reads them from a CSV file, `WearTests.from_arrays` takes arrays. Nothing here knows a rig: the tests
+give the conditions of its contact problems.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+import pint
+
+from wearlaw.arrays import Array
+from wearlaw.columns import COLUMNS, factor, faulty, faulty_columns, head, with_traction
+from wearlaw.conditions import LOADS
+from wearlaw.errors import ConditionsError, DataError, UnitError
+from wearlaw.registry import symbol
+from wearlaw.units import Quantity, QuantityLike, from_si, parse, real_array
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import ArrayLike
+
+    from wearlaw.models import ContactModel
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WearTests:
+    """Tests on one rig, made by `read_tests` or `WearTests.from_arrays`; nothing in it can change.
+
+    Attributes
+    ----------
+    columns : mapping of str to ndarray, (tests,)
+        The values in SI by name: `creepage`, one of the loads, and of `friction_coefficient`,
+        `traction_coefficient`, `wear_rate` and `wear_rate_uncertainty` those that there are. NaN where a measurement
+        is missing.
+    labels : tuple of str
+        What each test is called; "" where it has no name.
+    source : str
+        Where the numbers come from.
+    """
+
+    columns: Mapping[str, Array]
+    labels: tuple[str, ...]
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        for values in self.columns.values():
+            values.flags.writeable = False
+        object.__setattr__(self, "columns", MappingProxyType(dict(self.columns)))
+
+    @classmethod
+    def from_arrays(
+        cls,
+        *,
+        creepage: QuantityLike,
+        normal_force: QuantityLike | None = None,
+        normal_force_per_width: QuantityLike | None = None,
+        max_pressure: QuantityLike | None = None,
+        friction_coefficient: ArrayLike | None = None,
+        traction_coefficient: ArrayLike | None = None,
+        tangential_force: QuantityLike | None = None,
+        frictional_heat: QuantityLike | None = None,
+        rolling_speed: QuantityLike | None = None,
+        wear_rate: QuantityLike | None = None,
+        wear_rate_uncertainty: QuantityLike | None = None,
+        labels: Sequence[str] | None = None,
+        source: str = "",
+    ) -> Self:
+        """Return tests from arrays; one value stands for all tests, NaN for a measurement that is missing.
+
+        Parameters
+        ----------
+        creepage : Quantity or str, (tests,)
+            ξ, of magnitude at most 1.
+        normal_force, normal_force_per_width, max_pressure : Quantity or str, (tests,)
+            The load, exactly one of them: N [N], P [N/m] or p0 [Pa].
+        friction_coefficient : array_like of float, (tests,), optional
+            μ [-].
+        traction_coefficient, tangential_force, frictional_heat : (tests,), optional
+            The measured traction, at most one of them: T/N [-], magnitude of T [N], or the power T ξ V [W]. The last
+            two need `normal_force` as the load, and `frictional_heat` needs `rolling_speed`.
+        rolling_speed : Quantity or str, (tests,), optional
+            V of the tests whose heat is given [m/s].
+        wear_rate, wear_rate_uncertainty : Quantity or str, (tests,), optional
+            Mass lost per distance rolled and area [kg/m³], and its standard uncertainty.
+        labels : sequence of str, optional
+            What each test is called.
+        source : str, optional
+            Where the numbers come from.
+
+        Raises
+        ------
+        DataError
+            If columns are missing or exclude each other, or a value has the wrong unit, sign or size.
+        """
+        given = {name: value for name, value in locals().items() if name in COLUMNS and value is not None}
+        faults = faulty_columns(given)
+        if faults:
+            raise DataError("the tests are wrong in:", faults)
+        arrays = _same_length({name: _si(name, value) for name, value in given.items()})
+        faults = [f"{name}: {_shown(name, arrays[name][i])} at index {i} {rule}" for i, name, rule in faulty(arrays)]
+        count = len(arrays["creepage"])
+        if labels is not None and (isinstance(labels, str) or len(labels) != count):
+            faults.append(f"labels: give one text for each of the {count} tests, got {labels!r}")
+        if faults:
+            raise DataError("the tests are wrong in:", faults)
+        return cls(with_traction(arrays), tuple(map(str, [""] * count if labels is None else labels)), source)
+
+    @property
+    def creepage(self) -> Quantity:
+        """ξ, of shape (tests,)."""
+        return self._quantity("creepage")
+
+    @property
+    def friction_coefficient(self) -> Array | None:
+        """μ as plain numbers, of shape (tests,); None if the tests do not hold it."""
+        return self.columns.get("friction_coefficient")
+
+    @property
+    def traction_coefficient(self) -> Quantity:
+        """Measured T/N, of shape (tests,); NaN where it was not measured."""
+        return self._quantity("traction_coefficient")
+
+    @property
+    def wear_rate(self) -> Quantity:
+        """Measured mass lost per distance rolled and area, of shape (tests,); NaN where it was not measured."""
+        return self._quantity("wear_rate")
+
+    @property
+    def wear_rate_uncertainty(self) -> Quantity | None:
+        """Standard uncertainty of the wear rate, of shape (tests,); None if the tests do not hold it."""
+        return self._quantity("wear_rate_uncertainty") if "wear_rate_uncertainty" in self.columns else None
+
+    def conditions(self, model: ContactModel, friction_coefficient: ArrayLike | None = None) -> dict[str, Any]:
+        """Return the conditions of the tests as ``rig.problem(**conditions)`` takes them.
+
+        Parameters
+        ----------
+        model : ContactModel
+            What solves the contact. If it can use a measured traction, and all tests have one, the conditions hold it.
+        friction_coefficient : array_like of float, optional
+            μ [-] for tests that do not hold it.
+
+        Raises
+        ------
+        ConditionsError
+            If the friction coefficient is not known.
+        """
+        friction = friction_coefficient if self.friction_coefficient is None else self.friction_coefficient
+        if friction is None:
+            raise ConditionsError(
+                "friction_coefficient: the tests do not hold it; give it, such as friction_coefficient=0.46, or add a"
+                " column of that name"
+            )
+        load = next(name for name in LOADS if name in self.columns)
+        conditions = {
+            load: self._quantity(load),
+            "creepage": self.creepage,
+            "friction_coefficient": friction,
+        }
+        traction = self.columns.get("traction_coefficient")
+        if model.uses_measured_traction and traction is not None and not np.isnan(traction).any():
+            conditions["traction_coefficient"] = traction
+        return conditions
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the tests as a table with units in its header; written as CSV, `read_tests` reads it."""
+        import pandas as pd
+
+        named = {"label": self.labels} if any(self.labels) else {}
+        return pd.DataFrame(named | {head(name): self._quantity(name).magnitude for name in self.columns})
+
+    def __len__(self) -> int:
+        return len(self.labels)
+
+    def __getitem__(self, key: Any) -> Self:
+        """Return the tests that an index, a slice or a mask selects."""
+        index = np.atleast_1d(np.arange(len(self))[key])
+        if not index.size:
+            raise DataError(f"none of the {len(self)} tests is selected")
+        columns = {name: values[index] for name, values in self.columns.items()}
+        return type(self)(columns, tuple(self.labels[i] for i in index), self.source)
+
+    def __iter__(self) -> Iterator[Self]:
+        return (self[i] for i in range(len(self)))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, WearTests):
+            return NotImplemented
+        return (
+            (self.labels, self.source, self.columns.keys()) == (other.labels, other.source, other.columns.keys())
+        ) and all(np.array_equal(values, other.columns[name], equal_nan=True) for name, values in self.columns.items())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (dict(self.columns), self.labels, self.source)  # a copy's arrays are read-only again
+
+    def __repr__(self) -> str:
+        lines = [f"{len(self)} tests" if len(self) > 1 else "1 test", *map(self._summary, self.columns)]
+        return "\n  ".join(lines) + (f"\nfrom {self.source}" if self.source else "")
+
+    def _summary(self, name: str) -> str:
+        """Return the range of a column, and in how many tests it has a value if not in all."""
+        values = self._quantity(name).magnitude
+        there = values[~np.isnan(values)]
+        if not there.size:
+            return f"{name:22} none"
+        ends = " to ".join(f"{value:.4g}" for value in dict.fromkeys((there.min(), there.max())))
+        unit = symbol(self._quantity(name).units, "~P")
+        counted = f" in {there.size}" if there.size < len(self) else ""
+        return f"{name:22} {ends} {unit}".rstrip() + counted
+
+    def _quantity(self, name: str) -> Quantity:
+        missing = np.full(len(self), np.nan)
+        return from_si(self.columns.get(name, missing), COLUMNS[name].unit)
+
+
+def _si(name: str, value: object) -> Array:
+    """Return an argument as SI floats, NaN included."""
+    try:
+        quantity = parse(value) if isinstance(value, str) else value
+        if isinstance(quantity, pint.Quantity):
+            with np.errstate(over="ignore"):  # what overflows is refused as not finite
+                return real_array(quantity.magnitude) * factor(name, str(quantity.units))
+        if COLUMNS[name].unit:
+            raise UnitError(f"has no unit; give it such as Q([1.0, 2.0], '{COLUMNS[name].unit}')")
+        return real_array(value)
+    except UnitError as error:
+        raise DataError("the tests are wrong in:", [f"{name}: {error}"]) from None
+
+
+def _same_length(arrays: dict[str, Array]) -> dict[str, Array]:
+    try:
+        shape = np.broadcast_shapes((1,), *(array.shape for array in arrays.values()))
+    except ValueError:
+        shape = ()
+    if len(shape) != 1 or 0 in shape:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        raise DataError(f"give arrays with one entry for each test, all of one length; got {shapes}")
+    return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
+
+
+def _shown(name: str, si: float) -> str:
+    return repr(from_si(float(si), COLUMNS[name].unit))

@@ -1,0 +1,172 @@
+"""Reading wear tests from CSV as spreadsheets write it, and saying where a file is wrong."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+
+from wearlaw import plugins
+from wearlaw.arrays import Array
+from wearlaw.columns import COLUMNS, faulty, with_traction
+from wearlaw.csv_table import TEXTS, Head, Problems, Table, table_of
+from wearlaw.errors import DataError, did_you_mean
+from wearlaw.units import shortened
+from wearlaw.wear_tests import WearTests
+
+MISSING = ("", "na", "n/a", "nan", "-")
+"""What a cell without a value may hold, in any case."""
+
+_NUMBER = re.compile(r"[+\-\u2212]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
+_NOT_TEXT = {b"PK\x03\x04": "a workbook (.xlsx, .ods)", b"\xd0\xcf\x11\xe0": "an old workbook (.xls)"}
+
+
+def read_tests(path_or_name: str | Path) -> WearTests:
+    """Return the tests of a CSV file, or those that a plugin ships under a name.
+
+    Parameters
+    ----------
+    path_or_name : str or Path
+        Path of a CSV file with units in its header, such as ``creepage [%]``, or a name such as "lewis2004".
+
+    Raises
+    ------
+    DataError
+        If there is no such file, or something in it is wrong, all of which the message names by line and column.
+    UnknownModelError
+        If several plugins ship tests of that name.
+    """
+    return parse_tests(text_of_tests(path_or_name), str(path_or_name))
+
+
+def text_of_tests(path_or_name: str | Path) -> str:
+    """Return the text of a CSV file, or of the tests that a plugin ships under that name.
+
+    Raises
+    ------
+    DataError
+        If there is neither, or the file is no text.
+    """
+    found = plugins.installed()
+    if path_or_name in found.test_sets.providers:
+        return found.test_sets.find(str(path_or_name), found.broken)
+    path = Path(path_or_name)
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        _refuse_missing(path, list(found.test_sets.items()))
+    except (OSError, ValueError) as error:
+        reason = "it is a folder" if os.path.isdir(path) else getattr(error, "strerror", None) or error
+        raise DataError(f"cannot read the tests '{path}': {reason}; give a CSV file") from None
+    return _decoded(content, path)
+
+
+def _refuse_missing(path: Path, shipped: list[str]) -> NoReturn:
+    beside = sorted(one.name for one in path.parent.glob("*.csv")) if path.parent.is_dir() else []
+    hint = did_you_mean(path.name, [*beside, *shipped])
+    raise DataError(f"there is no file '{path}';{hint} Shipped tests: {', '.join(shipped) or 'none'}")
+
+
+def _decoded(content: bytes, path: Path) -> str:
+    """Return the text of UTF-8 or UTF-16 with its mark, or else of the code page of old spreadsheets."""
+    kind = next((kind for start, kind in _NOT_TEXT.items() if content.startswith(start)), None)
+    utf16 = content.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if kind is None and b"\0" in content and not utf16:
+        kind = "no text"
+    if kind is not None:
+        raise DataError(f"cannot read the tests '{path}': it is {kind}; save it as CSV and give that file")
+    for encoding in ("utf-16",) if utf16 else ("utf-8-sig", "cp1252"):
+        try:
+            return content.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    raise DataError(f"cannot read the tests '{path}': it is no text in UTF-8; save it as CSV in UTF-8")
+
+
+def parse_tests(text: str, name: str) -> WearTests:
+    """Return the tests of a CSV text.
+
+    Parameters
+    ----------
+    text : str
+        The content of the file.
+    name : str
+        Its path or the name under which it is shipped; also the source of tests that state none.
+
+    Raises
+    ------
+    DataError
+        If something is wrong, all of which the message names.
+    """
+    wrong = Problems()
+    table = table_of(text, name, wrong)
+    columns = {one.name: _values(one, table, wrong) for one in table.heads if one.name in COLUMNS}
+    texts = {one.name: [row.cells[one.place].strip() for row in table.rows] for one in table.heads if one.name in TEXTS}
+    _check_values(columns, table, wrong)
+    _check_decimal_marks(table, wrong)
+    if not wrong.found:
+        _check_duplicates([*columns.values(), *texts.values()], table, wrong)
+    if wrong.found:
+        raise DataError(f"the tests '{name}' are wrong in:", wrong.texts())
+    labels = texts.get("label", [""] * len(table.rows))
+    return WearTests(with_traction(columns), tuple(labels), table.source or Path(name).name)
+
+
+def _values(one: Head, table: Table, wrong: Problems) -> Array:
+    """Return a column in SI, NaN where a cell is missing or wrong."""
+    numbers = [_number(row.line, row.cells[one.place].strip(), one, table.separator, wrong) for row in table.rows]
+    with np.errstate(over="ignore"):  # what overflows is refused as not finite
+        return np.array(numbers, dtype=np.float64) * one.factor
+
+
+def _number(line: int, text: str, one: Head, separator: str, wrong: Problems) -> float:
+    if text.casefold() in MISSING:
+        return np.nan
+    if not _NUMBER.fullmatch(text):
+        hint = "; the unit goes into the header" if _NUMBER.match(text) else ""
+        wrong.add(line, one.text, f"{shortened(text)} is not a number{hint}")
+    elif separator == "," and "," in text:
+        wrong.add(line, one.text, f"'{text}' has a decimal comma; write a point, or separate cells by ';'")
+    else:
+        return float(text.replace(",", ".").replace("\u2212", "-"))
+    return np.nan
+
+
+def _check_values(columns: dict[str, Array], table: Table, wrong: Problems) -> None:
+    """Note values that are missing, or out of bounds, in the columns whose unit is right."""
+    heads = {one.name: one for one in table.heads if not np.isnan(one.factor)}
+    for i, name, rule in faulty({name: values for name, values in columns.items() if name in heads}):
+        row = table.rows[i]
+        text = row.cells[heads[name].place].strip()
+        got = "" if text.casefold() in MISSING else f"got {text}, which "
+        wrong.add(row.line, heads[name].text, f"{got}{rule}")
+
+
+def _check_decimal_marks(table: Table, wrong: Problems) -> None:
+    """Refuse a file in which some numbers have a decimal comma and others a point: one of them may be a thousand."""
+    first: dict[str, int] = {}
+    for row in table.rows:
+        for one in table.heads:
+            text = row.cells[one.place].strip()
+            if one.name in COLUMNS and _NUMBER.fullmatch(text):
+                for mark in set(text) & {",", "."}:
+                    first.setdefault(mark, row.line)
+    if len(first) == 2 and table.separator != ",":
+        wrong.add(
+            max(first.values()),
+            "",
+            f"decimal marks are mixed: a comma in line {first[',']}, a point in line {first['.']}; use one of them",
+        )
+
+
+def _check_duplicates(columns: Sequence[Iterable[object]], table: Table, wrong: Problems) -> None:
+    """Refuse rows that are equal in every column: a row that was pasted twice would count twice."""
+    first: dict[tuple[str, ...], int] = {}
+    for row, values in zip(table.rows, zip(*columns, strict=True), strict=True):
+        line = first.setdefault(tuple(map(str, values)), row.line)
+        if line != row.line:
+            wrong.add(row.line, "", f"is equal to line {line} in every column; leave it out, or label a repeated test")
