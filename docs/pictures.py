@@ -1,6 +1,11 @@
-"""Draws the pictures of the README and the documentation: the shipped study, and the results of the benchmarks."""
+"""Draws the pictures of the README and the documentation: the shipped study, and the results of the benchmarks.
+
+The picture of the report in a browser needs chromium and chromedriver.
+"""
 
 import csv
+import shutil
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +13,9 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from wearlaw.case import load_case
-from wearlaw.figures import LINES, PALETTE, STYLE, figures
+from wearlaw.figures import LINES, PALETTE, STYLE
+from wearlaw.figures import draw as drawing_of
+from wearlaw.output import write
 from wearlaw.study import run
 
 FOLDER = Path(__file__).parent / "pictures"
@@ -17,9 +24,33 @@ BENCHMARKS = Path(__file__).parent / "accuracy.csv"
 
 def draw() -> None:
     FOLDER.mkdir(exist_ok=True)
-    for name, picture in figures(run(load_case("tassini2010"))).items():
-        _save(picture(), name)
+    study = run(load_case("tassini2010"))
+    for figure in study.figures:
+        _save(drawing_of(figure), figure.name)
     _save(cost_against_error(), "accuracy_cost_against_error")
+    with tempfile.TemporaryDirectory() as folder:
+        photograph(Path(folder) / write(study, Path(folder), figure_formats=())[0])
+
+
+def photograph(page: Path) -> None:
+    """Draw how a report looks in a browser, with the mouse over a curve."""
+    from selenium import webdriver
+    from selenium.webdriver import ActionChains
+    from selenium.webdriver.chrome.service import Service
+
+    options = webdriver.ChromeOptions()
+    for flag in ("--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--window-size=1200,860"):
+        options.add_argument(flag)
+    browser = webdriver.Chrome(options, Service(shutil.which("chromedriver")))
+    try:
+        browser.get(page.resolve().as_uri())
+        figure = browser.find_element("css selector", "#figure-figure_08")
+        browser.execute_script("arguments[0].scrollIntoView()", figure)
+        plot = figure.find_element("css selector", ".draglayer .xy .nsewdrag")
+        ActionChains(browser).move_to_element_with_offset(plot, -100, -100).pause(1).perform()
+        browser.save_screenshot(str(FOLDER / "report.png"))
+    finally:
+        browser.quit()
 
 
 def cost_against_error() -> Figure:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-import tomli_w
-
+from wearlaw.case import CASE_FILE, written
 from wearlaw.errors import OutputError
+from wearlaw.latex import latex_table
 from wearlaw.study import Study
+from wearlaw.tables import tables
 from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
 
 if TYPE_CHECKING:
@@ -22,13 +23,20 @@ if TYPE_CHECKING:
 
 RESULTS = "results.nc"
 CSV = "results.csv"
-CASE = "case.toml"
 FIGURES = "figures"
+REPORT = "report.html"
+TABLES = "tables"
+FigureFormat = Literal["png", "pdf", "svg"]
+METADATA: dict[FigureFormat, Any] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
+"""What matplotlib would write into a figure, and must not, for the same bytes each time."""
+T = TypeVar("T")
 
 
 @contextmanager
-def fresh_folder(folder: Path, overwrite: bool) -> Iterator[Path]:
+def fresh_folder(folder: Path, overwrite: bool, marker: str = RESULTS) -> Iterator[Path]:
     """Give a temporary folder that becomes `folder` when the context ends without an error.
+
+    What is there is only replaced if it holds the file `marker`, by which earlier results of the same kind are known.
 
     Raises
     ------
@@ -37,7 +45,7 @@ def fresh_folder(folder: Path, overwrite: bool) -> Iterator[Path]:
     """
     with _os_errors_of(folder):
         target = folder.resolve()
-        _check(folder, target, overwrite)
+        _check(folder, target, overwrite, marker)
         nearest = next(parent for parent in target.parents if parent.exists())
         temporary = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=nearest))
     try:
@@ -62,7 +70,7 @@ def _os_errors_of(folder: Path) -> Iterator[None]:
         ) from None
 
 
-def _check(folder: Path, target: Path, overwrite: bool) -> None:
+def _check(folder: Path, target: Path, overwrite: bool, marker: str) -> None:
     if not target.exists():
         return
     if not target.is_dir():
@@ -71,7 +79,7 @@ def _check(folder: Path, target: Path, overwrite: bool) -> None:
         raise OutputError(f"output: '{folder}' is the working folder or above it; choose another folder with -o")
     if not any(target.iterdir()):
         return
-    if not (target / RESULTS).is_file():
+    if not (target / marker).is_file():
         raise OutputError(
             f"output: '{folder}' does not hold results of wearlaw, and will not be overwritten;"
             " choose another folder with -o"
@@ -93,29 +101,97 @@ def _move(inside: Path, target: Path, replaced: Path) -> None:
         raise
 
 
-def write(study: Study, folder: Path) -> list[str]:
-    """Write a study's results into an empty folder and return the names of the files.
+def write(
+    study: Study,
+    folder: Path,
+    figure_formats: Sequence[FigureFormat] = ("png",),
+    latex: bool = False,
+    on_stage: Callable[[str], None] = lambda _: None,
+) -> list[str]:
+    """Write a study's results into an empty folder and return the names of the files, the report first.
+
+    Parameters
+    ----------
+    study : Study
+        What to write.
+    folder : Path
+        Where to.
+    figure_formats : sequence of str
+        The formats in which each figure is written.
+    latex : bool
+        Whether the tables are also written for LaTeX.
+    on_stage : callable, optional
+        Called with what is written next, to show progress.
 
     Raises
     ------
     OutputError
-        If a file cannot be written.
+        If a file cannot be written, or two figures or tables have one name.
     """
-    from wearlaw.figures import figures
+    from wearlaw.report import report
 
-    names = [RESULTS, CSV, CASE]
+    case_files = written(study.case)
     try:
+        on_stage("writing results")
         write_netcdf(study, folder / RESULTS)
         table(study).to_csv(folder / CSV, index=False)
-        case = study.case.model_dump(mode="json", by_alias=True, exclude_none=True)
-        (folder / CASE).write_text(tomli_w.dumps(case), encoding="utf-8")
-        (folder / FIGURES).mkdir()
-        for name, draw in figures(study).items():
-            names.append(os.path.join(FIGURES, f"{name}.png"))
-            draw().savefig(folder / names[-1], dpi=150)
+        for name, text in case_files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        names = [REPORT, RESULTS, CSV, *case_files, *_write_tables(study, folder, latex)]
+        names += write_figures(study, folder, figure_formats, on_stage)
+        on_stage("writing the report")
+        (folder / REPORT).write_text(report(study, case_files[CASE_FILE]), encoding="utf-8")
     except OSError as error:
         raise OutputError(f"output: cannot write the results: {error.strerror or error}") from None
     return names
+
+
+def _write_tables(study: Study, folder: Path, latex: bool) -> list[str]:
+    names = []
+    (folder / TABLES).mkdir()
+    for name, one in _by_name("table", ((one.name, one) for one in tables(study))).items():
+        names.append(os.path.join(TABLES, f"{name}.csv"))
+        one.frame.to_csv(folder / names[-1], index=False)
+        if latex:
+            names.append(os.path.join(TABLES, f"{name}.tex"))
+            (folder / names[-1]).write_text(latex_table(one.frame), encoding="utf-8")
+    return names
+
+
+def write_figures(
+    study: Study, folder: Path, formats: Sequence[FigureFormat], on_stage: Callable[[str], None]
+) -> list[str]:
+    """Write all figures, as the same bytes each time: no date in them, and no random names."""
+    import matplotlib as mpl
+
+    from wearlaw.figures import draw
+
+    names = []
+    (folder / FIGURES).mkdir()
+    every = (*study.figures, *(figure for section in study.sections for figure in section.figures))
+    for name, figure in _by_name("figure", ((figure.name, figure) for figure in every)).items():
+        on_stage(f"drawing {name}")
+        drawn = draw(figure)
+        for extension in dict.fromkeys(formats):
+            names.append(os.path.join(FIGURES, f"{name}.{extension}"))
+            with mpl.rc_context({"pdf.fonttype": 42, "svg.hashsalt": "wearlaw"}):
+                drawn.savefig(folder / names[-1], dpi=150, metadata=METADATA[extension])
+    return names
+
+
+def _by_name(kind: str, named: Iterable[tuple[str, T]]) -> dict[str, T]:
+    """Return things by the names of their files."""
+    found: dict[str, T] = {}
+    for name, thing in named:
+        if name in found or not name.isidentifier():
+            fault = (
+                "there are two of that name"
+                if name in found
+                else "its name must be made of letters, digits and underscores"
+            )
+            raise OutputError(f"output: the {kind} '{name}' cannot be written: {fault}")
+        found[name] = thing
+    return found
 
 
 def write_netcdf(study: Study, path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,13 @@ import xarray
 from matplotlib.figure import Figure
 
 import wearlaw as wl
-from tests.core import cases
+from tests.core import cases, report_data
 from tests.core.cases import case
-from wearlaw import figures
-from wearlaw.case import Case, load_case
-from wearlaw.output import CASE, CSV, RESULTS, fresh_folder, table, write
+from wearlaw.case import CASE_FILE, Case, load_case
+from wearlaw.output import CSV, RESULTS, fresh_folder, table, write
+from wearlaw.sections import Section
 from wearlaw.study import Study, run
+from wearlaw.tables import tables
 from wearlaw.variables import OF_CONTACT, UNITS
 
 LATTICE = {**cases.SWEEP, "friction_coefficient": [0.3, 0.4]}
@@ -57,10 +59,62 @@ def tree(folder: Path) -> dict[str, bytes]:
 
 def test_the_names_returned_are_the_files_written(study: Study, written: tuple[Path, list[str]]) -> None:
     folder, names = written
-    assert sorted(names) == sorted(name for name in tree(folder) if name != "figures")
-    assert names[:3] == ["results.nc", "results.csv", "case.toml"]
-    assert {Path(name).stem for name in names[3:]} == set(figures.figures(study))
-    assert all((folder / name).read_bytes().startswith(b"\x89PNG") for name in names[3:])
+    assert sorted(names) == sorted(name for name in tree(folder) if name not in ("figures", "tables"))
+    assert names[:4] == ["report.html", "results.nc", "results.csv", "case.toml"]
+    drawn = [name for name in names if name.startswith("figures")]
+    assert [Path(name).stem for name in drawn] == [figure.name for figure in study.figures]
+    assert all((folder / name).read_bytes().startswith(b"\x89PNG") for name in drawn)
+    assert [Path(name).stem for name in names if name.startswith("tables")] == [one.name for one in tables(study)]
+
+
+def test_figures_and_tables_of_sections_are_written_too(tmp_path: Path, point: Study) -> None:
+    names = write(replace(point, sections=(report_data.SECTION,)), tmp_path)
+    assert {"figures/odd.png", "tables/table_4.csv"} <= set(names)
+
+
+MAGIC = {"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}
+
+
+def test_every_figure_is_written_once_in_each_format(tmp_path: Path, point: Study) -> None:
+    point.__dict__["figures"] = (report_data.ONE,)
+    write(point, tmp_path, ("svg", "png", "pdf", "svg"))
+    written = {path.suffix[1:]: path.read_bytes() for path in (tmp_path / "figures").iterdir()}
+    assert written.keys() == MAGIC.keys()
+    for extension, content in written.items():
+        assert content.startswith(MAGIC[extension])
+    assert b"/FontFile2" in written["pdf"], "the fonts are embedded, as Type 42"
+    assert b"/Type3" not in written["pdf"]
+
+
+@pytest.mark.parametrize("latex", [False, True])
+def test_tables_are_csv_with_every_digit_and_latex_when_asked(tmp_path: Path, study: Study, latex: bool) -> None:
+    write(study, tmp_path, (), latex)
+    for one in tables(study):
+        read = pd.read_csv(tmp_path / "tables" / f"{one.name}.csv", dtype=dict.fromkeys(("value", "parameter"), str))
+        pd.testing.assert_frame_equal(read, one.frame, check_dtype=False, check_exact=True)
+        assert (tmp_path / "tables" / f"{one.name}.tex").is_file() == latex
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("wear_rate_point", "output: the table 'wear_rate_point' cannot be written: there are two of that name"),
+        ("../out", "output: the table '../out' cannot be written: its name must be made of letters, digits and under"),
+    ],
+)
+def test_a_table_of_a_name_that_is_taken_or_no_file_name_is_refused(
+    tmp_path: Path, point: Study, name: str, message: str
+) -> None:
+    section = Section("Title", "", tables={name: pd.DataFrame()})
+    with pytest.raises(wl.OutputError, match=message):
+        write(replace(point, sections=(section,)), tmp_path, ())
+
+
+def test_what_is_written_next_is_said(tmp_path: Path, point: Study) -> None:
+    stages: list[str] = []
+    write(point, tmp_path, on_stage=stages.append)
+    names = [figure.name for figure in point.figures]
+    assert stages == ["writing results", *(f"drawing {name}" for name in names), "writing the report"]
 
 
 def test_the_netcdf_file_holds_every_dataset_whole_in_a_group(study: Study, results: Path) -> None:
@@ -77,7 +131,7 @@ def test_the_netcdf_file_holds_every_dataset_whole_in_a_group(study: Study, resu
 
 
 def test_the_case_file_in_the_results_runs_again_to_the_same_results(study: Study, results: Path) -> None:
-    read = load_case(str(results / CASE))
+    read = load_case(str(results / CASE_FILE))
     assert read == RAN
     again = run(read)
     assert again.notes == study.notes
@@ -102,7 +156,8 @@ def test_the_csv_has_one_row_a_pair_and_operating_point_with_units_in_its_head(r
     expected = [
         "half_width", "max_pressure", "normal_force", "normal_force_per_width", "creepage", "friction_coefficient",
         "wear_rate", "wear_rate_error", "wear_rate_low", "wear_rate_high",
-        "tangential_force", "traction_coefficient", "wear_index", "wear_index_density", "stick_ratio", "mean_slip",
+        "tangential_force", "traction_coefficient", "wear_index", "averaged_wear_index", "wear_index_density",
+        "stick_ratio", "mean_slip",
     ]  # fmt: skip
     assert list(rows.columns) == ["sweep", "contact_model", "wear_law", *(name + units[name] for name in expected)]
     assert "wear_rate [ug/m/mm^2]" in rows.columns
@@ -247,7 +302,7 @@ def test_after_an_interruption_everything_is_as_before(
         assert list(tmp_path.rglob(CSV)), "the break must come in the middle of writing"
         raise error
 
-    monkeypatch.setattr("wearlaw.figures.wear_rate", break_off)
+    monkeypatch.setattr("wearlaw.figures.draw", break_off)
     expected = wl.OutputError if error is OSError else error
     with pytest.raises(expected), fresh_folder(out, overwrite=True) as fresh:
         write(point, fresh)

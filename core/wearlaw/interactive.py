@@ -1,0 +1,164 @@
+"""Figures to hover over and zoom into: what plotly.js draws of a `FigureData`.
+
+Colours and line styles are those of the figures that matplotlib draws.
+"""
+
+from __future__ import annotations
+
+import html
+from typing import Any
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures import LINES, PALETTE
+
+DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
+GAP = 0.14
+"""Between two panels, as a share of the figure."""
+ROW_HEIGHT = 380
+"""Of a row of panels, in pixels."""
+
+LONG = 30
+"""Letters beyond which a legend stands below the panels."""
+
+Json = dict[str, Any]
+Ends = tuple[float, float]
+
+
+def plotly_figure(figure: FigureData) -> Json:
+    """Return the traces and the layout of a figure, as plotly.js takes them.
+
+    A click on a legend entry switches all curves of that label, in all panels, with their bands. Colours of text, grid
+    and background are left to the page.
+    """
+    # plotly.js numbers axes from the second one on: x, x2, x3.
+    numbered = list(zip(["", *map(str, range(2, len(figure.panels) + 1))], figure.panels, strict=True))
+    data = [trace for number, panel in numbered for curve in panel.curves for trace in _traces(curve, panel, number)]
+    listed: set[str] = set()
+    for trace in data:
+        if trace["showlegend"]:
+            trace["showlegend"] = trace["legendgroup"] not in listed
+            listed.add(trace["legendgroup"])
+    rows = (len(numbered) + 1) // 2
+    longest = max((len(curve.label) for panel in figure.panels for curve in panel.curves), default=0)
+    below = {"orientation": "h", "y": -0.2 / rows} if len(numbered) > 1 or longest > LONG else {}
+    layout: Json = {
+        "height": ROW_HEIGHT * rows + 100,
+        "hovermode": "closest",
+        "uirevision": figure.name,  # keeps zoom and what is switched off when the colours change
+        "margin": {"l": 70, "r": 20, "t": 40, "b": 60},
+        "legend": {"tracegroupgap": 0, **below},
+        "annotations": [_heading(panel, number) for number, panel in numbered if panel.title],
+    }
+    for (number, panel), (across, up) in zip(numbered, _places(len(numbered)), strict=True):
+        layout[f"xaxis{number}"] = {**_axis(panel.x), "domain": across, "anchor": f"y{number}"}
+        layout[f"yaxis{number}"] = {**_axis(panel.y), "domain": up, "anchor": f"x{number}"}
+    return {"data": data, "layout": layout}
+
+
+def literal(text: str) -> str:
+    """Return a text that plotly.js shows as it is: no tag, no entity, no template of its own.
+
+    A dollar sign needs nothing, since there is no MathJax in the page.
+    """
+    return html.escape(text, quote=False).replace("%", "&#37;")
+
+
+def _traces(curve: Curve, panel: Panel, number: str) -> list[Json]:
+    """Return the band of a curve, if it has one, and the curve."""
+    colour = PALETTE[curve.colour % len(PALETTE)]
+    common: Json = {
+        "type": "scatter",
+        "name": literal(curve.label),
+        "legendgroup": literal(curve.label),
+        "xaxis": f"x{number}",
+        "yaxis": f"y{number}",
+    }
+    lone = np.isfinite(curve.y).sum() == 1
+    style: Json = {"color": colour, "dash": DASHES[LINES[curve.dash % len(LINES)]], "width": 2}
+    line = {
+        **common,
+        "x": _numbers(curve.x),
+        "y": _numbers(curve.y),
+        "mode": "markers" if curve.points else "lines+markers" if lone else "lines",
+        "line": style,
+        "marker": {"color": colour, "size": 7},
+        "hovertemplate": _hover(curve, panel),
+        "showlegend": True,
+    }
+    if curve.low is None or curve.high is None:
+        return [line]
+    line["customdata"] = [list(ends) for ends in zip(_numbers(curve.low), _numbers(curve.high), strict=True)]
+    if curve.points:
+        return [{**line, "error_y": _bars(curve.y, curve.low, curve.high, colour)}]
+    return [{**common, **_band(curve, panel, colour), "showlegend": False}, line]
+
+
+def _hover(curve: Curve, panel: Panel) -> str:
+    lines = [f"<b>{literal(curve.label)}</b>", f"{literal(panel.x.label)}: %{{x:.4~g}}"]
+    lines.append(f"{literal(panel.y.label)}: %{{y:.4~g}}")
+    if curve.low is not None:
+        lines.append("from %{customdata[0]:.4~g} to %{customdata[1]:.4~g}")
+    return "<br>".join(lines) + "<extra></extra>"
+
+
+def _bars(y: Array, low: Array, high: Array, colour: str) -> Json:
+    ends = {"array": _numbers(high - y), "arrayminus": _numbers(y - low)}
+    return {"type": "data", "symmetric": False, **ends, "color": colour, "thickness": 1.2}
+
+
+def _band(curve: Curve, panel: Panel, colour: str) -> Json:
+    """Return the outline of a band, once around, without what its axes cannot show."""
+    x, low, high = (np.asarray(values, dtype=float) for values in (curve.x, curve.low, curve.high))
+    seen = np.isfinite(x) & np.isfinite(low) & np.isfinite(high)
+    for values, axis in ((x, panel.x), (low, panel.y), (high, panel.y)):
+        seen &= (values > 0) | (axis.scale == "linear")
+    return {
+        "x": _numbers(np.concatenate([x[seen], x[seen][::-1]])),
+        "y": _numbers(np.concatenate([low[seen], high[seen][::-1]])),
+        "mode": "lines",
+        "line": {"width": 0},
+        "fill": "toself",
+        "fillcolor": f"rgba({', '.join(str(part) for part in bytes.fromhex(colour[1:]))}, 0.12)",
+        "hoverinfo": "skip",
+    }
+
+
+def _axis(axis: PlotAxis) -> Json:
+    described: Json = {
+        "title": {"text": literal(axis.label)},
+        "type": axis.scale,
+        "exponentformat": "power",
+        "automargin": True,
+        "ticks": "outside",
+        "showline": True,
+        "zeroline": False,
+    }
+    if axis.ends is not None:
+        described["range"] = [float(end) for end in (np.log10(axis.ends) if axis.scale == "log" else axis.ends)]
+    return described
+
+
+def _heading(panel: Panel, number: str) -> Json:
+    place = {"xref": f"x{number} domain", "yref": f"y{number} domain", "x": 0.5, "y": 1.0, "yanchor": "bottom"}
+    return {**place, "text": literal(panel.title), "showarrow": False}
+
+
+def _places(count: int) -> list[tuple[Ends, Ends]]:
+    """Return where each panel is, across and up: in rows of two, and an odd one first over a whole row."""
+    rows = [1] * (count % 2) + [2] * (count // 2)
+    ups = reversed(_spans(len(rows)))
+    return [(across, up) for in_row, up in zip(rows, ups, strict=True) for across in _spans(in_row)]
+
+
+def _spans(count: int) -> list[Ends]:
+    """Return the ends of equal spans, as shares of the figure, with gaps between them."""
+    size = (1.0 - GAP * (count - 1)) / count
+    return [(number * (size + GAP), min(number * (size + GAP) + size, 1.0)) for number in range(count)]
+
+
+def _numbers(values: Array) -> list[float | None]:
+    """Return numbers as JSON has them, to seven digits: no screen shows more, and the page stays half as long."""
+    return [float(f"{value:.7g}") if np.isfinite(value) else None for value in np.asarray(values, dtype=float)]

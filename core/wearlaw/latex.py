@@ -1,0 +1,98 @@
+r"""Tables for LaTeX, with the rules of booktabs: a paper takes one in by \input."""
+
+from __future__ import annotations
+
+import numbers
+import re
+import unicodedata
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_GREEK = {
+    letter: unicodedata.name(letter).rsplit()[-1].replace("LAMDA", "LAMBDA")
+    for letter in "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΦΨΩ"
+}
+_MATHS = {
+    "−": "-", "·": r"\cdot", "×": r"\times", "±": r"\pm", "≤": r"\le", "≥": r"\ge", "≠": r"\ne", "≈": r"\approx",
+    "∞": r"\infty", "√": r"\surd", "∫": r"\int", "∂": r"\partial", "∝": r"\propto", "→": r"\to", "°": r"^{\circ}",
+    "ṡ": r"\dot{s}", "<": "<", ">": ">", "|": "|",
+}  # fmt: skip
+_TEXT = {
+    **{character: f"\\{character}" for character in "&%$#_{}"},
+    "\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "µ": r"\textmu{}",
+    "–": r"\textendash{}", "—": r"\textemdash{}", "…": r"\dots{}",
+}  # fmt: skip
+_SYMBOLS = str.maketrans(
+    {
+        **{letter: f"$\\{name.lower() if letter.islower() else name.capitalize()}$" for letter, name in _GREEK.items()},
+        **{character: f"${command}$" for character, command in _MATHS.items()},
+        **_TEXT,
+    }
+)
+_RAISED = str.maketrans("⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹", "-+0123456789")
+_LOWERED = str.maketrans("₀₁₂₃₄₅₆₇₈₉ᵢᵣ", "0123456789ir")
+_RAISED_TEXT = re.compile("[⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹]+")
+_LOWERED_TEXT = re.compile("[₀₁₂₃₄₅₆₇₈₉ᵢᵣ]+")
+LONG = 40
+"""Letters beyond which a column breaks its lines."""
+
+
+def latex_table(frame: pd.DataFrame) -> str:
+    """Return a tabular of a table; the units stand where they stand in it, in the heads of the columns."""
+    rows = [[cell(value) for value in row] for row in frame.itertuples(index=False, name=None)]
+    lines = [
+        r"% \usepackage{booktabs}",
+        rf"\begin{{tabular}}{{{_columns(frame)}}}",
+        r"\toprule",
+        _row([escaped(str(head)) for head in frame.columns]),
+        r"\midrule",
+        *(_row(row) for row in rows),
+        r"\bottomrule",
+        r"\end{tabular}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def cell(value: Any) -> str:
+    """Return a value as LaTeX shows it: numbers with four digits, nothing for what is missing."""
+    import pandas as pd
+
+    if pd.isna(value):
+        return ""
+    if isinstance(value, (bool, np.bool_)):
+        return "yes" if value else "no"
+    if not isinstance(value, numbers.Real):
+        return escaped(str(value))
+    mantissa, power, exponent = f"{value:.4g}".replace("inf", r"\infty").partition("e")
+    if isinstance(value, numbers.Integral) or not power:
+        return f"${value if isinstance(value, numbers.Integral) else mantissa}$"
+    return rf"${mantissa} \times 10^{{{int(exponent)}}}$"
+
+
+def escaped(text: str) -> str:
+    """Return a text that LaTeX prints as it is."""
+    text = re.sub("-(?=-)", "-{}", " ".join(text.split()).translate(_SYMBOLS))  # two hyphens would become a dash
+    text = _RAISED_TEXT.sub(lambda found: rf"\textsuperscript{{{found[0].translate(_RAISED)}}}", text)
+    return _LOWERED_TEXT.sub(lambda found: rf"\textsubscript{{{found[0].translate(_LOWERED)}}}", text)
+
+
+def _row(cells: list[str]) -> str:
+    row = " & ".join(cells)
+    # Behind the line above, LaTeX would take a bracket for an option of the command there.
+    return (r"{}" if row.startswith(("[", "*")) else "") + row + r" \\"
+
+
+def _columns(frame: pd.DataFrame) -> str:
+    """Return the alignment of each column: numbers to the right, long texts in lines."""
+    import pandas as pd
+
+    kinds = []
+    for number, dtype in enumerate(frame.dtypes):
+        longest = max((len(str(value)) for value in frame.iloc[:, number]), default=0)
+        text = rf"p{{{LONG / 100:g}\linewidth}}" if longest > LONG else "l"
+        kinds.append("r" if pd.api.types.is_numeric_dtype(dtype) else text)
+    return "".join(kinds)

@@ -1,0 +1,105 @@
+"""The report of a study: one page that opens offline in any browser.
+
+It loads nothing: plotly.js stands in it, which is nearly all of its 5 MB, and its security policy forbids requests.
+"""
+
+from __future__ import annotations
+
+import numbers
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wearlaw.curves import FigureData
+from wearlaw.interactive import plotly_figure
+from wearlaw.study import Study, used
+from wearlaw.tables import models, parameters, summaries
+from wearlaw.version import __version__
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell of a table: a text, or a number with its power of ten if it has one."""
+
+    text: str
+    power: str = ""
+    number: bool = False
+
+
+def report(study: Study, case_text: str) -> str:
+    """Return the page; the same study gives the same bytes.
+
+    Parameters
+    ----------
+    study : Study
+        What it shows.
+    case_text : str
+        The case, as TOML.
+    """
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+    from plotly.offline import get_plotlyjs
+
+    environment = Environment(
+        autoescape=True,
+        loader=PackageLoader("wearlaw"),
+        lstrip_blocks=True,
+        trim_blocks=True,
+        undefined=StrictUndefined,
+    )
+    environment.filters.update(
+        cells=cells, heading=_heading, paragraphs=paragraphs, plotly=plotly_figure, spaced=spaced
+    )
+    claims = [claim for section in study.sections for claim in section.claims]
+    return environment.get_template("report.html.j2").render(
+        study=study,
+        case_text=case_text,
+        claims=claims,
+        holding=sum(claim.holds for claim in claims),
+        summaries=summaries(study),
+        parameters=parameters(study),
+        models=models(study),
+        used=[(kind, name, origin) for kind, names in used(study.case).items() for name, origin in names.items()],
+        version=__version__,
+        plotlyjs=get_plotlyjs(),
+    )
+
+
+def cells(frame: pd.DataFrame) -> tuple[list[Cell], list[list[Cell]]]:
+    """Return the heads of a table and its rows; the head of a column of numbers stands to the right, as they do."""
+    rows = [[_cell(value) for value in row] for row in frame.itertuples(index=False, name=None)]
+    heads = [
+        Cell(str(head), number=any(row[number].number for row in rows)) for number, head in enumerate(frame.columns)
+    ]
+    return heads, rows
+
+
+def paragraphs(text: str) -> list[str]:
+    """Return the paragraphs of a text, which blank lines separate."""
+    return [part for part in re.split(r"\n\s*\n", text.strip()) if part]
+
+
+def spaced(name: str) -> str:
+    """Return the words of a name."""
+    return name.replace("_", " ").strip().capitalize()
+
+
+def _heading(figure: FigureData, study: Study) -> str:
+    """Return the title of a figure, or what its name says where the title is that of the whole study."""
+    return figure.title if figure.title != study.case.title else spaced(figure.name)
+
+
+def _cell(value: Any) -> Cell:
+    """Return a cell: numbers with four digits, nothing for what is missing."""
+    if value is None or value != value:
+        return Cell("")
+    if isinstance(value, (bool, np.bool_)):
+        return Cell("yes" if value else "no")
+    if isinstance(value, numbers.Integral) or not isinstance(value, numbers.Real):
+        return Cell(str(value), number=isinstance(value, numbers.Integral))
+    mantissa, _, power = f"{value:.4g}".partition("e")
+    return Cell(mantissa.replace("-", "−"), str(int(power)).replace("-", "−") if power else "", number=True)

@@ -1,0 +1,134 @@
+"""The tables of a study: wear rates of its sweeps, its models and their parameters, and those of its sections.
+
+Each can be written as CSV, with every digit, and for LaTeX, as it is shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pint
+
+from wearlaw.configuration import Configuration
+from wearlaw.docstrings import field_docstrings
+from wearlaw.models import Model
+from wearlaw.registry import symbol
+from wearlaw.study import Study, along_main_axis, axes_of, main_axis, used
+from wearlaw.variables import NAMES, UNITS
+from wearlaw.variables import label as label_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray
+
+COLUMNS = 5
+"""Values of the main axis at which wear rates are shown."""
+
+
+@dataclass(frozen=True, eq=False)
+class NamedTable:
+    """A table with the name of its file, an identifier, and its title; the heads of its columns hold the units."""
+
+    name: str
+    title: str
+    frame: pd.DataFrame
+
+
+def tables(study: Study) -> list[NamedTable]:
+    """Return all tables of a study."""
+    of_sections = [NamedTable(n, n, frame) for section in study.sections for n, frame in section.tables.items()]
+    return [*summaries(study), parameters(study), models(study), *of_sections]
+
+
+def summaries(study: Study) -> list[NamedTable]:
+    """Return a short table of wear rates for each sweep."""
+    return [
+        NamedTable(f"wear_rate_{name}", f"Sweep '{name}'{_fixed(sweep)}", summary(sweep))
+        for name, sweep in study.sweeps.items()
+    ]
+
+
+def _fixed(sweep: xarray.Dataset) -> str:
+    """Return at which values of its other axes a sweep is shown."""
+    line = along_main_axis(sweep)
+    others = [axis for axis in axes_of(sweep) if axis != main_axis(sweep)]
+    at = (f"{NAMES[axis]} {line[axis].item():.4g} {UNITS[axis]}".rstrip() for axis in others)
+    return f" at {', '.join(at)}" if others else ""
+
+
+def summary(sweep: xarray.Dataset) -> pd.DataFrame:
+    """Return wear rates at a few values of a sweep's main axis: a row for each pair, and for the ends of its band."""
+    import pandas as pd
+
+    axis = main_axis(sweep)
+    line = along_main_axis(sweep)
+    count = line.sizes[axis]
+    line = line.isel({axis: sorted({round(step * (count - 1) / (COLUMNS - 1)) for step in range(COLUMNS)})})
+    rows: dict[str, Any] = {}
+    for pair in line.pair.values:
+        one = line.sel(pair=pair)
+        rows[pair] = one.wear_rate.values
+        if (one.wear_rate_high > one.wear_rate_low).any():
+            rows |= {f"{pair}, low end": one.wear_rate_low.values, f"{pair}, high end": one.wear_rate_high.values}
+    frame = pd.DataFrame(list(rows.values()), columns=[_four_digits(value) for value in line[axis].values])
+    frame.insert(0, f"{label_of('wear_rate')} by {label_of(axis)}", list(rows))
+    return frame
+
+
+def _four_digits(value: float) -> str:
+    return np.format_float_positional(value, precision=4, fractional=False, trim="-")
+
+
+def parameters(study: Study) -> NamedTable:
+    """Return every parameter of the rig and of the models."""
+    import pandas as pd
+
+    subjects: list[tuple[str, Configuration]] = [("rig", study.case.rig), *_contact_models(study), *_wear_laws(study)]
+    rows = [(subject, *row) for subject, record in subjects for row in _fields(record)]
+    columns = ["of", "parameter", "value", "meaning"]
+    return NamedTable("parameters", "Parameters", pd.DataFrame(rows, columns=columns))
+
+
+def models(study: Study) -> NamedTable:
+    """Return where each model comes from: the distribution, and the literature."""
+    import pandas as pd
+
+    origins = used(study.case)
+    rows = [
+        (label, kind, origins[kind][model.name], model.source)
+        for kind, labelled in (("contact model", _contact_models(study)), ("wear law", _wear_laws(study)))
+        for label, model in labelled
+    ]
+    columns = ["model", "kind", "provided by", "source"]
+    return NamedTable("models", "Models", pd.DataFrame(rows, columns=columns))
+
+
+def _contact_models(study: Study) -> list[tuple[str, Model]]:
+    """Return the contact models that are used in any pair, with their labels."""
+    return list({pair.contact_model: pair.pipeline.contact.contact_model for pair in study.pairs}.items())
+
+
+def _wear_laws(study: Study) -> list[tuple[str, Model]]:
+    """Return the wear laws that are used in any pair, with their labels."""
+    return list({pair.wear_law: pair.pipeline.wear_law for pair in study.pairs}.items())
+
+
+def _fields(record: Configuration, within: str = "") -> Iterator[tuple[str, str, str]]:
+    """Yield name, value and meaning of each field that is set, and of the fields of records inside."""
+    for name, meaning in field_docstrings(type(record)).items():
+        value = getattr(record, name)
+        if isinstance(value, Model):
+            yield f"{within}{name}", value.name, meaning
+        if isinstance(value, Configuration):
+            yield from _fields(value, f"{within}{name}.")
+        elif value is not None:
+            yield f"{within}{name}", _text(value), meaning
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, pint.Quantity):
+        return f"{value.magnitude:.12g} {symbol(value.units, '~P')}".rstrip()
+    return f"{value:.12g}" if isinstance(value, float) else str(value)

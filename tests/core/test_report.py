@@ -1,0 +1,248 @@
+"""The report as a page: what it says, in which order, with nothing interpreted and nothing loaded."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import plotly
+import pytest
+
+import wearlaw as wl
+from tests.core import cases
+from tests.core.report_data import CLAIMS, EVIL, ODD, ONE, SECTION, THREE, small_study
+from wearlaw.interactive import plotly_figure
+from wearlaw.report import Cell, cells, paragraphs, report
+from wearlaw.study import Study, run
+
+VOID = {"meta"}
+"""Elements of the page that are never closed."""
+
+
+class Page(HTMLParser):
+    """Reads a page; every element must be closed where it was opened."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.texts: list[tuple[str, str]] = []
+        """The texts, each with the path of the elements that it stands in."""
+        self._open: list[str] = []
+        self.feed(text)
+        self.close()
+        assert not self._open
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self._open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self._open.pop() == tag
+        self.texts += [("", " ")] * (tag in ("td", "th", "caption"))
+
+    def handle_data(self, data: str) -> None:
+        self.texts.append(("/".join(self._open), data))
+
+    def within(self, end: str) -> list[str]:
+        """Return the texts in elements at the end of a path."""
+        return [text for path, text in self.texts if path.endswith(end)]
+
+    def attributes(self, name: str) -> list[str]:
+        return [str(attributes[name]) for _, attributes in self.elements if name in attributes]
+
+    @property
+    def text(self) -> str:
+        """What a reader sees."""
+        shown = "".join(text for path, text in self.texts if "script" not in path and "style" not in path)
+        return " ".join(shown.split())
+
+
+@pytest.fixture(scope="module")
+def study() -> Study:
+    return small_study(title=f"Title {EVIL}")
+
+
+@pytest.fixture(scope="module")
+def written(study: Study) -> str:
+    return report(study, 'title = "<i>"')
+
+
+@pytest.fixture(scope="module")
+def page(written: str) -> Page:
+    return Page(written)
+
+
+def test_the_order_is_results_first_and_where_they_come_from_last(page: Page) -> None:
+    headings = [attributes["id"] for tag, attributes in page.elements if tag == "h2"]
+    expected = ["contents", "results", "figures", "section-1", "parameters", "notes", "case", "provenance"]
+    assert headings == expected
+
+
+def test_the_contents_lead_to_every_part(page: Page) -> None:
+    identifiers = page.attributes("id")
+    assert len(set(identifiers)) == len(identifiers)
+    targets = {link.removeprefix("#") for link in page.attributes("href")}
+    assert targets <= set(identifiers)
+    parts = {str(attributes["id"]) for tag, attributes in page.elements if tag == "h2"} - {"contents"}
+    assert parts | {"figure-one", "figure-three"} <= targets
+
+
+def test_nothing_is_loaded_and_plotly_stands_in_the_page_once(page: Page, written: str) -> None:
+    assert not page.attributes("src")
+    assert all(link.startswith("#") for link in page.attributes("href"))
+    assert not {"link", "img", "iframe", "object", "base"} & {tag for tag, _ in page.elements}
+    (style,) = page.within("style")
+    assert not re.search(r"url\(|@import", style)
+    assert len(re.findall(r"plotly\.js v\d", written)) == 1
+    (policy,) = (a["content"] for _, a in page.elements if a.get("http-equiv") == "Content-Security-Policy")
+    assert "default-src 'none'" in str(policy)
+    assert "http" not in str(policy)
+    ours = written.replace(Path(plotly.__file__).parent.joinpath("package_data/plotly.min.js").read_text("utf-8"), "")
+    assert len(ours) < 200_000
+    assert not re.search("https?:", ours)
+
+
+def test_every_text_is_shown_as_it_is_written(page: Page) -> None:
+    assert page.within("head/title") == page.within("h1") == [f"Title {EVIL}"]
+    literal = " ".join(EVIL.split())
+    assert page.text.count(f"Claims {literal}") == 3  # among the contents, above the claims, and above the section
+    for where in ("figure/h3", "figcaption", "li", "th"):
+        assert EVIL in "".join(page.within(where))
+    # plotly.js, our own, and the numbers of three figures; none from a text.
+    assert sum(tag == "script" for tag, _ in page.elements) == 5
+    assert not {"b", "i"} & {tag for tag, _ in page.elements}
+    assert "49" not in page.within("h1")[0]
+
+
+def test_the_numbers_of_every_figure_stand_in_the_page(page: Page) -> None:
+    numbers = [json.loads(text) for text in page.within("div/div/script")]
+    assert numbers == [json.loads(json.dumps(plotly_figure(figure))) for figure in (ONE, THREE, ODD)]
+
+
+def test_the_wear_rates_are_those_of_the_sweep(study: Study, page: Page) -> None:
+    assert "Sweep 'creepage' wear rate [µg/m/mm²] by creepage [%] 0.1 0.3162 1 3.162 10 usfd on global" in page.text
+    sweep = study.sweeps["creepage"]
+    for pair in sweep.pair.values:
+        rates = " ".join(f"{rate:.4g}" for rate in sweep.wear_rate.sel(pair=pair).values)
+        assert f"{pair} {rates}" in page.text
+    low = " ".join(f"{rate:.4g}" for rate in sweep.wear_rate_low.sel(pair="kth on exact").values)
+    assert f"kth on exact, low end {low}" in page.text
+
+
+def test_claims_are_a_list_of_what_holds_with_the_numbers(page: Page) -> None:
+    assert "1 of 2 claims hold." in page.text
+    assert page.within("section/h3")[0].endswith(": 1 of 2 claims hold")
+    assert "✓ holds USFD and BRR agree in mild wear. (section 5.2) within 16 % up to 3 N/mm²" in page.text
+    literal = " ".join(EVIL.split())
+    assert f"✗ does not hold {literal} (section 5.3) 5.2 µg/m/mm² against 6.1 µg/m/mm²" in page.text
+
+
+def test_one_claim_is_counted_and_none_is_not_spoken_of(study: Study) -> None:
+    one = replace(study, sections=(replace(SECTION, claims=CLAIMS[:1]),))
+    assert "1 of 1 claim holds." in Page(report(one, "")).text
+    without = Page(report(replace(study, sections=()), "")).text
+    assert "claims hold" not in without
+    assert "section-1" not in without
+
+
+def test_a_section_has_its_text_tables_and_figures(page: Page) -> None:
+    assert "First part." in page.within("section/p")
+    assert "Second <i>part</i>,\nwith two lines." in page.within("section/p")
+    assert "Table 4 model <i> m_c [µg/m/N] tests fitted a & b −1.5 × 10−7 3 yes" in page.text
+    assert f"figure-{ODD.name}" in page.attributes("id")
+
+
+def test_parameters_notes_case_and_origins_are_given(study: Study, page: Page) -> None:
+    assert "usfd m_c 61.9 µg/m/N Slope of the catastrophic regime [µg/m/N]." in page.text
+    assert "rig track_width 10 mm" in page.text
+    assert study.notes
+    for note in study.notes:
+        assert " ".join(note.split()) in page.text
+    assert page.within("pre") == ['title = "<i>"']
+    assert f"Computed with wearlaw {wl.__version__}." in page.text
+    assert f"usfd wear law wearlaw {wl.__version__} Tassini et al., Wear 268 (2010) 660-667" in page.text
+
+
+def test_a_model_of_another_distribution_is_said_to_be_from_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    cases.installer(monkeypatch)(cases.Linear)
+    laws = [{"model": "linear", "slope": "3 m"}]
+    shown = Page(report(run(cases.case(wear_laws=laws, profiles={})), "")).text
+    assert "linear wear law wearlaw-testing 9.8.7 A test, 1. ed., 2026" in shown
+
+
+def test_a_figure_that_bears_the_title_of_the_study_is_headed_by_its_name() -> None:
+    study = run(cases.case(profiles={}))
+    names = [figure.name for figure in study.figures if figure.title == study.case.title]
+    headings = Page(report(study, "")).within("figure/h3")
+    for name in names:
+        assert name.replace("_", " ").capitalize() in headings
+    assert study.case.title not in headings
+
+
+def test_everything_can_be_named_by_a_screen_reader_and_reached_by_keyboard(page: Page) -> None:
+    identifiers = set(page.attributes("id"))
+    assert set(page.attributes("aria-labelledby")) <= identifiers
+    for tag, attributes in page.elements:
+        classes = str(attributes.get("class", ""))
+        if "plot" in classes or attributes.get("role") == "region":
+            assert str(attributes["aria-label"]).strip(), tag
+        if attributes.get("role") == "region":
+            assert attributes["tabindex"] == "0"
+    tables = sum(tag == "table" for tag, _ in page.elements)
+    assert sum(tag == "caption" for tag, _ in page.elements) == tables > 3
+    scopes = {(tag, attributes.get("scope")) for tag, attributes in page.elements if tag == "th"}
+    assert scopes == {("th", "col"), ("th", "row")}
+
+
+@pytest.mark.parametrize(
+    ("value", "cell"),
+    [
+        (1.5e-7, Cell("1.5", "−7", number=True)),
+        (-12345.678, Cell("−1.235", "4", number=True)),
+        (0.00012345678, Cell("0.0001235", number=True)),
+        (1e100, Cell("1", "100", number=True)),
+        (3, Cell("3", number=True)),
+        (True, Cell("yes")),
+        (float("nan"), Cell("")),
+        (None, Cell("")),
+        (pd.NaT, Cell("")),
+        ("1e5", Cell("1e5")),
+    ],
+)
+def test_a_cell_shows_four_digits_and_a_power_of_ten(value: Any, cell: Cell) -> None:
+    heads, rows = cells(pd.DataFrame({"head": pd.Series([value], dtype=object)}))
+    assert rows == [[cell]]
+    assert heads == [Cell("head", number=cell.number)]
+
+
+def test_blank_lines_separate_paragraphs() -> None:
+    assert paragraphs("\n a\nb\n \n\nc \n") == ["a\nb", "c"]
+    assert paragraphs("") == []
+
+
+def test_two_runs_of_a_case_write_the_same_bytes_and_no_path_of_the_machine(tmp_path: Path) -> None:
+    figure = {"sweep": "creepage", "x": "creepage", "y": "wear_rate"}
+    cases.write(tmp_path / "c.toml", cases.table(profiles={}, figures={"only": figure}))
+    program = Path(sys.executable).parent / "wearlaw"
+    command = [str(program), "run", "c.toml", "--latex", *(f"--figure-format={f}" for f in ("png", "pdf", "svg"))]
+    for number in ("1", "2"):
+        environment = {**os.environ, "PYTHONHASHSEED": number}
+        subprocess.run([*command, "-o", number], cwd=tmp_path, env=environment, check=True, capture_output=True)
+    first, second = (
+        {path.relative_to(tmp_path / n): path.read_bytes() for path in (tmp_path / n).rglob("*.*")} for n in ("1", "2")
+    )
+    assert first.keys() == second.keys()
+    assert [str(name) for name in first if first[name] != second[name]] == []
+    assert {name.suffix for name in first} == {".html", ".nc", ".csv", ".toml", ".tex", ".png", ".pdf", ".svg"}
+    for name, content in first.items():
+        assert str(tmp_path).encode() not in content, name
+        assert str(Path.home()).encode() + b"/" not in content, name
