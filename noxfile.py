@@ -20,8 +20,8 @@ def docs(session: nox.Session) -> None:
 
 @nox.session(python="3.11")
 def pictures(session: nox.Session) -> None:
-    """Draw the pictures of the README and the documentation anew."""
-    session.install("-e", ".")
+    """Draw the pictures of the README and the documentation anew; that of the report needs chromium."""
+    session.install("-e", ".[test]")
     session.run("python", "docs/pictures.py")
 
 
@@ -30,3 +30,5 @@ def bench(session: nox.Session) -> None:
     """Time wearlaw beside its rivals; the rivals in C need a compiler."""
     session.install("-e", ".[fast]")
     session.run("python", "-m", "tests.benchmarks.speed", *session.posargs)
+    session.run("python", "-m", "tests.benchmarks.fit")
+    session.run("python", "tests/benchmarks/study.py")

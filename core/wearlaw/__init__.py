@@ -8,16 +8,23 @@
 """
 
 import sys as _sys
+from importlib import import_module as _import_module
+from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 from wearlaw import hertz
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
+from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.distributions import lognormal, normal, published_range, uniform
 from wearlaw.errors import (
     CalibrationWarning,
     CaseError,
     CompositionError,
     ConditionsError,
     ConfigurationError,
+    DataError,
+    FitError,
+    FitWarning,
     FrozenError,
     InputError,
     ModelError,
@@ -50,9 +57,12 @@ from wearlaw.quadrature import Nodes
 from wearlaw.records import Contact
 from wearlaw.result import ContactSolution, Prediction
 from wearlaw.rig import Disc, TwinDisc
+from wearlaw.sections import CheckedClaim, Section
 from wearlaw.specification import ContactModelField, WearLawField
 from wearlaw.units import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
 from wearlaw.version import __version__
+from wearlaw.wear_tests import WearTests
+from wearlaw.wear_tests_csv import read_tests
 
 __all__ = [
     "INTERFACE_VERSION",
@@ -61,7 +71,9 @@ __all__ = [
     "Calibration",
     "CalibrationWarning",
     "CaseError",
+    "CheckedClaim",
     "Claim",
+    "Comparison",
     "CompositionError",
     "ConditionsError",
     "Configuration",
@@ -71,9 +83,15 @@ __all__ = [
     "ContactModelField",
     "ContactPipeline",
     "ContactSolution",
+    "Curve",
+    "DataError",
     "Density",
     "Disc",
     "FieldVariable",
+    "FigureData",
+    "Fit",
+    "FitError",
+    "FitWarning",
     "FrozenError",
     "InputError",
     "Length",
@@ -85,8 +103,10 @@ __all__ = [
     "ModelError",
     "Nodes",
     "OutputError",
+    "Panel",
     "PatchMean",
     "Pipeline",
+    "PlotAxis",
     "PluginWarning",
     "Prediction",
     "Q",
@@ -94,34 +114,70 @@ __all__ = [
     "QuantityLike",
     "RangeWarning",
     "Scale",
+    "Section",
     "Speed",
     "Stress",
+    "Study",
     "TwinDisc",
     "Unit",
     "UnitError",
     "UnknownModelError",
     "WearLaw",
     "WearLawField",
+    "WearTests",
     "WearlawError",
     "WearlawWarning",
     "__version__",
     "accelerate",
     "as_wear_law",
+    "compare",
     "contact_model",
     "contact_models",
+    "fit",
     "hertz",
     "hookimpl",
     "kernel",
+    "lognormal",
     "material",
     "materials",
+    "normal",
     "parameter_sets",
     "parse",
     "patch_mean",
+    "published_range",
+    "read_tests",
+    "read_wear_law",
     "scalar_si",
     "steel",
+    "uniform",
     "wear_law",
     "wear_laws",
 ]
+
+if _TYPE_CHECKING:
+    from wearlaw.comparing import compare
+    from wearlaw.comparison import Comparison
+    from wearlaw.fit_result import Fit
+    from wearlaw.fitting import fit
+    from wearlaw.law_files import read_wear_law
+    from wearlaw.study import Study
+
+_LATER = {
+    "Comparison": "wearlaw.comparison",
+    "Study": "wearlaw.study",
+    "compare": "wearlaw.comparing",
+    "Fit": "wearlaw.fit_result",
+    "fit": "wearlaw.fitting",
+    "read_wear_law": "wearlaw.law_files",
+}
+"""What takes a tenth of the time of `import wearlaw`, and most scripts do without."""
+
+
+def __getattr__(name: str) -> object:
+    if name not in _LATER:
+        raise AttributeError(f"module 'wearlaw' has no attribute {name!r}")
+    return getattr(_import_module(_LATER[name]), name)
+
 
 if _sys.modules.get("hypothesis") is not None:  # its entry point came too early to know the types
     from _wearlaw_hypothesis import register_types as _register_types

@@ -69,7 +69,7 @@ def summarise(task: Task, best: Solutions, replicates: Replicates | None, confid
 
 
 def _pairs(free: FreeParameters, ends: tuple[Array, Array]) -> dict[str, tuple[Quantity, Quantity]]:
-    low, high = (free.values(end) for end in ends)
+    low, high = (free.values(free.bounds.clip(end)) for end in ends)  # beyond the bounds nothing was searched
     return {
         name: (free.quantity(name, float(low[i])), free.quantity(name, float(high[i])))
         for i, name in enumerate(free.names)

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from wearlaw import plugins
 from wearlaw.arrays import Array
-from wearlaw.case import Case, labels
+from wearlaw.case import Case
 from wearlaw.configuration import known_name, parts
-from wearlaw.errors import CompositionError, InputError, WearlawWarning
+from wearlaw.errors import InputError, ModelError, WearlawError, WearlawWarning, did_you_mean
 from wearlaw.material import Material
 from wearlaw.models import Model, WearLaw
+from wearlaw.notes import Notes
+from wearlaw.pairs import Pair, compose, labelled
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
+from wearlaw.sections import Section
 from wearlaw.units import from_si
 from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
 from wearlaw.version import __version__
@@ -27,23 +30,10 @@ from wearlaw.version import __version__
 if TYPE_CHECKING:
     import xarray
 
+    from wearlaw.curves import FigureData
     from wearlaw.grid import Grid
     from wearlaw.result import ContactSolution, Prediction
     from wearlaw.shelf import Shelf
-
-
-@dataclass(frozen=True)
-class Pair:
-    """A contact model with a wear law."""
-
-    contact_model: str
-    wear_law: str
-    pipeline: Pipeline[TwinDisc]
-
-    @property
-    def label(self) -> str:
-        """What the pair is called in results."""
-        return f"{self.wear_law} on {self.contact_model}"
 
 
 @dataclass(frozen=True)
@@ -60,6 +50,8 @@ class Study:
         The results by the names that the case gives them.
     notes : tuple of str
         What was left out, and every warning, once each.
+    sections : tuple of Section
+        What plugins add to the report, as the case lists it.
     """
 
     case: Case
@@ -67,30 +59,26 @@ class Study:
     sweeps: dict[str, xarray.Dataset]
     profiles: dict[str, xarray.Dataset]
     notes: tuple[str, ...]
+    sections: tuple[Section, ...] = ()
 
+    @cached_property
+    def figures(self) -> tuple[FigureData, ...]:
+        """What the figures of the study show."""
+        from wearlaw.study_figures import figures_of
 
-@dataclass
-class Notes:
-    """Collects what a reader of the results must know, once each."""
+        return figures_of(self)
 
-    texts: list[str] = field(default_factory=list)
+    def sweep(self, name: str) -> xarray.Dataset:
+        """Return the results of a sweep.
 
-    def add(self, text: str) -> None:
-        """Add a note that is not there yet."""
-        if text not in self.texts:
-            self.texts.append(text)
-
-    @contextmanager
-    def of(self, subject: str) -> Iterator[None]:
-        """Turn wearlaw's warnings inside the context into notes about a subject."""
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", WearlawWarning)
-            yield
-        for warning in caught:
-            if issubclass(warning.category, WearlawWarning):
-                self.add(f"{subject}: {warning.message}")
-            else:
-                warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+        Raises
+        ------
+        InputError
+            If the case has none of that name.
+        """
+        if name not in self.sweeps:
+            raise InputError(f"the case has no sweep '{name}';{did_you_mean(name, self.sweeps)} add [sweeps.{name}]")
+        return self.sweeps[name]
 
 
 def run(case: Case, on_block: Callable[[int], None] | None = None) -> Study:
@@ -104,17 +92,33 @@ def run(case: Case, on_block: Callable[[int], None] | None = None) -> Study:
         Called with the number of evaluations done, `evaluations(case)` in all, to show progress.
     """
     notes = Notes()
-    pairs = _pairs(case, notes)
+    pairs = compose(case.rig, labelled(case.contact_models), labelled(case.wear_laws), notes)
     sweeps = {name: _sweep(name, grid, case, pairs, notes, on_block) for name, grid in case.sweeps.items()}
     profiles = {name: _profile(name, grid, case, pairs, notes) for name, grid in case.profiles.items()}
     for dataset in (*sweeps.values(), *profiles.values()):
         dataset.attrs.update(title=case.title, provenance=json.dumps(provenance(case)))
-    return Study(case, tuple(pairs), sweeps, profiles, tuple(notes.texts))
+    study = Study(case, tuple(pairs), sweeps, profiles, tuple(notes.texts))
+    sections = tuple(_section(name, study, notes) for name in case.sections)
+    return replace(study, notes=tuple(notes.texts), sections=sections)
+
+
+def _section(name: str, study: Study, notes: Notes) -> Section:
+    """Return what the plugin makes of a study."""
+    found = plugins.installed()
+    make = found.sections.find(name, found.broken)
+    try:
+        with notes.of(f"section '{name}'"):
+            section = make(study)
+    except WearlawError as error:
+        raise InputError(f"section '{name}' of {found.sections.origin(name)}: {error}") from error
+    if not isinstance(section, Section):
+        raise ModelError(f"section '{name}' of {found.sections.origin(name)} must be a Section, got {section!r}")
+    return section
 
 
 def evaluations(case: Case) -> int:
     """Return how many evaluations of a pair at an operating point a case needs."""
-    pairs = _pairs(case, Notes())
+    pairs = compose(case.rig, labelled(case.contact_models), labelled(case.wear_laws), Notes())
     return sum(
         grid.size * (1 + len(_band_ends(pair.pipeline)))
         for name, grid in case.sweeps.items()
@@ -141,24 +145,10 @@ def used(case: Case) -> dict[str, dict[str, str]]:
         if name is not None:
             (shelf,) = (shelf for kind, shelf in named.items() if isinstance(part, kind))
             origins[shelf.kind][name] = shelf.distribution(name)
+    if case.measured is not None and case.measured.shipped:
+        origins[found.test_sets.kind] = {case.measured.tests: found.test_sets.distribution(case.measured.tests)}
+    origins[found.sections.kind] = {name: found.sections.distribution(name) for name in case.sections}
     return {kind: dict(sorted(names.items())) for kind, names in origins.items()}
-
-
-def _pairs(case: Case, notes: Notes) -> list[Pair]:
-    """Compose all pairs that can be; note those that cannot, and parameters that were fitted for others."""
-    pairs = []
-    for contact_label, model in zip(labels(case.contact_models), case.contact_models, strict=True):
-        for law_label, law in zip(labels(case.wear_laws), case.wear_laws, strict=True):
-            try:
-                with notes.of(f"{law_label} on {contact_label}"):
-                    pairs.append(Pair(contact_label, law_label, case.rig | model | law))
-            except CompositionError as error:
-                notes.add(f"{law_label} on {contact_label} is left out: {error}")
-    if not pairs:
-        raise InputError(
-            "no contact model of the case can be used with any of its wear laws:\n" + "\n".join(notes.texts)
-        )
-    return pairs
 
 
 def _sweep(

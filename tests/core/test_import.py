@@ -10,7 +10,10 @@ import pytest
 
 import wearlaw as wl
 
-HEAVY = {"matplotlib", "xarray", "pandas", "click", "rich", "h5netcdf", "h5py", "tomli_w", "dask", "numba"}
+HEAVY = {
+    *("matplotlib", "plotly", "jinja2", "xarray", "pandas", "click", "rich", "h5netcdf", "h5py", "tomli_w", "dask"),
+    "numba",
+}
 
 
 def run(code: str) -> str:

@@ -249,7 +249,7 @@ def test_a_case_of_which_no_pair_can_be_is_refused_and_says_why() -> None:
     impossible = case(contact_models=["exact"], wear_laws=["brr"])
     for what in (run, evaluations):
         with pytest.raises(
-            wl.InputError, match="no contact model of the case can be used with any of its wear laws"
+            wl.InputError, match="no contact model can be used with any of the wear laws"
         ) as no:
             what(impossible)
         assert "brr on exact is left out" in str(no.value)

@@ -1,0 +1,102 @@
+"""How far predicted wear rates are from measured ones: each measure of error with its formula."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wearlaw.arrays import Array
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """Errors of predicted wear rates pᵢ against measured ones mᵢ, in n tests.
+
+    The ratios rᵢ = pᵢ/mᵢ exist where both rates are positive, in nᵣ of the tests. A measure made of ratios leaves the
+    other tests out, and is None where too few are left.
+
+    Attributes
+    ----------
+    tests : int
+        n.
+    without_ratio : int
+        Tests in which one of the rates is zero and the other is not. (Where both are zero they agree.)
+    bias : float or None
+        Geometric mean of the ratios, exp(Σ ln rᵢ / nᵣ); above 1 where too much wear is predicted.
+    geometric_sd : float or None
+        Geometric standard deviation of the ratios, exp(√(Σ (ln rᵢ - ln bias)² / (nᵣ - 1))): the factor of scatter
+        that is left when the bias has been taken out. None for fewer than two ratios.
+    rms_factor : float or None
+        Root mean square of the logarithmic error, as a factor, exp(√(Σ ln² rᵢ / nᵣ)): by which factor a prediction
+        is typically wrong, bias and scatter together.
+    largest_factor : float or None
+        The factor of the worst test, max exp|ln rᵢ|.
+    rms_error : float
+        √(Σ (pᵢ - mᵢ)² / n) [kg/m/m²], over all tests.
+    """
+
+    tests: int
+    without_ratio: int
+    bias: float | None
+    geometric_sd: float | None
+    rms_factor: float | None
+    largest_factor: float | None
+    rms_error: float
+
+    @property
+    def rank(self) -> tuple[float, float, float]:
+        """What predictors are ranked by, the least first: tests without a ratio, rms factor, rms error.
+
+        No wear where some was measured, or the reverse, is wrong by more than any factor. Six digits count, so that
+        rounding does not rank what is equal.
+        """
+        factor = np.inf if self.rms_factor is None else self.rms_factor
+        return self.without_ratio, float(f"{factor:.6g}"), float(f"{self.rms_error:.6g}")
+
+
+@dataclass(frozen=True)
+class Information:
+    """Akaike's information criterion of a law that was fitted to tests: what the fit is worth for its parameters.
+
+    Of laws that were fitted to the same tests the one with the least AIC is expected to predict others best; only
+    differences matter.
+
+    Attributes
+    ----------
+    parameters : int
+        Parameters that were fitted; k counts the scatter as one more where it is estimated too.
+    aic : float
+        n ln(Σ rᵢ²/n) + 2k, rᵢ being the residuals of the fit; Σ rᵢ² + 2k where the tests state their uncertainty.
+    aicc : float or None
+        AIC + 2k(k + 1)/(n - k - 1), for few tests; None where there are too few.
+
+    Notes
+    -----
+    K. P. Burnham and D. R. Anderson, Model Selection and Multimodel Inference, 2nd ed., Springer, 2002, section 2.4.
+    """
+
+    parameters: int
+    aic: float
+    aicc: float | None
+
+
+def agreement(predicted: Array, measured: Array) -> Agreement:
+    """Return how far predicted wear rates are from measured ones.
+
+    Parameters
+    ----------
+    predicted, measured : ndarray, (tests,)
+        Wear rates, not negative [kg/m/m²]; at least one.
+    """
+    both = (predicted > 0) & (measured > 0)
+    logs = np.log(predicted[both]) - np.log(measured[both])
+    return Agreement(
+        tests=predicted.size,
+        without_ratio=int(((predicted > 0) != (measured > 0)).sum()),
+        bias=float(np.exp(logs.mean())) if logs.size else None,
+        geometric_sd=float(np.exp(logs.std(ddof=1))) if logs.size > 1 else None,
+        rms_factor=float(np.exp(np.sqrt(np.mean(logs**2)))) if logs.size else None,
+        largest_factor=float(np.exp(np.abs(logs).max())) if logs.size else None,
+        rms_error=float(np.sqrt(np.mean((predicted - measured) ** 2))),
+    )

@@ -1,0 +1,46 @@
+"""The command line: it parses, calls the rest of the package, and prints."""
+
+from __future__ import annotations
+
+import sys
+from io import TextIOWrapper
+from typing import Any
+
+import click
+
+from wearlaw.cli import data_commands, model_commands, study_commands
+from wearlaw.errors import WearlawError
+from wearlaw.version import __version__
+
+
+class _Commands(click.Group):
+    """Commands that end with one clear line, not a traceback, when wearlaw raises an error on purpose."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except WearlawError as error:
+            raise click.ClickException(str(error)) from None
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="wearlaw")
+def main() -> None:
+    """Predict rolling-contact wear of wheels and rails.
+
+    \b
+    Begin with:
+      wearlaw run tassini2010               the twin-disc study of Tassini et al. (2010)
+      wearlaw case tassini2010 > my.toml    a copy of its case file, to edit
+      wearlaw run my.toml -o my-results/    your own study
+      wearlaw fit my-tests.csv --help       parameters of a law, fitted to your own tests
+      wearlaw compare my-tests.csv --help   which model predicts your tests best
+      wearlaw new-plugin NAME --wear-law    your own wear law
+    """  # noqa: D301  (\b tells click to keep the lines)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a pipe or an old terminal may not have Greek letters
+
+
+for _command in (*study_commands.COMMANDS, *data_commands.COMMANDS, *model_commands.COMMANDS):
+    main.add_command(_command)

@@ -1,0 +1,267 @@
+"""Commands about wear tests: fit parameters to them, and compare predictions with them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from wearlaw.cli.printing import print_notes, progress
+from wearlaw.errors import FitError
+from wearlaw.notes import Notes
+
+if TYPE_CHECKING:
+    from wearlaw.comparing import Predictor
+    from wearlaw.comparison import Comparison
+    from wearlaw.fit_result import Fit
+    from wearlaw.pairs import Pair
+    from wearlaw.pipeline import ContactPipeline, Pipeline
+    from wearlaw.rig import TwinDisc
+    from wearlaw.wear_tests import WearTests
+
+CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+
+
+def common(command: CommandT) -> CommandT:
+    """Add the options that both commands have."""
+    for option in (
+        click.option("--latex", is_flag=True, help="Write the table that is printed for LaTeX too."),
+        click.option("--overwrite", is_flag=True, help="Replace earlier results of this command in that folder."),
+        click.option(
+            "--scatter",
+            type=click.Choice(["relative", "absolute"]),
+            default="relative",
+            show_default=True,
+            help="Whether measurements scatter by a factor or by an amount; tests that state uncertainties say it.",
+        ),
+        click.option("--friction", type=float, help="Friction coefficient of tests without a column of it."),
+        click.option(
+            "--rig",
+            type=click.Path(path_type=Path),
+            help="A TOML file with a table [rig], such as a case file [default: SUROS, 47 mm discs, 10 mm track].",
+        ),
+    ):
+        command = option(command)
+    return command
+
+
+@click.command()
+@click.argument("tests")
+@click.option("--contact", required=True, metavar="MODEL", help="Contact model: exact, or NAME:FIELD=VALUE.")
+@click.option("--law", metavar="LAW", help="Wear law: usfd, NAME:FIELD=VALUE or a TOML file; none for traction.")
+@click.option(
+    "--free", required=True, metavar="FIELDS", help="What is fitted: fields of the law, or friction_coefficient."
+)
+@click.option("--fixed", metavar="FIELD=VALUE", multiple=True, help="Set a field of the law; may be repeated.")
+@common
+@click.option("--bootstrap", type=int, default=1000, show_default=True, help="Replicates; 0 for quick intervals.")
+@click.option("--confidence", type=float, default=0.95, show_default=True, help="Of the intervals.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Of the random numbers.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-fit].")
+def fit(tests: str, output: Path | None, overwrite: bool, latex: bool, **options: Any) -> None:
+    """Fit parameters of a wear law to tests: TESTS is a CSV file with units in its header, such as creepage [%].
+
+    \b
+    wearlaw fit my-tests.csv --contact exact --law usfd --free q_s,m_c,tr_sc -o fit/
+    wearlaw fit my-tests.csv --contact exact --free friction_coefficient -o friction/
+
+    The folder then holds law.toml, the fitted law, to be used wherever a law is asked for; parameters.csv with
+    confidence intervals; residuals.csv; a figure; and fit.json with all that the fit comes from.
+    """  # noqa: D301
+    from wearlaw.data_output import FIT, write_fit
+    from wearlaw.output import fresh_folder
+
+    folder = output if output is not None else Path(f"{Path(tests).stem}-fit")
+    notes = Notes()
+    with fresh_folder(folder, overwrite, FIT) as fresh:
+        fitted = _fit(tests, notes, **options)
+        names = write_fit(fitted, notes.texts, fresh, latex)
+    print_notes(notes.texts)
+    click.echo(repr(fitted))
+    _print_results(folder, names)
+
+
+def _fit(
+    path: str,
+    notes: Notes,
+    *,
+    contact: str,
+    law: str | None,
+    free: str,
+    fixed: tuple[str, ...],
+    rig: Path | None,
+    friction: float | None,
+    bootstrap: int,
+    **settings: Any,
+) -> Fit:
+    """Return the fit that the options ask for."""
+    from wearlaw.cli.parsing import contact_model, fields, listed
+    from wearlaw.fitting import fit as fit_parameters
+
+    names, given = listed("--free", free), fields("--fixed", fixed)
+    both = [name for name in names if name in given]
+    if both:
+        raise click.UsageError(f"--fixed: '{both[0]}' is to be fitted; take it out of --fixed or of --free")
+    tests = _tests(path, friction, "friction_coefficient" in names, notes)
+    stage = _rig(rig, notes) | contact_model(contact)
+    predict = stage if law is None else _with_law(stage, law, given, names, notes)
+    with notes.of("fit"), progress(bootstrap) as shown:
+        shown.stage("fitting")
+        return fit_parameters(
+            predict,
+            tests,
+            names,
+            friction_coefficient=friction,
+            bootstrap=bootstrap,
+            on_progress=shown,
+            **settings,
+        )
+
+
+def _with_law(
+    stage: ContactPipeline[TwinDisc], text: str, given: dict[str, str], free: list[str], notes: Notes
+) -> Pipeline[TwinDisc]:
+    """Return the pipeline with the law to fit; what it was fitted for does not matter, but what it keeps does."""
+    from wearlaw.cli.parsing import wear_law
+    from wearlaw.parameters import numbers
+    from wearlaw.pipeline import Pipeline
+
+    law = wear_law(text, given)
+    kept = [f"{name} = {value!r}" for name, value in numbers(law.explicit()).items() if name not in free]
+    if kept:
+        notes.add(f"fit: not fitted, {', '.join(kept)}")
+    return Pipeline(contact=stage, wear_law=law)
+
+
+@click.command()
+@click.argument("tests")
+@click.option("--contacts", required=True, metavar="MODELS", help="Contact models: global,exact or NAME:FIELD=VALUE.")
+@click.option("--laws", required=True, metavar="LAWS", help="Wear laws: usfd,kth or NAME:FIELD=VALUE, or TOML files.")
+@click.option(
+    "--free", metavar="LAW=FIELDS", multiple=True, help="Also fit this one of the laws, on every contact; repeatable."
+)
+@common
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-comparison]."
+)
+def compare(tests: str, output: Path | None, overwrite: bool, latex: bool, **options: Any) -> None:
+    """Rank contact models and wear laws by how well they predict tests.
+
+    TESTS is a CSV file with units in its header, such as creepage [%]. Every contact model is paired with every law.
+
+    \b
+    wearlaw compare my-tests.csv --contacts global,exact,fastsim --laws usfd,kth,brr -o cmp/
+    wearlaw compare my-tests.csv --contacts exact,fastsim --laws usfd:fitted_for=exact,fit/law.toml -o cmp/
+    wearlaw compare my-tests.csv --contacts global,exact --laws usfd,kth --free usfd=q_s,m_c -o cmp/
+
+    A law is taken with its defaults unless options are given; a note says where its parameters were fitted for another
+    contact. The folder then holds ranking.csv, the table that is printed; predictions.csv; a figure of measured against
+    predicted wear rates; and comparison.json with all models.
+    """  # noqa: D301
+    from wearlaw.data_output import COMPARISON, write_comparison
+    from wearlaw.output import fresh_folder
+
+    folder = output if output is not None else Path(f"{Path(tests).stem}-comparison")
+    notes = Notes()
+    with fresh_folder(folder, overwrite, COMPARISON) as fresh:
+        comparison = _compare(tests, notes, **options)
+        names = write_comparison(comparison, notes.texts, fresh, latex)
+    print_notes(notes.texts)
+    click.echo(repr(comparison))
+    _print_results(folder, names)
+
+
+def _compare(
+    path: str,
+    notes: Notes,
+    *,
+    contacts: str,
+    laws: str,
+    free: tuple[str, ...],
+    rig: Path | None,
+    friction: float | None,
+    scatter: str,
+) -> Comparison:
+    """Return the comparison that the options ask for."""
+    from wearlaw.cli.parsing import contact_model, listed, wear_law
+    from wearlaw.comparing import compare_named
+    from wearlaw.comparison import Names
+    from wearlaw.pairs import compose
+
+    tests = _tests(path, friction, False, notes)
+    named = {text: wear_law(text) for text in listed("--laws", laws)}
+    models = {text: contact_model(text) for text in listed("--contacts", contacts)}
+    pairs = compose(_rig(rig, notes), models, named, notes)
+    predictors: list[tuple[Names, Predictor]] = [
+        (Names(pair.label, pair.wear_law, pair.contact_model), pair.pipeline) for pair in pairs
+    ]
+    for setting in free:
+        law, _, fields = setting.rpartition("=")
+        if law not in named:
+            raise click.UsageError(f"--free: write it as LAW=FIELDS, with a LAW of {laws}, got '{setting}'")
+        of_law = [pair for pair in pairs if pair.wear_law == law]
+        fits = _fits(of_law, listed("--free", fields), tests, notes, friction_coefficient=friction, scatter=scatter)
+        predictors += [(Names(f"{law} fitted on {contact}", f"{law} fitted", contact), one) for contact, one in fits]
+    comparison = compare_named(predictors, tests, friction)
+    for note in comparison.notes:
+        notes.add(note)
+    return comparison
+
+
+def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **settings: Any) -> list[tuple[str, Fit]]:
+    """Return fits of a law by contact model; one that the tests do not determine is left out.
+
+    Raises
+    ------
+    FitError
+        If there is no fit on any contact.
+    """
+    from wearlaw.fitting import fit as fit_parameters
+
+    found, refused = [], []
+    with progress(len(pairs)) as shown:
+        shown.stage("fitting")
+        for pair in pairs:
+            name = f"{pair.wear_law} fitted on {pair.contact_model}"
+            try:
+                with notes.of(name):
+                    fitted = fit_parameters(pair.pipeline, tests, free, bootstrap=0, **settings)
+                found.append((pair.contact_model, fitted))
+            except FitError as error:
+                refused.append(f"{name} is left out: {error}")
+            shown(1)
+    if not found:
+        raise FitError(refused[0])
+    for text in refused:
+        notes.add(text)
+    return found
+
+
+def _rig(path: Path | None, notes: Notes) -> TwinDisc:
+    from wearlaw.cli.parsing import read_rig
+
+    if path is None:
+        notes.add("the rig is taken to be SUROS, 47 mm steel discs and a track of 10 mm; give yours with --rig")
+    return read_rig(path)
+
+
+def _tests(path: str, friction: float | None, fitted: bool, notes: Notes) -> WearTests:
+    """Return the tests, and say where a friction coefficient was given in vain."""
+    from wearlaw.wear_tests_csv import read_tests
+
+    tests = read_tests(path)
+    if friction is not None and not fitted and tests.friction_coefficient is not None:
+        notes.add(f"--friction {friction:g} is not used, since the tests have a column friction_coefficient")
+    return tests
+
+
+def _print_results(folder: Path, names: Iterable[str]) -> None:
+    click.echo(f"Results in {folder}:")
+    for name in names:
+        click.echo(f"  {folder / name}")
+
+
+COMMANDS = (fit, compare)
+"""The commands of this module."""

@@ -1,0 +1,151 @@
+"""Commands about models: what is installed, what they are, checks of them, and plugins to begin with."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+import warnings
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from rich.console import Console
+from rich.table import Table
+
+from wearlaw import plugins
+from wearlaw.errors import PluginWarning, UnknownModelError
+from wearlaw.shelf import unknown
+
+if TYPE_CHECKING:
+    from wearlaw.models import Model
+    from wearlaw.scaffold import Kind, Licence
+    from wearlaw.testing import Check
+
+
+@click.command("plugins")
+def list_plugins() -> None:
+    """List the installed contact models and wear laws, and what failed to load."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PluginWarning)  # what is left out is listed below
+        found = plugins.installed()
+    table = Table("kind", "name", "distribution", "version", box=None, pad_edge=False)
+    for kind, name, origin in found.listing():
+        table.add_row(kind, name, origin.distribution, origin.version)
+    Console().print(table)
+    for plugin in found.broken:
+        click.echo(f"left out: {plugin}", err=True)
+
+
+@click.command()
+@click.argument("name")
+def show(name: str) -> None:
+    """Explain a model: its fields with units, defaults and sources, its range, and what it declares."""
+    from wearlaw.describe import describe
+
+    click.echo(describe(_model_class(name)))
+
+
+@click.command("new-plugin")
+@click.argument("name")
+@click.option("--wear-law", "kind", flag_value="wear_law", help="Start from a wear law: Archard's.")
+@click.option("--contact-model", "kind", flag_value="contact_model", help="Start from a contact model: full slip.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    default=Path(),
+    help="Folder in which wearlaw-NAME is made [default: the working folder].",
+)
+@click.option(
+    "--license",
+    "licence",
+    type=click.Choice(["bsd-3-clause", "mit", "none"]),
+    default="none",
+    show_default=True,
+    help="Licence of the plugin; with none, LICENSE says how to choose one.",
+)
+def new_plugin(name: str, kind: Kind | None, output: Path, licence: Licence) -> None:
+    """Begin a plugin: write a small distribution, wearlaw-NAME, with a wear law or a contact model to replace.
+
+    It holds a module of about 30 lines, its entry point, its tests with the conformance checks, a README, a licence
+    and a CI workflow, and passes its tests, ruff and mypy --strict as it is. NAME is what the model will be called in
+    wearlaw.wear_law("NAME") and in case files: lower-case letters, digits and underscores.
+    """
+    from wearlaw.scaffold import write_plugin
+
+    if kind is None:
+        raise click.UsageError("say what it provides: --wear-law or --contact-model")
+    folder = write_plugin(name, kind, output, licence)
+    click.echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}.py. Next:")
+    click.echo(f"  cd {shlex.quote(str(folder))}")
+    for line in ('python -m pip install -e ".[test]"', "pytest", "wearlaw plugins", f"wearlaw check {name}"):
+        click.echo(f"  {line}")
+
+
+@click.command()
+@click.argument("name")
+@click.option(
+    "--option", "options", metavar="FIELD=VALUE", multiple=True, help="Set a field of the model; may be repeated."
+)
+def check(name: str, options: tuple[str, ...]) -> None:
+    """Check that an installed model keeps what wearlaw relies on: one line a check, exit code 1 if any fails.
+
+    \b
+    wearlaw check usfd
+    wearlaw check usfd --option fitted_for=exact
+    """  # noqa: D301
+    from wearlaw.models import ContactModel
+
+    model = _model_class(name)(**_fields(options))
+    outcomes = [_outcome(one) for one in _checks(model)]
+    not_claimed = model.exemptions if isinstance(model, ContactModel) else {}
+    for claim, reason in not_claimed.items():
+        click.echo(f"not claimed {claim}: {reason}")
+    click.echo(f"{outcomes.count(True)} ok, {outcomes.count(False)} failed, {len(not_claimed)} not claimed")
+    if not all(outcomes):
+        sys.exit(1)
+
+
+def _fields(options: tuple[str, ...]) -> dict[str, str]:
+    for option in options:
+        if "=" not in option:
+            raise click.UsageError(f"--option: write it as FIELD=VALUE, got '{option}'")
+    return dict(option.split("=", 1) for option in options)
+
+
+def _checks(model: Model) -> Iterable[Check]:
+    try:
+        from wearlaw.testing import checks
+    except ModuleNotFoundError as error:
+        if error.name != "hypothesis":
+            raise
+        raise click.ClickException(str(error)) from None
+    return checks(model)
+
+
+def _outcome(check: Check) -> bool:
+    """Run one check, print a line about it, and return whether it passed."""
+    try:
+        check()
+    except AssertionError as error:
+        reason = str(error) or check.doc
+        click.echo(f"FAILED {check.name}: {reason.strip().splitlines()[0]}")
+        return False
+    click.echo(f"ok {check.name}")
+    return True
+
+
+def _model_class(name: str) -> type[Model]:
+    """Return the contact model or the wear law of a name."""
+    found = plugins.installed()
+    if name in found.wear_laws.providers:
+        return found.wear_laws.find(name, found.broken)
+    if name in found.contact_models.providers:
+        return found.contact_models.find(name, found.broken)
+    known = [*found.contact_models.items(), *found.wear_laws.items()]
+    raise UnknownModelError(unknown("model", name, known, found.broken))
+
+
+COMMANDS = (list_plugins, show, new_plugin, check)
+"""The commands of this module."""

@@ -1,0 +1,82 @@
+"""What is written on the command line, as rigs and models."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import click
+
+from wearlaw import plugins
+from wearlaw.case import RigField
+from wearlaw.configuration import Configuration
+from wearlaw.errors import ConfigurationError, InputError
+from wearlaw.law_files import read_wear_law
+from wearlaw.models import ContactModel, WearLaw
+from wearlaw.rig import TwinDisc
+
+
+class _WithRig(Configuration, extra="ignore"):
+    """A file with a rig, such as a case file."""
+
+    rig: RigField
+    """The test rig."""
+
+
+def read_rig(path: Path | None) -> TwinDisc:
+    """Return the rig of the table [rig] in a TOML file, or SUROS without one.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or no such table in it, or its fields are wrong.
+    """
+    if path is None:
+        return TwinDisc.suros()
+    try:
+        return _WithRig(**tomllib.loads(path.read_text(encoding="utf-8"))).rig
+    except OSError as error:
+        raise InputError(f"cannot read the rig '{path}': {error.strerror or error}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"the rig '{path}' is not valid TOML: {error}") from None
+    except ConfigurationError as error:
+        raise InputError(f"the rig '{path}' is wrong in:" + "".join(f"\n  {p}" for p in error.problems)) from None
+
+
+def listed(option: str, text: str) -> list[str]:
+    """Return what stands between commas, at least one."""
+    found = [part for part in (part.strip() for part in text.split(",")) if part]
+    if not found:
+        raise click.UsageError(f"{option}: name at least one, got '{text}'")
+    return found
+
+
+def fields(option: str, settings: tuple[str, ...]) -> dict[str, str]:
+    """Return settings such as "q_s=56 ug/m/mm^2" by field."""
+    for setting in settings:
+        if not setting.partition("=")[1]:
+            raise click.UsageError(f"{option}: write it as FIELD=VALUE, got '{setting}'")
+    return dict(setting.split("=", 1) for setting in settings)
+
+
+def contact_model(text: str) -> ContactModel:
+    """Return the contact model that "NAME" or "NAME:FIELD=VALUE:..." stands for."""
+    name, *settings = text.split(":")
+    return plugins.contact_model(name, **fields(text, tuple(settings)))
+
+
+def wear_law(text: str, fixed: dict[str, str] | None = None) -> WearLaw:
+    """Return the wear law that "NAME", "NAME:FIELD=VALUE:..." or the path of a TOML file stands for.
+
+    Parameters
+    ----------
+    text : str
+        What is written on the command line.
+    fixed : dict of str to str, optional
+        Further fields.
+    """
+    if text.endswith(".toml"):
+        law = read_wear_law(text)
+        return law.model_copy(update=fixed) if fixed else law
+    name, *settings = text.split(":")
+    return plugins.wear_law(name, **fields(text, tuple(settings)) | (fixed or {}))

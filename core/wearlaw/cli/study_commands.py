@@ -1,0 +1,110 @@
+"""Commands about case files: run one, print one, and the schema of them all."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from wearlaw.cli.printing import print_notes, progress
+from wearlaw.version import __version__
+
+if TYPE_CHECKING:
+    from wearlaw.output import FigureFormat
+    from wearlaw.study import Study
+    from wearlaw.tables import NamedTable
+
+
+@click.command()
+@click.argument("case")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-results].")
+@click.option("--overwrite", is_flag=True, help="Replace the results of an earlier run in that folder.")
+@click.option(
+    "--figure-format",
+    "figure_formats",
+    type=click.Choice(["png", "pdf", "svg"]),
+    multiple=True,
+    default=["png"],
+    show_default=True,
+    help="Format of the files in figures/; may be repeated.",
+)
+@click.option("--latex", is_flag=True, help="Write the tables for LaTeX too.")
+def run(case: str, output: Path | None, overwrite: bool, figure_formats: tuple[FigureFormat, ...], latex: bool) -> None:
+    """Run a study: CASE is a case file, or the name of one that is shipped (tassini2010).
+
+    Every contact model of the case is paired with every wear law. Results are written as report.html, a page to open in
+    a browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default
+    spelt out.
+    """
+    from wearlaw.case import load_case
+    from wearlaw.output import fresh_folder, write
+    from wearlaw.study import evaluations
+    from wearlaw.study import run as run_case
+    from wearlaw.tables import summaries
+
+    loaded = load_case(case)
+    folder = output if output is not None else Path(f"{Path(case).stem}-results")
+    with fresh_folder(folder, overwrite) as fresh, progress(evaluations(loaded)) as shown:
+        study = run_case(loaded, shown)
+        names = write(study, fresh, figure_formats, latex, shown.stage)
+    print_notes(study.notes)
+    for table in summaries(study):
+        Console().print(_summary(table))
+    _print_used(study)
+    click.echo(f"Results in {folder}:")
+    for name in names:
+        click.echo(f"  {folder / name}")
+
+
+@click.command()
+@click.argument("name")
+def case(name: str) -> None:
+    """Print a case file: NAME is the name of a shipped one (tassini2010), or a path."""
+    from wearlaw.case import case_text
+
+    click.echo(case_text(name).encode(), nl=False)  # TOML is UTF-8, whatever the terminal speaks
+
+
+@click.command()
+def schema() -> None:
+    """Print the JSON Schema of a case file with the options of the installed models."""
+    from wearlaw.case import case_schema
+
+    click.echo(json.dumps(case_schema(), indent=2, ensure_ascii=False).encode())
+
+
+def _print_used(study: Study) -> None:
+    """Print the version of wearlaw, and a line for each other distribution with what came from it."""
+    from wearlaw.study import used
+
+    provided: dict[str, list[str]] = {f"wearlaw {__version__}": []}
+    for kind, names in used(study.case).items():
+        for name, distribution in names.items():
+            provided.setdefault(distribution, []).append(f"{kind} {name}")
+    (ours, _), *others = provided.items()
+    click.echo(f"Computed with {ours}")
+    for distribution, things in others:
+        click.echo(f"  and {distribution}: {', '.join(things)}")
+
+
+def _summary(summary: NamedTable) -> Table:
+    """Return a short table of wear rates for the screen."""
+    what, *values = summary.frame.columns
+    title = Text(f"{summary.title}: {what}")
+    table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE, pad_edge=False)
+    table.add_column("", overflow="fold")
+    for value in values:
+        table.add_column(value, justify="right", no_wrap=True)
+    for pair, *rates in summary.frame.itertuples(index=False, name=None):
+        table.add_row(Text(pair), *(f"{rate:.4g}" for rate in rates))
+    return table
+
+
+COMMANDS = (run, case, schema)
+"""The commands of this module."""

@@ -1,0 +1,184 @@
+"""Comparing predictors on the same wear tests."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+
+import numpy as np
+
+from wearlaw.agreement import Information, agreement
+from wearlaw.arrays import Array
+from wearlaw.comparison import Compared, Comparison, Names
+from wearlaw.errors import InputError
+from wearlaw.fit_result import Fit
+from wearlaw.free_parameters import FRICTION
+from wearlaw.models import Model
+from wearlaw.notes import Notes
+from wearlaw.pairs import labelled
+from wearlaw.pipeline import Pipeline
+from wearlaw.rig import TwinDisc
+from wearlaw.wear_tests import WearTests
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+ModelT = TypeVar("ModelT", bound=Model)
+
+Predictor: TypeAlias = Pipeline[TwinDisc] | Fit
+"""What predicts a wear rate."""
+
+
+def compare(
+    predictors: Mapping[str, Predictor] | Sequence[Predictor],
+    tests: WearTests,
+    *,
+    friction_coefficient: ArrayLike | None = None,
+) -> Comparison:
+    """Return how well each predictor agrees with measured wear rates, ranked, all on the same tests.
+
+    Parameters
+    ----------
+    predictors : mapping of str to Pipeline or Fit, or sequence of these
+        What predicts the wear rate. In a sequence each is called after its law and contact model, such as
+        "usfd on exact", or "usfd fitted on exact" if it is a `Fit`.
+    tests : WearTests
+        The tests; those without a wear rate are left out.
+    friction_coefficient : array_like of float, optional
+        μ [-] for tests that do not hold it.
+
+    Returns
+    -------
+    Comparison
+        Ranked by, in this order: the number of tests in which one of predicted and measured rate is zero and the
+        other is not, which no factor can express; the root mean square of the logarithmic error, `rms_factor`; and
+        the root mean square error.
+
+    Raises
+    ------
+    InputError
+        If there is no predictor, two have the same name, or no test has a wear rate.
+    ConditionsError
+        If the friction coefficient is not known.
+
+    Notes
+    -----
+    A law that was fitted to the same tests follows their scatter too, and agrees the better the more parameters it
+    has. AIC (see `Information`) weighs one against the other. It is blank for what was not fitted to these tests, to
+    their wear rates alone, and where fits take the tests to scatter in different ways.
+    """
+    return compare_named(_named(predictors), tests, friction_coefficient)
+
+
+def compare_named(
+    named: Sequence[tuple[Names, Predictor]], tests: WearTests, friction_coefficient: ArrayLike | None
+) -> Comparison:
+    """Return what `compare` does, for predictors with the names of their laws and contact models."""
+    notes = Notes()
+    used = _with_wear_rate(tests, notes)
+    compared = [_compared(*one, used, friction_coefficient, notes) for one in named]
+    if len({one.scatter for _, one in named if isinstance(one, Fit)}) > 1:
+        notes.add("AIC is left blank, since the fits take the tests to scatter in different ways")
+        compared = [replace(one, information=None) for one in compared]
+    return Comparison(used, tuple(sorted(compared, key=lambda one: one.agreement.rank)), tuple(notes.texts))
+
+
+def _named(predictors: Mapping[str, Predictor] | Sequence[Predictor]) -> list[tuple[Names, Predictor]]:
+    """Return the predictors with their names, made from their models where none are given."""
+    given = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
+    if not given:
+        raise InputError("give at least one predictor, such as rig | contact_model | law")
+    for one in given:
+        if not isinstance(one.predict if isinstance(one, Fit) else one, Pipeline):
+            raise InputError(
+                f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {one!r}"
+            )
+    names = _names(given)
+    if isinstance(predictors, Mapping):
+        names = [Names(own, own, of_models.contact) for own, of_models in zip(predictors, names, strict=True)]
+    taken = [one.label for one in names]
+    twice = [label for label in taken if taken.count(label) > 1]
+    if twice:
+        raise InputError(f"two predictors are called '{twice[0]}'; give a mapping from names of your own to them")
+    return list(zip(names, given, strict=True))
+
+
+def _names(predictors: Sequence[Predictor]) -> list[Names]:
+    """Return what predictors are called after their models, as in a study."""
+    models = _names_of([_pipeline(one).contact.contact_model for one in predictors])
+    laws = _names_of([one.wear_law for one in predictors if isinstance(one, Pipeline)])
+    names = []
+    for one in predictors:
+        stage = _pipeline(one).contact
+        contact = models[stage.contact_model] + (", patch means" if stage.use_patch_mean else "")
+        law = laws[one.wear_law] if isinstance(one, Pipeline) else f"{_pipeline(one).wear_law.name} fitted"
+        names.append(Names(f"{law} on {contact}", law, contact))
+    return names
+
+
+def _names_of(models: Sequence[ModelT]) -> dict[ModelT, str]:
+    distinct = list(dict.fromkeys(models))
+    return {model: label for label, model in labelled(distinct).items()}
+
+
+def _pipeline(predictor: Predictor) -> Pipeline[TwinDisc]:
+    found = predictor.predict if isinstance(predictor, Fit) else predictor
+    assert isinstance(found, Pipeline)
+    return found
+
+
+def _has_wear_rate(tests: WearTests) -> NDArray[np.bool_]:
+    return ~np.isnan(tests.columns.get("wear_rate", np.full(len(tests), np.nan)))
+
+
+def _with_wear_rate(tests: WearTests, notes: Notes) -> WearTests:
+    """Return the tests that have a wear rate."""
+    there = _has_wear_rate(tests)
+    if not there.any():
+        raise InputError(f"none of the {len(tests)} tests has a wear rate, which predictors are compared on")
+    if not there.all():
+        notes.add(f"{(~there).sum()} of {len(tests)} tests have no wear rate and are left out")
+    return tests[there]
+
+
+def _compared(names: Names, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Compared:
+    predicted = _predicted(names.label, predictor, tests, friction, notes)
+    errors = agreement(predicted, tests.columns["wear_rate"])
+    if errors.without_ratio:
+        notes.add(
+            f"{names.label}: either the predicted or the measured wear rate is zero in {errors.without_ratio} of"
+            f" {len(tests)} tests, which no factor can express; these count first in the ranking"
+        )
+    worth = _information(names.label, predictor, tests, notes) if isinstance(predictor, Fit) else None
+    return Compared(names, _pipeline(predictor), predicted, errors, worth)
+
+
+def _predicted(name: str, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Array:
+    """Return the wear rates that are predicted for tests [kg/m/m²]."""
+    pipeline = _pipeline(predictor)
+    conditions = tests.conditions(pipeline.contact.contact_model, friction)
+    if isinstance(predictor, Fit) and FRICTION in predictor.parameters:
+        conditions[FRICTION] = float(predictor.parameters[FRICTION].magnitude)
+        conditions.pop("traction_coefficient", None)
+        notes.add(f"{name}: takes the friction coefficient that was fitted, {conditions[FRICTION]:.4g}")
+    if "traction_coefficient" in conditions:
+        notes.add(f"{name}: takes the traction that was measured in the tests")
+    with notes.of(name):
+        pipeline = pipeline.contact | pipeline.wear_law  # warns of parameters fitted for another contact
+    with notes.of("tests"):
+        prediction = pipeline.predict(pipeline.contact.rig.problem(**conditions))
+    return np.asarray(prediction.wear_rate.to_base_units().magnitude)
+
+
+def _information(name: str, fit: Fit, tests: WearTests, notes: Notes) -> Information | None:
+    """Return what a fit to these very tests is worth."""
+    of_traction = len(fit.observations) > 1
+    if of_traction or fit.tests[_has_wear_rate(fit.tests)] != tests:
+        why = "to tractions too" if of_traction else "to other tests"
+        notes.add(f"{name}: was fitted {why}, so that its AIC says nothing here and is left blank")
+        return None
+    free = len(fit.parameters)
+    k = free + (fit.scatter != "uncertainty")
+    spare = len(tests) - k - 1
+    return Information(free, fit.aic, fit.aic + 2.0 * k * (k + 1) / spare if spare > 0 else None)
