@@ -1,6 +1,6 @@
 """Draws the pictures of the README and the documentation: the shipped study, and the results of the benchmarks.
 
-The picture of the report in a browser needs chromium and chromedriver.
+The picture of the report in a browser stays as it is where there is no chromium with its chromedriver.
 """
 
 import csv
@@ -28,6 +28,8 @@ def draw() -> None:
     for figure in study.figures:
         _save(drawing_of(figure), figure.name)
     _save(cost_against_error(), "accuracy_cost_against_error")
+    if shutil.which("chromium") is None or shutil.which("chromedriver") is None:
+        return
     with tempfile.TemporaryDirectory() as folder:
         photograph(Path(folder) / write(study, Path(folder), figure_formats=())[0])
 

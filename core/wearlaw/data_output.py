@@ -11,8 +11,7 @@ from wearlaw.comparison import Comparison
 from wearlaw.curves import FigureData
 from wearlaw.errors import OutputError
 from wearlaw.fit_result import Fit
-from wearlaw.latex import latex_table
-from wearlaw.output import METADATA
+from wearlaw.output import FigureFormat, save_figure, save_table
 from wearlaw.units import text_of
 from wearlaw.version import __version__
 
@@ -24,7 +23,13 @@ COMPARISON = "comparison.json"
 LAW = "law.toml"
 
 
-def write_fit(fit: Fit, notes: Sequence[str], folder: Path, latex: bool = False) -> list[str]:
+def write_fit(
+    fit: Fit,
+    notes: Sequence[str],
+    folder: Path,
+    figure_formats: Sequence[FigureFormat] = ("png",),
+    latex: bool = False,
+) -> list[str]:
     """Write a fit into an empty folder and return the names of the files, the fitted law first.
 
     Parameters
@@ -35,8 +40,10 @@ def write_fit(fit: Fit, notes: Sequence[str], folder: Path, latex: bool = False)
         What a reader of the fit must know.
     folder : Path
         Where to.
+    figure_formats : sequence of str
+        The formats in which the figure is written.
     latex : bool
-        Whether the parameters are also written for LaTeX.
+        Whether the tables are also written for LaTeX.
 
     Raises
     ------
@@ -57,10 +64,16 @@ def write_fit(fit: Fit, notes: Sequence[str], folder: Path, latex: bool = False)
         fit.to_toml(folder / LAW)
         names.append(LAW)
     tables = {"parameters": fit.table(), "residuals": fit.residuals}
-    return [*names, *_write(folder, FIT, record, tables, latex, fit.figure_data())]
+    return [*names, *_write(folder, FIT, record, tables, fit.figure_data(), figure_formats, latex)]
 
 
-def write_comparison(comparison: Comparison, notes: Sequence[str], folder: Path, latex: bool = False) -> list[str]:
+def write_comparison(
+    comparison: Comparison,
+    notes: Sequence[str],
+    folder: Path,
+    figure_formats: Sequence[FigureFormat] = ("png",),
+    latex: bool = False,
+) -> list[str]:
     """Write a comparison into an empty folder and return the names of the files, the ranking first.
 
     Parameters, errors: as for `write_fit`.
@@ -72,7 +85,7 @@ def write_comparison(comparison: Comparison, notes: Sequence[str], folder: Path,
         "notes": list(notes),
     }
     tables = {"ranking": comparison.table(), "predictions": comparison.predictions()}
-    return _write(folder, COMPARISON, record, tables, latex, comparison.figure_data())
+    return _write(folder, COMPARISON, record, tables, comparison.figure_data(), figure_formats, latex)
 
 
 def _write(
@@ -80,22 +93,16 @@ def _write(
     marker: str,
     record: Mapping[str, Any],
     tables: Mapping[str, pd.DataFrame],
-    latex: bool,
     figure: FigureData,
+    figure_formats: Sequence[FigureFormat],
+    latex: bool,
 ) -> list[str]:
-    """Write tables, the first of them for LaTeX too, a figure and a record of it all."""
-    from wearlaw.figures import draw
-
-    picture = f"{figure.name}.png"
-    first = next(iter(tables))
+    """Write tables, a figure and a record of it all."""
     try:
-        for name, frame in tables.items():
-            frame.to_csv(folder / f"{name}.csv", index=False)
-        if latex:
-            (folder / f"{first}.tex").write_text(latex_table(tables[first]), encoding="utf-8")
-        draw(figure).savefig(folder / picture, dpi=150, metadata=METADATA["png"])
+        names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
+        names += save_figure(figure, folder, figure.name, figure_formats)
         text = json.dumps(record, indent=2, ensure_ascii=False)
         (folder / marker).write_text(text + "\n", encoding="utf-8")
     except OSError as error:
         raise OutputError(f"output: cannot write the results: {error.strerror or error}") from None
-    return [*(f"{name}.csv" for name in tables), *([f"{first}.tex"] if latex else []), picture, marker]
+    return [*names, marker]

@@ -49,13 +49,20 @@ def plotly_figure(figure: FigureData) -> Json:
         "hovermode": "closest",
         "uirevision": figure.name,  # keeps zoom and what is switched off when the colours change
         "margin": {"l": 70, "r": 20, "t": 40, "b": 60},
-        "legend": {"tracegroupgap": 0, **below},
+        "legend": {"tracegroupgap": 0, **below, **_bands(figure)},
         "annotations": [_heading(panel, number) for number, panel in numbered if panel.title],
     }
     for (number, panel), (across, up) in zip(numbered, _places(len(numbered)), strict=True):
         layout[f"xaxis{number}"] = {**_axis(panel.x), "domain": across, "anchor": f"y{number}"}
         layout[f"yaxis{number}"] = {**_axis(panel.y), "domain": up, "anchor": f"x{number}"}
     return {"data": data, "layout": layout}
+
+
+def _bands(figure: FigureData) -> Json:
+    """Return the title of the legend, which says what bands are, if there are any."""
+    curves = (curve for panel in figure.panels for curve in panel.curves)
+    banded = any(curve.low is not None and not curve.points for curve in curves)
+    return {"title": {"text": literal(f"bands: {figure.bands}")}} if banded else {}
 
 
 def literal(text: str) -> str:

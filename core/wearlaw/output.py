@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray
 
+    from wearlaw.curves import FigureData
+
 RESULTS = "results.nc"
 CSV = "results.csv"
 FIGURES = "figures"
@@ -150,32 +152,43 @@ def _write_tables(study: Study, folder: Path, latex: bool) -> list[str]:
     names = []
     (folder / TABLES).mkdir()
     for name, one in _by_name("table", ((one.name, one) for one in tables(study))).items():
-        names.append(os.path.join(TABLES, f"{name}.csv"))
-        one.frame.to_csv(folder / names[-1], index=False)
-        if latex:
-            names.append(os.path.join(TABLES, f"{name}.tex"))
-            (folder / names[-1]).write_text(latex_table(one.frame), encoding="utf-8")
+        names += save_table(one.frame, folder, os.path.join(TABLES, name), latex)
     return names
+
+
+def save_table(frame: pd.DataFrame, folder: Path, name: str, latex: bool) -> list[str]:
+    """Write a table as CSV, and for LaTeX too if asked for, and return the names of the files."""
+    frame.to_csv(folder / f"{name}.csv", index=False)
+    if not latex:
+        return [f"{name}.csv"]
+    (folder / f"{name}.tex").write_text(latex_table(frame), encoding="utf-8")
+    return [f"{name}.csv", f"{name}.tex"]
 
 
 def write_figures(
     study: Study, folder: Path, formats: Sequence[FigureFormat], on_stage: Callable[[str], None]
 ) -> list[str]:
-    """Write all figures, as the same bytes each time: no date in them, and no random names."""
-    import matplotlib as mpl
-
-    from wearlaw.figures import draw
-
+    """Write all figures of a study and return the names of the files."""
     names = []
     (folder / FIGURES).mkdir()
     every = (*study.figures, *(figure for section in study.sections for figure in section.figures))
     for name, figure in _by_name("figure", ((figure.name, figure) for figure in every)).items():
         on_stage(f"drawing {name}")
-        drawn = draw(figure)
-        for extension in dict.fromkeys(formats):
-            names.append(os.path.join(FIGURES, f"{name}.{extension}"))
-            with mpl.rc_context({"pdf.fonttype": 42, "svg.hashsalt": "wearlaw"}):
-                drawn.savefig(folder / names[-1], dpi=150, metadata=METADATA[extension])
+        names += save_figure(figure, folder, os.path.join(FIGURES, name), formats)
+    return names
+
+
+def save_figure(figure: FigureData, folder: Path, name: str, formats: Sequence[FigureFormat]) -> list[str]:
+    """Write a figure, as the same bytes each time, with no date in it, and return the names of the files."""
+    import matplotlib as mpl
+
+    from wearlaw.figures import draw
+
+    drawn = draw(figure)
+    names = [f"{name}.{extension}" for extension in dict.fromkeys(formats)]
+    for extension, file in zip(dict.fromkeys(formats), names, strict=True):
+        with mpl.rc_context({"pdf.fonttype": 42, "svg.hashsalt": "wearlaw"}):
+            drawn.savefig(folder / file, dpi=150, metadata=METADATA[extension])
     return names
 
 

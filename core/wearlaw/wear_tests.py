@@ -154,8 +154,8 @@ class WearTests:
         friction = friction_coefficient if self.friction_coefficient is None else self.friction_coefficient
         if friction is None:
             raise ConditionsError(
-                "friction_coefficient: the tests do not hold it; give it, such as friction_coefficient=0.46, or add a"
-                " column of that name"
+                "friction_coefficient: the tests do not hold it; add a column of that name, or give it:"
+                " friction_coefficient=0.46 in Python, --friction 0.46 on the command line"
             )
         load = next(name for name in LOADS if name in self.columns)
         conditions = {

@@ -117,10 +117,14 @@ def test_a_fitted_law_is_taken_where_a_law_is_asked_for() -> None:
 
 
 def test_the_settings_of_a_fit_are_those_of_the_options() -> None:
-    assert wearlaw(*FIT[:-2], "--bootstrap", "30", "--seed", "7", "--scatter", "absolute", "--latex").exit_code == 0
+    options = ("--bootstrap", "30", "--seed", "7", "--scatter", "absolute", "--latex", "--figure-format", "pdf")
+    assert wearlaw(*FIT[:-2], *options).exit_code == 0
     found = json.loads(Path("tests-fit/fit.json").read_text(encoding="utf-8"))["provenance"]
     assert (found["bootstrap"], found["seed"], found["scatter"]) == (30, 7, "absolute")
     assert Path("tests-fit/parameters.tex").read_text().startswith("% \\usepackage{booktabs}")
+    assert Path("tests-fit/residuals.tex").exists()
+    assert Path("tests-fit/fit.pdf").read_bytes().startswith(b"%PDF")
+    assert not Path("tests-fit/fit.png").exists()
 
 
 def test_the_friction_coefficient_is_fitted_to_traction_without_a_law() -> None:
@@ -180,7 +184,8 @@ def test_predictors_are_ranked_and_the_files_are_listed_as_they_are(folder: Path
     }
     assert listed(result, "cmp") == files(folder) - {"tests.csv"}
     assert {Path(name).name for name in files(folder / "cmp")} == {
-        "ranking.csv", "ranking.tex", "predictions.csv", "measured_against_predicted.png", "comparison.json",
+        "ranking.csv", "ranking.tex", "predictions.csv", "predictions.tex", "measured_against_predicted.png",
+        "comparison.json",
     }  # fmt: skip
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from wearlaw.cli.formats import CommandT, written_formats
 from wearlaw.cli.printing import print_notes, progress
 from wearlaw.errors import FitError
 from wearlaw.notes import Notes
@@ -16,18 +17,17 @@ if TYPE_CHECKING:
     from wearlaw.comparing import Predictor
     from wearlaw.comparison import Comparison
     from wearlaw.fit_result import Fit
+    from wearlaw.output import FigureFormat
     from wearlaw.pairs import Pair
     from wearlaw.pipeline import ContactPipeline, Pipeline
     from wearlaw.rig import TwinDisc
     from wearlaw.wear_tests import WearTests
 
-CommandT = TypeVar("CommandT", bound=Callable[..., Any])
-
 
 def common(command: CommandT) -> CommandT:
     """Add the options that both commands have."""
     for option in (
-        click.option("--latex", is_flag=True, help="Write the table that is printed for LaTeX too."),
+        written_formats,
         click.option("--overwrite", is_flag=True, help="Replace earlier results of this command in that folder."),
         click.option(
             "--scatter",
@@ -60,7 +60,14 @@ def common(command: CommandT) -> CommandT:
 @click.option("--confidence", type=float, default=0.95, show_default=True, help="Of the intervals.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Of the random numbers.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-fit].")
-def fit(tests: str, output: Path | None, overwrite: bool, latex: bool, **options: Any) -> None:
+def fit(
+    tests: str,
+    output: Path | None,
+    overwrite: bool,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+    **options: Any,
+) -> None:
     """Fit parameters of a wear law to tests: TESTS is a CSV file with units in its header, such as creepage [%].
 
     \b
@@ -77,7 +84,7 @@ def fit(tests: str, output: Path | None, overwrite: bool, latex: bool, **options
     notes = Notes()
     with fresh_folder(folder, overwrite, FIT) as fresh:
         fitted = _fit(tests, notes, **options)
-        names = write_fit(fitted, notes.texts, fresh, latex)
+        names = write_fit(fitted, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
     click.echo(repr(fitted))
     _print_results(folder, names)
@@ -146,7 +153,14 @@ def _with_law(
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-comparison]."
 )
-def compare(tests: str, output: Path | None, overwrite: bool, latex: bool, **options: Any) -> None:
+def compare(
+    tests: str,
+    output: Path | None,
+    overwrite: bool,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+    **options: Any,
+) -> None:
     """Rank contact models and wear laws by how well they predict tests.
 
     TESTS is a CSV file with units in its header, such as creepage [%]. Every contact model is paired with every law.
@@ -167,7 +181,7 @@ def compare(tests: str, output: Path | None, overwrite: bool, latex: bool, **opt
     notes = Notes()
     with fresh_folder(folder, overwrite, COMPARISON) as fresh:
         comparison = _compare(tests, notes, **options)
-        names = write_comparison(comparison, notes.texts, fresh, latex)
+        names = write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
     click.echo(repr(comparison))
     _print_results(folder, names)

@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from wearlaw.cli.formats import written_formats
 from wearlaw.cli.printing import print_notes, progress
 from wearlaw.version import __version__
 
@@ -25,16 +26,7 @@ if TYPE_CHECKING:
 @click.argument("case")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-results].")
 @click.option("--overwrite", is_flag=True, help="Replace the results of an earlier run in that folder.")
-@click.option(
-    "--figure-format",
-    "figure_formats",
-    type=click.Choice(["png", "pdf", "svg"]),
-    multiple=True,
-    default=["png"],
-    show_default=True,
-    help="Format of the files in figures/; may be repeated.",
-)
-@click.option("--latex", is_flag=True, help="Write the tables for LaTeX too.")
+@written_formats
 def run(case: str, output: Path | None, overwrite: bool, figure_formats: tuple[FigureFormat, ...], latex: bool) -> None:
     """Run a study: CASE is a case file, or the name of one that is shipped (tassini2010).
 
