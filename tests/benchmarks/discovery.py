@@ -1,11 +1,12 @@
-"""Print what discovery costs with 20 plugins installed, as a ratio to importing numpy.
+"""Print what discovery costs with 20 plugins installed, wearlaw's own among them, as a ratio to importing numpy.
 
 Usage: python tests/benchmarks/discovery.py [ROUNDS]
 
 Discovery is one call of `wearlaw.plugins.installed`: it reads the entry points of all distributions, imports the
-modules of wearlaw's own plugins and of the 20, which makes their classes, and calls their hooks. It is timed after
-`import wearlaw` and a first rig, for which pint reads its table of units whatever is installed. Of the two lines below
-it, one is without the imports of the plugins' modules, which leaves what wearlaw itself does; one is with the table.
+modules of wearlaw's own plugins and of the others, which makes their classes, and calls their hooks. It is timed after
+`import wearlaw` and a first rig, for which pint reads its table of units whatever is installed. Of the lines below it,
+one is without the imports of the plugins' modules, which leaves what wearlaw itself does; one is with the table; one is
+with 20 plugins besides wearlaw's own.
 All times are CPU times of fresh processes with one thread, the medians of all rounds, in which the probes take turns
 forwards and backwards. A/A is the ratio of the medians of the odd and the even rounds of one and the same probe.
 """
@@ -21,6 +22,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 PLUGINS = 20
+OTHERS = PLUGINS - len(entry_points(group="wearlaw"))
 GATE = 0.3
 ROUNDS = 16
 
@@ -59,12 +61,14 @@ def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
 NUMPY = "import numpy"
 DISCOVERY = "discovery"
 FOUND = "wearlaw.plugins.installed()"
-MODULES = [*(point.value for point in entry_points(group="wearlaw")), *(f"benchmark_{n}" for n in range(PLUGINS))]
+BESIDES = "  besides wearlaw's own"
+MODULES = [*(point.value for point in entry_points(group="wearlaw")), *(f"benchmark_{n}" for n in range(OTHERS))]
 PROBES = {
     NUMPY: ("", "import numpy"),
     DISCOVERY: ("import wearlaw; wearlaw.TwinDisc.suros()", FOUND),
     "  without the imports": (f"import wearlaw; wearlaw.TwinDisc.suros()\nimport {', '.join(MODULES)}", FOUND),
     "  and the first quantity": ("import wearlaw", FOUND),
+    BESIDES: ("import wearlaw; wearlaw.TwinDisc.suros()", FOUND),
 }
 """What is done before the clock starts, and while it runs."""
 
@@ -72,9 +76,10 @@ THREADS = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THR
 """Else numpy's CPU time grows with the number of cores, on each of which an idle thread spins."""
 
 
-def write_plugins(folder: Path) -> None:
-    """Write the distributions as pip leaves them."""
-    for number in range(PLUGINS):
+def write_plugins(folder: Path, count: int) -> None:
+    """Write distributions as pip leaves them."""
+    folder.mkdir()
+    for number in range(count):
         (folder / f"benchmark_{number}.py").write_text(LAW.format(number=number), encoding="utf-8")
         info = folder / f"benchmark_{number}-1.0.dist-info"
         info.mkdir()
@@ -103,14 +108,15 @@ def main(rounds: int) -> int:
     """Time all probes, print them, and return 1 if the gate is missed."""
     times: dict[str, list[float]] = {probe: [] for probe in PROBES}
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        write_plugins(folder)
-        laws = run("import wearlaw; print(*wearlaw.wear_laws())", folder).split()  # compiles them, as pip does
-        if sum(law.startswith("law_") for law in laws) != PLUGINS:
-            raise RuntimeError(f"the plugins are not found: {laws}")
+        folders = {probe: Path(name) / ("more" if probe == BESIDES else "all") for probe in PROBES}
+        for folder, count in ((folders[DISCOVERY], OTHERS), (folders[BESIDES], PLUGINS)):
+            write_plugins(folder, count)
+            laws = run("import wearlaw; print(*wearlaw.wear_laws())", folder).split()  # compiles them, as pip does
+            if sum(law.startswith("law_") for law in laws) != count:
+                raise RuntimeError(f"the plugins are not found: {laws}")
         for number in range(rounds):
             for probe in PROBES if number // 2 % 2 else reversed(PROBES):
-                times[probe].append(seconds(probe, folder))
+                times[probe].append(seconds(probe, folders[probe]))
     unit = statistics.median(times[NUMPY])
     for probe, found in times.items():
         middle, control = statistics.median(found), statistics.median(found[::2]) / statistics.median(found[1::2])
