@@ -13,8 +13,8 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from wearlaw.case import load_case
-from wearlaw.figures import LINES, PALETTE, STYLE
-from wearlaw.figures import draw as drawing_of
+from wearlaw.figures.drawing import LINES, PALETTE, STYLE
+from wearlaw.figures.drawing import draw as drawing_of
 from wearlaw.output import write
 from wearlaw.study import run
 

@@ -17,10 +17,10 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from wearlaw import plugins
 from wearlaw.configuration import Configuration, known_as
 from wearlaw.errors import CaseError, ConfigurationError, InputError, did_you_mean
-from wearlaw.figure_check import Contents
-from wearlaw.figure_spec import FigureSpec
+from wearlaw.figures.check import Contents
+from wearlaw.figures.measured_points import known_variables
+from wearlaw.figures.spec import FigureSpec
 from wearlaw.grid import Grid
-from wearlaw.measured_points import known_variables
 from wearlaw.measurement import Measurement
 from wearlaw.models import Model
 from wearlaw.rig import Disc, TwinDisc

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wearlaw.comparison import Comparison
-from wearlaw.curves import FigureData
+from wearlaw.comparison.result import Comparison
 from wearlaw.errors import OutputError
-from wearlaw.fit_result import Fit
+from wearlaw.figures.curves import FigureData
+from wearlaw.fitting.result import Fit
 from wearlaw.output import FigureFormat, save_figure, save_table
 from wearlaw.units import text_of
 from wearlaw.version import __version__

@@ -8,8 +8,8 @@ from pydantic import model_validator
 
 from wearlaw import plugins
 from wearlaw.configuration import Configuration
-from wearlaw.wear_tests import WearTests
-from wearlaw.wear_tests_csv import parse_tests, text_of_tests
+from wearlaw.wear_tests.reader import parse_tests, text_of_tests
+from wearlaw.wear_tests.tests import WearTests
 
 
 class Measurement(Configuration):

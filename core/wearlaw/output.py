@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from wearlaw.case import CASE_FILE, written
 from wearlaw.errors import OutputError
-from wearlaw.latex import latex_table
+from wearlaw.report.latex import latex_table
+from wearlaw.report.tables import tables
 from wearlaw.study import Study
-from wearlaw.tables import tables
 from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray
 
-    from wearlaw.curves import FigureData
+    from wearlaw.figures.curves import FigureData
 
 RESULTS = "results.nc"
 CSV = "results.csv"
@@ -130,7 +130,7 @@ def write(
     OutputError
         If a file cannot be written, or two figures or tables have one name.
     """
-    from wearlaw.report import report
+    from wearlaw.report.page import report
 
     case_files = written(study.case)
     try:
@@ -182,7 +182,7 @@ def save_figure(figure: FigureData, folder: Path, name: str, formats: Sequence[F
     """Write a figure, as the same bytes each time, with no date in it, and return the names of the files."""
     import matplotlib as mpl
 
-    from wearlaw.figures import draw
+    from wearlaw.figures.drawing import draw
 
     drawn = draw(figure)
     names = [f"{name}.{extension}" for extension in dict.fromkeys(formats)]

@@ -10,7 +10,8 @@ import pint
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError, did_you_mean
-from wearlaw.units import Quantity, from_si, si_factor
+from wearlaw.registry import si_factor
+from wearlaw.units import Quantity, from_si
 
 ConfigurationT = TypeVar("ConfigurationT", bound=Configuration)
 
@@ -29,12 +30,14 @@ def numbers(record: Configuration) -> dict[str, Quantity | float]:
 
 def number_in_si(value: Quantity | float) -> float:
     """Return a number of `numbers` in SI."""
-    return value if isinstance(value, float) else float(value.magnitude) * si_factor(value, str(value.units))
+    if not isinstance(value, pint.Quantity):
+        return float(value)
+    return float(value.magnitude) * si_factor(value, str(value.units))
 
 
 def number_like(number: Quantity | float, si: Any) -> Any:
     """Return SI floats in the unit of one of `numbers`."""
-    return si if isinstance(number, float) else from_si(si, str(number.units))
+    return from_si(si, str(number.units)) if isinstance(number, pint.Quantity) else si
 
 
 def changed(record: ConfigurationT, values: Mapping[str, Quantity | float]) -> ConfigurationT:

@@ -11,7 +11,6 @@ from pydantic import model_validator
 from wearlaw.arrays import Array
 from wearlaw.conditions import TwinDiscConditions
 from wearlaw.configuration import Configuration
-from wearlaw.distributions import Distribution, PublishedRange
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
 from wearlaw.integrate import integrate_contact, integrate_wear
 from wearlaw.line import LineProblem
@@ -20,12 +19,13 @@ from wearlaw.ranges import RangeWatch
 from wearlaw.result import ContactSolution, Prediction
 from wearlaw.rig import TwinDisc
 from wearlaw.specification import ContactModelField, WearLawField
+from wearlaw.uncertainty.distributions import Distribution, PublishedRange
 from wearlaw.units import Quantity, QuantityLike
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from wearlaw.uncertainty import Uncertainty
+    from wearlaw.uncertainty.result import Uncertainty
 
 RigT = TypeVar("RigT", bound=TwinDisc)
 
@@ -199,7 +199,7 @@ class Pipeline(Configuration, Generic[RigT]):
         InputError
             If nothing is distributed, or a distribution is not possible there.
         """
-        from wearlaw.uncertainty import Uncertainty
+        from wearlaw.uncertainty.result import Uncertainty
 
         return Uncertainty(self, conditions, law or {}, samples, seed)
 

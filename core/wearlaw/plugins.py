@@ -205,7 +205,8 @@ def _entry_points() -> list[tuple[EntryPoint, Origin]]:
 def _name_and_version(distribution: Distribution) -> tuple[str, str]:
     """Return what the metadata begins with; `distribution.metadata` would parse the README behind it as well."""
     text = distribution.read_text("METADATA") or distribution.read_text("PKG-INFO") or ""
-    header = dict(line.partition(": ")[::2] for line in text.partition("\n\n")[0].splitlines())
+    lines = (line.partition(": ") for line in text.partition("\n\n")[0].splitlines())
+    header = {key: value for key, _, value in lines}
     return header.get("Name", "unnamed"), header.get("Version", "unknown")
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from wearlaw.curves import FigureData
+from wearlaw.figures.curves import FigureData
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -30,7 +30,7 @@ from wearlaw.version import __version__
 if TYPE_CHECKING:
     import xarray
 
-    from wearlaw.curves import FigureData
+    from wearlaw.figures.curves import FigureData
     from wearlaw.grid import Grid
     from wearlaw.result import ContactSolution, Prediction
     from wearlaw.shelf import Shelf
@@ -64,7 +64,7 @@ class Study:
     @cached_property
     def figures(self) -> tuple[FigureData, ...]:
         """What the figures of the study show."""
-        from wearlaw.study_figures import figures_of
+        from wearlaw.figures.of_study import figures_of
 
         return figures_of(self)
 

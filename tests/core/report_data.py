@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from tests.core.cases import case
-from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.sections import CheckedClaim, Section
 from wearlaw.study import Study, run
 

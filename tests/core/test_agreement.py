@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wearlaw.agreement import agreement
+from wearlaw.comparison.agreement import agreement
 
 EPS = float(np.finfo(np.float64).eps)
 

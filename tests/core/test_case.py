@@ -17,7 +17,7 @@ from tests.core import cases
 from tests.core.cases import Install, case, changed, table
 from wearlaw import plugins
 from wearlaw.case import Case, case_schema, case_text, labels, load_case, written
-from wearlaw.wear_tests_csv import text_of_tests
+from wearlaw.wear_tests.reader import text_of_tests
 
 
 def load(tmp_path: Path, content: cases.Table) -> Case:

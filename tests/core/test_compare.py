@@ -12,8 +12,8 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw.comparing import Predictor
-from wearlaw.comparison import Compared
+from wearlaw.comparison.compare import Predictor
+from wearlaw.comparison.result import Compared
 
 EPS = float(np.finfo(np.float64).eps)
 RIG = wl.TwinDisc.suros()

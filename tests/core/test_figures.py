@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from tests.core import cases
 from tests.core.cases import case
-from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.figures import LINES, PALETTE, draw
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.drawing import LINES, PALETTE, draw
 from wearlaw.study import run
 
 X = np.array([1.0, 2.0, 4.0])

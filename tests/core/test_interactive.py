@@ -15,9 +15,9 @@ from matplotlib.colors import to_hex
 
 from tests.core import report_data as data
 from tests.core.report_data import ONE, THREE
-from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.figures import draw
-from wearlaw.interactive import literal, plotly_figure
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.drawing import draw
+from wearlaw.report.interactive import literal, plotly_figure
 
 SEVEN_DIGITS = 5e-7
 """Half a unit of the seventh digit, relative to the number."""

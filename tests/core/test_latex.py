@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wearlaw.latex import cell, escaped, latex_table
+from wearlaw.report.latex import cell, escaped, latex_table
 
 SPECIAL = set("&%$#_{}~^\\-")
 """Characters that TeX does not print, and the hyphen, two of which it joins to a dash."""

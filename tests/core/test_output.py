@@ -18,9 +18,9 @@ from tests.core import cases, report_data
 from tests.core.cases import case
 from wearlaw.case import CASE_FILE, Case, load_case
 from wearlaw.output import CSV, RESULTS, fresh_folder, table, write
+from wearlaw.report.tables import tables
 from wearlaw.sections import Section
 from wearlaw.study import Study, run
-from wearlaw.tables import tables
 from wearlaw.variables import OF_CONTACT, UNITS
 
 LATTICE = {**cases.SWEEP, "friction_coefficient": [0.3, 0.4]}
@@ -302,7 +302,7 @@ def test_after_an_interruption_everything_is_as_before(
         assert list(tmp_path.rglob(CSV)), "the break must come in the middle of writing"
         raise error
 
-    monkeypatch.setattr("wearlaw.figures.draw", break_off)
+    monkeypatch.setattr("wearlaw.figures.drawing.draw", break_off)
     expected = wl.OutputError if error is OSError else error
     with pytest.raises(expected), fresh_folder(out, overwrite=True) as fresh:
         write(point, fresh)

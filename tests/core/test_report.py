@@ -19,8 +19,8 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.core.report_data import CLAIMS, EVIL, ODD, ONE, SECTION, THREE, small_study
-from wearlaw.interactive import plotly_figure
-from wearlaw.report import Cell, cells, paragraphs, report
+from wearlaw.report.interactive import plotly_figure
+from wearlaw.report.page import Cell, cells, paragraphs, report
 from wearlaw.study import Study, run
 
 VOID = {"meta"}

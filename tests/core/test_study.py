@@ -248,9 +248,7 @@ def test_a_profile_that_no_model_resolves_is_left_out_and_noted() -> None:
 def test_a_case_of_which_no_pair_can_be_is_refused_and_says_why() -> None:
     impossible = case(contact_models=["exact"], wear_laws=["brr"])
     for what in (run, evaluations):
-        with pytest.raises(
-            wl.InputError, match="no contact model can be used with any of the wear laws"
-        ) as no:
+        with pytest.raises(wl.InputError, match="no contact model can be used with any of the wear laws") as no:
             what(impossible)
         assert "brr on exact is left out" in str(no.value)
 

@@ -13,8 +13,8 @@ import pytest
 from tests.core import cases
 from tests.core.cases import Install, case
 from wearlaw.case import Case, case_text, load_case
-from wearlaw.curves import Curve, FigureData, Panel
-from wearlaw.figures import draw
+from wearlaw.figures.curves import Curve, FigureData, Panel
+from wearlaw.figures.drawing import draw
 from wearlaw.study import Study, run
 
 EPS = float(np.finfo(float).eps)

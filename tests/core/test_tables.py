@@ -10,8 +10,8 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.core.report_data import SECTION, TABLE
+from wearlaw.report.tables import models, parameters, summaries, summary, tables
 from wearlaw.study import Study, run
-from wearlaw.tables import models, parameters, summaries, summary, tables
 
 
 @pytest.fixture(scope="module")

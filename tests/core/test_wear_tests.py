@@ -15,7 +15,7 @@ from hypothesis import given
 import wearlaw as wl
 from tests.strategies import EPS, log_uniform
 from wearlaw import Q
-from wearlaw.wear_tests_csv import parse_tests
+from wearlaw.wear_tests.reader import parse_tests
 
 RIG = wl.TwinDisc.suros()
 GLOBAL, EXACT = wl.contact_model("global"), wl.contact_model("exact")

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 from tests.strategies import EPS
-from wearlaw.wear_tests_csv import parse_tests
+from wearlaw.wear_tests.reader import parse_tests
 
 # Round trip
 

@@ -14,14 +14,14 @@ from wearlaw.errors import FitError
 from wearlaw.notes import Notes
 
 if TYPE_CHECKING:
-    from wearlaw.comparing import Predictor
-    from wearlaw.comparison import Comparison
-    from wearlaw.fit_result import Fit
+    from wearlaw.comparison.compare import Predictor
+    from wearlaw.comparison.result import Comparison
+    from wearlaw.fitting.result import Fit
     from wearlaw.output import FigureFormat
     from wearlaw.pairs import Pair
     from wearlaw.pipeline import ContactPipeline, Pipeline
     from wearlaw.rig import TwinDisc
-    from wearlaw.wear_tests import WearTests
+    from wearlaw.wear_tests.tests import WearTests
 
 
 def common(command: CommandT) -> CommandT:
@@ -105,7 +105,7 @@ def _fit(
 ) -> Fit:
     """Return the fit that the options ask for."""
     from wearlaw.cli.parsing import contact_model, fields, listed
-    from wearlaw.fitting import fit as fit_parameters
+    from wearlaw.fitting.fit import fit as fit_parameters
 
     names, given = listed("--free", free), fields("--fixed", fixed)
     both = [name for name in names if name in given]
@@ -200,8 +200,8 @@ def _compare(
 ) -> Comparison:
     """Return the comparison that the options ask for."""
     from wearlaw.cli.parsing import contact_model, listed, wear_law
-    from wearlaw.comparing import compare_named
-    from wearlaw.comparison import Names
+    from wearlaw.comparison.compare import compare_named
+    from wearlaw.comparison.result import Names
     from wearlaw.pairs import compose
 
     tests = _tests(path, friction, False, notes)
@@ -232,7 +232,7 @@ def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **
     FitError
         If there is no fit on any contact.
     """
-    from wearlaw.fitting import fit as fit_parameters
+    from wearlaw.fitting.fit import fit as fit_parameters
 
     found, refused = [], []
     with progress(len(pairs)) as shown:
@@ -263,7 +263,7 @@ def _rig(path: Path | None, notes: Notes) -> TwinDisc:
 
 def _tests(path: str, friction: float | None, fitted: bool, notes: Notes) -> WearTests:
     """Return the tests, and say where a friction coefficient was given in vain."""
-    from wearlaw.wear_tests_csv import read_tests
+    from wearlaw.wear_tests.reader import read_tests
 
     tests = read_tests(path)
     if friction is not None and not fitted and tests.friction_coefficient is not None:

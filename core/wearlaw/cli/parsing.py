@@ -11,7 +11,7 @@ from wearlaw import plugins
 from wearlaw.case import RigField
 from wearlaw.configuration import Configuration
 from wearlaw.errors import ConfigurationError, InputError
-from wearlaw.law_files import read_wear_law
+from wearlaw.fitting.law_files import read_wear_law
 from wearlaw.models import ContactModel, WearLaw
 from wearlaw.rig import TwinDisc
 

@@ -18,8 +18,8 @@ from wearlaw.version import __version__
 
 if TYPE_CHECKING:
     from wearlaw.output import FigureFormat
+    from wearlaw.report.tables import NamedTable
     from wearlaw.study import Study
-    from wearlaw.tables import NamedTable
 
 
 @click.command()
@@ -36,9 +36,9 @@ def run(case: str, output: Path | None, overwrite: bool, figure_formats: tuple[F
     """
     from wearlaw.case import load_case
     from wearlaw.output import fresh_folder, write
+    from wearlaw.report.tables import summaries
     from wearlaw.study import evaluations
     from wearlaw.study import run as run_case
-    from wearlaw.tables import summaries
 
     loaded = load_case(case)
     folder = output if output is not None else Path(f"{Path(case).stem}-results")

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.columns import COLUMNS
 from wearlaw.conditions import LOADS
 from wearlaw.rig import TwinDisc
 from wearlaw.units import from_si, in_unit
 from wearlaw.variables import OF_POINT, UNITS
-from wearlaw.wear_tests import WearTests
+from wearlaw.wear_tests.columns import COLUMNS
+from wearlaw.wear_tests.tests import WearTests
 
 OF_TRACTION = (
     "traction_coefficient", "tangential_force", "wear_index", "averaged_wear_index", "wear_index_density",

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wearlaw.curves import FigureData
-from wearlaw.interactive import plotly_figure
+from wearlaw.figures.curves import FigureData
+from wearlaw.report.interactive import plotly_figure
+from wearlaw.report.tables import models, parameters, summaries
 from wearlaw.study import Study, used
-from wearlaw.tables import models, parameters, summaries
 from wearlaw.version import __version__
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def report(study: Study, case_text: str) -> str:
 
     environment = Environment(
         autoescape=True,
-        loader=PackageLoader("wearlaw"),
+        loader=PackageLoader("wearlaw.report"),
         lstrip_blocks=True,
         trim_blocks=True,
         undefined=StrictUndefined,

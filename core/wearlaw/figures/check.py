@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from wearlaw.conditions import LOADS
 from wearlaw.errors import CompositionError, Problem, WearlawWarning, did_you_mean
-from wearlaw.figure_spec import OF_LOAD, FigureSpec, axis_along
+from wearlaw.figures.spec import OF_LOAD, FigureSpec, axis_along
 from wearlaw.grid import Grid
 from wearlaw.models import ContactModel, WearLaw
 from wearlaw.rig import TwinDisc

@@ -13,13 +13,13 @@ from wearlaw import plugins
 from wearlaw.arrays import Array
 from wearlaw.configuration import known_name
 from wearlaw.errors import ConfigurationError, FitError
-from wearlaw.fit_result import Fit
-from wearlaw.fit_task import Task
-from wearlaw.free_parameters import FRICTION, FreeParameters
-from wearlaw.intervals import Replicates, covariance, student_intervals, studentised_intervals
-from wearlaw.least_squares import Solutions
+from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
+from wearlaw.fitting.intervals import Replicates, covariance, student_intervals, studentised_intervals
+from wearlaw.fitting.least_squares import Solutions
+from wearlaw.fitting.observations import FLOOR, Observations, contact_of, named, wear_index_density
+from wearlaw.fitting.result import Fit
+from wearlaw.fitting.task import Task
 from wearlaw.models import Calibration, Model, WearLaw
-from wearlaw.observations import FLOOR, Observations, contact_of, named, wear_index_density
 from wearlaw.parameters import changed
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.errors import FitError, UnitError, did_you_mean
-from wearlaw.least_squares import Bounds
+from wearlaw.fitting.least_squares import Bounds
 from wearlaw.models import WearLaw
 from wearlaw.parameters import number_in_si, number_like, numbers
 from wearlaw.registry import symbol

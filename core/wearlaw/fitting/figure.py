@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.fitting.observations import Observations, contact_of, predictions, wear_index_density
 from wearlaw.line import LineProblem
-from wearlaw.observations import Observations, contact_of, predictions, wear_index_density
 from wearlaw.units import Q, in_unit
 from wearlaw.variables import UNITS, label
 
 if TYPE_CHECKING:
-    from wearlaw.fit_result import Fit
+    from wearlaw.fitting.result import Fit
 
 BETWEEN = 8
 """Points of a curve from one test to the next."""

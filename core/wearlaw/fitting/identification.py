@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.errors import FitError
-from wearlaw.free_parameters import FreeParameters
-from wearlaw.least_squares import Solutions
-from wearlaw.observations import Observations, wear_index_density
+from wearlaw.fitting.free_parameters import FreeParameters
+from wearlaw.fitting.least_squares import Solutions
+from wearlaw.fitting.observations import Observations, wear_index_density
 from wearlaw.units import from_si
 from wearlaw.variables import UNITS
 

@@ -12,11 +12,11 @@ import numpy as np
 
 from wearlaw import plugins
 from wearlaw.arrays import Array
-from wearlaw.columns import COLUMNS, faulty, with_traction
-from wearlaw.csv_table import TEXTS, Head, Problems, Table, table_of
 from wearlaw.errors import DataError, did_you_mean
 from wearlaw.units import shortened
-from wearlaw.wear_tests import WearTests
+from wearlaw.wear_tests.columns import COLUMNS, faulty, with_traction
+from wearlaw.wear_tests.csv_table import TEXTS, Head, Problems, Table, table_of
+from wearlaw.wear_tests.tests import WearTests
 
 MISSING = ("", "na", "n/a", "nan", "-")
 """What a cell without a value may hold, in any case."""

@@ -9,14 +9,14 @@ from typing import Literal
 import numpy as np
 
 from wearlaw.errors import ConfigurationError, FitError, FitWarning
-from wearlaw.fit_result import Fit
-from wearlaw.fit_summary import summarise
-from wearlaw.fit_task import Task
-from wearlaw.intervals import DECIDED_ALONE, Replicates, leverage, replicate
-from wearlaw.least_squares import Solutions
-from wearlaw.observations import AnyPipeline, contact_of, named
+from wearlaw.fitting.intervals import DECIDED_ALONE, Replicates, leverage, replicate
+from wearlaw.fitting.least_squares import Solutions
+from wearlaw.fitting.observations import AnyPipeline, contact_of, named
+from wearlaw.fitting.result import Fit
+from wearlaw.fitting.summary import summarise
+from wearlaw.fitting.task import Task
 from wearlaw.units import QuantityLike
-from wearlaw.wear_tests import WearTests
+from wearlaw.wear_tests.tests import WearTests
 
 AT_BOUND = 1e-6
 """Distance from a bound, over that between both, at which a fit lies on it."""

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.figures import LINES, PALETTE
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.drawing import LINES, PALETTE
 
 DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
 GAP = 0.14

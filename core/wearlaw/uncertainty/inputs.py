@@ -10,10 +10,10 @@ import pint
 
 from wearlaw.arrays import Array
 from wearlaw.conditions import CONDITIONS, UNITS
-from wearlaw.distributions import Distribution, PublishedRange, uniform
 from wearlaw.errors import ConditionsError, InputError, did_you_mean
 from wearlaw.models import WearLaw
 from wearlaw.parameters import number_in_si, numbers
+from wearlaw.uncertainty.distributions import Distribution, PublishedRange, uniform
 from wearlaw.units import Unit, coefficient, shortened
 
 

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.errors import FitError
-from wearlaw.free_parameters import FRICTION, FreeParameters
-from wearlaw.identification import refuse_undetermined, where_tested
-from wearlaw.least_squares import Bounds, Solutions, refine, search
-from wearlaw.observations import AnyPipeline, Observations, Scatter, observe
+from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
+from wearlaw.fitting.identification import refuse_undetermined, where_tested
+from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
+from wearlaw.fitting.observations import AnyPipeline, Observations, Scatter, observe
 from wearlaw.pipeline import ContactPipeline, Pipeline
 from wearlaw.units import QuantityLike
-from wearlaw.wear_tests import WearTests
+from wearlaw.wear_tests.tests import WearTests
 
 NEAR = 10.0
 """How far from its first value a parameter starts at the most, up and down."""

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wearlaw.case import labels
-from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.figure_spec import OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
-from wearlaw.measured_points import measured_points
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.measured_points import measured_points
+from wearlaw.figures.spec import OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
 from wearlaw.study import axes_of, main_axis
 from wearlaw.units import from_si
 from wearlaw.variables import NAMES, UNITS, label

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from wearlaw.agreement import Agreement, Information
 from wearlaw.arrays import Array
-from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.comparison.agreement import Agreement, Information
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
 from wearlaw.units import WEAR_RATE, in_unit
 from wearlaw.variables import label
-from wearlaw.wear_tests import WearTests
+from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -121,7 +121,7 @@ class Comparison:
 
     def plot(self) -> Figure:
         """Return a drawing of `figure_data`."""
-        from wearlaw.figures import draw
+        from wearlaw.figures.drawing import draw
 
         return draw(self.figure_data())
 

@@ -11,19 +11,19 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.errors import FitError
-from wearlaw.law_files import write_wear_law
+from wearlaw.fitting.law_files import write_wear_law
+from wearlaw.fitting.observations import AnyPipeline, Observations, Scatter
 from wearlaw.models import WearLaw
-from wearlaw.observations import AnyPipeline, Observations, Scatter
 from wearlaw.registry import si_factor
 from wearlaw.units import Quantity, from_si
 from wearlaw.variables import UNITS
-from wearlaw.wear_tests import WearTests
+from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from wearlaw.curves import FigureData
+    from wearlaw.figures.curves import FigureData
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -168,13 +168,13 @@ class Fit:
 
     def figure_data(self) -> FigureData:
         """Return measured and fitted values, with the band that the bootstrap replicates span."""
-        from wearlaw.fit_figure import figure_data
+        from wearlaw.fitting.figure import figure_data
 
         return figure_data(self)
 
     def plot(self) -> Figure:
         """Return a drawing of `figure_data`."""
-        from wearlaw.figures import draw
+        from wearlaw.figures.drawing import draw
 
         return draw(self.figure_data())
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.errors import InputError
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.units import from_si
 from wearlaw.variables import UNITS, label
 
 if TYPE_CHECKING:
-    from wearlaw.uncertainty import Uncertainty
+    from wearlaw.uncertainty.result import Uncertainty
 
 CONFIDENCE = 0.95
 """The share of the samples that is marked."""

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wearlaw.columns import COLUMNS, factor, faulty_columns, head
 from wearlaw.errors import DataError, UnitError, did_you_mean
+from wearlaw.wear_tests.columns import COLUMNS, factor, faulty_columns, head
 
 TEXTS = ("label", "comment")
 """The columns of text."""

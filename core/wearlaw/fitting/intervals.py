@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
-from wearlaw.least_squares import Bounds, Model, Solutions, fit_many
+from wearlaw.fitting.least_squares import Bounds, Model, Solutions, fit_many
 
 BATCH = 250
 """Replicates that are fitted together; progress is told after each batch."""

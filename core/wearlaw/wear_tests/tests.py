@@ -15,11 +15,11 @@ import numpy as np
 import pint
 
 from wearlaw.arrays import Array
-from wearlaw.columns import COLUMNS, factor, faulty, faulty_columns, head, with_traction
 from wearlaw.conditions import LOADS
 from wearlaw.errors import ConditionsError, DataError, UnitError
 from wearlaw.registry import symbol
 from wearlaw.units import Quantity, QuantityLike, from_si, parse, real_array
+from wearlaw.wear_tests.columns import COLUMNS, factor, faulty, faulty_columns, head, with_traction
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from wearlaw.agreement import Information, agreement
 from wearlaw.arrays import Array
-from wearlaw.comparison import Compared, Comparison, Names
+from wearlaw.comparison.agreement import Information, agreement
+from wearlaw.comparison.result import Compared, Comparison, Names
 from wearlaw.errors import InputError
-from wearlaw.fit_result import Fit
-from wearlaw.free_parameters import FRICTION
+from wearlaw.fitting.free_parameters import FRICTION
+from wearlaw.fitting.result import Fit
 from wearlaw.models import Model
 from wearlaw.notes import Notes
 from wearlaw.pairs import labelled
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
-from wearlaw.wear_tests import WearTests
+from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

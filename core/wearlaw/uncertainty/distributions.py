@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+import pint
 
 from wearlaw.arrays import Array
 from wearlaw.errors import InputError
@@ -40,10 +41,11 @@ class Distribution:
         deviates: Array = ndtri(probability)
         if self.kind == "normal":
             return first + second * deviates
-        return first * np.exp(np.log(second) * deviates)
+        values: Array = first * np.exp(np.log(second) * deviates)
+        return values
 
     def __str__(self) -> str:
-        first, second = (text_of(v) if isinstance(v, Quantity) else f"{v:g}" for v in (self.first, self.second))
+        first, second = (text_of(v) if isinstance(v, pint.Quantity) else f"{v:g}" for v in (self.first, self.second))
         return f"{self.kind}({first}, {second})"
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.errors import FitError
-from wearlaw.free_parameters import FRICTION
+from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.integrate import integrate_contact, integrate_wear
 from wearlaw.line import LineProblem
 from wearlaw.pipeline import ContactPipeline, Pipeline
@@ -20,7 +20,7 @@ from wearlaw.rig import TwinDisc
 from wearlaw.units import in_unit
 from wearlaw.variables import UNITS
 from wearlaw.varying import integrate_varying
-from wearlaw.wear_tests import WearTests
+from wearlaw.wear_tests.tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
 """How measurements scatter: by a factor, by an amount, or as their stated uncertainties say."""

@@ -10,13 +10,13 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.conditions import UNITS
-from wearlaw.distributions import Distribution, PublishedRange
 from wearlaw.errors import ConditionsError, InputError, UnitError
 from wearlaw.grid import SI_UNITS
 from wearlaw.integrate import integrate_contact
 from wearlaw.pipeline import check_traction
 from wearlaw.ranges import RangeWatch
-from wearlaw.uncertain import Uncertain, parameter, split
+from wearlaw.uncertainty.distributions import Distribution, PublishedRange
+from wearlaw.uncertainty.inputs import Uncertain, parameter, split
 from wearlaw.units import WEAR_RATE, Q, Quantity, coefficient, from_si
 from wearlaw.varying import integrate_varying
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from wearlaw.curves import FigureData
+    from wearlaw.figures.curves import FigureData
     from wearlaw.line import LineProblem
     from wearlaw.pipeline import Pipeline
     from wearlaw.rig import TwinDisc
@@ -129,7 +129,7 @@ class Uncertainty:
             sobol_indices(func=lambda x: self._rates(x)[None, :], n=size, dists=every, rng=rng)
             for rng in np.random.default_rng(self._seed).spawn(SEQUENCES)
         ]
-        table = {}
+        table: dict[str, Array] = {}
         for order in ("first_order", "total_order"):
             shares = np.array([np.ravel(getattr(one, order)) for one in found])
             table |= {order: shares.mean(axis=0), f"{order}_error": shares.std(axis=0, ddof=1) / np.sqrt(SEQUENCES)}
@@ -137,13 +137,13 @@ class Uncertainty:
 
     def figure_data(self) -> FigureData:
         """Return what `plot` draws."""
-        from wearlaw.uncertainty_figure import figure_data
+        from wearlaw.uncertainty.figure import figure_data
 
         return figure_data(self)
 
     def plot(self) -> Figure:
         """Return a figure: the cumulative distribution, or the band of 95 % along the one axis of the conditions."""
-        from wearlaw.figures import draw
+        from wearlaw.figures.drawing import draw
 
         return draw(self.figure_data())
 
@@ -173,12 +173,14 @@ class Uncertainty:
             shapes = ", ".join(f"{name} {array.shape}" for name, array in self.known.items())
             raise ConditionsError(f"the shapes of the conditions do not broadcast: {shapes}") from None
 
-    def _problem(self, sampled: Mapping[str, Array]) -> LineProblem:
+    def _problem(self, sampled: dict[str, Array]) -> LineProblem:
         """Return the contact problem at all operating points and samples, the latter along the last axis."""
         known = {name: array[..., None] for name, array in self.known.items()}
-        given = {name: Q(si, SI_UNITS[name]) if name in SI_UNITS else si for name, si in (known | sampled).items()}
+        given: dict[str, Any] = {
+            name: Q(si, SI_UNITS[name]) if name in SI_UNITS else si for name, si in (known | sampled).items()
+        }
         try:
-            return self._predict.contact.rig.problem(**given)  # type: ignore[arg-type]
+            return self._predict.contact.rig.problem(**given)
         except UnitError as error:
             if not sampled:
                 raise

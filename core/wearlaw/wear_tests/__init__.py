@@ -1,0 +1,1 @@
+"""Wear tests of a lab, and reading them."""
