@@ -111,6 +111,9 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
             section = make(study)
     except WearlawError as error:
         raise InputError(f"section '{name}' of {found.sections.origin(name)}: {error}") from error
+    except Exception as error:
+        cause = f"{type(error).__name__}: {error}"
+        raise ModelError(f"section '{name}' of {found.sections.origin(name)} failed with {cause}") from error
     if not isinstance(section, Section):
         raise ModelError(f"section '{name}' of {found.sections.origin(name)} must be a Section, got {section!r}")
     return section

@@ -38,9 +38,14 @@ LAB = """
     def wrong(study):
         return "Highest"
 
+    def raises(study):
+        return 1 / 0
+
     @wl.hookimpl
     def wearlaw_sections():
-        return {"highest": highest, "warned": warned, "needs_load": needs_load, "wrong": wrong}
+        return {
+            "highest": highest, "warned": warned, "needs_load": needs_load, "wrong": wrong, "raises": raises
+        }
 """
 
 OURS = ["tassini2010_claims", "tassini2010_table_4", "tassini2010_tables"]
@@ -87,6 +92,14 @@ def test_what_is_no_section_is_the_plugins_fault(install: Install) -> None:  # n
     install("lab", LAB)
     with pytest.raises(wl.ModelError, match=r"section 'wrong' of lab 1\.0 .* must be a Section, got 'Highest'"):
         run(case(sections=["wrong"]))
+
+
+def test_what_a_section_raises_is_the_plugins_fault_and_kept_as_the_cause(install: Install) -> None:  # noqa: F811
+    install("lab", LAB)
+    message = r"section 'raises' of lab 1\.0 .* failed with ZeroDivisionError: division by zero"
+    with pytest.raises(wl.ModelError, match=message) as refused:
+        run(case(sections=["raises"]))
+    assert isinstance(refused.value.__cause__, ZeroDivisionError)
 
 
 def test_the_command_line_ends_with_one_line_and_leaves_no_folder(
