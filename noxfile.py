@@ -1,4 +1,4 @@
-"""Sessions beyond `.ci/run`: other Python versions, and the oldest dependencies."""
+"""Sessions beyond `.ci/run`: other Python versions, the documentation to look at, its pictures, benchmarks."""
 
 import nox
 

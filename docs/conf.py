@@ -7,8 +7,10 @@ import wearlaw
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+import nomenclature
 import pictures
 
+nomenclature.write()
 pictures.draw()
 
 project = "wearlaw"
@@ -23,3 +25,4 @@ exclude_patterns = ["_build"]
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 nitpicky = False
+suppress_warnings = ["ref.python"]  # the word in a shape such as (tests,) is also the name of attributes

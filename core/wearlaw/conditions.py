@@ -17,7 +17,22 @@ if TYPE_CHECKING:
 class TwinDiscConditions(TypedDict, total=False):
     """The conditions of a twin-disc test; arrays broadcast against each other.
 
-    Exactly one of `normal_force` [N], `normal_force_per_width` [N/m] and `max_pressure` [Pa] gives the load.
+    Exactly one of `normal_force`, `normal_force_per_width` and `max_pressure` gives the load.
+
+    Attributes
+    ----------
+    normal_force : Quantity or str
+        Normal force on the whole width, N [N].
+    normal_force_per_width : Quantity or str
+        Normal force per unit width, P [N/m].
+    max_pressure : Quantity or str
+        Hertz's maximum pressure, p0 [Pa].
+    creepage : Quantity or str
+        Creepage, ξ [-], positive where disc 1 is the faster one, of magnitude at most 1.
+    friction_coefficient : array_like of float
+        Friction coefficient, μ [-].
+    traction_coefficient : array_like of float
+        Measured tangential over normal force, T/N [-], for contact models that can use it.
     """
 
     normal_force: QuantityLike

@@ -25,27 +25,27 @@ class LineProblem:
     Attributes
     ----------
     normal_force_per_width : ndarray
-        P [N/m].
+        Normal force per unit width, P [N/m].
     half_width : ndarray
         Half the patch's length in the rolling direction, a [m].
     max_pressure : ndarray
         Hertz's maximum pressure, p0 [Pa].
     relative_radius : ndarray
-        R [m], 1/R = 1/R1 + 1/R2.
+        Relative radius of curvature, R [m], 1/R = 1/R1 + 1/R2.
     effective_modulus : ndarray
-        E* [Pa], 1/E* = (1-ν1²)/E1 + (1-ν2²)/E2.
+        Effective modulus, E* [Pa], 1/E* = (1-ν1²)/E1 + (1-ν2²)/E2.
     friction_coefficient : ndarray
-        μ [-].
+        Friction coefficient, μ [-].
     creepage : ndarray
-        ξ [-], with its sign; positive where disc 1 is the faster one.
+        Creepage, ξ [-], with its sign; positive where disc 1 is the faster one.
     rolling_speed : ndarray
-        V [m/s].
+        Rolling speed, V [m/s].
     track_width : ndarray
         Width of the patch across the rolling direction [m].
     density : ndarray
-        Mass density of the body whose wear is predicted [kg/m³].
+        Mass density of the body whose wear is predicted, ρ [kg/m³].
     traction_coefficient : ndarray or None
-        Measured tangential over normal force [-], where the test gave one.
+        Measured tangential over normal force, T/N [-], where the test gave one.
     """
 
     normal_force_per_width: Array
@@ -67,12 +67,12 @@ class LineProblem:
 
     @property
     def normal_force(self) -> Array:
-        """Normal force on the whole width [N]."""
+        """Normal force on the whole width, N [N]."""
         return self.normal_force_per_width * self.track_width
 
     @property
     def patch_area(self) -> Array:
-        """Area of the patch, 2 a × width [m²]."""
+        """Area of the patch, 2 a × width, A [m²]."""
         return 2.0 * self.half_width * self.track_width
 
     def __getitem__(self, index: Any) -> Self:

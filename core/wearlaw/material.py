@@ -14,11 +14,11 @@ class Material(Configuration):
     """An isotropic elastic material."""
 
     youngs_modulus: Stress
-    """Young's modulus E [Pa]."""
+    """Young's modulus, E [Pa]."""
     poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5, strict=True)]
-    """Poisson's ratio ν [-]."""
+    """Poisson's ratio, ν [-]."""
     density: Density
-    """Mass density ρ [kg/m³]."""
+    """Mass density, ρ [kg/m³]."""
     elastic_limit: Stress | None = None
     """Maximum Hertz pressure [Pa] up to which the contact may be taken as elastic; None if not known."""
 

@@ -173,12 +173,12 @@ class LocalWear:
 
     @property
     def wear_index(self) -> Quantity:
-        """Energy dissipated per metre rolled [N]."""
+        """Wear index, Tγ [N], the energy dissipated per metre rolled."""
         return from_si(self.contact.wear_index, "N")
 
     @property
     def tangential_force(self) -> Quantity:
-        """Sum of the tractions [N]."""
+        """Tangential force, T [N], the sum of the tractions."""
         return from_si(self.contact.tangential_force, "N")
 
     @property

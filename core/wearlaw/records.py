@@ -63,27 +63,27 @@ class Contact:
     Attributes
     ----------
     pressure : ndarray, (batch, nodes)
-        Normal pressure p [Pa].
+        Normal pressure, p [Pa].
     traction : ndarray, (batch, nodes)
-        Tangential traction q [Pa], with the sign of the creepage.
+        Tangential traction, q [Pa], with the sign of the creepage.
     slip : ndarray, (batch, nodes)
-        Relative slip s = slip velocity over rolling speed [-], with the sign of the creepage; zero in stick.
+        Relative slip, s [-], the slip velocity over the rolling speed, with the sign of the creepage; zero in stick.
     traction_bound : ndarray, (batch, nodes)
         The largest magnitude that the model allows for the traction [Pa].
     area : ndarray, (batch, nodes)
         Area of the patch that the node stands for [m²].
     x : ndarray, (batch, nodes)
-        Position along the rolling direction, from the leading to the trailing edge [m].
+        Position along the rolling direction, from the leading to the trailing edge, x [m].
     rolling_speed : ndarray, (batch)
-        V [m/s].
+        Rolling speed, V [m/s].
     normal_force : ndarray, (batch)
-        N [N].
+        Normal force, N [N].
     tangential_force : ndarray, (batch)
-        T [N], with the sign of the creepage.
+        Tangential force, T [N], with the sign of the creepage.
     wear_index : ndarray, (batch)
-        Tγ [N], the energy dissipated per metre rolled.
+        Wear index, Tγ [N], the energy dissipated per metre rolled.
     density : ndarray, (batch)
-        Mass density of the body whose wear is predicted [kg/m³].
+        Mass density of the body whose wear is predicted, ρ [kg/m³].
     """
 
     pressure: Array
@@ -187,12 +187,12 @@ class Contact:
 
     @property
     def slip_speed(self) -> Array:
-        """Magnitude of the slip velocity, s V [m/s], of shape (batch, nodes)."""
+        """Magnitude of the slip velocity, sV [m/s], of shape (batch, nodes)."""
         return np.abs(self.slip) * self.per_node(self.rolling_speed)
 
     @property
     def patch_area(self) -> Array:
-        """Area of the whole patch [m²], of the batch shape."""
+        """Area of the whole patch, A [m²], of the batch shape."""
         return self.sum_over_nodes(self.area)
 
     def per_node(self, value: Array) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from typing import Any
 
 import numpy as np
@@ -20,9 +21,15 @@ def application_registry() -> pint.UnitRegistry[Any]:
     return registry
 
 
+_UNBOUNDED = re.compile(r"(?<![.\d])\d{3,}|(\*\*|\^)[^a-zA-Zµμ°%*/]*(\*\*|\^)|\)\s*(\*\*|\^).*\)\s*(\*\*|\^)")
+"""Powers that no unit has: of three digits, or of powers. pint would compute them, for as long as that takes."""
+
+
 @functools.lru_cache(maxsize=512)
 def parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
     """Return the unit of a text, or raise a `UnitError`."""
+    if _UNBOUNDED.search(unit):
+        raise UnitError(f"'{unit}' is not a unit")
     try:
         return registry.Unit(unit)
     except pint.UndefinedUnitError:

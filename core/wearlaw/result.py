@@ -47,22 +47,22 @@ class ContactSolution:
 
     @property
     def tangential_force(self) -> Quantity:
-        """T on the whole track width [N], with the sign of the creepage."""
+        """Tangential force on the whole track width, T [N], with the sign of the creepage."""
         return from_si(self._force, "N")
 
     @property
     def traction_coefficient(self) -> Quantity:
-        """T over the normal force [-]."""
+        """Tangential over normal force, T/N [-]."""
         return from_si(self._force / self.problem.normal_force, "")
 
     @property
     def wear_index(self) -> Quantity:
-        """Tγ [N], the energy dissipated per metre rolled (Tassini et al. 2010, eq. 5)."""
+        """Wear index, Tγ [N], the energy dissipated per metre rolled (Tassini et al. 2010, eq. 5)."""
         return from_si(self._wear_index, "N")
 
     @property
     def wear_index_density(self) -> Quantity:
-        """Tγ over the area of the patch [N/mm²]."""
+        """Wear index over the area of the patch, Tγ/A [N/m²]."""
         return from_si(self._wear_index / self.problem.patch_area, "N/mm^2")
 
     @property
@@ -83,7 +83,7 @@ class ContactSolution:
 
     @property
     def normal_force(self) -> Quantity:
-        """Normal force on the whole track width [N]."""
+        """Normal force on the whole track width, N [N]."""
         return from_si(self.problem.normal_force, "N")
 
     @property
@@ -93,12 +93,12 @@ class ContactSolution:
 
     @property
     def creepage(self) -> Quantity:
-        """ξ [-]."""
+        """Creepage, ξ [-], positive where disc 1 is the faster one."""
         return from_si(self.problem.creepage, "%")
 
     @property
     def friction_coefficient(self) -> Quantity:
-        """μ [-]."""
+        """Friction coefficient, μ [-]."""
         return from_si(self.problem.friction_coefficient, "")
 
     @property
@@ -113,7 +113,7 @@ class ContactSolution:
 
     @property
     def patch_area(self) -> Quantity:
-        """Area of the patch, 2a × track width [m²]."""
+        """Area of the patch, 2a × track width, A [m²]."""
         return from_si(self.problem.patch_area, "mm^2")
 
     @property

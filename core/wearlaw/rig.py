@@ -39,7 +39,7 @@ class Disc(Configuration):
     """A disc of a twin-disc rig."""
 
     diameter: Annotated[Quantity, Unit("mm", infinite=True)]
-    """Diameter D [m]; infinite for a flat body."""
+    """Diameter, D [m]; infinite for a flat body."""
     material: MaterialField
     """What it is made of; a file may also give the name of an installed material."""
 

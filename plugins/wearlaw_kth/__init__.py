@@ -18,13 +18,13 @@ class Coefficients(wl.Configuration):
     """The wear coefficient k [-] of V = k N d / H in each field of the wear map."""
 
     high_pressure: Coefficient
-    """At and above the pressure threshold, at any slip speed."""
+    """Wear coefficient at and above the pressure threshold, at any slip speed, k [-]."""
     low_speed: Coefficient
-    """Below the lower slip speed."""
+    """Wear coefficient below the lower slip speed, k [-]."""
     mid_speed: Coefficient
-    """From the lower to the upper slip speed."""
+    """Wear coefficient from the lower to the upper slip speed, k [-]."""
     high_speed: Coefficient
-    """At and above the upper slip speed."""
+    """Wear coefficient at and above the upper slip speed, k [-]."""
 
 
 PUBLISHED = {
@@ -56,7 +56,7 @@ class KTH(wl.WearLaw):
     coefficient: Literal["low", "mid", "high"] | Coefficients = "mid"
     """The published k are ranges: take their low end, middle or high end, or your own values."""
     hardness: wl.Stress = Field(default="2.625 GPa", validate_default=True)
-    """H [Pa]. Not printed in the paper; 2.1 GPa is 0.8 H in the wear map."""
+    """Hardness, H [Pa]. Not printed in the paper; 2.1 GPa is 0.8 H in the wear map."""
     pressure_threshold: wl.Stress = Field(default="2.1 GPa", validate_default=True)
     """Pressure above which the wear is that of seizure [Pa]."""
     lower_slip_speed: wl.Speed = Field(default="0.2 m/s", validate_default=True)

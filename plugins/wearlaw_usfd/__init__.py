@@ -74,13 +74,13 @@ class USFD(wl.WearLaw):
     """The contact solution to which the parameters were fitted. A name also chooses the published set that gives the
     parameters which are not given by hand; a set of your own states what it was fitted to as a Calibration."""
     m_m: Slope
-    """Slope of the mild regime [µg/m/N]."""
+    """Slope of the mild regime, m_m [µg/m/N]."""
     q_s: WearRate
-    """Wear rate of the severe regime [µg/m/mm²]."""
+    """Wear rate of the severe regime, q_s [µg/m/mm²]."""
     m_c: Slope
-    """Slope of the catastrophic regime [µg/m/N]."""
+    """Slope of the catastrophic regime, m_c [µg/m/N]."""
     tr_sc: WearIndexDensity
-    """Tγ/A at the transition from the severe to the catastrophic regime [N/mm²]."""
+    """Tγ/A at the transition from the severe to the catastrophic regime, tr_sc [N/mm²]."""
 
     @field_validator("fitted_for", mode="before")
     @classmethod

@@ -330,3 +330,16 @@ def test_a_result_is_a_quantity_like_any_other(value: Any) -> None:
     assert np.all((2 * made).to("kg/m/m^2").m == 2.0 * np.asarray(value))
     assert np.all(pickle.loads(pickle.dumps(made)) == made)
     assert made.check("[mass]/[length]**3")
+
+
+@pytest.mark.parametrize(
+    "unit", ["m**9**9**9", "m^9^9", "m**(9**9)", "m**999999999", "(9**9)**(9**9)", "10**1000 m", "((m**9)**9)**9 "]
+)
+def test_powers_that_no_unit_has_are_refused_and_not_computed(unit: str) -> None:
+    with pytest.raises(wl.UnitError, match="not a"):
+        Q(1.0, unit)
+
+
+@pytest.mark.parametrize("unit", ["N/mm^2", "ug/m/mm**2", "m**0.3333", "(m/s)**2", "1/s", "µg·m⁻¹", "m^-1*s^-2", "mm²"])
+def test_powers_of_units_are_taken(unit: str) -> None:
+    assert Q(1.0, unit).magnitude == 1.0

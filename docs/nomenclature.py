@@ -1,0 +1,122 @@
+"""Writes the table of the nomenclature from what the classes say of their own fields and properties."""
+
+import csv
+import inspect
+import io
+import re
+from collections.abc import Iterator
+from functools import reduce
+from pathlib import Path
+from typing import NamedTuple
+
+import wearlaw as wl
+from wearlaw.conditions import TwinDiscConditions
+from wearlaw.docstrings import field_docstrings
+from wearlaw.parameters import numbers
+from wearlaw.plugins import installed
+from wearlaw.variables import NAMES, label
+
+TABLE = Path(__file__).parent / "nomenclature.csv"
+HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
+CLASSES = (wl.LineProblem, wl.Contact, TwinDiscConditions, wl.ContactSolution, wl.Prediction, wl.LocalWear)
+SHOWN_AS = {"TwinDiscConditions": "conditions"}
+
+ATTRIBUTE = re.compile(
+    r"^(?P<name>\w+) : (?:ndarray|Quantity|array_like).*\n(?P<text>(?: {4}.*(?:\n|$))+)", re.MULTILINE
+)
+DOCUMENTED = re.compile(
+    r"(?:Return (?:the )?)?(?P<meaning>.+?)(?:, (?P<symbol>\S{1,5}))? \[(?P<unit>\S+)\](?P<more>.*?)\.(?=\s[A-Z]|$)"
+)
+"""A meaning and perhaps a symbol before the unit, as in "Hertz's maximum pressure, p0 [Pa]."; to the sentence's end."""
+
+
+class Documented(NamedTuple):
+    """A quantity, as it is documented in one place."""
+
+    name: str
+    where: str
+    symbol: str
+    unit: str
+    meaning: str
+
+
+def documented() -> Iterator[Documented]:
+    """Give all fields and properties that are numbers, and raise a ValueError for one without a unit in brackets."""
+    for cls in CLASSES:
+        for name, text in (*attributes(cls), *properties(cls)):
+            yield read(name, SHOWN_AS.get(cls.__name__, cls.__name__), text)
+    for holder, name in fields(wl.TwinDisc.suros()):
+        yield read(name, type(holder).__name__, field_docstrings(type(holder))[name])
+    for model in shipped_models():
+        for holder, name in fields(model):
+            yield read(name, model.name, field_docstrings(type(holder))[name])
+
+
+def shipped_models() -> Iterator[wl.WearLaw | wl.ContactModel]:
+    """Give the models that come with wearlaw, with their defaults, the laws with numbers in place of names."""
+    found = installed()
+    for name, model in found.contact_models.items().items():
+        if found.contact_models.origin(name).distribution == "wearlaw":
+            yield model()
+    for name, law in found.wear_laws.items().items():
+        if found.wear_laws.origin(name).distribution == "wearlaw":
+            yield law().explicit()
+
+
+def attributes(cls: type) -> Iterator[tuple[str, str]]:
+    """Give name and text of what stands under "Attributes" in the docstring of a class, where it is a number."""
+    _, _, section = (inspect.getdoc(cls) or "").partition("Attributes\n----------\n")
+    for found in ATTRIBUTE.finditer(section):
+        yield found["name"], found["text"]
+
+
+def properties(cls: type) -> Iterator[tuple[str, str]]:
+    """Give name and docstring of public properties that are numbers, and of methods that return a quantity."""
+    for name, member in vars(cls).items():
+        function = member.fget if isinstance(member, property) else member
+        returned = getattr(function, "__annotations__", {}).get("return")
+        numeric = ("Quantity", "Array") if isinstance(member, property) else ("Quantity",)
+        if not name.startswith("_") and getattr(returned, "__name__", returned) in numeric:
+            yield name, inspect.getdoc(member) or ""
+
+
+def fields(record: wl.Configuration) -> Iterator[tuple[wl.Configuration, str]]:
+    """Give the fields that are numbers, each with the record that holds it: the given one, or one inside it."""
+    for path in numbers(record):
+        *outer, name = path.split(".")
+        yield reduce(getattr, outer, record), name
+
+
+def read(name: str, where: str, text: str) -> Documented:
+    """Return what a docstring says of a quantity."""
+    found = DOCUMENTED.match(" ".join(text.split()))
+    if found is None:
+        raise ValueError(f"{where}.{name}: no unit in brackets, or no full stop behind it, in the docstring {text!r}")
+    meaning = re.sub(r", of (the batch )?shape.*", "", found["meaning"] + found["more"])
+    return Documented(name, where, found["symbol"] or "", found["unit"], meaning[0].upper() + meaning[1:])
+
+
+def table() -> str:
+    """Return the table as CSV: a row for each name, symbol and unit, with the shortest, most general meaning."""
+    rows: dict[tuple[str, str, str], list[Documented]] = {}
+    for one in documented():
+        rows.setdefault((one.name, one.symbol, one.unit), []).append(one)
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(HEAD)
+    for (name, symbol, unit), places in sorted(rows.items()):
+        used_in = ", ".join(dict.fromkeys(f"`{place.where}`" for place in places))
+        shown = label(name) if name in NAMES else ""
+        writer.writerow(
+            (symbol, f"`{name}`", min((place.meaning for place in places), key=len), f"[{unit}]", shown, used_in)
+        )
+    return file.getvalue()
+
+
+def write() -> None:
+    """Write the table beside the page that shows it."""
+    TABLE.write_text(table(), encoding="utf-8", newline="\n")
+
+
+if __name__ == "__main__":
+    write()

@@ -1,0 +1,46 @@
+"""CONTRIBUTING.md: each of its commands is one that the project runs itself, and each file that it names is there."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.environments import ROOT
+
+TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+BLOCKS = [line for block in re.findall(r"```sh\n(.*?)```", TEXT, re.DOTALL) for line in block.splitlines()]
+INLINE = re.findall(r"`((?:\.venv/|\.ci/)[^`]+)`", re.sub(r"```.*?```", "", TEXT, flags=re.DOTALL))
+SETUP = {"python -m pip install pre-commit", "pre-commit install"}
+"""What sets up the hooks of `.pre-commit-config.yaml`, which nothing else in the project does."""
+
+
+def text_of(path: str) -> str:
+    return (ROOT / path).read_text(encoding="utf-8")
+
+
+def known_commands() -> str:
+    """Return what the README and `.ci/run` run, as one writes it with the environment in .venv."""
+    ci = text_of(".ci/run").replace('"$python"', ".venv/bin/python").replace(" --quiet", "")
+    return text_of("README.md") + re.sub(r'"\$bin/([\w-]+)"', r".venv/bin/\1", ci)
+
+
+@pytest.mark.parametrize("command", sorted({*BLOCKS, *INLINE} - SETUP - {".venv/bin", ".ci/run"}))
+def test_a_command_is_one_that_the_project_runs(command: str) -> None:
+    if session := re.fullmatch(r"\.venv/bin/nox -s (\w+)", command):
+        assert f"\ndef {session[1]}(session: nox.Session)" in text_of("noxfile.py")
+    elif script := re.fullmatch(r"\.venv/bin/python (?:-m pytest )?(\S+\.py)", command):
+        assert (ROOT / script[1]).is_file()
+    else:
+        assert re.search(rf"{re.escape(command)}$", known_commands(), re.MULTILINE)
+
+
+def test_all_sessions_of_nox_are_told() -> None:
+    sessions = re.findall(r"^def (\w+)\(session", text_of("noxfile.py"), re.MULTILINE)
+    assert [name for name in sessions if f"nox -s {name}`" not in TEXT] == []
+
+
+def test_the_files_that_contributing_and_security_link_to_are_there() -> None:
+    links = re.findall(r"\]\((?!http)([^)#]+)", TEXT + text_of("SECURITY.md") + text_of("README.md"))
+    assert {"docs/plugins.md", "CONTRIBUTING.md"} <= set(links)
+    assert [link for link in links if not (ROOT / link).exists()] == []

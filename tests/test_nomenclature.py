@@ -1,0 +1,148 @@
+"""The nomenclature: as the code has it, complete, with units that hold, and without one name for two things."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections import defaultdict
+from collections.abc import Iterable
+
+import pytest
+
+import wearlaw as wl
+from docs import nomenclature
+from docs.nomenclature import Documented, read
+from tests.environments import ROOT
+from wearlaw import records, variables
+from wearlaw.conditions import CONDITIONS
+
+SYMBOLS_OF_SEVERAL_NAMES = {"k": "KTH's map has a wear coefficient in each of its four fields"}
+NAMES_OF_SEVERAL_SYMBOLS = {"wear_index_density": "q·s at a point, and Tγ/A as its mean over the patch"}
+IN_NO_CLASS = {"wear_rate_low", "wear_rate_high"}
+"""Columns of a study's results, which the page explains below its table."""
+
+
+@pytest.fixture(scope="module")
+def documented() -> list[Documented]:
+    return list(nomenclature.documented())
+
+
+def names(documented: list[Documented], where: str) -> set[str]:
+    return {one.name for one in documented if one.where == where}
+
+
+def one_of(text: str) -> wl.Quantity:
+    return wl.Q(1.0, "" if text == "-" else text)
+
+
+def quantities(result: object, cls: type) -> dict[tuple[str, str], wl.Quantity]:
+    """Return the properties of a class that are quantities, by its name and theirs."""
+    values = {name: getattr(result, name) for name in vars(cls) if not name.startswith("_")}
+    return {(cls.__name__, name): value for name, value in values.items() if isinstance(value, wl.Quantity)}
+
+
+def several(pairs: Iterable[tuple[str, str]]) -> set[str]:
+    """Return the keys that come with more than one value."""
+    found = defaultdict(set)
+    for key, value in pairs:
+        found[key].add(value)
+    return {key for key, values in found.items() if len(values) > 1}
+
+
+def test_the_table_of_the_documentation_is_that_of_the_code() -> None:
+    committed = nomenclature.TABLE.read_text(encoding="utf-8")
+    assert committed == nomenclature.table(), "renew it with: python docs/nomenclature.py"
+
+
+def test_all_fields_of_the_records_and_all_conditions_are_in_the_table(documented: list[Documented]) -> None:
+    for record in (wl.LineProblem, wl.Contact):
+        assert {field.name for field in dataclasses.fields(record)} <= names(documented, record.__name__)
+    assert names(documented, "conditions") == set(CONDITIONS)
+
+
+def test_all_quantities_of_results_are_in_the_table_with_a_unit_of_their_dimension(
+    documented: list[Documented],
+) -> None:
+    predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact")
+    r = predict(max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.46)
+    node: dict[str, wl.QuantityLike] = {
+        "pressure": "1 GPa",
+        "traction": wl.Q([0.4], "GPa"),
+        "slip": "1 %",
+        "area": "1 mm^2",
+    }
+    local = wl.Contact.from_arrays(**node, rolling_speed="1 m/s") | wl.wear_law("usfd")
+    values = {
+        **quantities(r, wl.ContactSolution),
+        **quantities(r, wl.Prediction),
+        **quantities(local, wl.LocalWear),
+        ("Prediction", "depth_per_distance"): r.depth_per_distance("disc_1"),
+        ("Prediction", "profile_area_rate"): r.profile_area_rate("disc_1"),
+        ("Prediction", "mass_lost"): r.mass_lost("1 km", "disc_1"),
+        ("Prediction", "mass_per_cycle"): r.mass_per_cycle("disc_1"),
+    }
+    results = ("ContactSolution", "Prediction", "LocalWear")
+    units = {(one.where, one.name): one.unit for one in documented if one.where in results}
+    assert units.keys() - values.keys() == {("LocalWear", "rate")}  # an array, of which local_wear_rate is the quantity
+    for place, value in values.items():
+        assert one_of(units[place]).is_compatible_with(value), place
+
+
+def test_all_numbers_of_rig_and_models_are_in_the_table_with_a_unit_of_their_dimension(
+    documented: list[Documented],
+) -> None:
+    rig = wl.TwinDisc.suros()
+    holders: dict[str, wl.Configuration] = {"TwinDisc": rig, "Disc": rig.disc_1, "Material": rig.disc_1.material}
+    holders |= {name: wl.wear_law(name) for name in ("brr", "kth", "usfd")}
+    holders |= {name: wl.contact_model(name) for name in ("exact", "fastsim", "global")}
+    values = {
+        (where, name): value
+        for where, holder in holders.items()
+        for name, value in holder
+        if isinstance(value, wl.Quantity)
+    }
+    values[("Material", "poisson_ratio")] = wl.Q(1.0, "")
+    values |= {("kth", field): wl.Q(1.0, "") for field in ("high_pressure", "low_speed", "mid_speed", "high_speed")}
+    units = {(one.where, one.name): one.unit for one in documented if one.where in holders}
+    assert units.keys() == values.keys()
+    for place, value in values.items():
+        assert one_of(units[place]).is_compatible_with(value), place
+
+
+def test_records_are_documented_in_si(documented: list[Documented]) -> None:
+    for one in documented:
+        if one.where in ("LineProblem", "Contact"):
+            assert one_of(one.unit).to_base_units().magnitude == 1.0, one
+
+
+def test_the_units_of_results_and_records_are_of_the_documented_dimension(documented: list[Documented]) -> None:
+    units = {one.name: one.unit for one in documented}
+    shown = variables.UNITS | records.UNITS
+    assert shown.keys() - units.keys() == IN_NO_CLASS
+    assert variables.NAMES.keys() <= units.keys()
+    for name in shown.keys() & units.keys():
+        for unit in (variables.UNITS.get(name), records.UNITS.get(name)):
+            assert unit is None or one_of(unit).is_compatible_with(one_of(units[name])), name
+
+
+def test_what_is_in_no_class_is_explained_on_the_page() -> None:
+    page = (ROOT / "docs/nomenclature.md").read_text(encoding="utf-8")
+    assert all(f"`{name}`" in page for name in IN_NO_CLASS)
+
+
+def test_a_name_has_one_unit_and_one_symbol_and_a_symbol_one_name(documented: list[Documented]) -> None:
+    assert several((one.name, one.unit) for one in documented) == set()
+    assert several((one.name, one.symbol) for one in documented) == set(NAMES_OF_SEVERAL_SYMBOLS)
+    assert several((one.symbol, one.name) for one in documented if one.symbol) == set(SYMBOLS_OF_SEVERAL_NAMES)
+
+
+def test_a_docstring_gives_symbol_unit_and_meaning() -> None:
+    text = "Tangential\n    force, T [N], with its sign (Tassini et al. 2010, eq. 5). It is odd. Another [Pa]."
+    meaning = "Tangential force, with its sign (Tassini et al. 2010, eq. 5)"
+    assert read("force", "Toy", text) == Documented("force", "Toy", "T", "N", meaning)
+    assert read("area", "Toy", "Return the area, seen from above [m²].").symbol == ""
+
+
+@pytest.mark.parametrize("text", ["", "Some area.", "Some area, A, in m²."])
+def test_a_quantity_without_a_unit_in_brackets_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match=r"Toy\.area: no unit in brackets"):
+        read("area", "Toy", text)
