@@ -4,7 +4,10 @@ The picture of the report in a browser stays as it is where there is no chromium
 """
 
 import csv
+import os
 import shutil
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -19,6 +22,7 @@ from wearlaw.output import write
 from wearlaw.study import run
 
 FOLDER = Path(__file__).parent / "pictures"
+GALLERY = Path(__file__).parent / "gallery"
 BENCHMARKS = Path(__file__).parent / "accuracy.csv"
 
 
@@ -28,6 +32,10 @@ def draw() -> None:
     for figure in study.figures:
         _save(drawing_of(figure), figure.name)
     _save(cost_against_error(), "accuracy_cost_against_error")
+    for script in sorted(GALLERY.glob("*.py")):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, script], cwd=folder, env={**os.environ, "MPLBACKEND": "agg"}, check=True)
+            shutil.copy(Path(folder) / f"{script.stem}.png", FOLDER / f"gallery_{script.stem}.png")
     if shutil.which("chromium") is None or shutil.which("chromedriver") is None:
         return
     with tempfile.TemporaryDirectory() as folder:

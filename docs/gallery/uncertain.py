@@ -1,0 +1,29 @@
+"""How uncertain a prediction is, and which input is to blame."""
+
+import matplotlib.pyplot as plt
+
+import wearlaw as wl
+
+predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact")
+u = predict.uncertainty(
+    normal_force=wl.normal("7.4 kN", "0.2 kN"),
+    creepage=wl.uniform("0.4 %", "0.6 %"),
+    friction_coefficient=wl.normal(0.46, 0.05),
+    law={"m_m": wl.lognormal("5.3 ug/m/N", 1.2)},
+    samples=4096,
+)
+low, high = u.interval(0.95)
+shares = u.sobol().rename({"normal_force": "load", "friction_coefficient": "friction", "m_m": "slope $m_m$"})
+
+plt.style.use("seaborn-v0_8-colorblind")
+figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 3.4), layout="constrained")
+left.ecdf(u.wear_rate.m)
+left.axvspan(low.m, high.m, alpha=0.2, label="95 % of the samples")
+left.set(xlabel=f"wear rate [{low.u:~P}]", ylabel="probability of less wear")
+left.grid(alpha=0.3)
+left.legend(loc="lower right")
+
+bars = right.barh(shares.index, 100 * shares["first_order"])
+right.bar_label(bars, fmt="%.1f", padding=3)
+right.set(xlabel="share of the variance [%]", xlim=(0, 65))
+figure.savefig("uncertain.png", dpi=150)
