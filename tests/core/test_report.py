@@ -162,7 +162,7 @@ def test_a_section_has_its_text_tables_and_figures(page: Page) -> None:
 
 
 def test_parameters_notes_case_and_origins_are_given(study: Study, page: Page) -> None:
-    assert "usfd m_c 61.9 µg/m/N Slope of the catastrophic regime [µg/m/N]." in page.text
+    assert "usfd m_c 61.9 µg/m/N Slope of the catastrophic regime, m_c [µg/m/N]." in page.text
     assert "rig track_width 10 mm" in page.text
     assert study.notes
     for note in study.notes:

@@ -46,9 +46,9 @@ def test_every_field_of_the_rig_and_the_models_is_a_parameter(study: Study) -> N
     frame = parameters(study).frame
     rows = {(of, name): (value, meaning) for of, name, value, meaning in frame.astype(str).to_numpy().tolist()}
     assert len(rows) == len(frame)
-    assert rows["usfd", "q_s"] == ("55 µg/m/mm²", "Wear rate of the severe regime [µg/m/mm²].")
-    assert rows["rig", "disc_1.material.youngs_modulus"] == ("206.47742 GPa", "Young's modulus E [Pa].")
-    assert rows["rig", "disc_2.material.poisson_ratio"] == ("0.28", "Poisson's ratio ν [-].")
+    assert rows["usfd", "q_s"] == ("55 µg/m/mm²", "Wear rate of the severe regime, q_s [µg/m/mm²].")
+    assert rows["rig", "disc_1.material.youngs_modulus"] == ("206.47742 GPa", "Young's modulus, E [Pa].")
+    assert rows["rig", "disc_2.material.poisson_ratio"] == ("0.28", "Poisson's ratio, ν [-].")
     assert rows["global", "total_from"][0] == "exact"
     assert rows["global", "total_from.slip"] == rows["exact", "slip"]
     for label, record in (("usfd", wl.wear_law("usfd")), ("kth", wl.wear_law("kth")), ("rig", wl.TwinDisc.suros())):
