@@ -1,98 +1,203 @@
-"""The scripts of the gallery: each runs, makes its picture, and shows numbers that are right."""
+"""The gallery: its scripts run as they are, draw what they say, and stand on its page."""
 
 from __future__ import annotations
 
+import math
 import re
 import runpy
+import struct
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib import pyplot as plt
+
+from tests import reference
 
 DOCS = Path(__file__).parents[1] / "docs"
 SCRIPTS = sorted((DOCS / "gallery").glob("*.py"))
 
-HALF_WIDTH, MAX_PRESSURE = 0.31467e-3, 1500e6
-"""Of 47 mm discs of steel at 741.43 kN/m; both go with the root of the load."""
+RADIUS = 0.047 / 4.0
+"""R of two discs of 47 mm [m]."""
+MODULUS = 206.47742e9 / (2.0 * (1.0 - 0.28**2))
+"""E* of two bodies of the rig's steel [Pa]."""
+WIDTH = 0.01
+FRICTION = 0.46
 
-SATURATION = 0.46 * HALF_WIDTH / 11.75e-3
-"""Creepage of full slip at that load, μa/R."""
 
-
-@pytest.fixture
-def script(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Run a script in an empty folder, and return its variables."""
+@pytest.fixture(autouse=True)
+def _own_folder_and_style(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)
-    mpl.use("agg")
-    with plt.style.context("default"):
-        yield runpy.run_path(str(DOCS / "gallery" / f"{request.param}.py"))
-    plt.close("all")
+    with mpl.rc_context():
+        plt.switch_backend("Agg")
+        yield
+        plt.close("all")
 
 
-@pytest.mark.parametrize("script", [path.stem for path in SCRIPTS], indirect=True, ids=lambda name: str(name))
-@pytest.mark.usefixtures("script")
-def test_each_script_makes_its_picture(request: pytest.FixtureRequest) -> None:
-    name = request.node.callspec.params["script"]
-    height, width, _ = plt.imread(f"{name}.png").shape
-    assert width > 900
-    assert height > 450
-    assert np.ptp(plt.imread(f"{name}.png")) > 0.5
+def run(name: str) -> dict[str, Any]:
+    """Run a script in the empty folder, where a warning is an error, and return its names."""
+    return runpy.run_path(str(DOCS / "gallery" / f"{name}.py"), run_name="__main__")
 
 
-def test_every_script_is_on_the_page_with_its_picture() -> None:
+def patch_area(force: Any) -> Any:
+    """Return the area of the patch [m²] under a normal force [N], by Hertz."""
+    return 2.0 * np.sqrt(4.0 * force * RADIUS / (math.pi * MODULUS * WIDTH)) * WIDTH
+
+
+def wear_index_density(force: Any, creepage: Any, friction: Any = FRICTION) -> Any:
+    """Return Tγ/A [N/mm²] by Carter's closed form, under a normal force [N]."""
+    area = patch_area(force)
+    saturation = friction * area / (2.0 * WIDTH * RADIUS)
+    share = 1.0 - (1.0 - np.minimum(creepage / saturation, 1.0)) ** 2
+    return friction * force * share * creepage / area / 1e6
+
+
+def kth(coefficient: float, mean_pressure: float, creepage: Any) -> Any:
+    """Return the KTH rate in full slip [µg/m/mm²], where ∫ p s dx over the patch is ξ P: p is even and s - ξ odd."""
+    return 7850.0 * coefficient * mean_pressure * creepage / 2.625e9 * 1e3
+
+
+def curves(figure: Any) -> dict[str, Any]:
+    """Return the points of each line of the first axes by its label."""
+    return {line.get_label(): line.get_xydata().T for line in figure.axes[0].get_lines()}
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_a_script_draws_the_one_picture_of_its_name_in_the_size_it_asks_for(script: Path, tmp_path: Path) -> None:
+    figure = run(script.stem)["figure"]
+    (picture,) = tmp_path.iterdir()
+    assert picture.name == f"{script.stem}.png"
+    content = picture.read_bytes()
+    assert content.startswith(b"\x89PNG")
+    assert struct.unpack(">2I", content[16:24]) == tuple(round(150 * side) for side in figure.get_size_inches())
+    pixels = plt.imread(picture)[..., :3]
+    assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 16  # an empty page has one colour
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_every_axis_says_what_it_shows_in_which_unit(script: Path) -> None:
+    for axes in run(script.stem)["figure"].axes:
+        labels = [label for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
+        assert labels
+        assert all(label.endswith("]") or label == "probability of less wear" for label in labels)
+
+
+def test_the_page_shows_every_script_with_its_picture_and_no_other() -> None:
     page = (DOCS / "gallery.md").read_text(encoding="utf-8")
-    names = [path.stem for path in SCRIPTS]
-    assert sorted(re.findall(r"literalinclude} gallery/(\w+)\.py", page)) == names
-    assert sorted(re.findall(r"pictures/gallery_(\w+)\.png", page)) == names
-    assert len(names) >= 5
+    names = [script.stem for script in SCRIPTS]
+    assert sorted(re.findall(r"^```\{literalinclude\} gallery/(\w+)\.py$", page, re.MULTILINE)) == names
+    assert sorted(re.findall(r"\(pictures/gallery_(\w+)\.png\)", page)) == names
+    assert sorted(path.stem for path in (DOCS / "pictures").glob("gallery_*.png")) == [f"gallery_{n}" for n in names]
 
 
-@pytest.mark.parametrize("script", ["three_laws"], indirect=True)
-def test_the_plateau_of_usfd_is_drawn_at_its_rate(script: Any) -> None:
-    usfd, _, brr = script["axes"].get_lines()
-    inside = (usfd.get_xdata() > 70.0) & (usfd.get_xdata() < 480.0)
-    assert usfd.get_ydata()[inside] == pytest.approx(55.0, rel=1e-12)
-    # 100 to 200 N: 25 mm³/km of section times diameter, times π and 7850 kg/m³, over 2a of the load and 10 mm.
-    area = 20.0 * HALF_WIDTH * 1e3 * np.sqrt(7400.0 / 7414.3)
-    flat = (brr.get_xdata() > 110.0) & (brr.get_xdata() < 190.0)
-    assert brr.get_ydata()[flat] == pytest.approx(25.0 * np.pi * 7.85 / area, rel=1e-4)  # of HALF_WIDTH's digits
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_a_script_is_short_and_takes_only_public_names(script: Path) -> None:
+    lines = script.read_text(encoding="utf-8").splitlines()
+    assert 15 <= len(lines) <= 35
+    imported = {line for line in lines if re.match(r"(import|from) wearlaw", line)}
+    assert imported <= {"import wearlaw as wl", "from wearlaw import Q"}
 
 
-@pytest.mark.parametrize("script", ["own_law"], indirect=True)
-def test_the_energy_law_follows_the_energy(script: Any) -> None:
-    _, own = script["axes"].get_lines()
-    creepage = own.get_xdata() / 100.0
-    full = creepage > 1.1 * SATURATION
-    mean_pressure = np.pi / 4.0 * MAX_PRESSURE * np.sqrt(7400.0 / 7414.3) * 1e-6
-    due = 5.3 * 0.46 * mean_pressure * creepage[full]
-    assert own.get_ydata()[full] == pytest.approx(due, rel=1e-4)  # of the 741.43 kN/m of MAX_PRESSURE
+def test_the_three_laws_end_where_their_formulas_put_them() -> None:
+    drawn = curves(run("three_laws")["figure"])
+    area, wear_index = patch_area(7400.0), FRICTION * 7400.0 * 0.2
+    rates = {
+        "USFD": 55.0 + 61.9 * (wear_index / (area * 1e6) - 77.26),
+        "BRR": 7.85 * math.pi * (1.19 * wear_index - 154.0) / (area * 1e6),
+        "KTH, middle of its range": kth(5.5e-4, 7400.0 / area, 0.2),
+    }
+    assert drawn.keys() == rates.keys()
+    for name, rate in rates.items():
+        assert drawn[name][:, -1] == pytest.approx([wear_index, rate], rel=1e-12)
 
 
-@pytest.mark.parametrize("script", ["kth_band"], indirect=True)
-def test_the_middle_of_the_band_is_archards_law_in_full_slip(script: Any) -> None:
-    (middle,) = script["axes"].get_lines()
-    at = int(np.searchsorted(middle.get_xdata(), 5.0))
-    due = 7850.0 * 5.5e-4 * (np.pi / 4.0 * MAX_PRESSURE) * middle.get_xdata()[at] / 100.0 / 2.625e9 * 1e3
-    assert middle.get_ydata()[at] == pytest.approx(due, rel=1e-9)
+def test_the_borders_of_the_map_lie_where_the_mild_regime_has_their_values() -> None:
+    names = run("wear_map")
+    assert names["levels"][2:4] == [2, 5]
+    # The first path is what lies below all levels, so the fourth is the band from 2 to 5, all of it mild wear.
+    load, creepage = names["filled"].get_paths()[3].vertices.T
+    rate = 5.3 * wear_index_density(1000.0 * load, creepage / 100.0)
+    inside = (load > 1.0) & (load < 9.0)
+    # Between grid lines the rate is interpolated linearly. It curves most along creepage, where it grows at most as
+    # ξ², so that h²/8 f'' of steps h = ln(180)/399 ξ is 2/8 (ln(180)/399)² = 4.2e-5 of it. Along load, N² f'' is at
+    # most 3/4 f, and steps are of ln(9)/159 N: 1.8e-5.
+    assert inside.sum() > 100
+    assert np.minimum(np.abs(rate / 2.0 - 1.0), np.abs(rate / 5.0 - 1.0))[inside].max() < 4.3e-5
 
 
-@pytest.mark.parametrize("script", ["wear_map"], indirect=True)
-def test_full_slip_begins_at_the_creepage_of_saturation(script: Any) -> None:
-    stick = script["result"].stick_ratio.magnitude
-    load, creepage = script["load"][None, :], script["creepage"][:, None] / 100.0
-    saturation = SATURATION * np.sqrt(load / 7.4143)
-    assert np.array_equal(stick == 0.0, creepage >= saturation)
-    sticks = stick > 0.0
-    assert stick[sticks] == pytest.approx((1.0 - creepage / saturation)[sticks], abs=1e-4)  # of HALF_WIDTH's digits
+def test_the_dashed_line_of_the_map_is_where_the_whole_patch_begins_to_slip() -> None:
+    segments = run("wear_map")["sticking"].allsegs[0]
+    load, creepage = np.concatenate(segments).T
+    saturation = FRICTION * patch_area(1000.0 * load) / (2.0 * WIDTH * RADIUS)
+    # within a step of the grid, of which one along load counts by half, and the last thousandth of the patch
+    assert creepage / 100.0 == pytest.approx(saturation, rel=math.log(180.0) / 399.0 + 0.001)
 
 
-@pytest.mark.parametrize("script", ["uncertain"], indirect=True)
-def test_the_shares_and_the_interval_are_those_of_a_product(script: Any) -> None:
-    # At partial slip in the mild regime the rate goes with the slope, and nearly with the square of the creepage.
-    shares, u = script["shares"]["first_order"], script["u"]
-    assert shares.sum() == pytest.approx(1.0, abs=0.03)  # what is missing are products of relative variances of 5 %
-    assert shares["load"] < shares["friction"] < shares["slope $m_m$"]
-    assert script["low"] < u.median < script["high"]
+def test_the_band_of_kth_has_the_ends_of_the_published_range() -> None:
+    axes = run("kth_band")["figure"].axes[0]
+    mean_pressure = 0.25 * math.pi * 1500e6
+    creepage, middle = axes.get_lines()[0].get_xydata().T
+    full = (creepage > 1.3) & (creepage < 18.0)  # all slips, everywhere below 0.2 m/s
+    assert middle[full] == pytest.approx(kth(5.5e-4, mean_pressure, creepage[full] / 100.0), rel=1e-12)
+    outline = axes.collections[0].get_paths()[0].vertices
+    for percent in creepage[full]:
+        ends = outline[outline[:, 0] == percent, 1]
+        expected = [kth(k, mean_pressure, percent / 100.0) for k in (1e-4, 10e-4)]
+        assert sorted(ends) == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_law_of_ones_own_follows_carters_energy_and_usfd_its_integral() -> None:
+    drawn = curves(run("own_law")["figure"])
+    creepage, rate = drawn["energy law"]
+    assert rate == pytest.approx(5.3 * wear_index_density(7400.0, creepage / 100.0), rel=1e-12)
+    solution = reference.exact(reference.Point(7400.0 / WIDTH, RADIUS, MODULUS, FRICTION, 0.2))
+    assert drawn["USFD"][1, -1] == pytest.approx(reference.usfd_mean(solution, 5.3, 55.0, 83.7, 95.0), rel=1e-12)
+
+
+def mild_wear(load: Any, creepage: Any, friction: Any, slope: Any) -> Any:
+    return slope * wear_index_density(load, creepage, friction)
+
+
+def test_the_bars_are_the_shares_of_the_variance_by_gauss_quadrature() -> None:
+    names = run("uncertain")
+    drawn = dict(zip(names["shares"].index, (bar.get_width() / 100.0 for bar in names["bars"]), strict=True))
+    uniform, half = np.polynomial.legendre.leggauss(16)
+    normal, weight = np.polynomial.hermite_e.hermegauss(16)
+    uniform_weight, weight = half / half.sum(), weight / weight.sum()
+    inputs = {
+        "normal_force": (7400.0 + 200.0 * normal, weight),
+        "creepage": (0.005 + 0.001 * uniform, uniform_weight),
+        "friction_coefficient": (0.46 + 0.05 * normal, weight),
+        "m_m": (5.3 * 1.2**normal, weight),
+    }
+    rate = mild_wear(*np.meshgrid(*(nodes for nodes, _ in inputs.values()), indexing="ij", sparse=True))
+    weights = [weights for _, weights in inputs.values()]
+    mean = np.einsum("abcd,a,b,c,d", rate, *weights)
+    variance = np.einsum("abcd,a,b,c,d", rate**2, *weights) - mean**2
+    errors = names["u"].sobol()["first_order_error"]
+    for axis, (name, (_, own)) in enumerate(inputs.items()):
+        others = [w for other, w in enumerate(weights) if other != axis]
+        along = np.einsum("abcd,b,c,d->a", np.moveaxis(rate, axis, 0), *others)
+        share = own @ (along - mean) ** 2 / variance
+        assert drawn[name] == pytest.approx(share, abs=5.0 * errors[name])  # t of 7 degrees: 1.6e-3 lie beyond
+
+
+def test_the_shaded_interval_leaves_out_a_fortieth_on_each_side() -> None:
+    names = run("uncertain")
+    random = np.random.default_rng(7)
+    count = 2**20
+    rates = mild_wear(
+        random.normal(7400.0, 200.0, count),
+        random.uniform(0.004, 0.006, count),
+        random.normal(0.46, 0.05, count),
+        5.3 * 1.2 ** random.normal(size=count),
+    )
+    # The script's 4096 points are spread more evenly than random ones, whose share has this standard error.
+    error = math.sqrt(0.025 * 0.975 / 4096)
+    assert np.mean(rates < names["low"].m) == pytest.approx(0.025, abs=3.0 * error)
+    assert np.mean(rates > names["high"].m) == pytest.approx(0.025, abs=3.0 * error)
+    shaded = names["left"].patches[0].get_extents().transformed(names["left"].transData.inverted())
+    assert (shaded.x0, shaded.x1) == pytest.approx((names["low"].m, names["high"].m), rel=1e-9)

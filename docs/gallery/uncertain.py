@@ -13,17 +13,17 @@ u = predict.uncertainty(
     samples=4096,
 )
 low, high = u.interval(0.95)
-shares = u.sobol().rename({"normal_force": "load", "friction_coefficient": "friction", "m_m": "slope $m_m$"})
+shares = u.sobol()["first_order"].sort_values()
+names = {"normal_force": "load", "creepage": "creepage", "friction_coefficient": "friction", "m_m": "slope $m_m$"}
 
 plt.style.use("seaborn-v0_8-colorblind")
 figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 3.4), layout="constrained")
 left.ecdf(u.wear_rate.m)
-left.axvspan(low.m, high.m, alpha=0.2, label="95 % of the samples")
-left.set(xlabel=f"wear rate [{low.u:~P}]", ylabel="probability of less wear")
+left.axvspan(low.m, high.m, alpha=0.2)
+left.set(xlabel=f"wear rate [{low.u:~P}]", ylabel="probability of less wear", title="shaded: 95 % of the samples")
 left.grid(alpha=0.3)
-left.legend(loc="lower right")
 
-bars = right.barh(shares.index, 100 * shares["first_order"])
+bars = right.barh([names[name] for name in shares.index], 100 * shares)
 right.bar_label(bars, fmt="%.1f", padding=3)
-right.set(xlabel="share of the variance [%]", xlim=(0, 65))
+right.set(xlabel="share of the variance [%]", xlim=(0, 65), title="what it comes from")
 figure.savefig("uncertain.png", dpi=150)
