@@ -3,40 +3,49 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.line import LineProblem
+from wearlaw.batch import Batch
 
 Columns: TypeAlias = dict[str, Array]
 """Arrays with one entry an operating point."""
 
-OnBlock: TypeAlias = Callable[[LineProblem, Array], None]
-"""What is called with a block of operating points and their tangential forces [N]."""
+ProblemT = TypeVar("ProblemT", bound=Batch)
+
+OnBlock: TypeAlias = Callable[[ProblemT, Columns], None]
+"""What is called with a block of operating points and what was computed for them."""
+
+KEPT = 2**24
+"""Bytes that are allocated and freed before the first of several blocks. The C library of Linux then keeps twice as
+much of what a block frees for the next one, where it would hand it back to the system and ask for it again, which takes
+as long as the arithmetic."""
 
 
 def by_block(
-    problem: LineProblem,
+    problem: ProblemT,
     block: int,
-    function: Callable[[LineProblem], Columns],
-    on_block: OnBlock | None = None,
+    function: Callable[[ProblemT], Columns],
+    on_block: OnBlock[ProblemT] | None = None,
     drop_force: bool = False,
 ) -> Columns:
     """Return the columns of a function of a problem with one batch axis at most, evaluated block by block.
 
     With `drop_force`, the tangential forces are told to `on_block` and not kept.
     """
-    points = problem.creepage.size
+    points = problem.size
     if points == 0:
         raise ValueError("an empty batch has no totals")
     whole: Columns = {}
+    if points > block:
+        np.empty(KEPT, dtype=np.uint8)
     for part in blocks(points, block):
         within = problem if points <= block else problem[part]
         columns = function(within)
         if on_block is not None:
-            on_block(within, columns["tangential_force"])
+            on_block(within, columns)
         if drop_force:
             del columns["tangential_force"]
         if points <= block:

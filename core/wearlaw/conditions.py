@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Required, TypedDict
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol, Required, TypeAlias, TypedDict, TypeGuard
 
 import numpy as np
 
@@ -12,6 +14,16 @@ from wearlaw.units import QuantityLike, Unit, coefficient
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+Arrays: TypeAlias = dict[str, Array]
+"""SI arrays of the conditions, by name."""
+
+
+class FrictionLaw(Protocol):
+    """Friction that depends on how fast the bodies slide over each other."""
+
+    def coefficient(self, creep_speed: Array) -> Array:
+        """Return μ [-] at creep speeds [m/s], of their shape."""
 
 
 class TwinDiscConditions(TypedDict, total=False):
@@ -29,7 +41,7 @@ class TwinDiscConditions(TypedDict, total=False):
         Hertz's maximum pressure, p0 [Pa].
     creepage : Quantity or str
         Creepage, ξ [-], positive where disc 1 is the faster one, of magnitude at most 1.
-    friction_coefficient : array_like of float
+    friction_coefficient : array_like of float, or FallingFriction
         Friction coefficient, μ [-].
     traction_coefficient : array_like of float
         Measured tangential over normal force, T/N [-], for contact models that can use it.
@@ -39,8 +51,38 @@ class TwinDiscConditions(TypedDict, total=False):
     normal_force_per_width: QuantityLike
     max_pressure: QuantityLike
     creepage: Required[QuantityLike]
-    friction_coefficient: Required[ArrayLike]
+    friction_coefficient: Required[ArrayLike | FrictionLaw]
     traction_coefficient: ArrayLike
+
+
+class WheelRailConditions(TypedDict, total=False):
+    """The conditions of a wheel on a rail; arrays broadcast against each other.
+
+    Exactly one of `normal_force` and `max_pressure` gives the load. Creepages are the velocity of the wheel minus that
+    of the rail, over V, as in CONTACT; a positive spin adds to a positive lateral creepage at the leading edge.
+
+    Attributes
+    ----------
+    normal_force : Quantity or str
+        Normal force, N [N].
+    max_pressure : Quantity or str
+        Hertz's maximum pressure, p0 [Pa].
+    longitudinal_creepage : Quantity or str
+        Longitudinal creepage, ξ [-], of magnitude at most 1; positive where the wheel is braked.
+    lateral_creepage : Quantity or str
+        Lateral creepage, η [-], of magnitude at most 1; zero where it is not given.
+    spin : Quantity or str
+        Spin, φ [1/m]; zero where it is not given.
+    friction_coefficient : array_like of float, or FallingFriction
+        Friction coefficient, μ [-].
+    """
+
+    normal_force: QuantityLike
+    max_pressure: QuantityLike
+    longitudinal_creepage: Required[QuantityLike]
+    lateral_creepage: QuantityLike
+    spin: QuantityLike
+    friction_coefficient: Required[ArrayLike | FrictionLaw]
 
 
 LOADS = {"normal_force": Unit("N"), "normal_force_per_width": Unit("kN/m"), "max_pressure": Unit("MPa")}
@@ -52,40 +94,106 @@ CREEPAGE = Unit("", positive=False, limit=1.0)
 COEFFICIENTS = ("friction_coefficient", "traction_coefficient")
 """The conditions that are plain numbers."""
 
-CONDITIONS = (*LOADS, "creepage", *COEFFICIENTS)
+UNITS = {**LOADS, "creepage": CREEPAGE}
+"""The conditions of a twin-disc test that have units."""
+
+CONDITIONS = (*UNITS, *COEFFICIENTS)
 """All conditions of a twin-disc test."""
 
+SPIN = Unit("1/m", positive=False)
+"""Spin has either sign."""
 
-UNITS = {**LOADS, "creepage": CREEPAGE}
-"""The conditions that have units."""
+
+@dataclass(frozen=True)
+class ConditionTable:
+    """Which conditions a rig takes.
+
+    Attributes
+    ----------
+    loads, creepages : mapping of str to Unit
+        Exactly one of the loads is due, and the first of the creepages; those that are not given are zero.
+    coefficients : tuple of str
+        Plain numbers, of which the first is due.
+    examples : mapping of str to str
+        How to give what is due.
+    """
+
+    loads: Mapping[str, Unit]
+    creepages: Mapping[str, Unit]
+    coefficients: tuple[str, ...]
+    examples: Mapping[str, str]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All conditions."""
+        return (*self.loads, *self.creepages, *self.coefficients)
 
 
-def condition_arrays(conditions: dict[str, Any]) -> dict[str, Array]:
-    """Return all given conditions as SI arrays of one shape."""
-    arrays = {}
-    for name, value in conditions.items():
-        if name in UNITS and value is not None:
-            arrays[name] = UNITS[name].si(value, name)
-        elif name in COEFFICIENTS and value is not None:
+TWIN_DISC = ConditionTable(
+    LOADS, {"creepage": CREEPAGE}, COEFFICIENTS, {"creepage": 'Q(1, "%")', "friction_coefficient": "0.46"}
+)
+"""The conditions of a twin-disc test."""
+
+WHEEL_RAIL = ConditionTable(
+    {"normal_force": Unit("kN"), "max_pressure": Unit("MPa")},
+    {"longitudinal_creepage": CREEPAGE, "lateral_creepage": CREEPAGE, "spin": SPIN},
+    COEFFICIENTS[:1],
+    {"longitudinal_creepage": 'Q(0.2, "%")', "friction_coefficient": "0.3"},
+)
+"""The conditions of a wheel on a rail."""
+
+
+def condition_arrays(
+    conditions: Mapping[str, Any], table: ConditionTable, creep_speed: Callable[[Arrays], Array]
+) -> Arrays:
+    """Return all conditions as SI arrays of one shape.
+
+    `creep_speed` gives the speed that friction may depend on [m/s] from the other conditions.
+    """
+    given = {name: value for name, value in conditions.items() if value is not None}
+    friction = given.get("friction_coefficient")
+    if _is_law(friction):
+        given["friction_coefficient"] = 1.0
+    units = {**table.loads, **table.creepages}
+    arrays: Arrays = {}
+    for name, value in given.items():
+        if name in units:
+            arrays[name] = units[name].si(value, name)
+        elif name in table.coefficients:
             arrays[name] = coefficient(value, name)
-        elif name not in CONDITIONS:
+    _check_names(conditions, arrays, table)
+    for name in table.creepages:
+        arrays.setdefault(name, np.zeros(()))
+    arrays = broadcast(arrays)
+    if _is_law(friction):
+        arrays["friction_coefficient"] = friction.coefficient(creep_speed(arrays))
+    return arrays
+
+
+def _is_law(friction: object) -> TypeGuard[FrictionLaw]:
+    # Whether it is an instance of the protocol takes a tenth of the time of a prediction.
+    return hasattr(friction, "coefficient") and not isinstance(friction, type)
+
+
+def _check_names(conditions: Mapping[str, Any], arrays: Arrays, table: ConditionTable) -> None:
+    """Refuse conditions that are unknown, missing, or give the load twice."""
+    for name in conditions:
+        if name not in table.names:
             raise ConditionsError(
-                f"{name}: unknown condition;{did_you_mean(name, CONDITIONS)}"
-                f" The conditions are: {', '.join(CONDITIONS)}"
+                f"{name}: unknown condition;{did_you_mean(name, table.names)}"
+                f" The conditions are: {', '.join(table.names)}"
             )
-    loads = [name for name in LOADS if name in arrays]
+    loads = [name for name in table.loads if name in arrays]
     if len(loads) != 1:
         raise ConditionsError(
-            f"give exactly one of {', '.join(LOADS)}; got {' and '.join(loads) if loads else 'none of them'}"
+            f"give exactly one of {', '.join(table.loads)}; got {' and '.join(loads) if loads else 'none of them'}"
         )
-    for name in ("creepage", "friction_coefficient"):
+    for name, example in table.examples.items():
         if name not in arrays:
-            example = 'Q(1, "%")' if name == "creepage" else "0.46"
             raise ConditionsError(f"{name}: is missing; give {name}={example}")
-    return _broadcast(arrays)
 
 
-def _broadcast(arrays: dict[str, Array]) -> dict[str, Array]:
+def broadcast(arrays: Arrays) -> Arrays:
     """Return the arrays in one shape, as views that cannot be written to."""
     shapes = {array.shape for array in arrays.values()}
     if shapes == {()}:

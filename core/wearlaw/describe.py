@@ -12,9 +12,10 @@ import pint
 from wearlaw import plugins
 from wearlaw.docstrings import field_docstrings
 from wearlaw.errors import InputError
-from wearlaw.models import ContactModel, Model, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.records import UNITS
 from wearlaw.registry import symbol
+from wearlaw.tangential import ContactModel, Model
 from wearlaw.units import from_si
 
 

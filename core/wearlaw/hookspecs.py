@@ -13,9 +13,10 @@ import pluggy
 
 if TYPE_CHECKING:
     from wearlaw.material import Material
-    from wearlaw.models import ContactModel, WearLaw
+    from wearlaw.models import WearLaw
     from wearlaw.sections import Section
     from wearlaw.study import Study
+    from wearlaw.tangential import ContactModel
 
 PROJECT = "wearlaw"
 

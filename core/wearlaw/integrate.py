@@ -27,9 +27,10 @@ from wearlaw.extremes import extremes
 from wearlaw.kernels import accelerated
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
-from wearlaw.models import ContactModel, Scale, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.quadrature import join, remainder
 from wearlaw.records import NODE_VARIABLES, Contact
+from wearlaw.tangential import ContactModel, Scale
 
 BLOCK = 8192
 """Operating points of a block in closed form: its arrays stay in the cache, and in memory that is used again."""
@@ -106,11 +107,11 @@ def integrate_wear(
     law: WearLaw,
     problem: LineProblem,
     scale: Scale,
-    on_block: OnBlock | None = None,
+    on_block: OnBlock[LineProblem] | None = None,
 ) -> WearTotals:
     """Return the wear in a contact, block by block.
 
-    `on_block` is called with each block of operating points and their tangential forces [N] when it is done.
+    `on_block` is called with each block of operating points, and the tangential forces [N] among its columns.
 
     Raises
     ------
@@ -127,7 +128,7 @@ def integrate_wear(
         found = closed_form(*closed, problem)
         if found is not None:
             if on_block is not None:
-                on_block(problem, found["tangential_force"])
+                on_block(problem, found)
             check_finite(model, found, problem)
             return WearTotals(wear_rate=found["wear_rate"])
     block = NODE_BLOCK
@@ -203,7 +204,7 @@ def _from_nodes(model: ContactModel, law: WearLaw, problem: LineProblem, scale: 
             return over_slip_zone(model, law, part)
         contact = solve(model, part, scale)
         rate = law.checked_rate(contact)
-        error = _thinning_error(contact, rate) if scale == "cells" else EPS * np.abs(contact.mean(rate))
+        error = thinning_error(contact, rate) if scale == "cells" else EPS * np.abs(contact.mean(rate))
         return {"wear_rate": contact.mean(rate), "wear_rate_error": error, "tangential_force": contact.tangential_force}
 
     return by_block(problem.flatten(), NODE_BLOCK, columns)
@@ -261,7 +262,7 @@ def over_panels(
     return total / problem.patch_area, error / problem.patch_area
 
 
-def _thinning_error(contact: Contact, rate: Array) -> Array:
+def thinning_error(contact: Contact, rate: Array) -> Array:
     """Return how far the mean moves when nodes are left out, for nodes of which nothing is known.
 
     The means over every other node show steps that fall between nodes; they agree by symmetry for a rate that

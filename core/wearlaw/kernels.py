@@ -41,6 +41,11 @@ def accelerate(on: bool | None) -> None:
     _chosen = on
 
 
+def chosen() -> bool | None:
+    """Return what `accelerate` was last told."""
+    return _chosen
+
+
 def accelerated(points: int) -> bool:
     """Return whether an array of so many operating points runs through compiled kernels."""
     if _chosen is not None:
@@ -88,6 +93,34 @@ def kernel(arrays: Callable[..., Array]) -> Callable[[Callable[..., float]], Ker
         functions of its module that do the same.
     """
     return lambda scalar: Kernel(scalar, arrays)
+
+
+def compiled_loop(signature: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Return a decorator that makes a compiled function of loops over arrays, which fills some of them.
+
+    It is compiled when it is first called, so it is called only where `accelerated` says so. Division by zero gives
+    infinity or NaN, as in NumPy.
+
+    Parameters
+    ----------
+    signature : str
+        Types of the arguments, as numba reads them. The function uses only what numba can compile, such as `math`
+        and functions of its module that do the same.
+    """
+    options = {"fastmath": {"contract"}, "error_model": "numpy"}
+
+    def decorate(function: Callable[..., None]) -> Callable[..., None]:
+        @functools.cache
+        def made() -> Any:
+            return compiled("njit", _with_compiled(function, _numba().njit(**options)), signature, **options)
+
+        @functools.wraps(function)
+        def run(*arguments: object) -> None:
+            made()(*arguments)
+
+        return run
+
+    return decorate
 
 
 def compiled(compiler: str, function: Callable[..., Any], signature: object, **options: Any) -> Any:

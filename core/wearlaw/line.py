@@ -6,17 +6,17 @@ Both are frozen and hold SI float64 arrays, whose first axes are the *batch*, on
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.batch import Batch
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class LineProblem:
+class LineProblem(Batch):
     """Hertzian line contact between two rolling bodies: what a contact model is asked to solve.
 
     All arrays are of the batch shape. Lengths lie along the rolling direction x, which runs from the leading
@@ -75,27 +75,10 @@ class LineProblem:
         """Area of the patch, 2 a × width, A [m²]."""
         return 2.0 * self.half_width * self.track_width
 
-    def __getitem__(self, index: Any) -> Self:
-        """Return the problem at some operating points of the batch; `index` is any NumPy index."""
-        return self._map(lambda array: array[index])
-
     def forward(self) -> Self:
         """Return the problem with the magnitude of the creepage."""
         lowest = self.creepage.min() if self.creepage.ndim else self.creepage
         return self if lowest >= 0.0 else dataclasses.replace(self, creepage=np.abs(self.creepage))
-
-    def broadcast_to(self, shape: tuple[int, ...]) -> Self:
-        """Return the problem with a larger batch shape, to which its own broadcasts."""
-        return self._map(lambda array: np.broadcast_to(array, shape))
-
-    def flatten(self) -> Self:
-        """Return the problem with its batch as one axis."""
-        return self._map(lambda array: array.reshape(-1))
-
-    def _map(self, function: Callable[[Array], Array]) -> Self:
-        fields = ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self))
-        mapped: dict[str, Any] = {name: function(array) for name, array in fields if array is not None}
-        return type(self)(**mapped)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

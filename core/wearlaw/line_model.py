@@ -10,9 +10,9 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.line import LineFields, LineProblem
-from wearlaw.models import ContactModel
 from wearlaw.quadrature import Nodes, Zone, join
 from wearlaw.records import Contact
+from wearlaw.tangential import ContactModel
 
 FieldVariable: TypeAlias = Literal["pressure", "traction", "slip", "wear_index_density"]
 """A variable of the nodes that follows from the fields alone."""
@@ -99,7 +99,7 @@ class LineContactModel(ContactModel):
         force = self._mirrored_force(problem)
         return Contact.from_line(problem, mirrored, x=nodes.x, length=nodes.length, force_per_width=force)
 
-    def solve(self, problem: LineProblem) -> Contact:
+    def solve_line(self, problem: LineProblem) -> Contact:
         """Return the contact on quadrature nodes of the stick zone and the slip zone."""
         stick, slip = self.stick_zone(problem), self.slip_zone(problem).nodes()
         return self.at(problem, join(stick.nodes().reversed(), slip) if stick.length.any() else slip)

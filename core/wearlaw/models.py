@@ -1,14 +1,11 @@
-"""What a plugin implements: `ContactModel`, or `LineContactModel` of its own module, and `WearLaw`.
-
-A model is its configuration: a frozen pydantic record whose fields carry units and whose methods compute.
-"""
+"""What a plugin implements that predicts wear, `WearLaw`, and what its parameters were fitted to."""
 
 import warnings
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
+from typing import ClassVar, Literal, TypeAlias
 
 import numpy as np
 from pydantic import model_validator
@@ -16,82 +13,12 @@ from pydantic import model_validator
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, did_you_mean
-from wearlaw.line import LineProblem
 from wearlaw.records import UNITS, Contact
+from wearlaw.tangential import ContactModel, Geometry, Model, Scale
 from wearlaw.units import WEAR_RATE, Quantity, Unit, from_si
-
-Scale: TypeAlias = Literal["patch", "cells"]
-"""Whether a contact holds the means of the whole patch in one node, or resolves it into many."""
-
-Claim: TypeAlias = Literal["traction_bound", "stick", "energy_balance", "saturation", "initial_slope", "similarity"]
-"""An invariant that a contact model keeps unless it declares itself exempt; see `ContactModel.exemptions`."""
 
 BreakpointMap: TypeAlias = Mapping[str, tuple[float, ...]]
 """Variables of a `Contact` with the SI values at which a law branches."""
-
-QUADRATURE = 5e-8
-"""Accuracy of the quadrature of `LineContactModel`; its worst case is a slip zone just short of the whole patch."""
-
-
-class Model(Configuration, ABC):
-    """What contact models and wear laws have in common."""
-
-    name: ClassVar[str]
-    """The name under which the model is looked up."""
-
-    source: ClassVar[str]
-    """The literature that the model is taken from."""
-
-    @classmethod
-    def subject(cls) -> str:
-        """Return what messages call this model."""
-        return cls.name
-
-    if not TYPE_CHECKING:  # checkers reject this order by themselves
-
-        def __or__(self, other: object) -> object:
-            raise CompositionError(
-                f"'{self.name}' cannot start a pipeline; begin with a rig, as in"
-                ' wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd")'
-            )
-
-
-class ContactModel(Model):
-    """A theory of the tangential contact: from a contact problem to traction and slip in the patch.
-
-    A subclass that knows its fields at any point in closed form derives from `LineContactModel` instead,
-    which lets the wear be integrated to rounding error.
-    """
-
-    scale: ClassVar[Scale] = "cells"
-
-    uses_measured_traction: ClassVar[bool] = False
-    """Whether the model can use a measured traction coefficient."""
-
-    @abstractmethod
-    def solve(self, problem: LineProblem) -> Contact:
-        """Return the solved contact on nodes of the model's choice, of shape (batch, nodes)."""
-
-    def tangential_force(self, problem: LineProblem) -> Array:
-        """Return T [N] with the sign of the creepage, of the batch shape; that of `solve`, unless known without it."""
-        return self.solve(problem).tangential_force
-
-    def refined(self) -> "ContactModel | None":
-        """Return the same theory on twice as fine nodes, or None, the default, if the model has no such choice.
-
-        The checks then hold the model to errors of its sums that fall with refinement, at the least in first order.
-        """
-        return None
-
-    @property
-    def accuracy(self) -> float:
-        """Relative error of sums over the nodes that `solve` returns, for pressure, traction and dissipation."""
-        return QUADRATURE
-
-    @property
-    def exemptions(self) -> Mapping[Claim, str]:
-        """The invariants that this model does not keep, each with the reason."""
-        return {}
 
 
 class Calibration(Configuration):
@@ -103,7 +30,7 @@ class Calibration(Configuration):
     """Whether its patch means or its cells were used."""
     options: tuple[tuple[str, str], ...] = ()
     """Settings of that contact model that matter, as pairs of field and value."""
-    geometry: Literal["line", "ellipse"] = "line"
+    geometry: Geometry = "line"
     """Shape of the contact patch."""
     materials: str
     """Materials of the two bodies."""
@@ -135,9 +62,9 @@ class Calibration(Configuration):
         options = "".join(f", {field}={value!r}" for field, value in self.options)
         return f"the cells of contact_model({self.contact_model!r}{options})"
 
-    def covers(self, model: ContactModel, scale: Scale) -> bool:
-        """Return whether the parameters were fitted for this contact model at this scale."""
-        if scale != self.scale:
+    def covers(self, model: ContactModel, scale: Scale, geometry: Geometry = "line") -> bool:
+        """Return whether the parameters were fitted for this contact model at this scale, for this shape of patch."""
+        if scale != self.scale or geometry != self.geometry:
             return False
         if scale == "patch":
             return True

@@ -8,10 +8,11 @@ from typing import TypeVar
 
 from wearlaw.case import labels
 from wearlaw.errors import CompositionError, InputError
-from wearlaw.models import ContactModel, Model, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.notes import Notes
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
+from wearlaw.tangential import ContactModel, Model
 
 ModelT = TypeVar("ModelT", bound=Model)
 

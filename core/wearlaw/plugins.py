@@ -22,8 +22,9 @@ from wearlaw import hookspecs
 from wearlaw.configuration import Configuration, known_as
 from wearlaw.errors import InputError, PluginWarning
 from wearlaw.material import Material
-from wearlaw.models import ContactModel, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.shelf import Broken, Origin, Shelf, add_model
+from wearlaw.tangential import ContactModel
 
 
 @dataclass

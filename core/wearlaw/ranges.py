@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.errors import RangeWarning
 from wearlaw.extremes import extremes
 from wearlaw.line import LineProblem
@@ -24,11 +26,11 @@ class RangeWatch:
         self.seen = {name: _Seen() for name in self.range}
         self.points = 0
 
-    def see(self, problem: LineProblem, force: Array) -> None:
-        """Take note of a block of operating points with their tangential forces [N]."""
-        self.points += problem.creepage.size
+    def see(self, points: int, patch_mean: Callable[[str], Array]) -> None:
+        """Take note of so many operating points; `patch_mean` gives a variable of `Contact` as its mean in SI."""
+        self.points += points
         for name, (low, high) in self.range.items():
-            values = _patch_mean(name, problem, force)
+            values = patch_mean(name)
             lowest, highest = extremes(values)
             seen = self.seen[name]
             seen.lowest, seen.highest = min(seen.lowest, lowest), max(seen.highest, highest)
@@ -59,8 +61,8 @@ class _Seen:
         self.lowest, self.highest, self.outside = np.inf, -np.inf, 0
 
 
-def _patch_mean(variable: str, problem: LineProblem, force: Array) -> Array:
-    """Return a variable of `Contact` as its patch mean."""
+def line_mean(problem: LineProblem, force: Array, variable: str) -> Array:
+    """Return a variable of `Contact` as its mean over a line contact, where the tangential force is `force` [N]."""
     if variable == "pressure":
         return problem.normal_force / problem.patch_area
     if variable == "slip":
@@ -68,4 +70,16 @@ def _patch_mean(variable: str, problem: LineProblem, force: Array) -> Array:
     if variable == "slip_speed":
         return np.abs(problem.creepage) * problem.rolling_speed
     wear_index = force * problem.creepage
+    return wear_index / problem.patch_area if variable == "wear_index_density" else wear_index
+
+
+def elliptic_mean(problem: EllipticProblem, forces: CreepForces, variable: str) -> Array:
+    """Return a variable of `Contact` as its mean over an ellipse, as in `EllipticContact.of_patch`."""
+    if variable == "pressure":
+        return problem.normal_force / problem.patch_area
+    if variable == "slip":
+        return problem.rigid_slip
+    if variable == "slip_speed":
+        return problem.rigid_slip * problem.rolling_speed
+    wear_index = problem.power(forces)
     return wear_index / problem.patch_area if variable == "wear_index_density" else wear_index

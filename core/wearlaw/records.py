@@ -223,10 +223,14 @@ class Contact:
         """Share of the patch's area that sticks [-], of the batch shape."""
         return 1.0 - self.slip_area / self.patch_area
 
-    def with_batch(self, shape: tuple[int, ...]) -> Contact:
+    def with_batch(self, shape: tuple[int, ...]) -> Self:
         """Return the contact with its one batch axis reshaped."""
         fields = ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self))
-        return Contact(**{name: value.reshape(shape + value.shape[1:]) for name, value in fields})
+        return self.replaced(**{name: value.reshape(shape + value.shape[1:]) for name, value in fields})
+
+    def replaced(self, **arrays: Array) -> Self:
+        """Return the contact with some of its arrays replaced."""
+        return dataclasses.replace(self, **arrays)
 
     def patch_mean(self) -> Contact:
         """Return the contact of one node that holds the patch means.

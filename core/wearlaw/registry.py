@@ -80,7 +80,8 @@ def symbol(unit: Any, style: str) -> str:
 
 @functools.lru_cache(maxsize=512)
 def _symbol(registry: pint.UnitRegistry[Any], container: Any, style: str) -> str:
-    return format(registry.Unit(container), style).replace("\u03bc", "\u00b5")
+    text = format(registry.Unit(container), style).replace("\u03bc", "\u00b5")
+    return "N·m" if text == "m·N" else text  # pint sorts by letter, the field writes moments the other way round
 
 
 def quantity(magnitude: Any, unit: str) -> Any:

@@ -13,10 +13,11 @@ from wearlaw.errors import InputError
 from wearlaw.integrate import SlipTotals, WearTotals, integrate_contact, rounding
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
-from wearlaw.models import ContactModel, Scale, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import UNITS, Contact
 from wearlaw.rig import Disc, TwinDisc
+from wearlaw.tangential import ContactModel, Scale
 from wearlaw.units import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
 
 if TYPE_CHECKING:
@@ -26,7 +27,23 @@ PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
 
 
-class ContactSolution:
+class Summary:
+    """What shows itself by some of its properties."""
+
+    _summary: ClassVar[tuple[str, ...]]
+
+    @property
+    def _size(self) -> int:
+        """The number of operating points."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in self._summary)
+        points = "1 operating point" if self._size == 1 else f"{self._size} operating points"
+        return f"{type(self).__name__} of {points}{rows}"
+
+
+class ContactSolution(Summary):
     """The contact at one or many operating points.
 
     Every property has the shape of the broadcast conditions; for one operating point it is a scalar.
@@ -170,13 +187,9 @@ class ContactSolution:
             return xarray.Dataset({k: v.rename(cell="x") for k, v in data.items()}, coords={"x": x.rename(cell="x")})
         return xarray.Dataset(data).set_coords("x")
 
-    def __repr__(self) -> str:
-        rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in self._summary)
-        return f"{type(self).__name__} of {self._count()}{rows}"
-
-    def _count(self) -> str:
-        size = self.problem.creepage.size
-        return "1 operating point" if size == 1 else f"{size} operating points"
+    @property
+    def _size(self) -> int:
+        return self.problem.size
 
 
 class Prediction(ContactSolution):

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import warnings
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Unpack
 
 import numpy as np
 from pydantic import model_validator
 
 from wearlaw import hertz
 from wearlaw.arrays import Array
-from wearlaw.conditions import TwinDiscConditions, condition_arrays
+from wearlaw.base_rig import Rig, check_scale
+from wearlaw.conditions import TWIN_DISC, TwinDiscConditions, condition_arrays
 from wearlaw.configuration import Configuration
-from wearlaw.errors import CompositionError, ConditionsError, InputError, RangeWarning, UnitError
-from wearlaw.extremes import extremes
+from wearlaw.errors import InputError, UnitError
 from wearlaw.line import LineProblem
 from wearlaw.material import Material, steel
-from wearlaw.models import ContactModel
 from wearlaw.specification import MaterialField
+from wearlaw.tangential import ContactModel, Geometry
 from wearlaw.units import (
     Length,
     Q,
@@ -26,7 +25,6 @@ from wearlaw.units import (
     QuantityLike,
     Speed,
     Unit,
-    from_si,
     parse,
     scalar_si,
 )
@@ -48,13 +46,15 @@ class Disc(Configuration):
         def __init__(self, *, diameter: QuantityLike, material: Material) -> None: ...
 
 
-class TwinDisc(Configuration):
+class TwinDisc(Rig):
     """Two discs with parallel axes, pressed together and rolling with slip.
 
     Disc 1 is the wheel disc, whose wear is predicted; positive creepage means that it is the faster one. The
     discs' elastic constants enter through E* alone: the coupling of normal and tangential displacement between
     unlike materials is neglected.
     """
+
+    geometry: ClassVar[Geometry] = "line"
 
     disc_1: Disc
     """The wheel disc."""
@@ -70,6 +70,8 @@ class TwinDisc(Configuration):
         def __init__(
             self, *, disc_1: Disc, disc_2: Disc, track_width: QuantityLike, rolling_speed: QuantityLike
         ) -> None: ...
+
+        def __or__(self, model: ContactModel) -> ContactPipeline[TwinDisc]: ...
 
     @model_validator(mode="after")
     def _not_both_flat(self) -> TwinDisc:
@@ -121,17 +123,6 @@ class TwinDisc(Configuration):
             rolling_speed=rolling_speed,
         )
 
-    def __or__(self, model: ContactModel) -> ContactPipeline[TwinDisc]:
-        """Return the pipeline that solves this rig's contact with a contact model."""
-        from wearlaw.pipeline import ContactPipeline
-
-        if not isinstance(model, ContactModel):
-            raise CompositionError(
-                f"a rig is followed by a contact model, not by {model!r};"
-                ' for example rig | wl.contact_model("exact") | wl.wear_law("usfd")'
-            )
-        return ContactPipeline(rig=self, contact_model=model)
-
     def problem(self, **conditions: Unpack[TwinDiscConditions]) -> LineProblem:
         """Return the contact problem that the conditions of a test pose.
 
@@ -141,7 +132,7 @@ class TwinDisc(Configuration):
             The load, exactly one of them: N [N], P [N/m] or p0 [Pa].
         creepage : Quantity or str
             ξ, a ratio or in percent, of magnitude at most 1.
-        friction_coefficient : array_like of float
+        friction_coefficient : array_like of float, or FallingFriction
             μ [-].
         traction_coefficient : array_like of float, optional
             Measured T/N [-], for contact models that can use it.
@@ -153,13 +144,13 @@ class TwinDisc(Configuration):
         UnitError
             If a condition lacks its unit or is out of bounds.
         """
-        arrays = condition_arrays(dict(conditions))
         constants = self._constants
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `_check_scale` refuses what comes of it
+        arrays = condition_arrays(conditions, TWIN_DISC, lambda a: constants["rolling_speed"] * np.abs(a["creepage"]))
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_scale` refuses what comes of it
             per_width = self._normal_force_per_width(arrays)
             half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
             max_pressure = hertz.max_pressure(per_width, half_width)
-        _check_scale(half_width, max_pressure, arrays["friction_coefficient"])
+        check_scale({"half width": half_width, "max pressure": max_pressure}, arrays["friction_coefficient"])
         shape = arrays["creepage"].shape
         same = {name: np.broadcast_to(value, shape) for name, value in constants.items()} if shape else constants
         return LineProblem(
@@ -172,16 +163,9 @@ class TwinDisc(Configuration):
             **same,
         )
 
-    def warn_of_plasticity(self, problem: LineProblem, stacklevel: int) -> None:
-        """Warn once if the maximum pressure is beyond the elastic limit of a disc's material."""
-        limit, (_, highest) = self._elastic_limit, extremes(problem.max_pressure)
-        if highest > limit:
-            warnings.warn(
-                f"the maximum pressure reaches {from_si(highest, 'MPa')!r}, beyond the material's elastic limit of"
-                f" {from_si(limit, 'MPa')!r}; the elastic contact models no longer hold there",
-                RangeWarning,
-                stacklevel=stacklevel + 1,
-            )
+    def materials(self) -> tuple[Material, ...]:
+        """Return what the two discs are made of."""
+        return self.disc_1.material, self.disc_2.material
 
     def body(self, name: str) -> Disc:
         """Return the disc of a name, "disc_1" or "disc_2"."""
@@ -216,12 +200,6 @@ class TwinDisc(Configuration):
         }
         return {name: np.float64(value) for name, value in values.items()}
 
-    @cached_property
-    def _elastic_limit(self) -> float:
-        """The lower of the two discs' elastic limits [Pa]; infinite where none is known."""
-        limits = (disc.material.elastic_limit for disc in (self.disc_1, self.disc_2))
-        return min((scalar_si(limit, "Pa") for limit in limits if limit is not None), default=np.inf)
-
 
 def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
     """Return the speed of a disc's surface, ω D/2."""
@@ -236,23 +214,3 @@ def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
             ' give it in rpm or rad/s, such as "400 rpm"'
         )
     return Q(angular * 0.5 * diameter, "m/s")
-
-
-TINY = float(np.sqrt(np.finfo(np.float64).tiny))
-"""The least length or pressure in SI whose square is a float of full precision."""
-
-LEAST_FRICTION = 1e-12
-"""The least friction coefficient; below it creepage over that of full slip overflows in formulas of fourth order."""
-
-
-def _check_scale(half_width: Array, max_pressure: Array, friction_coefficient: Array) -> None:
-    """Refuse loads and sizes so far from any contact that floats overflow or lose their precision."""
-    for name, value in (("half width", half_width), ("max pressure", max_pressure)):
-        low, high = extremes(value)
-        if not (low > TINY and high < 1.0 / TINY):
-            raise ConditionsError(
-                f"the load gives a {name} of {low:g} to {high:g} in SI units,"
-                " which no contact has; check the units of the load and of the rig"
-            )
-    if extremes(friction_coefficient)[0] < LEAST_FRICTION:
-        raise ConditionsError(f"friction_coefficient: must be at least {LEAST_FRICTION:g}, which no contact comes near")

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
 from wearlaw.errors import UnknownModelError, did_you_mean
-from wearlaw.models import Model
+from wearlaw.tangential import Model
 
 T = TypeVar("T")
 ModelT = TypeVar("ModelT", bound=Model)

@@ -10,7 +10,8 @@ from pydantic import BeforeValidator, PlainSerializer, WithJsonSchema
 from wearlaw import plugins
 from wearlaw.errors import InputError
 from wearlaw.material import Material
-from wearlaw.models import ContactModel, Model, WearLaw
+from wearlaw.models import WearLaw
+from wearlaw.tangential import ContactModel, Model
 
 if TYPE_CHECKING:
     from pydantic import GetJsonSchemaHandler

@@ -81,7 +81,7 @@ def text_of(quantity: Quantity) -> str:
 
 
 _QUANTITY_TEXT = re.compile(
-    r"\s*(?P<number>[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan))\s*(?P<unit>(?:[^\d\s+.-].*)?)"
+    r"\s*(?P<number>[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan))\s*(?P<unit>(?:(?:(?<=\s)1(?=\s*/)|[^\d\s+.-]).*)?)"
 )
 
 

@@ -12,8 +12,9 @@ from wearlaw.blocks import blocks
 from wearlaw.integrate import BLOCK, NODE_BLOCK, check_finite, closed_form, integrate_wear, over_slip_zone, solve
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
-from wearlaw.models import ContactModel, Scale, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.parameters import changed, number_like, numbers, per_point
+from wearlaw.tangential import ContactModel, Scale
 
 
 def integrate_varying(

@@ -15,7 +15,7 @@ import numpy as np
 from tests.benchmarks.points import DEFAULT_FORCE, DEFAULT_FRICTION, Predict, pipeline, workload
 from tests.benchmarks.timing import Times, accelerator, cpu_time, in_mode, side_by_side
 from wearlaw import Q, RangeWarning
-from wearlaw.conditions import condition_arrays
+from wearlaw.conditions import TWIN_DISC, condition_arrays
 
 DECADES = (10**3, 10**4, 10**5, 10**6, 10**7)
 SWEEP = 10**5
@@ -50,7 +50,7 @@ def rim(on: bool, rounds: int) -> Times:
     predict, conditions = pipeline(), workload(SWEEP).conditions()
     works = {
         "sweep": in_mode(on, lambda: predict(**conditions).wear_rate),
-        "conditions": lambda: condition_arrays(conditions),
+        "conditions": lambda: condition_arrays(conditions, TWIN_DISC, lambda arrays: arrays["creepage"]),
     }
     return side_by_side(works, rounds)
 

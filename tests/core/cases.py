@@ -80,7 +80,7 @@ class Coarse(wl.ContactModel):
     name = "coarse"
     source = "A test, 2. ed., 2026"
 
-    def solve(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
         edges = np.linspace(-1.0, 1.0, 8) * problem.half_width[..., None]
         x = 0.5 * (edges[..., 1:] + edges[..., :-1])
         pressure = wl.hertz.pressure(x, problem.half_width[..., None], problem.max_pressure[..., None])

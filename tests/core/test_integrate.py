@@ -290,7 +290,7 @@ class Celled(wl.ContactModel):
     source: ClassVar[str] = "the tests"
     cells: int = 100
 
-    def solve(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
         return LINE_MODELS["exact"].at(problem, uniform_cells(problem.half_width, self.cells))
 
 
@@ -364,8 +364,8 @@ class Nan(Celled):
     name: ClassVar[str] = "nan"
     field: str
 
-    def solve(self, problem: wl.LineProblem) -> wl.Contact:
-        contact = super().solve(problem)
+    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+        contact = super().solve_line(problem)
         getattr(contact, self.field)[...] *= np.nan
         return contact
 
@@ -407,13 +407,13 @@ def test_slip_is_summed_in_blocks() -> None:
 
 
 def test_each_block_is_told_with_its_forces() -> None:
-    told: list[tuple[wl.LineProblem, Array]] = []
+    told: list[tuple[wl.LineProblem, dict[str, Array]]] = []
     problem = Points(seed=16, size=BLOCK + 10).problem
     integrate.integrate_wear(
-        LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells", lambda part, force: told.append((part, force))
+        LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells", lambda part, columns: told.append((part, dict(columns)))
     )
     assert [part.creepage.size for part, _ in told] == [BLOCK, 10]
-    forces = np.concatenate([force for _, force in told])
+    forces = np.concatenate([columns["tangential_force"] for _, columns in told])
     assert forces == pytest.approx(integrate_contact(LINE_MODELS["exact"], problem), rel=4 * EPS)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,7 +14,7 @@ import pytest
 import wearlaw as wl
 from wearlaw import Array, Q
 from wearlaw.integrate import BLOCK, NODE_BLOCK
-from wearlaw.ranges import RangeWatch
+from wearlaw.ranges import RangeWatch, line_mean
 
 RIG = wl.TwinDisc.suros(rolling_speed="2 m/s")
 EXACT = wl.contact_model("exact")
@@ -60,7 +61,7 @@ def messages(watch: RangeWatch) -> list[str]:
 def see(watch: RangeWatch, *blocks: Any) -> None:
     for creepage in blocks:
         part = problem(np.asarray(creepage))
-        watch.see(part, EXACT.tangential_force(part))
+        watch.see(part.size, partial(line_mean, part, EXACT.tangential_force(part)))
 
 
 def test_points_outside_are_counted_over_all_blocks() -> None:
@@ -119,7 +120,7 @@ def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> 
     between = 0.5 * (values[1:] + values[:-1])
     for low, high, outside in ((between[0], between[1], 3), (0.0, between[1], 2), (between[0], 1e12, 1)):
         watch = RangeWatch(Stated(variable=name, low=low, high=high))
-        watch.see(one, EXACT.tangential_force(one))
+        watch.see(one.size, partial(line_mean, one, EXACT.tangential_force(one)))
         (message,) = messages(watch)
         assert f"a mean {name.replace('_', ' ')} from" in message
         assert f"; {outside} of 4 operating points lie outside" in message

@@ -119,7 +119,16 @@ def test_parse_reads_number_and_unit(value: float, unit: str, gap: str) -> None:
     assert read.units == Q(1, unit).units
 
 
-@pytest.mark.parametrize("text", ["", "abc", "47", "0.01", "1e3", "3 2 mm", "mm", "--3 mm", "1,5 mm", "5 e3 mm"])
+@pytest.mark.parametrize("text", ["0.3 1/m", "0.3 1 / m", "0.3 m^-1"])
+def test_a_unit_may_begin_with_one_over(text: str) -> None:
+    read = wl.parse(text)
+    assert (read.magnitude, read.units) == (0.3, Q(1, "1/m").units)
+    assert wl.parse(text_of(read)) == read
+
+
+@pytest.mark.parametrize(
+    "text", ["", "abc", "47", "0.01", "1e3", "3 2 mm", "mm", "--3 mm", "1,5 mm", "5 e3 mm", "31/m", "3 2/m", "3 1m"]
+)
 def test_parse_refuses_text_that_is_no_quantity(text: str) -> None:
     with pytest.raises(wl.UnitError) as caught:
         wl.parse(text)

@@ -11,14 +11,15 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.comparison.agreement import Information, agreement
 from wearlaw.comparison.result import Compared, Comparison, Names
+from wearlaw.composition import needs_discs
 from wearlaw.errors import InputError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.fitting.result import Fit
-from wearlaw.models import Model
 from wearlaw.notes import Notes
 from wearlaw.pairs import labelled
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
+from wearlaw.tangential import Model
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
@@ -125,6 +126,7 @@ def _names_of(models: Sequence[ModelT]) -> dict[ModelT, str]:
 def _pipeline(predictor: Predictor) -> Pipeline[TwinDisc]:
     found = predictor.predict if isinstance(predictor, Fit) else predictor
     assert isinstance(found, Pipeline)
+    needs_discs(found.contact.rig, "compare")
     return found
 
 

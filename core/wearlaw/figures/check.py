@@ -10,8 +10,9 @@ from wearlaw.conditions import LOADS
 from wearlaw.errors import CompositionError, Problem, WearlawWarning, did_you_mean
 from wearlaw.figures.spec import OF_LOAD, FigureSpec, axis_along
 from wearlaw.grid import Grid
-from wearlaw.models import ContactModel, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.rig import TwinDisc
+from wearlaw.tangential import ContactModel
 from wearlaw.variables import OF_POINT
 
 

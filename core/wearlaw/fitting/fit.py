@@ -88,7 +88,7 @@ def fit(
             replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
     except ConfigurationError as error:
         raise FitError(f"on the way to a fit, a law was refused: {error}; give bounds that keep clear of it") from None
-    contact_of(predict).rig.warn_of_plasticity(task.observations[0].problem, stacklevel=2)
+    contact_of(predict).rig.warn_of_plasticity(task.observations[0].problem.max_pressure, stacklevel=2)
     found = summarise(task, best, replicates, confidence, seed)
     _warn(task, best, replicates)
     return found

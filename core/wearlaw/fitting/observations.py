@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
+from wearlaw.composition import needs_discs
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.integrate import integrate_contact, integrate_wear
@@ -128,7 +129,9 @@ def wear_index_density(pipeline: AnyPipeline, problem: LineProblem) -> Array:
 
 def contact_of(pipeline: AnyPipeline) -> ContactPipeline[TwinDisc]:
     """Return the rig with its contact model."""
-    return pipeline.contact if isinstance(pipeline, Pipeline) else pipeline
+    contact = pipeline.contact if isinstance(pipeline, Pipeline) else pipeline
+    needs_discs(contact.rig, "fit")
+    return contact
 
 
 def observe(

@@ -19,10 +19,11 @@ from wearlaw.fitting.least_squares import Solutions
 from wearlaw.fitting.observations import FLOOR, Observations, contact_of, named, wear_index_density
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.task import Task
-from wearlaw.models import Calibration, Model, WearLaw
+from wearlaw.models import Calibration, WearLaw
 from wearlaw.parameters import changed
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
+from wearlaw.tangential import Model
 from wearlaw.units import Quantity, in_unit
 from wearlaw.version import __version__
 

@@ -14,9 +14,9 @@ import pint
 
 from wearlaw.configuration import Configuration
 from wearlaw.docstrings import field_docstrings
-from wearlaw.models import Model
 from wearlaw.registry import symbol
 from wearlaw.study import Study, along_main_axis, axes_of, main_axis, used
+from wearlaw.tangential import Model
 from wearlaw.variables import NAMES, UNITS
 from wearlaw.variables import label as label_of
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import ArrayLike
 
-    from wearlaw.models import ContactModel
+    from wearlaw.tangential import ContactModel
 
 
 @dataclass(frozen=True, eq=False, repr=False)

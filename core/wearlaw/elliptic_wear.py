@@ -1,0 +1,170 @@
+"""Forces, slip and wear over an elliptic patch, block by block of operating points.
+
+A contact model chooses the nodes of an ellipse; a law is evaluated there, and its mean is the sum over them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.blocks import Columns, OnBlock, by_block
+from wearlaw.ellipse import CreepForces, EllipticProblem
+from wearlaw.elliptic_contact import EllipticContact
+from wearlaw.errors import ModelError
+from wearlaw.integrate import EPS, thinning_error
+from wearlaw.models import WearLaw
+from wearlaw.records import Contact
+from wearlaw.tangential import ContactModel, Scale
+
+NODES = 2**17
+"""Nodes of a block of operating points: enough to outweigh what each call of NumPy takes, few enough for the memory of
+any machine."""
+
+FEW = 8
+"""Operating points that are taken at once, whatever their nodes."""
+
+FORCES = {"longitudinal": "force_x", "lateral": "force_y", "spin_moment": "moment_z"}
+"""The fields of `CreepForces`, and what an `EllipticContact` calls them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EllipticWear:
+    """The outcome at each operating point, as SI arrays of the batch shape.
+
+    Attributes
+    ----------
+    wear_rate : ndarray
+        Area mean of the law's rate over the patch [kg/m/m²].
+    forces : CreepForces
+        The forces and the moment.
+    """
+
+    wear_rate: Array
+    forces: CreepForces
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EllipticSlip:
+    """How the patch slips at each operating point, as SI arrays of the batch shape.
+
+    Attributes
+    ----------
+    mean_slip : ndarray
+        Area mean of the magnitude of the slip [-].
+    slip_area : ndarray
+        Area of what slips [m²].
+    cell_wear_index : ndarray
+        Energy dissipated per metre rolled, summed over the nodes [N].
+    """
+
+    mean_slip: Array
+    slip_area: Array
+    cell_wear_index: Array
+
+
+def creep_forces(model: ContactModel, problem: EllipticProblem) -> CreepForces:
+    """Return the forces and the moment."""
+    columns = _by_block(model, problem, partial(_force_columns, model))
+    return CreepForces.of(_checked(model, problem, columns))
+
+
+def elliptic_slip(model: ContactModel, problem: EllipticProblem, scale: Scale) -> EllipticSlip:
+    """Return how the patch slips."""
+
+    def columns(part: EllipticProblem) -> Columns:
+        contact = model.solve(part)
+        seen = seen_by_law(contact, scale)
+        return {
+            "mean_slip": seen.mean_slip,
+            "slip_area": seen.slip_area,
+            "cell_wear_index": contact.cell_wear_index,
+        }
+
+    return EllipticSlip(**_checked(model, problem, _by_block(model, problem, columns)))
+
+
+def elliptic_wear(
+    model: ContactModel,
+    law: WearLaw,
+    problem: EllipticProblem,
+    scale: Scale,
+    on_block: OnBlock[EllipticProblem] | None = None,
+) -> EllipticWear:
+    """Return the wear; `on_block` is called with each block of operating points and the forces among its columns.
+
+    Raises
+    ------
+    ModelError
+        If the model or the law breaks its contract.
+    """
+
+    def columns(part: EllipticProblem) -> Columns:
+        contact = model.solve(part)
+        seen = seen_by_law(contact, scale)
+        forces = {name: getattr(contact, field) for name, field in FORCES.items()}
+        return {"wear_rate": seen.mean(law.checked_rate(seen)), **forces}
+
+    found = _checked(model, problem, _by_block(model, problem, columns, on_block))
+    return EllipticWear(wear_rate=found["wear_rate"], forces=CreepForces.of(found))
+
+
+def wear_rate_error(
+    model: ContactModel, law: WearLaw, problem: EllipticProblem, scale: Scale, wear_rate: Array
+) -> Array:
+    """Return an estimate of the error of wear rates [kg/m/m²].
+
+    It is how far they move on nodes twice and four times as fine, times the 4/3 by which errors of first order exceed
+    the sum of both steps; or, of a model that has no finer nodes, how far they move when nodes are left out.
+    """
+    if scale == "patch":
+        return EPS * np.abs(wear_rate)
+    twice = model.refined()
+    four_times = None if twice is None else twice.refined()
+    if twice is not None and four_times is not None:
+        fine, finest = (elliptic_wear(one, law, problem, scale).wear_rate for one in (twice, four_times))
+        return 4.0 / 3.0 * (np.abs(fine - wear_rate) + np.abs(finest - fine))
+
+    def columns(part: EllipticProblem) -> Columns:
+        contact = model.solve(part)
+        return {"error": thinning_error(contact, law.checked_rate(contact))}
+
+    return _checked(model, problem, _by_block(model, problem, columns))["error"]
+
+
+def seen_by_law(contact: EllipticContact, scale: Scale) -> Contact:
+    """Return the contact as a law gets to see it: its patch means, where those are asked for."""
+    return contact.patch_mean() if scale == "patch" else contact
+
+
+def _by_block(
+    model: ContactModel,
+    problem: EllipticProblem,
+    columns: Callable[[EllipticProblem], Columns],
+    on_block: OnBlock[EllipticProblem] | None = None,
+) -> Columns:
+    """Return columns over blocks of as many operating points as the model's nodes allow."""
+    flat = problem.flatten()
+    few = problem.size <= FEW
+    nodes = 1 if few else model.solve(flat[:1]).pressure.size
+    return by_block(flat, FEW if few else max(NODES // nodes, 1), columns, on_block)
+
+
+def _force_columns(model: ContactModel, problem: EllipticProblem) -> Columns:
+    forces = model.creep_forces(problem)
+    return {name: getattr(forces, name) for name in FORCES}
+
+
+def _checked(model: ContactModel, problem: EllipticProblem, columns: Columns) -> Columns:
+    """Return columns in the shape of the batch, or raise a `ModelError` where a value is not finite."""
+    for name, value in columns.items():
+        if not np.isfinite(value).all():
+            raise ModelError(
+                f"contact model '{model.name}' gave a {name.replace('_', ' ')} that is not finite, for longitudinal"
+                f" creepages from {problem.longitudinal_creepage.min():g} to {problem.longitudinal_creepage.max():g}"
+            )
+    return {name: value.reshape(problem.batch_shape) for name, value in columns.items()}

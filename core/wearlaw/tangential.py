@@ -1,0 +1,147 @@
+"""What a plugin implements that solves the tangential contact: `ContactModel`, or one of the classes derived from it.
+
+A model is its configuration: a frozen pydantic record whose fields carry units and whose methods compute.
+"""
+
+from abc import ABC
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, final, overload
+
+from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
+from wearlaw.ellipse import CreepForces, EllipticProblem
+from wearlaw.elliptic_contact import EllipticContact
+from wearlaw.errors import CompositionError
+from wearlaw.line import LineProblem
+from wearlaw.records import Contact
+
+Scale: TypeAlias = Literal["patch", "cells"]
+"""Whether a contact holds the means of the whole patch in one node, or resolves it into many."""
+
+Geometry: TypeAlias = Literal["line", "ellipse"]
+"""The shape of a contact patch: discs with parallel axes touch in a line, a wheel and a rail in an ellipse."""
+
+Claim: TypeAlias = Literal["traction_bound", "stick", "energy_balance", "saturation", "initial_slope", "similarity"]
+"""An invariant that a contact model keeps unless it declares itself exempt; see `ContactModel.exemptions`."""
+
+QUADRATURE = 5e-8
+"""Accuracy of the quadrature of `LineContactModel`; its worst case is a slip zone just short of the whole patch."""
+
+ELLIPTIC = 5e-3
+"""Error of sums over an ellipse that a model is held to unless it declares another."""
+
+PATCHES: dict[Geometry, str] = {"line": "line contacts", "ellipse": "elliptic contacts"}
+"""What messages call the contacts of a geometry."""
+
+
+class Model(Configuration, ABC):
+    """What contact models and wear laws have in common."""
+
+    name: ClassVar[str]
+    """The name under which the model is looked up."""
+
+    source: ClassVar[str]
+    """The literature that the model is taken from."""
+
+    @classmethod
+    def subject(cls) -> str:
+        """Return what messages call this model."""
+        return cls.name
+
+    if not TYPE_CHECKING:  # checkers reject this order by themselves
+
+        def __or__(self, other: object) -> object:
+            raise CompositionError(
+                f"'{self.name}' cannot start a pipeline; begin with a rig, as in"
+                ' wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd")'
+            )
+
+
+class ContactModel(Model):
+    """A theory of the tangential contact: from a contact problem to traction and slip in the patch.
+
+    A subclass that knows its fields at any point in closed form derives from `LineContactModel` instead,
+    which lets the wear be integrated to rounding error.
+    """
+
+    scale: ClassVar[Scale] = "cells"
+
+    uses_measured_traction: ClassVar[bool] = False
+    """Whether the model can use a measured traction coefficient."""
+
+    @overload
+    def solve(self, problem: LineProblem) -> Contact: ...
+    @overload
+    def solve(self, problem: EllipticProblem) -> EllipticContact: ...
+    @final
+    def solve(self, problem: LineProblem | EllipticProblem) -> Contact:
+        """Return the solved contact, on nodes of the model's choice.
+
+        Raises
+        ------
+        CompositionError
+            If the model does not solve contacts of this geometry.
+        """
+        return self.solve_ellipse(problem) if isinstance(problem, EllipticProblem) else self.solve_line(problem)
+
+    def solve_line(self, problem: LineProblem) -> Contact:  # noqa: ARG002
+        """Return the solved line contact on nodes of the model's choice, of shape (batch, nodes)."""
+        raise self._cannot_solve("line")
+
+    def solve_ellipse(self, problem: EllipticProblem) -> EllipticContact:  # noqa: ARG002
+        """Return the solved elliptic contact on strips of the model's choice, of shape (batch, nodes, strips)."""
+        raise self._cannot_solve("ellipse")
+
+    @classmethod
+    def geometries(cls) -> tuple[Geometry, ...]:
+        """Return the shapes of patch that the model solves: those whose method it implements."""
+        line = cls.solve_line is not ContactModel.solve_line
+        ellipse = cls.solve_ellipse is not ContactModel.solve_ellipse
+        return (*(("line",) if line else ()), *(("ellipse",) if ellipse else ()))
+
+    def _cannot_solve(self, geometry: Geometry) -> CompositionError:
+        return CompositionError(
+            f"contact model '{self.name}' does not solve {PATCHES[geometry]}, only"
+            f" {' and '.join(PATCHES[known] for known in self.geometries()) or 'nothing'}"
+        )
+
+    def tangential_force(self, problem: LineProblem) -> Array:
+        """Return T [N] of a line contact with the sign of the creepage, of the batch shape.
+
+        It is that of `solve_line`, unless the model knows it without.
+        """
+        return self.solve_line(problem).tangential_force
+
+    def creep_forces(self, problem: EllipticProblem) -> CreepForces:
+        """Return the forces of an elliptic contact; those of `solve_ellipse`, unless the model knows them without."""
+        contact = self.solve_ellipse(problem)
+        return CreepForces(longitudinal=contact.force_x, lateral=contact.force_y, spin_moment=contact.moment_z)
+
+    def on_strips(self, problem: EllipticProblem, shares: Array) -> EllipticContact | None:  # noqa: ARG002
+        """Return the contact on strips at y = `shares` × b, of shape (strips), or None if it is known on its own only.
+
+        Each strip stands for the width from half-way to the one before to half-way to the next one.
+        """
+        return None
+
+    def refined(self) -> "ContactModel | None":
+        """Return the same theory on twice as fine nodes, or None, the default, if the model has no such choice.
+
+        The checks then hold the model to errors of its sums that fall with refinement, at the least in first order.
+        """
+        return None
+
+    @property
+    def accuracy(self) -> float:
+        """Relative error of sums over the nodes of a line contact, for pressure, traction and dissipation."""
+        return QUADRATURE
+
+    @property
+    def elliptic_accuracy(self) -> float:
+        """Error of sums over the nodes of an elliptic contact, as a share of what they are in full slip."""
+        return ELLIPTIC
+
+    @property
+    def exemptions(self) -> Mapping[Claim, str]:
+        """The invariants that this model does not keep, each with the reason."""
+        return {}

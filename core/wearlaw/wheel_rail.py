@@ -1,0 +1,155 @@
+"""A wheel on a rail, and the way from its conditions to a contact problem."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, ClassVar, NamedTuple, Unpack
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from wearlaw import hertz, hertz_ellipse
+from wearlaw.base_rig import Rig, check_scale
+from wearlaw.conditions import WHEEL_RAIL, WheelRailConditions, condition_arrays
+from wearlaw.ellipse import EllipticProblem
+from wearlaw.errors import InputError
+from wearlaw.material import Material
+from wearlaw.specification import MaterialField
+from wearlaw.tangential import ContactModel, Geometry
+from wearlaw.units import Length, Quantity, QuantityLike, Speed, Unit, scalar_si
+
+if TYPE_CHECKING:
+    from wearlaw.pipeline import ContactPipeline
+
+Radius = Annotated[Quantity, Unit("mm", positive=False, infinite=True)]
+
+
+class _Patch(NamedTuple):
+    """What is the same at all operating points, in SI: the patch under a load of 1 N, and constants."""
+
+    a: float
+    b: float
+    max_pressure: float
+    shear_modulus: float
+    rolling_speed: float
+
+
+class WheelRail(Rig):
+    """A wheel that rolls on a straight rail and touches it in a point, which the load makes an ellipse.
+
+    Radii of curvature are positive where a body is convex, infinite where it is flat, negative where it is concave.
+    The planes of the lateral radii stand upright and across the rail, those of the rolling radii along it. Wheel and
+    rail are of the same material.
+    """
+
+    geometry: ClassVar[Geometry] = "ellipse"
+
+    wheel_radius: Length
+    """Rolling radius of the wheel [m]."""
+    rail_head_radius: Radius
+    """Lateral radius of the rail head where it is touched [m]."""
+    wheel_profile_radius: Radius = Field(default="inf mm", validate_default=True)
+    """Lateral radius of the wheel's profile where it touches [m]; infinite for a cone, negative for a worn hollow."""
+    material: MaterialField
+    """What wheel and rail are made of; a file may also give the name of an installed material."""
+    speed: Speed
+    """Rolling speed, V [m/s]."""
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            wheel_radius: QuantityLike,
+            rail_head_radius: QuantityLike,
+            wheel_profile_radius: QuantityLike = "inf mm",
+            material: Material,
+            speed: QuantityLike,
+        ) -> None: ...
+
+        def __or__(self, model: ContactModel) -> ContactPipeline[WheelRail]: ...
+
+    @model_validator(mode="after")
+    def _touch_in_a_point(self) -> WheelRail:
+        if 0.0 in (self.rail_head_radius.magnitude, self.wheel_profile_radius.magnitude):
+            raise ValueError("a radius must not be zero; a flat body has the radius Q(np.inf, 'mm')")
+        across = 1.0 / scalar_si(self.rail_head_radius, "m") + 1.0 / scalar_si(self.wheel_profile_radius, "m")
+        if across <= 0.0:
+            raise ValueError(
+                f"rail_head_radius {self.rail_head_radius!r} and wheel_profile_radius {self.wheel_profile_radius!r}"
+                f" have curvatures that sum to {across:.4g} 1/m across the rail; the bodies touch in a point only where"
+                " the sum is positive: a hollow must have a larger radius than what it embraces"
+            )
+        return self
+
+    def materials(self) -> tuple[Material, ...]:
+        """Return what wheel and rail are made of."""
+        return (self.material,)
+
+    def problem(self, **conditions: Unpack[WheelRailConditions]) -> EllipticProblem:
+        """Return the contact problem that the conditions pose.
+
+        Parameters
+        ----------
+        normal_force, max_pressure : Quantity or str
+            The load, exactly one of them: N [N] or p0 [Pa].
+        longitudinal_creepage, lateral_creepage : Quantity or str
+            ξ and η, ratios or in percent, of magnitude at most 1; η is zero where it is not given.
+        spin : Quantity or str
+            φ [1/m]; zero where it is not given.
+        friction_coefficient : array_like of float, or FallingFriction
+            μ [-].
+
+        Raises
+        ------
+        ConditionsError
+            If conditions are missing, unknown, contradictory or do not broadcast.
+        UnitError
+            If a condition lacks its unit or is out of bounds.
+        """
+        patch = self._patch
+        arrays = condition_arrays(
+            conditions,
+            WHEEL_RAIL,
+            lambda a: patch.rolling_speed * np.hypot(a["longitudinal_creepage"], a["lateral_creepage"]),
+        )
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_scale` refuses what comes of it
+            if "max_pressure" in arrays:
+                pressure = arrays.pop("max_pressure")
+                arrays["normal_force"] = (pressure / patch.max_pressure) ** 3
+            scale = np.cbrt(arrays["normal_force"])
+            a, b = patch.a * scale, patch.b * scale
+            max_pressure = hertz_ellipse.max_pressure(arrays["normal_force"], a, b)
+        check_scale(
+            {"longer semi-axis": np.maximum(a, b), "shorter semi-axis": np.minimum(a, b), "max pressure": max_pressure},
+            arrays["friction_coefficient"],
+        )
+        same = {
+            "shear_modulus": patch.shear_modulus,
+            "poisson_ratio": self.material.poisson_ratio,
+            "rolling_speed": patch.rolling_speed,
+            "density": scalar_si(self.material.density, "kg/m^3"),
+        }
+        shape = arrays["longitudinal_creepage"].shape
+        return EllipticProblem.from_si(
+            a=a, b=b, **arrays, **{name: np.broadcast_to(np.float64(value), shape) for name, value in same.items()}
+        )
+
+    def radius(self, body: str) -> float:
+        """Return the rolling radius of a body, "wheel" or "rail" [m]; that of the rail is infinite."""
+        if body not in ("wheel", "rail"):
+            raise InputError(f"body: this rig has no '{body}'; its bodies are 'wheel' and 'rail'")
+        return scalar_si(self.wheel_radius, "m") if body == "wheel" else np.inf
+
+    @cached_property
+    def _patch(self) -> _Patch:
+        youngs_modulus, ratio = scalar_si(self.material.youngs_modulus, "Pa"), self.material.poisson_ratio
+        modulus = hertz.effective_modulus(youngs_modulus, ratio, youngs_modulus, ratio)
+        radii = (self.wheel_radius, self.wheel_profile_radius, self.rail_head_radius)
+        wheel, profile, head = (np.asarray(scalar_si(radius, "m")) for radius in radii)
+        load, straight = np.asarray(1.0), np.asarray(np.inf)
+        curvatures = hertz_ellipse.curvature(wheel, straight), hertz_ellipse.curvature(profile, head)
+        a, b = hertz_ellipse.semi_axes(load, *curvatures, modulus)
+        shear_modulus = 0.5 * youngs_modulus / (1.0 + ratio)
+        p0 = hertz_ellipse.max_pressure(load, a, b)
+        return _Patch(float(a), float(b), float(p0), shear_modulus, scalar_si(self.speed, "m/s"))

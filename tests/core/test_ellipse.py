@@ -1,0 +1,98 @@
+"""The problem of an elliptic contact: units in, SI inside, and what is refused."""
+
+from __future__ import annotations
+
+import dataclasses
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from wearlaw import Q
+
+EPS = float(np.finfo(np.float64).eps)
+
+GIVEN: dict[str, Any] = {
+    "a": Q(6, "mm"),
+    "b": Q(4, "mm"),
+    "normal_force": Q(100, "kN"),
+    "shear_modulus": Q(82, "GPa"),
+    "poisson_ratio": 0.28,
+    "friction_coefficient": 0.3,
+    "longitudinal_creepage": Q(0.1, "%"),
+    "lateral_creepage": Q(0, "%"),
+    "spin": Q(0.001, "1/mm"),
+}
+
+
+def problem(**changes: Any) -> wl.EllipticProblem:
+    return wl.EllipticProblem(**{**GIVEN, **changes})
+
+
+def test_quantities_become_si_arrays_of_one_shape() -> None:
+    found = problem(longitudinal_creepage=Q([[0.1], [0.2]], "%"), normal_force=Q([50.0, 100.0, 150.0], "kN"))
+    assert found.batch_shape == (2, 3)
+    assert found.size == 6
+    for field in dataclasses.fields(found):
+        assert getattr(found, field.name).shape == (2, 3), field.name
+    assert found.a[0, 0] == pytest.approx(6e-3, rel=EPS)
+    assert found.spin[0, 0] == pytest.approx(1.0, rel=2 * EPS)
+    assert found.longitudinal_creepage[1, 0] == pytest.approx(2e-3, rel=2 * EPS)
+    assert found.normal_force[0].tolist() == [5e4, 1e5, 1.5e5]
+
+
+def test_the_maximum_pressure_carries_the_load() -> None:
+    # The volume of half an ellipsoid is two thirds of its height times its base.
+    found = problem()
+    assert 2.0 / 3.0 * found.max_pressure * np.pi * found.a * found.b == pytest.approx(1e5, rel=4 * EPS)
+    assert found.patch_area == pytest.approx(np.pi * 6e-3 * 4e-3, rel=4 * EPS)
+
+
+def test_the_power_is_the_sum_over_the_creepages() -> None:
+    found = problem(lateral_creepage=Q(-0.2, "%"))
+    forces = wl.CreepForces(longitudinal=np.array(3e3), lateral=np.array(-4e3), spin_moment=np.array(5.0))
+    assert found.power(forces) == pytest.approx(0.001 * 3e3 + 0.002 * 4e3 + 1.0 * 5.0, rel=4 * EPS)
+    assert forces.tangential == pytest.approx(5e3, rel=2 * EPS)
+
+
+def test_points_of_a_batch_can_be_picked_and_the_rest_stays() -> None:
+    found = problem(spin=Q([0.0, 1.0, 2.0], "1/m"))
+    assert found[1:].spin.tolist() == [1.0, 2.0]
+    other = found.with_creepages(found.longitudinal_creepage, found.lateral_creepage, 2.0 * found.spin)
+    assert other.spin.tolist() == [0.0, 2.0, 4.0]
+    assert other.normal_force is found.normal_force
+    assert found.broadcast_to((2, 3)).flatten().spin.tolist() == [0.0, 1.0, 2.0] * 2
+    assert pickle.loads(pickle.dumps(found)).spin.tolist() == [0.0, 1.0, 2.0]
+
+
+def test_a_problem_cannot_be_changed() -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        problem().a = np.array(1.0)  # type: ignore[misc]
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"a": Q(0, "mm")}, "a: must be greater than zero, got 0.000 mm"),
+    ({"b": Q(np.inf, "mm")}, "b: must be finite, got inf mm"),
+    ({"a": 6.0}, "a: got the bare number 6.0, which has no unit; give a in mm"),
+    ({"spin": Q(0.3, "rad/s")}, "spin: got 0.3000 rad/s, which is not of the dimension of '1/m'"),
+    ({"spin": Q(0.3, "%")}, "spin: got 0.3000 %, which is not of the dimension of '1/m'"),
+    ({"longitudinal_creepage": Q(101, "%")}, "longitudinal_creepage: must not exceed 1 in magnitude, got 101.0 %"),
+    ({"lateral_creepage": Q(-2, "")}, "lateral_creepage: must not exceed 1 in magnitude, got -2.000"),
+    ({"poisson_ratio": 0.6}, "poisson_ratio: must lie between 0 and 0.5, got 0.6"),
+    ({"poisson_ratio": "steel"}, "poisson_ratio: 'steel' is not a real number; give a plain number, such as 0.28"),
+    ({"friction_coefficient": 0.0}, "friction_coefficient: must be a positive finite number, got 0"),
+    ({"a": Q([1, 2], "mm"), "b": Q([1, 2, 3], "mm")}, "the shapes of the conditions do not broadcast"),
+]
+
+
+@pytest.mark.parametrize(("changes", "message"), WRONG)
+def test_wrong_input_is_named(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.InputError) as caught:
+        problem(**changes)
+    assert str(caught.value).startswith(message)
+
+
+def test_spin_may_be_given_in_radians_per_length() -> None:
+    assert problem(spin=Q(0.3, "rad/m")).spin == pytest.approx(0.3, rel=2 * EPS)

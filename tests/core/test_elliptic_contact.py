@@ -1,0 +1,161 @@
+"""The record of a solved elliptic contact: vectors, totals, strips and patch means."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from wearlaw import Array, Q
+
+EPS = float(np.finfo(np.float64).eps)
+
+
+def problem(points: int = 2) -> wl.EllipticProblem:
+    return wl.EllipticProblem(
+        a=Q(6, "mm"),
+        b=Q(4, "mm"),
+        normal_force=Q(np.linspace(50, 100, points), "kN"),
+        shear_modulus=Q(82, "GPa"),
+        poisson_ratio=0.28,
+        friction_coefficient=0.3,
+        longitudinal_creepage=Q(0.2, "%"),
+        lateral_creepage=Q(-0.1, "%"),
+        spin=Q(0.5, "1/m"),
+        rolling_speed=Q(20, "m/s"),
+    )
+
+
+def forces(points: int = 2) -> wl.CreepForces:
+    return wl.CreepForces(
+        longitudinal=np.full(points, 3e3), lateral=np.full(points, -4e3), spin_moment=np.full(points, 2.0)
+    )
+
+
+def on_strips() -> wl.EllipticContact:
+    """Return two points of three strips with four nodes each, and numbers that all differ."""
+    random = np.random.default_rng(3)
+    x = np.broadcast_to(np.linspace(-2e-3, 2e-3, 4)[:, None], (2, 4, 3))
+
+    def one() -> Array:
+        return random.uniform(0.5, 1.5, (2, 4, 3))
+
+    return wl.EllipticContact.from_strips(
+        problem(),
+        forces(),
+        x=x,
+        y=np.broadcast_to(np.array([-2e-3, 0.0, 1e-3]), (2, 3)),
+        length=1e-3 * one(),
+        strip_width=np.broadcast_to(np.array([2e-3, 3e-3, 1e-3]), (2, 3)),
+        traction=(1e8 * one(), -1e8 * one()),
+        slip=(1e-3 * one(), -1e-3 * one()),
+        traction_bound=np.full((2, 4, 3), 3e8),
+    )
+
+
+def test_pressure_is_that_of_hertz_at_the_nodes() -> None:
+    contact = on_strips()
+    p0 = 1.5 * np.array([5e4, 1e5]) / (np.pi * 6e-3 * 4e-3)
+    inside = 1.0 - (contact.x / 6e-3) ** 2 - (contact.y / 4e-3) ** 2
+    assert contact.pressure == pytest.approx(p0[:, None, None] * np.sqrt(inside), rel=16 * EPS)
+
+
+def test_magnitudes_are_those_of_the_vectors_and_their_product_is_a_scalar_product() -> None:
+    contact = on_strips()
+    assert contact.traction == pytest.approx(np.hypot(contact.traction_x, contact.traction_y), rel=2 * EPS)
+    assert contact.slip == pytest.approx(np.hypot(contact.slip_x, contact.slip_y), rel=2 * EPS)
+    product = contact.traction_x * contact.slip_x + contact.traction_y * contact.slip_y
+    assert contact.wear_index_density == pytest.approx(product, rel=2 * EPS)
+    assert (contact.wear_index_density < contact.traction * contact.slip).any()
+    assert contact.slip_speed == pytest.approx(20.0 * contact.slip, rel=2 * EPS)
+
+
+def test_totals_are_forces_and_what_the_creepages_feed_in() -> None:
+    contact = on_strips()
+    assert contact.longitudinal_force[0] == Q(3000, "N")
+    assert contact.lateral_force[1] == Q(-4000, "N")
+    assert contact.spin_moment[0] == Q(2, "N*m")
+    assert contact.tangential_force.tolist() == [5e3, 5e3]
+    assert contact.wear_index == pytest.approx([0.002 * 3e3 + 0.001 * 4e3 + 0.5 * 2.0] * 2, rel=4 * EPS)
+
+
+def test_integrals_along_strips_add_up_to_the_sum_over_nodes() -> None:
+    contact = on_strips()
+    across = contact.over_strip(contact.wear_index_density)
+    assert across.shape == (2, 3)
+    assert (across * contact.strip_width).sum(-1) == pytest.approx(contact.cell_wear_index, rel=16 * EPS)
+
+
+def test_scaled_slip_dissipates_what_is_fed_in_and_keeps_its_directions() -> None:
+    contact = on_strips()
+    scaled = contact.scaled_to_wear_index()
+    assert scaled.cell_wear_index == pytest.approx(contact.wear_index, rel=16 * EPS)
+    factor = scaled.slip_x / contact.slip_x
+    assert factor == pytest.approx(np.broadcast_to(factor[:, :1, :1], factor.shape), rel=4 * EPS)
+    assert scaled.slip_y == pytest.approx(factor * contact.slip_y, rel=4 * EPS)
+    assert scaled.slip == pytest.approx(factor * contact.slip, rel=4 * EPS)
+    assert scaled.traction is contact.traction
+
+
+def test_slip_that_is_nowhere_cannot_be_scaled() -> None:
+    contact = on_strips()
+    stuck = contact.replaced(slip=0 * contact.slip, slip_x=0 * contact.slip, slip_y=0 * contact.slip)
+    with pytest.raises(wl.InputError, match="no node of the contact dissipates energy"):
+        stuck.scaled_to_wear_index()
+
+
+def test_a_patch_as_one_node_holds_means_that_dissipate_the_same() -> None:
+    patch = wl.EllipticContact.of_patch(problem(), forces())
+    area = np.pi * 6e-3 * 4e-3
+    assert patch.pressure.shape == (2, 1, 1)
+    assert patch.patch_area == pytest.approx([area] * 2, rel=4 * EPS)
+    assert patch.traction[:, 0, 0] == pytest.approx([5e3 / area] * 2, rel=4 * EPS)
+    assert patch.cell_wear_index == pytest.approx(patch.wear_index, rel=8 * EPS)
+    assert (patch.slip_x[0, 0, 0], patch.slip_y[0, 0, 0]) == pytest.approx((2e-3, -1e-3), rel=4 * EPS)
+
+
+def test_the_slip_of_a_patch_is_the_root_mean_square_of_the_rigid_slip() -> None:
+    # ∫ (ξ - φy)² + (η - φx)² over the ellipse, by polar coordinates: exact for a polynomial of second degree.
+    angle = 2 * np.pi * np.arange(8) / 8
+    radius, weight = np.polynomial.legendre.leggauss(4)
+    r, w = 0.5 + 0.5 * radius[:, None], 0.5 * weight[:, None]
+    x, y = 6e-3 * r * np.cos(angle), 4e-3 * r * np.sin(angle)
+    square = (2e-3 - 0.5 * y) ** 2 + (-1e-3 - 0.5 * x) ** 2
+    mean = float((square * w * r).sum() / (w * r * np.ones(8)).sum())
+    assert problem().rigid_slip == pytest.approx([np.sqrt(mean)] * 2, rel=16 * EPS)
+    assert wl.EllipticContact.of_patch(problem(), forces()).slip[:, 0, 0] == pytest.approx(
+        [np.sqrt(mean)] * 2, rel=16 * EPS
+    )
+
+
+def test_patch_means_of_strips_are_those_of_a_model_that_knows_the_forces_alone() -> None:
+    contact = on_strips()
+    means, area = contact.patch_mean(), contact.patch_area
+    assert means.pressure[:, 0, 0] == pytest.approx(contact.normal_force / area, rel=8 * EPS)
+    assert means.traction[:, 0, 0] == pytest.approx(5e3 / area, rel=8 * EPS)
+    assert means.slip[:, 0, 0] == pytest.approx(problem().rigid_slip, rel=2 * EPS)
+    assert means.wear_index_density[:, 0, 0] * area == pytest.approx(contact.wear_index, rel=8 * EPS)
+    assert means.traction_bound[0, 0, 0] == pytest.approx(3e8, rel=8 * EPS)
+
+
+def test_a_patch_without_force_dissipates_what_spin_feeds_in() -> None:
+    nothing = np.zeros(2)
+    spinning = wl.CreepForces(longitudinal=nothing, lateral=nothing, spin_moment=np.full(2, 2.0))
+    patch = wl.EllipticContact.of_patch(problem(), spinning)
+    assert patch.cell_wear_index == pytest.approx([1.0, 1.0], rel=8 * EPS)
+
+
+def test_the_batch_can_be_reshaped() -> None:
+    contact = on_strips().with_batch((2, 1))
+    assert isinstance(contact, wl.EllipticContact)
+    assert contact.force_x.shape == (2, 1)
+    assert contact.pressure.shape == (2, 1, 4, 3)
+    assert contact.strip_width.shape == (2, 1, 3)
+
+
+def test_a_law_is_evaluated_at_the_nodes_of_an_ellipse() -> None:
+    contact = on_strips()
+    wear = contact | wl.wear_law("kth", coefficient="low")
+    # ρ k p s / H, with k = 1e-4 below 0.2 m/s and at any pressure below 2.1 GPa
+    due = 7850.0 * 1e-4 * contact.pressure * contact.slip / 2.625e9
+    assert wear.rate == pytest.approx(due, rel=16 * EPS)

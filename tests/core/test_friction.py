@@ -1,0 +1,161 @@
+"""Friction that falls with the creep speed."""
+
+from __future__ import annotations
+
+import json
+import math
+import pickle
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import wearlaw as wl
+from wearlaw import Array, Q
+
+EPS = float(np.finfo(np.float64).eps)
+
+# Polach, Wear 258 (2005) 992-1000, Table 2: typical parameters on dry rails.
+DRY: dict[str, Any] = {"static_coefficient": 0.55, "limit_ratio": 0.4, "decay": "0.6 s/m"}
+FRICTION = wl.FallingFriction(**DRY)
+
+WHEEL_RAIL = wl.WheelRail(
+    wheel_radius=Q(460, "mm"),
+    rail_head_radius=Q(300, "mm"),
+    wheel_profile_radius=Q(np.inf, "mm"),
+    material=wl.steel(),
+    speed=Q(30, "m/s"),
+)
+ELLIPTIC = [name for name, model in wl.contact_models().items() if "ellipse" in model.geometries()]
+LINE = [name for name, model in wl.contact_models().items() if "line" in model.geometries()]
+
+
+@given(
+    speed=st.floats(0.0, 100.0),
+    static=st.floats(0.05, 1.0),
+    ratio=st.floats(0.01, 1.0),
+    decay=st.floats(1e-3, 10.0),
+)
+def test_the_coefficient_is_polachs(speed: float, static: float, ratio: float, decay: float) -> None:
+    friction = wl.FallingFriction(static_coefficient=static, limit_ratio=ratio, decay=Q(decay, "s/m"))
+    expected = static * ((1.0 - ratio) * math.exp(-decay * speed) + ratio)
+    # exp takes over the rounding of its argument, as far as it is not small itself: x e^-x < 1
+    assert float(friction.coefficient(np.array(speed))) == pytest.approx(expected, rel=8 * EPS)
+
+
+def test_it_starts_at_the_static_coefficient_and_halves_its_fall_in_ln_2_over_b() -> None:
+    speeds = np.array([0.0, math.log(2.0) / 0.6, 2.0 * math.log(2.0) / 0.6, 1e3])
+    found = FRICTION.coefficient(speeds)
+    assert found == pytest.approx([0.55, 0.55 * 0.7, 0.55 * 0.55, 0.22], rel=8 * EPS)
+
+
+def test_with_a_limit_ratio_of_one_it_is_constant() -> None:
+    constant = wl.FallingFriction(static_coefficient=0.3, limit_ratio=1.0, decay="2 s/m")
+    assert (constant.coefficient(np.linspace(0.0, 50.0, 11)) == 0.3).all()
+
+
+def test_the_decay_has_a_unit() -> None:
+    other = wl.FallingFriction(static_coefficient=0.55, limit_ratio=0.4, decay=Q(0.6 / 3.6, "h/km"))
+    assert other.coefficient(np.array(2.0)) == pytest.approx(FRICTION.coefficient(np.array(2.0)), rel=8 * EPS)
+
+
+def test_it_is_a_configuration_that_pickles_compares_and_serialises() -> None:
+    assert pickle.loads(pickle.dumps(FRICTION)) == FRICTION
+    assert wl.FallingFriction.model_validate_json(FRICTION.model_dump_json()) == FRICTION
+    assert json.loads(FRICTION.model_dump_json())["static_coefficient"] == 0.55
+    assert hash(FRICTION) == hash(wl.FallingFriction(**DRY))
+    with pytest.raises(wl.FrozenError):
+        FRICTION.limit_ratio = 0.5
+
+
+def falling(speed: Array) -> Array:
+    expected: Array = 0.55 * (0.6 * np.exp(-0.6 * speed) + 0.4)
+    return expected
+
+
+@pytest.mark.parametrize("name", LINE)
+def test_a_line_contact_has_the_friction_of_its_creep_speed(name: str) -> None:
+    solve = wl.TwinDisc.suros(rolling_speed="10 m/s") | wl.contact_model(name)
+    creepage = np.array([-0.2, -0.01, 0.0, 0.01, 0.05, 0.2])
+    conditions: dict[str, Any] = {"normal_force": Q(7, "kN"), "creepage": Q(creepage, "")}
+    found = solve(friction_coefficient=FRICTION, **conditions)
+    coefficient = falling(10.0 * np.abs(creepage))
+    assert found.friction_coefficient.magnitude == pytest.approx(coefficient, rel=8 * EPS)
+    plain = solve(friction_coefficient=coefficient, **conditions)
+    assert found.tangential_force.magnitude == pytest.approx(plain.tangential_force.magnitude, rel=64 * EPS)
+    # All slips at 5 % and more: the traction falls with the friction.
+    assert found.traction_coefficient.magnitude[4:] == pytest.approx(coefficient[4:], rel=64 * EPS)
+
+
+@pytest.mark.parametrize("name", ELLIPTIC)
+def test_an_elliptic_contact_has_the_friction_of_its_creep_speed(name: str) -> None:
+    solve = WHEEL_RAIL | wl.contact_model(name)
+    along, across = np.array([0.0, 0.001, 0.01, 0.1]), np.array([0.0, -0.002, 0.003, 0.0])
+    conditions: dict[str, Any] = {
+        "normal_force": Q(80, "kN"),
+        "longitudinal_creepage": Q(along, ""),
+        "lateral_creepage": Q(across, ""),
+        "spin": Q(0.3, "1/m"),
+    }
+    found = solve(friction_coefficient=FRICTION, **conditions)
+    coefficient = falling(30.0 * np.hypot(along, across))
+    assert found.friction_coefficient.magnitude == pytest.approx(coefficient, rel=8 * EPS)
+    plain = solve(friction_coefficient=coefficient, **conditions)
+    # A slip zone moves by the roundings of the coefficient over what is left of the patch.
+    assert found.tangential_force.magnitude == pytest.approx(plain.tangential_force.magnitude, rel=1e-10)
+
+
+def test_with_polachs_model_the_traction_rises_to_a_maximum_and_falls() -> None:
+    solve = WHEEL_RAIL | wl.contact_model("polach", slip_reduction=0.4)
+    creepage = np.linspace(0.0, 0.3, 601)
+    conditions: dict[str, Any] = {"normal_force": Q(80, "kN"), "longitudinal_creepage": Q(creepage, "")}
+    found = solve(friction_coefficient=FRICTION, **conditions).traction_coefficient.magnitude
+    steps = np.diff(found)
+    top = int(found.argmax())
+    assert 0 < top < 600
+    assert (steps[:top] > 0.0).all()
+    assert (steps[top:] < 0.0).all()
+    assert 0.22 < found[-1] < found[top] < 0.55
+    # With constant friction it only rises.
+    assert (np.diff(solve(friction_coefficient=0.55, **conditions).traction_coefficient.magnitude) > 0.0).all()
+
+
+def test_faster_rolling_means_less_traction_at_the_same_creepage() -> None:
+    conditions: dict[str, Any] = {"normal_force": Q(80, "kN"), "longitudinal_creepage": Q(2, "%")}
+    tractions = [
+        float((WHEEL_RAIL.model_copy(update={"speed": Q(speed, "m/s")}) | wl.contact_model("polach"))(
+            friction_coefficient=FRICTION, **conditions
+        ).traction_coefficient.magnitude)
+        for speed in (5.0, 30.0, 80.0)
+    ]  # fmt: skip
+    assert tractions[0] > tractions[1] > tractions[2]
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"static_coefficient": 0.0}, "static_coefficient: input should be greater than 0"),
+    ({"static_coefficient": -0.3}, "static_coefficient: input should be greater than 0"),
+    ({"static_coefficient": "0.5"}, "static_coefficient: input should be a valid number"),
+    ({"static_coefficient": math.nan}, "static_coefficient: input should be a finite number"),
+    ({"limit_ratio": 0.0}, "limit_ratio: input should be greater than 0"),
+    ({"limit_ratio": 1.01}, "limit_ratio: input should be less than or equal to 1"),
+    ({"decay": 0.6}, "decay: got the bare number 0.6, which has no unit"),
+    ({"decay": "0.6 m/s"}, "decay: got 0.6000 m/s, which is not of the dimension of 's/m'"),
+    ({"decay": "-1 s/m"}, "decay: must be greater than zero"),
+    ({"decay": Q([1.0, 2.0], "s/m")}, "decay: must be one value"),
+    ({"deca": "1 s/m"}, "deca: unknown field; did you mean 'decay'?"),
+]
+
+
+@pytest.mark.parametrize(("change", "message"), WRONG)
+def test_parameters_that_are_none_are_refused(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=re.escape(f"FallingFriction: {message}")):
+        wl.FallingFriction(**{**DRY, **change})
+
+
+@pytest.mark.parametrize("missing", list(DRY))
+def test_no_parameter_has_a_default(missing: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=missing):
+        wl.FallingFriction(**{name: value for name, value in DRY.items() if name != missing})

@@ -1,0 +1,181 @@
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import mpmath  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.strategies import EPS, log_uniform
+from wearlaw import hertz, hertz_ellipse
+from wearlaw.arrays import Array
+
+AXIS_RATIOS = sorted(
+    {*np.geomspace(1e-3, 1e3, 24), *(1.0 + sign * gap for sign in (-1, 1) for gap in np.logspace(-9, -1, 9))}
+)
+
+# The logarithm of the curvature ratio is below 12 for axis ratios to 1000; its rounding, and a few more of the
+# integrals' and of the curvatures themselves, stay in the axes.
+AXES_ROUNDING = 32 * EPS
+
+
+def johnson(a: float, b: float, max_pressure: float, modulus: float) -> tuple[float, float, float]:
+    """A, B and the approach by Johnson's eq. (4.26), in Legendre's integrals, which need the extra digits."""
+    with mpmath.workdps(150):
+        major, minor = mpmath.mpf(max(a, b)), mpmath.mpf(min(a, b))
+        m = 1 - (minor / major) ** 2
+        k, e = mpmath.ellipk(m), mpmath.ellipe(m)
+        factor = max_pressure / mpmath.mpf(modulus) * minor / (m * major**2)
+        along, across = factor * (k - e), factor * ((major / minor) ** 2 * e - k)
+        approach = max_pressure / mpmath.mpf(modulus) * minor * k
+        first, second = (along, across) if a > b else (across, along)
+        return float(first), float(second), float(approach)
+
+
+def number(function: Callable[..., Array], *values: float) -> float:
+    return float(function(*map(np.array, values)))
+
+
+def semi_axes(force: float, curvature_x: float, curvature_y: float, modulus: float) -> tuple[float, float]:
+    a, b = hertz_ellipse.semi_axes(np.array(force), np.array(curvature_x), np.array(curvature_y), modulus)
+    return float(a), float(b)
+
+
+@pytest.mark.parametrize("ratio", AXIS_RATIOS)
+def test_the_ellipse_is_the_one_of_johnsons_equations(ratio: float) -> None:
+    b, max_pressure, modulus = 5e-3, 1.2e9, 1.139e11
+    a = ratio * b
+    curvature_x, curvature_y, approach = johnson(a, b, max_pressure, modulus)
+    force = 2.0 / 3.0 * math.pi * a * b * max_pressure
+    found = semi_axes(force, curvature_x, curvature_y, modulus)
+    assert found == pytest.approx((a, b), rel=AXES_ROUNDING)
+    assert number(hertz_ellipse.max_pressure, force, *found) == pytest.approx(max_pressure, rel=2 * AXES_ROUNDING)
+    assert number(hertz_ellipse.approach, force, *found, modulus) == pytest.approx(approach, rel=2 * AXES_ROUNDING)
+
+
+@pytest.mark.parametrize("exponent", [-50, -20, -6, 6, 20, 50])
+def test_the_axis_ratio_holds_far_beyond_any_contact(exponent: int) -> None:
+    ratio = float(f"1e{exponent}")
+    curvature_x, curvature_y, _ = johnson(ratio, 1.0, 1.0, 1.0)
+    # the logarithm of the curvature ratio, up to 225, carries half a unit in its last place
+    rounding = 2 * float(np.spacing(abs(math.log(curvature_y / curvature_x)))) + 8 * EPS
+    assert number(hertz_ellipse.axis_ratio, curvature_x, curvature_y) == pytest.approx(ratio, rel=rounding)
+
+
+@given(log_uniform(1.0, 1e7), log_uniform(1e-3, 10.0), log_uniform(1e9, 1e12))
+def test_equal_curvatures_give_a_circle(force: float, radius: float, modulus: float) -> None:
+    curvature = number(hertz_ellipse.curvature, radius, math.inf)
+    a, b = semi_axes(force, curvature, curvature, modulus)
+    assert a == b
+    # Johnson, eqs. (4.22) to (4.24)
+    expected = (3.0 * force * radius / (4.0 * modulus)) ** (1.0 / 3.0)
+    assert a == pytest.approx(expected, rel=16 * EPS)
+    assert number(hertz_ellipse.approach, force, a, b, modulus) == pytest.approx(expected**2 / radius, rel=48 * EPS)
+    pressure = (6.0 * force * modulus**2 / (math.pi**3 * radius**2)) ** (1.0 / 3.0)
+    assert number(hertz_ellipse.max_pressure, force, a, b) == pytest.approx(pressure, rel=48 * EPS)
+
+
+@given(log_uniform(1e-3, 1e3), log_uniform(1e-3, 1e3))
+def test_curvatures_that_change_places_turn_the_ellipse(curvature_x: float, curvature_y: float) -> None:
+    force = 1e5
+    a, b = semi_axes(force, curvature_x, curvature_y, 1e11)
+    assert (b, a) == semi_axes(force, curvature_y, curvature_x, 1e11)
+    assert (a >= b) == (curvature_x <= curvature_y)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.03, 0.01, 1e-3, 1e-5])
+def test_the_middle_of_a_wide_patch_is_a_line_contact(ratio: float) -> None:
+    radius, b, modulus = 0.46, 0.02, 1.139e11
+    curvature_x, curvature_y, _ = johnson(ratio * b, b, 1e9, modulus)
+    curvature_y *= 0.5 / radius / curvature_x
+    force = 1e5
+    a, b_found = semi_axes(force, 0.5 / radius, curvature_y, modulus)
+    # the load per width of the middle strip, p0 π a / 2
+    line = number(hertz.half_width, 0.75 * force / b_found, radius, modulus)
+    # (a / a_line)² = E* a A / p0 = (E - g² K)/(1 - g²) with g = a/b, and K = ln(4/g) + ..., E = 1 + g²(ln(4/g) - 1/2)/2
+    leading = 1.0 - ratio**2 * (0.5 * math.log(4.0 / ratio) - 0.75)
+    next_order = ratio**4 * math.log(4.0 / ratio)
+    assert (a / line) ** 2 == pytest.approx(leading, abs=next_order + 2 * AXES_ROUNDING)
+    assert number(hertz_ellipse.max_pressure, force, a, b_found) == pytest.approx(
+        number(hertz.max_pressure, 0.75 * force / b_found, a), rel=4 * EPS
+    )
+
+
+def displacement(x: float, y: float, a: float, b: float, max_pressure: float, modulus: float) -> float:
+    """Boussinesq's integral of p/(πE*r) over the ellipse, by chords through the point."""
+    # Both rules are trapezoidal over whole periods, so they converge faster than any power.
+    angles = np.arange(400) * math.pi / 400
+    turns = np.arange(1, 64) * math.pi / 64
+    cosine, sine = np.cos(angles), np.sin(angles)
+    quadratic = (cosine / a) ** 2 + (sine / b) ** 2
+    middle = -(x * cosine / a**2 + y * sine / b**2) / quadratic
+    half = np.sqrt(middle**2 + (1.0 - (x / a) ** 2 - (y / b) ** 2) / quadratic)
+    along = middle[:, None] + half[:, None] * np.cos(turns)
+    pressure = hertz_ellipse.pressure(
+        x + along * cosine[:, None], y + along * sine[:, None], np.array(a), np.array(b), np.array(max_pressure)
+    )
+    chords = half * (pressure * np.sin(turns)).sum(axis=1) * math.pi / 64
+    return float(chords.sum() * math.pi / 400) / (math.pi * modulus)
+
+
+@pytest.mark.parametrize(("curvature_x", "curvature_y"), [(0.8, 0.2814), (0.3, 2.0), (1.0, 1.0)])
+def test_the_pressure_closes_the_gap_inside_the_ellipse(curvature_x: float, curvature_y: float) -> None:
+    force, modulus = 106.7e3, 1.139e11
+    a, b = semi_axes(force, curvature_x, curvature_y, modulus)
+    p0 = number(hertz_ellipse.max_pressure, force, a, b)
+    approach = number(hertz_ellipse.approach, force, a, b, modulus)
+    for x, y in ((0.0, 0.0), (0.5, 0.0), (0.0, -0.7), (-0.4, 0.6)):
+        x, y = x * a, y * b
+        gap = approach - curvature_x * x**2 - curvature_y * y**2
+        # next to the ends of a chord 1-(x/a)²-(y/b)² cancels, and its root keeps about half of the digits
+        assert displacement(x, y, a, b, p0, modulus) == pytest.approx(gap, rel=1e-10)
+
+
+def test_the_pressure_carries_the_load() -> None:
+    a, b, p0 = np.array(4e-3), np.array(7e-3), np.array(1e9)
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    # x = a sin(t) cos(u), y = b sin(t) sin(u) makes the integrand a polynomial of sines and cosines
+    t = (nodes[:, None] + 1.0) * math.pi / 4.0
+    u = np.arange(8) * math.pi / 4.0
+    pressure = hertz_ellipse.pressure(a * np.sin(t) * np.cos(u), b * np.sin(t) * np.sin(u), a, b, p0)
+    load = (pressure * np.sin(t) * np.cos(t) * weights[:, None]).sum() * (math.pi / 4.0) ** 2 * a * b
+    # next to the edge the difference of squares keeps few digits, where there is little pressure
+    assert load == pytest.approx(2.0 / 3.0 * math.pi * float(a * b * p0), rel=1e-12)
+
+
+def test_the_pressure_is_zero_outside_the_ellipse() -> None:
+    a, b, p0 = np.array(1.0), np.array(2.0), np.array(5.0)
+    x, y = np.array([1.0, -1.0, 0.0, 1.2, 0.8]), np.array([0.0, 0.0, -2.0, 0.0, 1.7])
+    assert (hertz_ellipse.pressure(x, y, a, b, p0) == 0.0).all()
+
+
+def test_a_curvature_adds_flat_and_concave_bodies() -> None:
+    assert number(hertz_ellipse.curvature, 0.46, math.inf) == pytest.approx(0.5 / 0.46, rel=EPS)
+    assert number(hertz_ellipse.curvature, 0.3, -0.5) == pytest.approx(0.5 * (1 / 0.3 - 1 / 0.5), rel=4 * EPS)
+
+
+@given(
+    st.lists(log_uniform(1e-2, 1e2), min_size=1, max_size=4), st.lists(log_uniform(1e2, 1e6), min_size=1, max_size=3)
+)
+def test_arrays_broadcast_to_what_single_points_give(curvatures: list[float], forces: list[float]) -> None:
+    a, b = hertz_ellipse.semi_axes(np.array(forces)[:, None], np.array(curvatures), np.array(1.0), 1e11)
+    assert a.shape == b.shape == (len(forces), len(curvatures))
+    for i, force in enumerate(forces):
+        for j, curvature in enumerate(curvatures):
+            # a point beside others may take one more step of an iteration that has converged
+            assert (a[i, j], b[i, j]) == pytest.approx(semi_axes(force, curvature, 1.0, 1e11), rel=AXES_ROUNDING)
+
+
+def test_a_locomotive_wheel_has_the_patch_of_the_program_contact() -> None:
+    # E. A. H. Vollebregt, CONTACT (Vtech CMCC, github.com/eve70a/CONTACT, Apache License 2.0), example tractcurv, after
+    # O. Polach, Wear 258 (2005) 992-1000: 106.7 kN, G = 82 GPa, ν = 0.28, curvatures in 1/mm, as it prints them.
+    force, modulus = 106.7e3, 82e9 / (1.0 - 0.28)
+    a, b = semi_axes(force, 0.0008e3, 0.2814e-3 * 1e3, modulus)
+    assert 1e3 * a == pytest.approx(6.304, abs=5e-4)
+    assert 1e3 * b == pytest.approx(12.61, abs=5e-3)
+    # It prints the largest pressure at the middle of an element, of which there are 48 by 44 on 2.2 a by 2.2 b.
+    p0 = number(hertz_ellipse.max_pressure, force, a, b)
+    assert number(hertz_ellipse.pressure, 1.1 * a / 48, 1.1 * b / 44, a, b, p0) / 1e6 == pytest.approx(640.7, abs=0.05)

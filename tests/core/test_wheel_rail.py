@@ -1,0 +1,163 @@
+"""The rig of a wheel on a rail, and the contact problem that its conditions pose."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from wearlaw import Q
+
+EPS = float(np.finfo(np.float64).eps)
+
+GIVEN: dict[str, Any] = {
+    "wheel_radius": Q(460, "mm"),
+    "rail_head_radius": Q(300, "mm"),
+    "wheel_profile_radius": Q(np.inf, "mm"),
+    "material": wl.steel(),
+    "speed": Q(30, "m/s"),
+}
+CONDITIONS: dict[str, Any] = {
+    "normal_force": Q(80, "kN"),
+    "friction_coefficient": 0.3,
+    "longitudinal_creepage": Q(0.2, "%"),
+}
+
+
+TESTS = wl.WearTests.from_arrays(
+    normal_force=Q([5, 6], "kN"), creepage=Q([1, 2], "%"), wear_rate=Q([10, 20], "ug/m/mm^2"), friction_coefficient=0.4
+)
+
+
+def rig(**changes: Any) -> wl.WheelRail:
+    return wl.WheelRail(**{**GIVEN, **changes})
+
+
+def test_equal_curvatures_make_a_circle_of_the_closed_form() -> None:
+    # a³ = 3 N R / (4 E*) for spheres of relative radius R (Johnson, Contact Mechanics, 1985, eq. 4.22).
+    steel = wl.steel()
+    found = rig(rail_head_radius=Q(460, "mm")).problem(**CONDITIONS)
+    modulus = 0.5 * steel.youngs_modulus.to("Pa").magnitude / (1.0 - steel.poisson_ratio**2)
+    radius = np.cbrt(0.75 * 8e4 * 0.46 / modulus)
+    assert found.a == pytest.approx(radius, rel=1e-12)
+    assert found.b == pytest.approx(radius, rel=1e-12)
+    assert found.shear_modulus == pytest.approx(206.47742e9 / 2.56, rel=4 * EPS)
+    assert found.poisson_ratio == 0.28
+    assert found.rolling_speed == 30.0
+    assert found.density == 7850.0
+
+
+def test_the_longer_axis_lies_where_the_bodies_are_flatter() -> None:
+    assert rig(rail_head_radius=Q(80, "mm")).problem(**CONDITIONS).a > rig().problem(**CONDITIONS).b
+    wide = rig(rail_head_radius=Q(300, "mm"), wheel_profile_radius=Q(-330, "mm")).problem(**CONDITIONS)
+    assert wide.b > wide.a
+
+
+def test_the_load_may_be_given_by_its_maximum_pressure() -> None:
+    loads = Q([20.0, 80.0, 200.0], "kN")
+    by_force = rig().problem(**{**CONDITIONS, "normal_force": loads})
+    by_pressure = rig().problem(
+        max_pressure=Q(by_force.max_pressure, "Pa"), friction_coefficient=0.3, longitudinal_creepage=Q(0.2, "%")
+    )
+    # The cube multiplies the rounding of the pressure by three.
+    assert by_pressure.normal_force == pytest.approx(by_force.normal_force, rel=32 * EPS)
+    assert by_pressure.a == pytest.approx(by_force.a, rel=32 * EPS)
+
+
+def test_the_axes_satisfy_the_equations_of_hertz() -> None:
+    found = rig(wheel_profile_radius=Q(-500, "mm")).problem(**CONDITIONS)
+    along, across = 0.5 / 0.46, 0.5 / 0.3 - 0.5 / 0.5
+    modulus = 0.5 * 206.47742e9 / (1.0 - 0.28**2)
+    ellipse = wl.hertz_ellipse.semi_axes(np.array(8e4), np.array(along), np.array(across), modulus)
+    assert found.a == pytest.approx(ellipse[0], rel=1e-12)
+    assert found.b == pytest.approx(ellipse[1], rel=1e-12)
+
+
+def test_lateral_creepage_and_spin_are_zero_where_they_are_not_given() -> None:
+    found = rig().problem(**{**CONDITIONS, "longitudinal_creepage": Q([0.1, 0.2], "%")})
+    assert found.lateral_creepage.tolist() == found.spin.tolist() == [0.0, 0.0]
+
+
+def test_friction_can_fall_with_the_creep_speed() -> None:
+    friction = wl.FallingFriction(static_coefficient=0.4, limit_ratio=0.5, decay=Q(2, "s/m"))
+    found = rig().problem(**{**CONDITIONS, "friction_coefficient": friction, "lateral_creepage": Q([0.0, 0.15], "%")})
+    speed = 30.0 * np.hypot(2e-3, [0.0, 1.5e-3])
+    assert found.friction_coefficient == pytest.approx(0.2 * np.exp(-2.0 * speed) + 0.2, rel=8 * EPS)
+
+
+WRONG_RIGS: list[tuple[dict[str, Any], str]] = [
+    ({"wheel_radius": Q(np.inf, "mm")}, "wheel_radius: must be finite"),
+    ({"rail_head_radius": Q(np.inf, "mm")}, "the bodies touch in a point only where the sum is positive"),
+    ({"wheel_profile_radius": Q(-300, "mm")}, "sum to 0 1/m across the rail"),
+    ({"wheel_profile_radius": Q(-250, "mm")}, "a hollow must have a larger radius than what it embraces"),
+    ({"rail_head_radius": Q(0, "mm")}, "a radius must not be zero"),
+    ({"rail_head_radius": 300}, "rail_head_radius: got the bare number 300, which has no unit"),
+    ({"speed": Q(0, "m/s")}, "speed: must be greater than zero"),
+]
+
+
+@pytest.mark.parametrize(("changes", "message"), WRONG_RIGS)
+def test_bodies_that_do_not_touch_in_a_point_are_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=re.escape(message)):
+        rig(**changes)
+
+
+def test_a_hollow_wheel_on_a_more_curved_rail_is_accepted() -> None:
+    assert rig(wheel_profile_radius=Q(-330, "mm")).problem(**CONDITIONS).b > 0
+
+
+WRONG_CONDITIONS: list[tuple[dict[str, Any], str]] = [
+    ({"spin": Q(0.3, "1/s")}, "spin: got 0.3000 1/s, which is not of the dimension of '1/m'"),
+    ({"longitudinal_creepage": Q(1.1, "")}, "longitudinal_creepage: must not exceed 1 in magnitude"),
+    ({"longitudinal_creepage": None}, "longitudinal_creepage: is missing; give longitudinal_creepage=Q(0.2"),
+    ({"creepage": Q(1, "%")}, "creepage: unknown condition;"),
+    (
+        {"max_pressure": Q(1, "GPa")},
+        "give exactly one of normal_force, max_pressure; got normal_force and max_pressure",
+    ),
+    ({"normal_force": None, "max_pressure": Q(1e200, "Pa")}, "check the units of the load and of the rig"),
+    ({"friction_coefficient": 1e-13}, "friction_coefficient: must be at least 1e-12"),
+]
+
+
+@pytest.mark.parametrize(("changes", "message"), WRONG_CONDITIONS)
+def test_wrong_conditions_are_named(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.InputError, match=re.escape(message)):
+        rig().problem(**{**CONDITIONS, **changes})
+
+
+def test_a_rig_survives_json_in_a_pipeline() -> None:
+    contact = rig(wheel_profile_radius=Q(-500, "mm")) | wl.contact_model("fastsim")
+    assert wl.ContactPipeline.model_validate_json(contact.model_dump_json()) == contact
+
+
+def test_only_models_of_elliptic_contact_follow_it() -> None:
+    with pytest.raises(wl.CompositionError) as caught:
+        rig() | wl.contact_model("exact")
+    message = str(caught.value)
+    assert message.startswith(
+        "contact model 'exact' solves line contacts only, but a WheelRail makes elliptic contacts"
+    )
+    assert "fastsim" in message.split("those that solve them: ")[1]
+
+
+def test_a_line_model_given_an_ellipse_says_so() -> None:
+    with pytest.raises(wl.CompositionError, match="contact model 'exact' does not solve elliptic contacts, only line"):
+        wl.contact_model("exact").solve(rig().problem(**CONDITIONS))
+
+
+def test_what_only_knows_discs_says_so() -> None:
+    contact: Any = rig() | wl.contact_model("fastsim")
+    predict = contact | wl.wear_law("kth")
+    calls: dict[str, Any] = {
+        "creepage_for": lambda: contact.creepage_for(traction_coefficient=0.1, **CONDITIONS),
+        "uncertainty": lambda: predict.uncertainty(law={"coefficient": wl.published_range()}, **CONDITIONS),
+        "fit": lambda: wl.fit(contact, wl.read_tests("lewis2004"), free=["friction_coefficient"]),
+        "compare": lambda: wl.compare([predict, predict], TESTS, friction_coefficient=0.3),
+    }
+    for name, call in calls.items():
+        with pytest.raises(wl.CompositionError, match=f"{name}: is for a TwinDisc only, not for a WheelRail"):
+            call()

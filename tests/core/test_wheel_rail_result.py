@@ -1,0 +1,209 @@
+"""What a pipeline of a wheel on a rail predicts: forces, wear, and where across the patch it is lost."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from wearlaw import Q
+
+EPS = float(np.finfo(np.float64).eps)
+
+RIG = wl.WheelRail(wheel_radius=Q(460, "mm"), rail_head_radius=Q(300, "mm"), material=wl.steel(), speed=Q(30, "m/s"))
+CONDITIONS: dict[str, Any] = {
+    "normal_force": Q(80, "kN"),
+    "friction_coefficient": 0.3,
+    "longitudinal_creepage": Q(0.2, "%"),
+    "lateral_creepage": Q(0.1, "%"),
+    "spin": Q(0.3, "1/m"),
+}
+FASTSIM = wl.contact_model("fastsim")
+
+
+class PerEnergy(wl.WearLaw):
+    """Rate in proportion to the energy dissipated."""
+
+    name = "per_energy"
+    source = "made up for these tests"
+    slope: float = 1e-12
+
+    def rate(self, contact: wl.Contact) -> wl.Array:
+        return self.slope * contact.wear_index_density
+
+
+PER_ENERGY = PerEnergy()
+
+
+def test_the_pipeline_gives_what_the_model_solves() -> None:
+    result = (RIG | FASTSIM)(**CONDITIONS)
+    contact = FASTSIM.solve(RIG.problem(**CONDITIONS))
+    assert result.longitudinal_force == contact.longitudinal_force
+    assert result.lateral_force == contact.lateral_force
+    assert result.spin_moment == contact.spin_moment
+    assert result.wear_index.to("N").magnitude == contact.wear_index
+    power = 2e-3 * result.longitudinal_force + 1e-3 * result.lateral_force + Q(0.3, "1/m") * result.spin_moment
+    assert result.wear_index.magnitude == pytest.approx(power.to("N").magnitude, rel=8 * EPS)
+    assert result.tangential_force.magnitude == pytest.approx(np.hypot(contact.force_x, contact.force_y), rel=4 * EPS)
+    assert result.traction_coefficient.magnitude == pytest.approx(result.tangential_force.magnitude / 8e4, rel=4 * EPS)
+
+
+def test_a_law_in_proportion_to_energy_wears_by_what_the_cells_dissipate() -> None:
+    result = (RIG | FASTSIM | PER_ENERGY)(**CONDITIONS)
+    lost = 1e-12 * result.cell_wear_index.to("N").magnitude
+    assert result.mass_per_distance.to("kg/m").magnitude == pytest.approx(lost, rel=64 * EPS)
+    assert result.wear_rate.to("kg/m^3").magnitude * result.patch_area.to("m^2").magnitude == pytest.approx(
+        lost, rel=64 * EPS
+    )
+    assert result.mass_lost("10 km", "wheel").to("kg").magnitude == pytest.approx(1e4 * lost, rel=64 * EPS)
+
+
+def test_with_slip_scaled_it_wears_by_what_the_creepages_feed_in() -> None:
+    scaled = RIG | wl.contact_model("fastsim", slip="scaled") | PER_ENERGY
+    result = scaled(**CONDITIONS)
+    assert result.cell_wear_index.magnitude == pytest.approx(result.wear_index.magnitude, rel=64 * EPS)
+    plain = (RIG | FASTSIM)(**CONDITIONS)
+    assert result.wear_index == plain.wear_index
+    assert abs(plain.cell_wear_index / plain.wear_index - 1) > 0.01  # with spin the two differ
+
+
+def test_many_points_are_the_same_as_one_after_the_other_and_keep_their_shape() -> None:
+    many = {**CONDITIONS, "spin": Q(np.linspace(0, 1, 150)[:, None], "1/m"), "normal_force": Q([40.0, 90.0], "kN")}
+    result = (RIG | FASTSIM | PER_ENERGY)(**many)
+    assert result.wear_rate.shape == result.stick_ratio.shape == result.lateral_force.shape == (150, 2)
+    for index in ((0, 0), (140, 1)):
+        one = {**CONDITIONS, "spin": many["spin"][index[0], 0], "normal_force": many["normal_force"][index[1]]}
+        alone = (RIG | FASTSIM | PER_ENERGY)(**one)
+        assert result.wear_rate[index].magnitude == pytest.approx(alone.wear_rate.magnitude, rel=64 * EPS)
+        assert result.mean_slip[index].magnitude == pytest.approx(alone.mean_slip.magnitude, rel=64 * EPS)
+        assert result.spin_moment[index].magnitude == pytest.approx(alone.spin_moment.magnitude, rel=64 * EPS)
+
+
+def test_the_profile_of_the_wheel_sums_to_the_mass_it_loses() -> None:
+    result = (RIG | FASTSIM | PER_ENERGY)(**CONDITIONS)
+    profile = result.wear_profile("wheel")
+    assert profile.depth.attrs["units"] == "um/km"
+    assert profile.depth.attrs["long_name"] == "depth per metre rolled"
+    # Depth × width × circumference × density is the mass lost per metre. The profile has strips of equal width, whose
+    # midpoint rule is off by O(strips^-3/2) next to the ends, where the depth goes to zero like (1 - |y|/b)^(1/2) or
+    # faster: 101^-1.5 = 1e-3.
+    lost = 1e-9 * np.trapezoid(profile.depth, 1e-3 * profile.y) * 2 * np.pi * 0.46 * 7850
+    assert lost == pytest.approx(result.mass_per_distance.to("kg/m").magnitude, rel=2e-3)
+
+
+def test_the_profile_of_the_rail_is_one_passage() -> None:
+    result = (RIG | FASTSIM | PER_ENERGY)(**CONDITIONS)
+    wheel, rail = result.wear_profile("wheel"), result.wear_profile("rail")
+    assert rail.depth.attrs == {"units": "nm", "long_name": "depth per passage of a wheel"}
+    once = 2 * np.pi * 0.46
+    assert 1e-9 * rail.depth.values == pytest.approx(1e-9 * wheel.depth.values * once, rel=8 * EPS)
+    assert 1e-6 * rail.sliding_distance.values == pytest.approx(
+        1e-3 * wheel.sliding_distance.values * once, rel=8 * EPS
+    )
+
+
+def test_in_full_slip_without_spin_each_point_slides_by_the_creepage() -> None:
+    # The mean slip over a strip in full slip is the creepage, so a point slides ν × the length of its strip.
+    conditions = {**CONDITIONS, "longitudinal_creepage": Q(50, "%"), "lateral_creepage": Q(0, ""), "spin": Q(0, "1/m")}
+    result = (RIG | FASTSIM | PER_ENERGY)(**conditions)
+    profile = result.wear_profile("rail")
+    b, a = result.semi_axis_b.magnitude, result.semi_axis_a.magnitude
+    due = 0.5 * 2.0 * a * np.sqrt(1.0 - (profile.y.values / b) ** 2)
+    assert 1e-3 * profile.sliding_distance.values == pytest.approx(due, rel=1e-9)
+
+
+def test_profiles_of_many_points_have_an_axis_for_each_of_the_batch() -> None:
+    result = (RIG | FASTSIM | PER_ENERGY)(**{**CONDITIONS, "normal_force": Q([40.0, 90.0], "kN")})
+    profile = result.wear_profile("wheel")
+    assert profile.depth.dims == ("point_0", "strip")
+    assert profile.y.shape == profile.depth.shape
+
+
+def test_a_uniform_march_has_the_profile_of_its_own_strips() -> None:
+    coarse = RIG | wl.contact_model("fastsim", march="uniform", strips=20) | PER_ENERGY
+    profile = coarse(**CONDITIONS).wear_profile("wheel")
+    assert profile.y.size == 20
+
+
+def test_a_body_that_is_not_there_is_named() -> None:
+    result = (RIG | FASTSIM | PER_ENERGY)(**CONDITIONS)
+    for call in (lambda: result.wear_profile("disc_1"), lambda: result.mass_lost("1 km", "disc_1")):
+        with pytest.raises(wl.InputError, match="no 'disc_1'; its bodies are 'wheel' and 'rail'"):
+            call()
+
+
+def test_means_of_the_patch_have_no_profile() -> None:
+    result = (RIG | FASTSIM | wl.patch_mean() | PER_ENERGY)(**CONDITIONS)
+    with pytest.raises(wl.CompositionError, match="gives means of the whole patch"):
+        result.wear_profile("wheel")
+    assert result.wear_rate.to("kg/m^3").magnitude == pytest.approx(
+        1e-12 * result.wear_index_density.to("N/m^2").magnitude, rel=8 * EPS
+    )
+
+
+def test_a_law_of_the_whole_patch_needs_patch_means() -> None:
+    with pytest.raises(wl.CompositionError, match="stated for the means of the whole patch"):
+        RIG | FASTSIM | wl.wear_law("brr")
+    assert (RIG | FASTSIM | wl.patch_mean() | wl.wear_law("brr"))(**CONDITIONS).wear_rate.magnitude > 0
+
+
+@pytest.mark.parametrize("fitted_for", ["global", "exact", "fastsim"])
+def test_parameters_of_line_contact_warn_on_an_ellipse(fitted_for: str) -> None:
+    law = wl.wear_law("usfd", fitted_for=fitted_for)
+    with pytest.warns(wl.CalibrationWarning, match="fitted for line contacts, but are used with elliptic") as caught:
+        RIG | FASTSIM | law
+    assert "4/π or 3/2 times its mean on a line" in str(caught[0].message)
+    assert caught[0].filename == __file__
+
+
+def test_parameters_of_an_ellipse_do_not_warn_there_but_on_a_line() -> None:
+    own = wl.Calibration(
+        contact_model="fastsim", scale="cells", geometry="ellipse", materials="made up", source="made up"
+    )
+    law = wl.wear_law("usfd", fitted_for=own, m_m="5 ug/m/N", q_s="55 ug/m/mm^2", m_c="60 ug/m/N", tr_sc="80 N/mm^2")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        RIG | FASTSIM | law
+    with pytest.warns(wl.CalibrationWarning, match="fitted for elliptic contacts, but are used with line contacts"):
+        wl.TwinDisc.suros() | FASTSIM | law
+
+
+def test_the_elastic_limit_and_the_range_of_the_law_are_watched() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        predict = RIG | FASTSIM | wl.wear_law("usfd")
+    with pytest.warns(wl.RangeWarning) as caught:
+        predict(**{**CONDITIONS, "normal_force": Q(400, "kN"), "longitudinal_creepage": Q([1, 60], "%")})
+    messages = [str(warning.message) for warning in caught]
+    assert any("beyond the material's elastic limit" in message for message in messages)
+    assert any("1 of 2 operating points lie outside" in message for message in messages)
+    assert {warning.filename for warning in caught} == {__file__}
+
+
+def test_the_error_estimate_covers_the_true_error() -> None:
+    random = np.random.default_rng(8)
+    points = 200
+    conditions: dict[str, Any] = {
+        "normal_force": Q(10 ** random.uniform(1, 2.2, points), "kN"),
+        "friction_coefficient": random.uniform(0.1, 0.5, points),
+        "longitudinal_creepage": Q(10 ** random.uniform(-4, -1.5, points), ""),
+        "lateral_creepage": Q(10 ** random.uniform(-4, -1.5, points), ""),
+        "spin": Q(random.uniform(-1, 1, points), "1/m"),
+    }
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        law = wl.wear_law("usfd")
+        predict, fine = RIG | FASTSIM | law, RIG | wl.contact_model("fastsim", strips=120) | law
+        result, reference = predict(**conditions), fine(**conditions)
+    true = np.abs(result.wear_rate - reference.wear_rate)
+    assert np.mean(true <= result.wear_rate_error + 1e-9 * reference.wear_rate) >= 0.95
+    assert np.median(result.wear_rate_error) < 4 * np.median(true)
+
+
+def test_a_result_shows_itself() -> None:
+    shown = repr((RIG | FASTSIM | PER_ENERGY)(**CONDITIONS))
+    assert shown.startswith("WheelRailPrediction of 1 operating point\n  wear_rate")
+    assert "longitudinal_force" in shown
