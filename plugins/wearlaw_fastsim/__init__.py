@@ -1,23 +1,34 @@
-"""Kalker's simplified theory (FASTSIM) for rolling line contact as a wearlaw plugin."""
+"""Kalker's simplified theory (FASTSIM) for rolling contact, on a line and on an ellipse, as a wearlaw plugin."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
+from pydantic import Field
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw_fastsim import _solution
 from wearlaw_fastsim._kernel import elliptic_excess, parabolic_excess
+
+ON_ELLIPSE = ("march", "strips", "slip")
+"""Settings that do not matter on a line."""
 
 
 class Fastsim(wl.LineContactModel):
-    """FASTSIM in two dimensions: displacement proportional to traction, u = L q.
+    """FASTSIM: displacement proportional to traction, u = L q.
 
-    From the leading edge the traction grows by ξ/L per length until it meets the bound μ p2, which it then
+    On a line, from the leading edge the traction grows by ξ/L per length until it meets the bound μ p2, which it then
     follows with the slip s = ξ - L d(μ p2)/dx. In two dimensions, with constant creepage, the march from cell to
     cell has this closed form, since the bound is concave.
+
+    On an ellipse there are Kalker's three flexibilities, and the patch is cut into strips along the rolling direction,
+    which do not feel each other. From its leading edge the traction of a strip grows by
+    dq/dx = (ξ/L1 - φy/L3, η/L2 - φx/L3) until it meets the bound; where it slips, it keeps to the bound and turns
+    towards that vector. The slip is what the growth of the traction leaves over, times (L1, L2). With spin the energy
+    that it dissipates differs from Tγ = ξFx + ηFy + φMz.
 
     `pressure` is always Hertz's; the parabola is the bound of the traction only.
     """
@@ -28,12 +39,24 @@ class Fastsim(wl.LineContactModel):
     )
 
     bound: Literal["parabolic", "elliptic"] = "parabolic"
-    """Shape of p2 in the bound μ p2 of the traction, with the load of Hertz's pressure: the parabola
-    3P/(4a) (1-(x/a)²), or Hertz's ellipse."""
+    """Shape of p2 in the bound μ p2 of the traction, with the load of Hertz's pressure: a parabola, on a line
+    3P/(4a) (1-(x/a)²), on an ellipse 2N/(πab) (1-(x/a)²-(y/b)²); or Hertz's own ellipse."""
 
     flexibility: Literal["line", "kalker"] = "line"
-    """L [m³/N]. "line": 4a/(πE*), which gives the initial slope of the exact theory. "kalker": 32a/(3π²E*), the
-    limit of Kalker's coefficient for a long ellipse."""
+    """L on a line [m³/N]. "line": 4a/(πE*), which gives the initial slope of the exact theory. "kalker": 32a/(3π²E*),
+    the limit of Kalker's coefficient for a long ellipse. On an ellipse the flexibilities are always Kalker's three."""
+
+    march: Literal["adaptive", "uniform"] = "adaptive"
+    """Nodes on an ellipse. "adaptive": few in the stick zone, the others where it slips, with formulas of second order
+    between them. "uniform": cells of equal length along each strip, as Kalker marched."""
+
+    strips: Annotated[int, Field(ge=2, le=1000, strict=True)] = 10
+    """Strips of an ellipse; the nodes along a strip are in proportion, as many cells where the march is uniform."""
+
+    slip: Literal["local", "scaled"] = "local"
+    """Slip on an ellipse. "local": that of the theory. "scaled": the same times one factor for the patch, so that what
+    it dissipates is Tγ also with spin; the factor helps with the elliptic bound, while the cells of the parabolic one
+    are nearer to the full theory as they are."""
 
     @property
     def exemptions(self) -> Mapping[wl.Claim, str]:
@@ -49,6 +72,34 @@ class Fastsim(wl.LineContactModel):
     def square_roots_at(self) -> Literal["patch"]:
         """Nothing behaves like a square root where slip begins."""
         return "patch"
+
+    def __repr_args__(self) -> Any:
+        """Give the settings to show: those that matter on an ellipse only where they are not the default."""
+        for name, value in super().__repr_args__():
+            if name not in ON_ELLIPSE or value != type(self).model_fields[name].default:
+                yield name, value
+
+    def refined(self) -> Fastsim:
+        """Return the same theory on twice as many strips of an ellipse, with twice as many nodes each."""
+        return self.model_copy(update={"strips": 2 * self.strips})
+
+    @property
+    def elliptic_accuracy(self) -> float:
+        """Found by comparison with many more strips; sums over uniform cells are of first order."""
+        return 2e-3 * (10 / self.strips) ** 2 if self.march == "adaptive" else 1.0 / self.strips
+
+    def solve_ellipse(self, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        """Return the contact on strips."""
+        solve = _solution.adaptive if self.march == "adaptive" else _solution.uniform
+        contact = solve(problem, self.bound == "elliptic", self.strips)
+        return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
+
+    def on_strips(self, problem: wl.EllipticProblem, shares: Array) -> wl.EllipticContact | None:
+        """Return the contact on strips at y = `shares` × b; a uniform march has its own strips."""
+        if self.march == "uniform":
+            return None
+        contact = _solution.on_strips(problem, self.bound == "elliptic", self.strips, shares)
+        return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 
     def slip_length(self, problem: wl.LineProblem) -> Array:
         """Return the distance from where the traction meets its bound to the trailing edge."""

@@ -1,0 +1,95 @@
+"""FASTSIM on an ellipse: from the contact problem to the strips and back to a record of the framework."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw_fastsim import _march, _strips
+from wearlaw_fastsim._march import Cells, Ellipses, drop_gains, march, strip_centres
+
+STICK_NODES_PER_STRIP, SLIP_NODES_PER_STRIP = 0.3, 1.0
+"""Nodes along a strip over the number of strips: errors along strips and across them are then of one size."""
+
+CELLS = 16
+"""Cells that take about as long as an operating point does that `accelerated` counts."""
+
+
+def ellipses(problem: wl.EllipticProblem, elliptic: bool) -> Ellipses:
+    """Return what the simplified theory needs of a problem with one batch axis; with Kalker's three flexibilities.
+
+    L1 = 8a/(3 C11 G), L2 = 8a/(3 C22 G), L3 = π a √(a/b)/(4 C23 G) (Kalker 1982).
+    """
+    a, modulus = problem.a, problem.shear_modulus
+    ratio = a / problem.b
+    c = wl.kalker.coefficients(ratio, problem.poisson_ratio)
+    share = 1.5 if elliptic else 2.0
+    return Ellipses(
+        a=a,
+        b=problem.b,
+        longitudinal_creepage=problem.longitudinal_creepage,
+        lateral_creepage=problem.lateral_creepage,
+        spin=problem.spin,
+        longitudinal_flexibility=8.0 / 3.0 * a / (c.c11 * modulus),
+        lateral_flexibility=8.0 / 3.0 * a / (c.c22 * modulus),
+        spin_flexibility=0.25 * np.pi * a * np.sqrt(ratio) / (c.c23 * modulus),
+        bound_centre=share * problem.friction_coefficient * problem.normal_force / problem.patch_area,
+        elliptic=elliptic,
+    )
+
+
+def adaptive(problem: wl.EllipticProblem, elliptic: bool, count: int) -> wl.EllipticContact:
+    """Return the contact on `count` strips with nodes where they are needed."""
+    shares, widths = _strips.even_strips(count)
+    return _on_strips(problem, elliptic, count, shares, widths)
+
+
+def on_strips(problem: wl.EllipticProblem, elliptic: bool, count: int, shares: Array) -> wl.EllipticContact:
+    """Return the contact on strips at y = `shares` × b, with as many nodes on each as among `count` strips."""
+    between = 0.5 * (shares[1:] + shares[:-1])
+    return _on_strips(problem, elliptic, count, shares, np.diff(np.concatenate([[-1.0], between, [1.0]])))
+
+
+def _on_strips(
+    problem: wl.EllipticProblem, elliptic: bool, count: int, shares: Array, widths: Array
+) -> wl.EllipticContact:
+    flat = problem.flatten()
+    along = max(round(STICK_NODES_PER_STRIP * count), 3), max(round(SLIP_NODES_PER_STRIP * count), 8)
+    patches = ellipses(flat, elliptic)
+    found = _strips.strips(patches, shares, *along)
+    b = flat.b[:, None]
+    contact = wl.EllipticContact.from_strips(
+        flat,
+        _strips.forces(patches, shares, widths, found),
+        x=found.x,
+        y=b * shares,
+        length=found.length,
+        strip_width=b * widths,
+        traction=(found.traction_x, found.traction_y),
+        slip=(found.slip_x, found.slip_y),
+        traction_bound=found.bound,
+    )
+    return contact.with_batch(problem.batch_shape)
+
+
+def uniform(problem: wl.EllipticProblem, elliptic: bool, count: int) -> wl.EllipticContact:
+    """Return the contact on `count` × `count` cells, by Kalker's march."""
+    flat = problem.flatten()
+    patches = ellipses(flat, elliptic)
+    compiled = wl.accelerated(flat.size * count**2 // CELLS)
+    cells = Cells.empty(flat.size, count, count, compiled=compiled)
+    march(patches, cells, compiled=compiled)
+    drop_gains(cells)
+    contact = wl.EllipticContact.from_strips(
+        flat,
+        _march.forces(patches, cells),
+        x=cells.x,
+        y=flat.b[:, None] * strip_centres(count),
+        length=np.broadcast_to(patches.cell_lengths(count, count)[:, None, :], cells.x.shape),
+        strip_width=np.broadcast_to(2.0 / count * flat.b[:, None], (flat.size, count)),
+        traction=(cells.traction_x, cells.traction_y),
+        slip=(cells.slip_x, cells.slip_y),
+        traction_bound=cells.bound,
+    )
+    return contact.with_batch(problem.batch_shape)
