@@ -1,0 +1,93 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import wearlaw as wl
+from tests.plugins.ellipses import EPS, TABLE_E3, ellipse, ellipses, limit, of_ratio
+from tests.plugins.full_theory import creep_curve, spheres
+
+SHE = wl.contact_model("shen_hedrick_elkins")
+LINEAR = wl.contact_model("linear")
+
+
+@pytest.mark.parametrize(("axis_ratio", "poisson_ratio"), TABLE_E3)
+def test_the_slopes_at_vanishing_creepage_are_kalkers(axis_ratio: float, poisson_ratio: float) -> None:
+    c11, c22, c23, c33 = TABLE_E3[axis_ratio, poisson_ratio]
+    unit, small = 80e9 * 6e-3**2, 1e-9  # G ab
+
+    def forces(**creepage: float) -> wl.CreepForces:
+        return SHE.creep_forces(of_ratio(axis_ratio, poisson_ratio, **creepage))
+
+    along, across = forces(longitudinal_creepage=small), forces(lateral_creepage=small)
+    turning = forces(spin=small / 6e-3)
+    # The factor is 1 - u/3 with u = F'/(μN), at most G ab 7 small/(μN) = 1e-6 here.
+    assert along.longitudinal / (unit * small) == pytest.approx(c11, rel=1e-6)
+    assert across.lateral / (unit * small) == pytest.approx(c22, rel=1e-6)
+    assert across.spin_moment / (unit * 6e-3 * small) == pytest.approx(-c23, rel=1e-6)
+    assert turning.lateral / (unit * small) == pytest.approx(c23, rel=1e-6)
+    assert turning.spin_moment / (unit * 6e-3 * small) == pytest.approx(c33, rel=1e-6)
+    assert along.lateral == along.spin_moment == turning.longitudinal == 0.0
+
+
+@given(problem=ellipses())
+def test_the_force_is_the_published_cubic_of_the_linear_one(problem: wl.EllipticProblem) -> None:
+    linear, found = LINEAR.creep_forces(problem), SHE.creep_forces(problem)
+    u = float(linear.tangential / limit(problem))
+    share = u - u**2 / 3.0 + u**3 / 27.0 if u <= 3.0 else 1.0
+    # The derivative of the cubic vanishes at u = 3, and its terms are at most 3.
+    assert float(found.tangential / limit(problem)) == pytest.approx(share, rel=16 * EPS, abs=16 * EPS * min(u, 3.0))
+    cross = float(found.longitudinal * linear.lateral - found.lateral * linear.longitudinal)
+    assert abs(cross) <= 8 * EPS * float(found.tangential * linear.tangential)
+    assert float(found.spin_moment * linear.tangential) == pytest.approx(
+        float(linear.spin_moment * found.tangential), rel=16 * EPS
+    )
+
+
+@given(angle=st.floats(0.0, 6.3), spin=st.floats(-1.0, 1.0))
+def test_full_slip_is_friction_times_load_at_three_times_the_linear_limit(angle: float, spin: float) -> None:
+    problem = ellipse(longitudinal_creepage=np.cos(angle), lateral_creepage=np.sin(angle), spin=spin)
+    u = float(LINEAR.creep_forces(problem).tangential / limit(problem))
+    scale = np.array([2.9999, 3.0, 3.0001, 30.0, 3e3]) / u
+    found = SHE.creep_forces(
+        problem.broadcast_to((5,)).with_creepages(
+            scale * problem.longitudinal_creepage, scale * problem.lateral_creepage, scale * problem.spin
+        )
+    )
+    # 1 - (1 - u/3)³
+    expected = [1.0 - (1e-4 / 3.0) ** 3, 1.0, 1.0, 1.0, 1.0]
+    assert found.tangential / limit(problem) == pytest.approx(np.array(expected), rel=32 * EPS)
+
+
+@given(problem=ellipses())
+def test_the_energy_is_a_sum_of_squares(problem: wl.EllipticProblem) -> None:
+    c = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
+    ab = problem.a * problem.b
+    squares = (
+        c.c11 * problem.longitudinal_creepage**2 + c.c22 * problem.lateral_creepage**2 + ab * c.c33 * problem.spin**2
+    )
+    found, linear = SHE.creep_forces(problem), LINEAR.creep_forces(problem)
+    factor = found.tangential / linear.tangential if linear.tangential > 0 else 1.0
+    # The terms with C23 cancel; they are at most this many times the squares.
+    cancelled = float(c.c23 / np.sqrt(c.c22 * c.c33))
+    expected = problem.shear_modulus * ab * squares * factor
+    assert problem.power(found) == pytest.approx(expected, rel=16 * EPS * (1.0 + cancelled))
+
+
+def test_the_full_theory_leaves_it_as_the_docstring_says() -> None:
+    curve = creep_curve()
+    deviation = curve.force_deviation(SHE)
+    largest = int(np.abs(deviation).argmax())
+    assert deviation[largest] == pytest.approx(-0.038, abs=0.0005)
+    assert curve.force_x[largest] / curve.bound[largest] == pytest.approx(0.88, abs=0.005)
+    circles = spheres("fullX")
+    assert circles.distance(SHE).max() == pytest.approx(0.030, abs=0.0005)
+    energy = circles.energy_deviation(SHE)
+    assert energy.min() == energy[circles.at("comb_B_eta1e-3_spin+1e-3")] == pytest.approx(-0.12, abs=0.005)
+    assert energy.max() == energy[circles.at("spin_0.003")] == pytest.approx(0.25, abs=0.005)
+
+
+def test_it_is_exempt_from_sticking_alone() -> None:
+    assert set(SHE.exemptions) == {"stick"}
