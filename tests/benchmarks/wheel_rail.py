@@ -1,0 +1,164 @@
+"""Print what elliptic contacts cost and how exact they are: `python -m tests.benchmarks.wheel_rail [--strict]`.
+
+Kalker's march in NumPy and compiled by numba is timed beside the same cells in C, all into memory that is already
+there; FASTSIM on few nodes, as wearlaw chooses them, beside the march in NumPy. All in one process, in CPU time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import warnings
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+import wearlaw as wl
+from tests.benchmarks import report
+from tests.benchmarks.report import Gate
+from tests.benchmarks.rivals import CHECK, FAST, PLAIN_LIBRARY, compilers
+from tests.benchmarks.timing import Times, in_mode, modes, side_by_side
+from tests.benchmarks.wheel_rail_rivals import RIVAL_CELLS, WORKLOAD, Compiled, MarchAndLaw, Outcome, ellipses, workload
+from wearlaw.elliptic_wear import elliptic_wear
+from wearlaw_fastsim import Fastsim
+from wearlaw_fastsim._march import Cells, march
+
+ROUNDS = 15
+BLOCK = 128
+"""Operating points that a march takes at once, which suits it best."""
+POINTS = 4096
+ACCURACY_POINTS = 256
+REFERENCE_CELLS, REFERENCE_STRIPS = 1600, 400
+DEFAULT_STRIPS = Fastsim().strips
+STRIPS = (6, 8, 10, 14, 20)
+C_FLAGS = {"C": FAST, "C, plain": PLAIN_LIBRARY, "C, -O2": CHECK}
+LIMITS = {"NumPy": 5.0, "numba": 1.3}
+RIVAL = f"march {RIVAL_CELLS} × {RIVAL_CELLS}, NumPy"
+
+
+def main(arguments: list[str]) -> int:
+    """Run all benchmarks; return 1 if a gate is missed and `--strict` is given."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--strict", action="store_true", help="fail if a gate is missed")
+    parser.add_argument("--rounds", type=int, default=ROUNDS)
+    options = parser.parse_args(arguments)
+    # The workload goes beyond what the law was fitted to.
+    warnings.simplefilter("ignore", wl.WearlawWarning)
+    print(f"{report.machine()}\n{WORKLOAD}")
+    gates = marches(options.rounds)
+    for bound in ("parabolic", "elliptic"):
+        gates += few_nodes(bound, options.rounds)
+    gates += [memory(name, on) for name, on in modes().items()]
+    report.print_gates(gates)
+    return int(options.strict and not all(gate.met for gate in gates))
+
+
+def marches(rounds: int) -> list[Gate]:
+    """Return the gates of the marches beside C, and print what a cell costs in smaller and larger blocks."""
+    if not compilers():
+        print("no C compiler: the march in C is left out")
+        return []
+    gates = []
+    for block in (BLOCK // 2, BLOCK, 2 * BLOCK):
+        times = _march_times(block, rounds)
+        for name in times.seconds:
+            ratio, low, high = times.ratio(name, "C")
+            cost = 1e9 * times.median(name) / (block * RIVAL_CELLS**2)
+            print(f"{block} points, {name:15} {cost:7.2f} ns a cell, {ratio:.3f} × C ({low:.3f} to {high:.3f})")
+        if block == BLOCK:
+            fastest = min(C_FLAGS, key=times.median)
+            gates = [
+                Gate(f"time, march with {name} over {fastest}", times.ratio(name, fastest)[0], LIMITS[name])
+                for name in modes()
+            ]
+    return gates
+
+
+def _march_times(block: int, rounds: int) -> Times:
+    patches = ellipses(workload(block), elliptic=False)
+    shape = (block, RIVAL_CELLS, RIVAL_CELLS)
+    filled = {name: Cells.empty(*shape, compiled=True) for name in C_FLAGS}
+    filled |= {name: Cells.empty(*shape, compiled=compiled) for name, compiled in modes().items()}
+    works = {name: partial(Compiled(flags).march, patches, filled[name]) for name, flags in C_FLAGS.items()}
+    works |= {name: partial(march, patches, filled[name], compiled=compiled) for name, compiled in modes().items()}
+    times = side_by_side(works | {f"{name}, again": work for name, work in works.items()}, rounds)
+    for cells in filled.values():
+        for mine, theirs in zip(cells.arrays, filled["C"].arrays, strict=True):
+            assert np.abs(mine - theirs).max() <= 1e-12 * np.abs(theirs).max()
+    return times
+
+
+def few_nodes(bound: str, rounds: int) -> list[Gate]:
+    """Return the gates of wearlaw's own nodes beside the march in NumPy, and print those of more and fewer strips."""
+    default = f"wearlaw, {DEFAULT_STRIPS} strips, NumPy"
+    sample, problem = workload(ACCURACY_POINTS), workload(POINTS)
+    marched = {RIVAL: RIVAL_CELLS, f"{RIVAL}, again": RIVAL_CELLS, "march 20 × 20, NumPy": 20}
+    works: dict[str, Callable[[], object]] = {
+        name: _march_and_law(problem, bound, count, count) for name, count in marched.items()
+    }
+    outcomes = {name: _march_and_law(sample, bound, count, count)() for name, count in marched.items()}
+    for name, on in modes().items():
+        for count in STRIPS if name == "NumPy" else (DEFAULT_STRIPS,):
+            key = f"wearlaw, {count} strips, {name}"
+            works[key] = in_mode(on, partial(_wearlaw, problem, bound, count))
+            outcomes[key] = _wearlaw(sample, bound, count)
+    times, exact = side_by_side(works, rounds), _reference(sample, bound)
+    errors = {name: _errors(found, exact, sample) for name, found in outcomes.items()}
+    print(f"\n{bound:30} {'µs/point':>9} {'× march':>8} {'force rms':>10} {'max':>8} {'wear rms':>10} {'max':>8}")
+    for name, (force, most, wear, worst) in errors.items():
+        cost = f"{1e6 * times.median(name) / POINTS:9.2f} {times.ratio(name, RIVAL)[0]:8.3f}"
+        print(f"{name:30} {cost} {force:10.1e} {most:8.1e} {wear:10.1e} {worst:8.1e}")
+    force, _, wear, _ = errors[default]
+    return [
+        Gate(f"rms error of the forces over μN, {bound}", force, 3e-3),
+        Gate(f"rms error of the wear rate, {bound}", wear, 5e-3),
+        Gate(f"time over the march in NumPy, {bound}", times.ratio(default, RIVAL)[0], 0.4),
+    ]
+
+
+def _march_and_law(problem: wl.EllipticProblem, bound: str, cells: int, strips: int, block: int = BLOCK) -> MarchAndLaw:
+    return MarchAndLaw(ellipses(problem, elliptic=bound == "elliptic"), cells, strips, block)
+
+
+def _wearlaw(problem: wl.EllipticProblem, bound: str, strips: int) -> Outcome:
+    model = wl.contact_model("fastsim", bound=bound, strips=strips)
+    found = elliptic_wear(model, wl.wear_law("usfd", fitted_for="global"), problem, "cells")
+    return found.forces.longitudinal, found.forces.lateral, found.wear_rate
+
+
+def _reference(problem: wl.EllipticProblem, bound: str) -> Outcome:
+    """Return the limit of the march, whose error is of first order, from cells of two sizes."""
+    coarse, fine = (
+        _march_and_law(problem, bound, cells, REFERENCE_STRIPS, block=4)()
+        for cells in (REFERENCE_CELLS // 2, REFERENCE_CELLS)
+    )
+    longitudinal, lateral, rate = (2.0 * b - a for a, b in zip(coarse, fine, strict=True))
+    return longitudinal, lateral, rate
+
+
+def _errors(found: Outcome, exact: Outcome, problem: wl.EllipticProblem) -> tuple[float, float, float, float]:
+    """Return root mean square and maximum of the errors of the force over μN, and of the relative ones of the wear."""
+    limit = problem.friction_coefficient * problem.normal_force
+    force = np.hypot(found[0] - exact[0], found[1] - exact[1]) / limit
+    wear = found[2] / exact[2] - 1.0
+    rms_force, rms_wear = (float(np.sqrt(np.mean(error * error))) for error in (force, wear))
+    return rms_force, float(force.max()), rms_wear, float(np.abs(wear).max())
+
+
+def memory(name: str, on: bool) -> Gate:
+    """Return the gate on the peak memory of many operating points in a process of their own."""
+    # The peak that a process reports includes that of the one which started it, so a small one does that.
+    launcher = "import subprocess, sys; sys.exit(subprocess.run(sys.argv[1:]).returncode)"
+    command = [sys.executable, "-c", launcher, sys.executable, "-m", "tests.benchmarks.wheel_rail_memory", str(int(on))]
+    project = Path(__file__).parents[2]
+    printed = subprocess.run(command, cwd=project, stdout=subprocess.PIPE, text=True, check=True).stdout
+    before, peak, seconds, points = map(float, printed.split())
+    print(f"{name}: {points:.0e} points, {seconds:.0f} s of CPU; peak memory {before:.0f} MiB before, {peak:.0f} after")
+    return Gate(f"peak memory of {points:.0e} points, {name} [MiB]", peak, 1024.0)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

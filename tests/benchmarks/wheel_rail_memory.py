@@ -1,0 +1,57 @@
+"""The peak memory of many operating points of a wheel on a rail: `python -m tests.benchmarks.wheel_rail_memory 1`."""
+
+from __future__ import annotations
+
+import resource
+import sys
+import time
+import warnings
+from typing import Any
+
+import numpy as np
+
+import wearlaw as wl
+from tests.benchmarks.timing import accelerator
+from wearlaw import Q
+
+FEW, POINTS = 10**3, 10**6
+
+
+def conditions(count: int) -> dict[str, Any]:
+    """Return conditions that vary in everything that the rig leaves open."""
+    rng = np.random.default_rng(19820102)
+    return {
+        "normal_force": Q(rng.uniform(20.0, 120.0, count), "kN"),
+        "friction_coefficient": rng.uniform(0.1, 0.5, count),
+        "longitudinal_creepage": Q(np.exp(rng.uniform(np.log(1e-4), np.log(3e-2), count)), ""),
+        "lateral_creepage": Q(np.exp(rng.uniform(np.log(1e-4), np.log(3e-2), count)), ""),
+        "spin": Q(rng.uniform(0.0, 1.0, count), "1/m"),
+    }
+
+
+def peak_mib() -> float:
+    """Return the peak memory of this process so far."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / (2**20 if sys.platform == "darwin" else 2**10)
+
+
+def main() -> None:
+    """Print the peak after few and after many points, the CPU seconds of the many, and their number."""
+    warnings.simplefilter("ignore", wl.WearlawWarning)
+    accelerator(sys.argv[1] == "1")
+    rig = wl.WheelRail(
+        wheel_radius=Q(460, "mm"),
+        rail_head_radius=Q(300, "mm"),
+        wheel_profile_radius=Q(np.inf, "mm"),
+        material=wl.steel(),
+        speed=Q(30, "m/s"),
+    )
+    predict = rig | wl.contact_model("fastsim") | wl.wear_law("usfd")
+    _ = predict(**conditions(FEW)).wear_rate
+    before, given, start = peak_mib(), conditions(POINTS), time.process_time()
+    _ = predict(**given).wear_rate
+    print(before, peak_mib(), time.process_time() - start, POINTS)
+
+
+if __name__ == "__main__":
+    main()
