@@ -1,4 +1,4 @@
-"""What hypothesis draws for arguments typed `Material`, `TwinDisc`, `LineProblem` and `Contact`.
+"""What hypothesis draws for arguments typed `Material`, and for rigs, contact problems and contacts.
 
 It stands beside the package, so that `import hypothesis` does not import wearlaw. Whichever of the two is imported
 last has the types registered.
@@ -28,7 +28,9 @@ def register_types() -> None:
     names: dict[type[Any], str] = {
         wl.Material: "materials",
         wl.TwinDisc: "rigs",
+        wl.WheelRail: "wheel_rails",
         wl.LineProblem: "line_problems",
+        wl.EllipticProblem: "elliptic_problems",
         wl.Contact: "contacts",
     }
 

@@ -24,7 +24,7 @@ class Cells(wl.ContactModel):
     def refined(self) -> Cells:
         return self.model_copy(update={"cells": 2 * self.cells})
 
-    def solve(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
         a, creepage = problem.half_width[..., None], problem.creepage[..., None]
         x = a * ((2.0 * np.arange(self.cells) + 1.0) / self.cells - 1.0)
         flexibility = 4.0 * a / (np.pi * problem.effective_modulus[..., None])

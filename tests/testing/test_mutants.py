@@ -11,7 +11,17 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.testing import cells, wrong_contacts, wrong_declarations, wrong_fields, wrong_laws
+from tests.testing import (
+    cells,
+    strips,
+    wrong_contacts,
+    wrong_creep_forces,
+    wrong_declarations,
+    wrong_ellipses,
+    wrong_fields,
+    wrong_laws,
+    wrong_strips,
+)
 from wearlaw.testing import Check, checks, conformance
 
 WRONG: dict[Any, str] = {
@@ -20,6 +30,9 @@ WRONG: dict[Any, str] = {
     **wrong_contacts.CAUGHT,
     **wrong_fields.CAUGHT,
     **cells.CAUGHT,
+    **wrong_ellipses.CAUGHT,
+    **wrong_strips.CAUGHT,
+    **wrong_creep_forces.CAUGHT,
 }
 
 
@@ -36,10 +49,11 @@ def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any) -> Non
 
 
 def test_every_check_of_an_invariant_catches_a_mutant() -> None:
-    # Of the patch and of cells, with ramps, with fields at any position, and with cells that can be refined: between
-    # them they are given every check.
-    models: list[Any] = [wrong_declarations.Ramps(), wl.wear_law("brr"), wl.contact_model("exact"), cells.Cells()]
-    names = {check.name for model in models for check in checks(model)}
+    # Of the patch and of cells, with ramps, with fields at any position, and with cells and strips that can be refined:
+    # between them they are given every check.
+    laws: list[Any] = [wrong_declarations.Ramps(), wl.wear_law("brr")]
+    contact_models: list[Any] = [wl.contact_model("exact"), cells.Cells(), strips.Strips()]
+    names = {check.name for model in laws + contact_models for check in checks(model)}
     assert names == set(WRONG.values())
 
 
@@ -87,14 +101,21 @@ def test_a_law_from_one_function_passes(check: Check) -> None:
     check()
 
 
-@pytest.mark.parametrize(("module", "cls"), [("wearlaw_threshold", "Threshold"), ("wearlaw_rigid", "Rigid")])
+@pytest.mark.parametrize(
+    ("module", "cls"),
+    [
+        ("wearlaw_threshold", "Threshold"),
+        ("wearlaw_rigid", "Rigid"),
+        ("wearlaw_rigid_ellipse", "RigidEllipse"),
+        ("wearlaw_sliding", "Sliding"),
+    ],
+)
 def test_the_models_of_the_documentation_pass(
     module: str, cls: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     page = (Path(__file__).parents[2] / "docs" / "plugins.md").read_text(encoding="utf-8")
-    block = re.search(rf":caption: {module}\.py\n\n(.*?)\n```", page, re.DOTALL)
-    assert block is not None
-    (tmp_path / f"{module}.py").write_text(block[1], encoding="utf-8")
+    for name, block in re.findall(r":caption: (\w+\.py)\n\n(.*?)\n```", page, re.DOTALL):
+        (tmp_path / name).write_text(block, encoding="utf-8")
     monkeypatch.syspath_prepend(str(tmp_path))
     for check in checks(getattr(importlib.import_module(module), cls)()):
         check()

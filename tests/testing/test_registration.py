@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
+from typing import TypeVar
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import wearlaw as wl
-from wearlaw import Contact, LineProblem, Material, TwinDisc
-from wearlaw.testing import conditions
+from wearlaw import Contact, EllipticProblem, LineProblem, Material, TwinDisc, WheelRail
+from wearlaw.testing import conditions, elliptic_problems, wheel_rails
+
+T = TypeVar("T")
 
 
 def run(code: str) -> str:
@@ -45,11 +51,19 @@ def test_a_missing_hypothesis_is_an_error_that_says_what_to_install() -> None:
 
 
 @settings(max_examples=10)
-@given(contact=..., problem=..., rig=..., material=...)
-def test_typed_arguments_are_drawn(contact: Contact, problem: LineProblem, rig: TwinDisc, material: Material) -> None:
+@given(contact=..., problem=..., ellipse=..., rig=..., wheel_rail=..., material=...)
+def test_typed_arguments_are_drawn(
+    contact: Contact,
+    problem: LineProblem,
+    ellipse: EllipticProblem,
+    rig: TwinDisc,
+    wheel_rail: WheelRail,
+    material: Material,
+) -> None:
     assert contact.pressure.shape[0] == contact.rolling_speed.size
-    assert problem.batch_shape == ()
+    assert problem.batch_shape == ellipse.batch_shape == ()
     assert rig.disc_1.material is not None
+    assert wheel_rail.materials()
     assert material.density.check("[mass] / [length] ** 3")
 
 
@@ -61,3 +75,49 @@ def test_conditions_pose_a_problem(drawn: dict[str, object], problem: LineProble
     # p0 = E* a/(2R) ties the parts of a drawn problem together (Johnson, Contact Mechanics, eqs. 4.43 and 4.44)
     expected = problem.effective_modulus * problem.half_width / (2.0 * problem.relative_radius)
     assert float(problem.max_pressure) == pytest.approx(float(expected), rel=1e-14)
+
+
+def extent(strategy: st.SearchStrategy[T], measure: Callable[[T], float]) -> tuple[float, float]:
+    """Return the least and the largest of what 200 drawn examples measure."""
+    found: list[float] = []
+
+    @settings(max_examples=200, derandomize=True, database=None)
+    @given(strategy)
+    def draw(example: T) -> None:
+        found.append(measure(example))
+
+    draw()
+    return min(found), max(found)
+
+
+def axis_ratio(problem: EllipticProblem) -> float:
+    return float(problem.a / problem.b)
+
+
+def test_drawn_ellipses_have_slender_patches_and_spin_of_both_signs() -> None:
+    low, high = extent(elliptic_problems(), axis_ratio)
+    assert low < 0.1
+    assert high > 10.0
+    signs = extent(elliptic_problems(), lambda problem: float(np.sign(problem.spin)))
+    assert signs == (-1.0, 1.0)
+
+
+def test_no_point_of_a_drawn_ellipse_slips_more_than_it_rolls() -> None:
+    def fastest(problem: EllipticProblem) -> float:
+        creepage = np.hypot(problem.longitudinal_creepage, problem.lateral_creepage)
+        return float(creepage + np.abs(problem.spin) * max(problem.a, problem.b))
+
+    _, high = extent(elliptic_problems(crowded=(1e4,)), fastest)
+    assert 0.9 < high <= 1.0 + 1e-15
+
+
+def test_drawn_wheels_and_rails_touch_in_ellipses_of_all_shapes() -> None:
+    def pressed(rig: WheelRail) -> float:
+        problem = rig.problem(normal_force="1 N", longitudinal_creepage="1 %", friction_coefficient=0.3)
+        return axis_ratio(problem)
+
+    low, high = extent(wheel_rails(), pressed)
+    assert low < 0.1
+    assert high > 10.0
+    hollow, _ = extent(wheel_rails(), lambda rig: min(rig.wheel_profile_radius.m, rig.rail_head_radius.m))
+    assert hollow < 0.0

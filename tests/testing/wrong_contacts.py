@@ -19,7 +19,7 @@ class Wrapped(wl.ContactModel):
     name: ClassVar[str] = "wrapped"
     source: ClassVar[str] = "made up for the tests"
 
-    def solve(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
         contact: wl.Contact = Exact().solve(problem)
         return self.spoilt(contact, problem)
 
@@ -233,7 +233,7 @@ class NaNInField(Wrapped):
 class ChangesProblem(Wrapped):
     """Takes the magnitude of the creepage in place."""
 
-    def solve(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
         contact: wl.Contact = Exact().solve(problem)
         np.multiply(problem.creepage, 2.0, out=problem.creepage)
         return contact

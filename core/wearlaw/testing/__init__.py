@@ -1,7 +1,8 @@
 """The conformance kit: what every wear law and contact model must keep, and strategies to test your own code with.
 
 `checks` yields the checks of a model, `conformance` makes pytest tests of them. The strategies are also what
-hypothesis draws from for arguments typed `Material`, `TwinDisc`, `LineProblem` and `Contact`.
+hypothesis draws from for arguments typed `Material`, `TwinDisc`, `WheelRail`, `LineProblem`, `EllipticProblem` and
+`Contact`.
 """
 
 try:
@@ -13,6 +14,25 @@ except ModuleNotFoundError as error:
 
 from wearlaw.testing.decorator import conformance
 from wearlaw.testing.kit import Check, checks
-from wearlaw.testing.strategies import conditions, contacts, line_problems, materials, rigs
+from wearlaw.testing.strategies import (
+    conditions,
+    contacts,
+    elliptic_problems,
+    line_problems,
+    materials,
+    rigs,
+    wheel_rails,
+)
 
-__all__ = ["Check", "checks", "conditions", "conformance", "contacts", "line_problems", "materials", "rigs"]
+__all__ = [
+    "Check",
+    "checks",
+    "conditions",
+    "conformance",
+    "contacts",
+    "elliptic_problems",
+    "line_problems",
+    "materials",
+    "rigs",
+    "wheel_rails",
+]

@@ -9,11 +9,13 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.errors import InputError
 from wearlaw.kernels import accelerate
-from wearlaw.models import BreakpointMap, ContactModel, Model, WearLaw
+from wearlaw.models import BreakpointMap, WearLaw
 from wearlaw.pipeline import Pipeline
 from wearlaw.records import Contact
 from wearlaw.rig import TwinDisc
+from wearlaw.tangential import ContactModel, Model
 from wearlaw.testing.contact_checks import SUM
+from wearlaw.testing.ellipses import WHEEL_RAIL
 from wearlaw.testing.examples import SAME, assert_close
 from wearlaw.testing.sampling import random_contacts, rows
 from wearlaw.units import Q
@@ -69,6 +71,12 @@ def _results(model: Model, part: slice | int) -> tuple[Array, Array]:
         rate = model.rate(contact)[:, 0] if isinstance(part, slice) else model.rate(rows(contact, [part]))[0, 0]
         return rate, np.zeros_like(rate)
     assert isinstance(model, ContactModel)
+    of = {"line": _of_line, "ellipse": _of_ellipse}
+    found = [of[geometry](model, part) for geometry in model.geometries()]
+    return np.concatenate([value for value, _ in found]), np.concatenate([allowed for _, allowed in found])
+
+
+def _of_line(model: ContactModel, part: slice | int) -> tuple[Array, Array]:
     predict = Pipeline(contact=TwinDisc.suros() | model, wear_law=Ramps())
     pressure, creepage = np.tile([0.3e9, 1.5e9], POINTS // 2), np.geomspace(1e-5, 0.5, POINTS)
     found = predict(max_pressure=Q(pressure[part], "Pa"), creepage=Q(creepage[part], ""), friction_coefficient=0.46)
@@ -76,10 +84,41 @@ def _results(model: Model, part: slice | int) -> tuple[Array, Array]:
         getattr(found, name).to_base_units().magnitude
         for name in ("tangential_force", "wear_index", "mean_slip", "wear_rate")
     )
-    # Every ramp is rounded as the whole dissipation is.
     density = found.wear_index_density.m_as("N/m^2")
-    steepest = sum(abs(slope) for _, slope in Ramps().ramps)
-    return np.stack([force, index, slip, rate]), SUM * np.stack([force, index, slip, steepest * density])
+    return np.stack([force, index, slip, rate]), SUM * np.stack([force, index, slip, STEEPEST * density])
 
+
+def _of_ellipse(model: ContactModel, part: slice | int) -> tuple[Array, Array]:
+    predict = Pipeline(contact=WHEEL_RAIL | model, wear_law=Ramps())
+    pressure, creepage = np.tile([0.3e9, 0.6e9], POINTS // 2), np.geomspace(1e-5, 0.1, POINTS)
+    found = predict(
+        max_pressure=Q(pressure[part], "Pa"),
+        longitudinal_creepage=Q(creepage[part], ""),
+        lateral_creepage=Q(-0.4 * creepage[part], ""),
+        spin=Q(np.linspace(0.0, 1.0, POINTS)[part], "1/m"),
+        friction_coefficient=0.4,
+    )
+    along, across, moment, index, slip, rate, force, dissipated, area = (
+        getattr(found, name).to_base_units().magnitude
+        for name in (
+            "longitudinal_force",
+            "lateral_force",
+            "spin_moment",
+            "wear_index",
+            "mean_slip",
+            "wear_rate",
+            "tangential_force",
+            "cell_wear_index",
+            "patch_area",
+        )
+    )
+    # A component is rounded as the force is, and the moment as its tractions times their levers.
+    arm, power = np.sqrt(area), np.maximum(index, dissipated)
+    allowed = [force, force, np.maximum(np.abs(moment), force * arm), power, slip, STEEPEST * power / area]
+    return np.stack([along, across, moment, index, slip, rate]), SUM * np.stack(allowed)
+
+
+STEEPEST = sum(abs(slope) for _, slope in Ramps().ramps)
+"""Slopes of the ramps, of which each is rounded as the whole dissipation is [kg/m/N]."""
 
 COMMON = (acceleration_does_not_matter,)

@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 from wearlaw.arrays import Array
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
-from wearlaw.models import QUADRATURE, ContactModel
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import Contact
+from wearlaw.tangential import QUADRATURE, ContactModel
 from wearlaw.testing.bisection import lost_digits
 from wearlaw.testing.examples import SAME, assert_close, for_each
 from wearlaw.testing.sampling import EPS

@@ -9,9 +9,9 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
-from wearlaw.models import QUADRATURE, Claim, ContactModel
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import Contact
+from wearlaw.tangential import QUADRATURE, Claim, ContactModel
 from wearlaw.testing.contact_checks import SUM, friction_limit, random_problems, saturation, with_creepage
 from wearlaw.testing.examples import assert_close, for_each
 from wearlaw.testing.strategies import line_problems

@@ -8,7 +8,7 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.line import LineProblem
-from wearlaw.models import ContactModel
+from wearlaw.tangential import ContactModel
 from wearlaw.testing.bisection import Indices, find_jumps
 from wearlaw.testing.contact_checks import (
     error_of_force,

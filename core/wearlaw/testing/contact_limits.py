@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from wearlaw.arrays import Array
 from wearlaw.line import LineProblem
-from wearlaw.models import Claim, ContactModel
+from wearlaw.tangential import Claim, ContactModel
 from wearlaw.testing.contact_checks import (
     SUM,
     error_of_force,

@@ -9,8 +9,9 @@ import numpy as np
 import pint
 
 from wearlaw.docstrings import field_docstrings
-from wearlaw.models import Claim, ContactModel, Model, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.records import NODE_VARIABLES
+from wearlaw.tangential import Claim, ContactModel, Model
 from wearlaw.testing.examples import for_each
 from wearlaw.testing.law_shape import contacts_for
 from wearlaw.testing.sampling import forward

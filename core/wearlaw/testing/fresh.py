@@ -14,14 +14,14 @@ from collections.abc import Callable
 from typing import Any
 
 
-def made_again(way: Callable[[], Any], argument: Any) -> tuple[str, Any]:
+def made_again(way: Callable[[], Any], arguments: list[Any]) -> tuple[str, Any]:
     """Return what a model computes, or why it could not be made."""
     try:
         model = way()
         if hasattr(model, "rate"):
-            return "", model.rate(argument)
-        contact = model.solve(argument)
-        return "", [contact.tangential_force, contact.traction, contact.slip]
+            return "", [model.rate(contact) for contact in arguments]
+        contacts = [model.solve(problem) for problem in arguments]
+        return "", [value for found in contacts for value in (found.tangential_force, found.traction, found.slip)]
     except Exception as error:
         return f"{type(error).__name__}: {error}", None
 
@@ -40,8 +40,8 @@ def main() -> None:
         "json": lambda: cls.model_validate_json(contents["json"]),
         "pickle": lambda: pickle.loads(contents["pickle"]),
     }
-    argument = pickle.loads(contents["argument"])
-    pickle.dump({name: made_again(way, argument) for name, way in ways.items()}, sys.stdout.buffer)
+    arguments = pickle.loads(contents["arguments"])
+    pickle.dump({name: made_again(way, arguments) for name, way in ways.items()}, sys.stdout.buffer)
 
 
 if __name__ == "__main__":

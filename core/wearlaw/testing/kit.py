@@ -9,7 +9,8 @@ from typing import TypeAlias
 
 from wearlaw.errors import InputError
 from wearlaw.line_model import LineContactModel
-from wearlaw.models import Claim, ContactModel, Model, WearLaw
+from wearlaw.models import WearLaw
+from wearlaw.tangential import Claim, ContactModel, Model
 from wearlaw.testing import (
     acceleration,
     contact_checks,
@@ -18,6 +19,10 @@ from wearlaw.testing import (
     contact_force,
     contact_limits,
     declarations,
+    ellipse_checks,
+    ellipse_energy,
+    ellipse_force,
+    ellipse_limits,
     law_branches,
     law_checks,
     law_shape,
@@ -27,6 +32,7 @@ from wearlaw.testing import (
 from wearlaw.testing.roundtrip import RoundTrip
 
 CheckFunction: TypeAlias = Callable[..., None]
+Claims: TypeAlias = Mapping[Claim, tuple[CheckFunction, ...]]
 
 COMMON: tuple[CheckFunction, ...] = (*declarations.COMMON, *unit_checks.CHECKS, *acceleration.COMMON)
 """Checks of wear laws and contact models."""
@@ -76,7 +82,8 @@ def checks(model: Model) -> Iterator[Check]:
     """Yield the checks of a wear law or contact model.
 
     A check of what the model does not claim is left out: of a claim in `ContactModel.exemptions`, of the nodes of
-    a law that is stated for the whole patch, of what is optional and not given.
+    a law that is stated for the whole patch, of a shape of patch that a contact model does not solve, of what is
+    optional and not given.
 
     Parameters
     ----------
@@ -114,7 +121,14 @@ def _of_law(law: WearLaw) -> list[CheckFunction]:
 
 
 def _of_contact_model(model: ContactModel) -> list[CheckFunction]:
-    tables: list[Mapping[Claim, tuple[CheckFunction, ...]]] = [contact_limits.CLAIMS, contact_energy.CLAIMS]
+    geometries = model.geometries()
+    of_line = _of_line_contacts(model) if "line" in geometries else []
+    of_ellipse = _of_elliptic_contacts(model) if "ellipse" in geometries else []
+    return [*of_line, *of_ellipse, *COMMON, *declarations.OF_CONTACT_MODELS]
+
+
+def _of_line_contacts(model: ContactModel) -> list[CheckFunction]:
+    tables: list[Claims] = [contact_limits.CLAIMS, contact_energy.CLAIMS]
     of_fields: list[CheckFunction] = []
     if isinstance(model, LineContactModel):
         tables.append(contact_energy.CLAIMS_OF_FIELDS)
@@ -125,15 +139,22 @@ def _of_contact_model(model: ContactModel) -> list[CheckFunction]:
             of_fields += contact_fields.OF_EXCESS
     if model.refined() is not None:
         tables.append(contact_energy.CLAIMS_OF_REFINED)
-    claimed = [f for table in tables for claim, of in table.items() if claim not in model.exemptions for f in of]
-    return [
-        *contact_checks.CHECKS,
-        *contact_force.CHECKS,
-        *claimed,
-        *of_fields,
-        *COMMON,
-        *declarations.OF_CONTACT_MODELS,
-    ]
+    return [*contact_checks.CHECKS, *contact_force.CHECKS, *_claimed(model, tables), *of_fields]
+
+
+def _of_elliptic_contacts(model: ContactModel) -> list[CheckFunction]:
+    tables: list[Claims] = [ellipse_limits.CLAIMS, ellipse_energy.CLAIMS]
+    of_strips: list[CheckFunction] = []
+    if model.refined() is not None:
+        tables.append(ellipse_energy.CLAIMS_OF_REFINED)
+        of_strips += ellipse_energy.OF_REFINED
+    if type(model).on_strips is not ContactModel.on_strips:
+        of_strips += ellipse_energy.OF_STRIPS
+    return [*ellipse_checks.CHECKS, *ellipse_force.CHECKS, *_claimed(model, tables), *of_strips]
+
+
+def _claimed(model: ContactModel, tables: list[Claims]) -> list[CheckFunction]:
+    return [f for table in tables for claim, of in table.items() if claim not in model.exemptions for f in of]
 
 
 def _check(function: Callable[..., None], model: Model) -> Check:

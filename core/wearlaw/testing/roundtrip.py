@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from wearlaw.models import ContactModel, Model, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.rig import TwinDisc
+from wearlaw.tangential import ContactModel, Geometry, Model
+from wearlaw.testing.ellipses import random_ellipses
 from wearlaw.testing.examples import assert_close
 from wearlaw.testing.sampling import random_contacts
 from wearlaw.units import Q
@@ -47,20 +49,26 @@ class RoundTrip:
             assert_close(found, due, f"what the model computes after {way}")
 
     @cached_property
-    def _argument(self) -> Any:
+    def _arguments(self) -> list[Any]:
+        """The contacts or problems for which the model computes something."""
         if isinstance(self.model, WearLaw):
-            return random_contacts(16)
-        return TwinDisc.suros().problem(
-            max_pressure="1.5 GPa", creepage=Q(np.array([-1.0, 0.1, 1.0, 10.0]), "%"), friction_coefficient=0.46
-        )
+            return [random_contacts(16)]
+        assert isinstance(self.model, ContactModel)
+        problems: dict[Geometry, Any] = {
+            "line": TwinDisc.suros().problem(
+                max_pressure="1.5 GPa", creepage=Q(np.array([-1.0, 0.1, 1.0, 10.0]), "%"), friction_coefficient=0.46
+            ),
+            "ellipse": random_ellipses(4),
+        }
+        return [problems[geometry] for geometry in self.model.geometries()]
 
     @property
     def _computed(self) -> list[Any]:
         if isinstance(self.model, WearLaw):
-            return list(self.model.rate(self._argument))
+            return [self.model.rate(contact) for contact in self._arguments]
         assert isinstance(self.model, ContactModel)
-        contact = self.model.solve(self._argument)
-        return [contact.tangential_force, contact.traction, contact.slip]
+        contacts = [self.model.solve(problem) for problem in self._arguments]
+        return [value for found in contacts for value in (found.tangential_force, found.traction, found.slip)]
 
     @property
     def _pickled(self) -> bytes:
@@ -78,7 +86,7 @@ class RoundTrip:
             "toml": tomli_w.dumps(fields),
             "json": self.model.model_dump_json(by_alias=True),
             "pickle": self._pickled,
-            "argument": pickle.dumps(self._argument),
+            "arguments": pickle.dumps(self._arguments),
         }
         # The path comes first and by itself, since reading the rest needs it.
         request = pickle.dumps((sys.path, pickle.dumps(text)))

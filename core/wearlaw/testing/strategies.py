@@ -7,6 +7,7 @@ that a model meets its corners. Values are uniform in their logarithm.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,14 +16,18 @@ from hypothesis.extra.numpy import arrays
 
 from wearlaw import hertz
 from wearlaw.arrays import Array
+from wearlaw.ellipse import EllipticProblem
 from wearlaw.line import LineProblem
 from wearlaw.material import Material
 from wearlaw.records import Contact
 from wearlaw.rig import Disc, TwinDisc
+from wearlaw.testing.ellipses import SATURATION, Creepages, at_reduced
 from wearlaw.testing.sampling import CONDITIONS_DRAWN, NODE_VALUES_DRAWN, aimed, contact_from_shares
 from wearlaw.units import Q
+from wearlaw.wheel_rail import WheelRail
 
 
+@cache  # hypothesis validates each new strategy, which costs more than drawing from it
 def log_uniform(low: float, high: float) -> st.SearchStrategy[float]:
     """Return floats that are uniform in their logarithm."""
     return st.floats(np.log10(low), np.log10(high)).map(lambda exponent: float(10.0**exponent))
@@ -52,6 +57,25 @@ def rigs(draw: st.DrawFn) -> TwinDisc:
 
 
 @st.composite
+def wheel_rails(draw: st.DrawFn) -> WheelRail:
+    """Draw a wheel on a rail, of any material; flat, convex and concave profiles that touch in a point.
+
+    The patches that a load makes have axis ratios from about 1/20 to 20.
+    """
+    radius = draw(log_uniform(0.05, 2.0))
+    across = draw(log_uniform(1e-2, 1e2)) / radius  # 1/R of head and profile together
+    profile = draw(st.just(0.0) | st.floats(-3.0, 3.0)) * across
+    head = across - profile
+    return WheelRail(
+        wheel_radius=Q(radius, "m"),
+        rail_head_radius=Q(1.0 / head if head else np.inf, "m"),
+        wheel_profile_radius=Q(1.0 / profile if profile else np.inf, "m"),
+        material=draw(materials()),
+        speed=Q(draw(log_uniform(1e-2, 1e2)), "m/s"),
+    )
+
+
+@st.composite
 def conditions(draw: st.DrawFn) -> dict[str, Any]:
     """Draw the conditions of a test of steel discs, as keyword arguments of `TwinDisc.problem`."""
     return {
@@ -61,9 +85,8 @@ def conditions(draw: st.DrawFn) -> dict[str, Any]:
     }
 
 
-@st.composite
-def line_problems(draw: st.DrawFn, crowded: tuple[float, ...] = (1.0, 1.5)) -> LineProblem:
-    """Draw one operating point of two discs of unlike sizes and materials; one may be flat.
+def line_problems(crowded: tuple[float, ...] = (1.0, 1.5)) -> st.SearchStrategy[LineProblem]:
+    """Return one operating point of two discs of unlike sizes and materials; one may be flat.
 
     The load is drawn as p0/E* = a/(2R) from 1e-5 to 0.03. Half the creepages lie anywhere from 1e-7 to 1, half
     crowd at full slip.
@@ -73,34 +96,131 @@ def line_problems(draw: st.DrawFn, crowded: tuple[float, ...] = (1.0, 1.5)) -> L
     crowded : tuple of float
         Creepages over μa/R to crowd at; full slip is at 1 in Carter's theory and at 3/2 in FASTSIM's.
     """
-    radius = hertz.relative_radius(draw(log_uniform(1e-3, 10.0)), draw(st.just(np.inf) | log_uniform(1e-3, 10.0)))
-    modulus = hertz.effective_modulus(
-        draw(log_uniform(1e9, 1e12)), draw(st.floats(0.0, 0.5)), draw(log_uniform(1e9, 1e12)), draw(st.floats(0.0, 0.5))
-    )
-    ratio, friction = draw(log_uniform(1e-5, 3e-2)), draw(log_uniform(1e-2, 1.5))
-    load = hertz.force_from_max_pressure(np.asarray(ratio * modulus), radius, modulus)
-    half_width = hertz.half_width(load, radius, modulus)
     at_full_slip = st.builds(
-        lambda centre, side, gap: centre * friction * float(half_width) / radius * (1.0 + side * gap),
+        lambda centre, side, gap: centre * (1.0 + side * gap),
         st.sampled_from(crowded),
         st.sampled_from([-1.0, 0.0, 1.0]),
         log_uniform(1e-12, 1e-1),
     )
+    return st.builds(
+        _line_problem,
+        radii=st.tuples(log_uniform(1e-3, 10.0), st.just(np.inf) | log_uniform(1e-3, 10.0)),
+        moduli=st.tuples(log_uniform(1e9, 1e12), log_uniform(1e9, 1e12)),
+        poisson_ratios=st.tuples(st.floats(0.0, 0.5), st.floats(0.0, 0.5)),
+        load=log_uniform(1e-5, 3e-2),
+        friction_coefficient=log_uniform(1e-2, 1.5),
+        creepage=st.tuples(log_uniform(1e-7, 1.0), st.just(0.0)) | st.tuples(st.just(0.0), at_full_slip),
+        rolling_speed=log_uniform(1e-2, 100.0),
+        track_width=log_uniform(1e-4, 1.0),
+        density=st.floats(1e3, 2e4),
+    )
+
+
+def _line_problem(
+    *,
+    radii: tuple[float, float],
+    moduli: tuple[float, float],
+    poisson_ratios: tuple[float, float],
+    load: float,
+    friction_coefficient: float,
+    creepage: tuple[float, float],
+    **conditions: float,
+) -> LineProblem:
+    """Return the problem of p0/E* and of a creepage given as itself, or over μa/R; none is above 1."""
+    radius = hertz.relative_radius(*radii)
+    modulus = hertz.effective_modulus(moduli[0], poisson_ratios[0], moduli[1], poisson_ratios[1])
+    force = hertz.force_from_max_pressure(np.asarray(load * modulus), radius, modulus)
+    half_width = hertz.half_width(force, radius, modulus)
+    given, reduced = creepage
     values = {
-        "normal_force_per_width": load,
+        "normal_force_per_width": force,
         "half_width": half_width,
-        "max_pressure": hertz.max_pressure(load, half_width),
+        "max_pressure": hertz.max_pressure(force, half_width),
         "relative_radius": radius,
         "effective_modulus": modulus,
-        "friction_coefficient": friction,
-        "creepage": min(draw(st.one_of(log_uniform(1e-7, 1.0), at_full_slip)), 1.0),
-        "rolling_speed": draw(log_uniform(1e-2, 100.0)),
-        "track_width": draw(log_uniform(1e-4, 1.0)),
-        "density": draw(st.floats(1e3, 2e4)),
+        "friction_coefficient": friction_coefficient,
+        "creepage": min(given + reduced * friction_coefficient * float(half_width) / radius, 1.0),
+        **conditions,
     }
     return LineProblem(**{name: np.asarray(value, dtype=np.float64) for name, value in values.items()})
 
 
+_SIGNS = st.sampled_from([1.0, -1.0])
+
+
+@st.composite
+def elliptic_problems(draw: st.DrawFn, crowded: tuple[float, ...] = SATURATION) -> EllipticProblem:
+    """Draw one operating point of two bodies of one material that touch in an ellipse.
+
+    Axis ratios a/b go from 0.05 to 20, loads from p0/G = 1e-5 to 0.04. Half the creepages have a magnitude anywhere
+    from 1e-3 to 100 of what Kalker's linear theory needs for μN, half crowd at saturation; half have the direction of x
+    or y. Half the problems have a spin, of either sign, that by itself would need 1e-3 to 30 μN.
+
+    Parameters
+    ----------
+    crowded : tuple of float
+        Creepages to crowd at, over what linear theory needs for μN; see `wearlaw.testing.ellipses`.
+    """
+    return _elliptic_problem(**draw(_parts_of_ellipse(crowded)))
+
+
+@cache
+def _parts_of_ellipse(crowded: tuple[float, ...]) -> st.SearchStrategy[dict[str, Any]]:
+    """Return the arguments of `_elliptic_problem`; once, since hypothesis takes as long to set them up as to draw."""
+    at_saturation = st.builds(
+        lambda centre, side, gap: centre * (1.0 + side * gap),
+        st.sampled_from(crowded),
+        st.sampled_from([-1.0, 0.0, 1.0]),
+        log_uniform(1e-12, 1e-1),
+    )
+    directions = st.floats(-np.pi, np.pi).map(lambda angle: (np.cos(angle), np.sin(angle)))
+    parts: dict[str, st.SearchStrategy[Any]] = {
+        "size": log_uniform(1e-5, 2e-2),
+        "axis_ratio": log_uniform(0.05, 20.0),
+        "load": log_uniform(1e-5, 4e-2),
+        "shear_modulus": log_uniform(1e8, 5e11),
+        "poisson_ratio": st.floats(0.0, 0.5),
+        "friction_coefficient": log_uniform(1e-2, 1.5),
+        "rolling_speed": log_uniform(1e-2, 100.0),
+        "density": st.floats(1e3, 2e4),
+        "creepage": log_uniform(1e-3, 1e2) | at_saturation,
+        "direction": st.sampled_from([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]) | directions,
+        "spin": st.just(0.0) | st.builds(lambda sign, size: sign * size, _SIGNS, log_uniform(1e-3, 30.0)),
+    }
+    return st.fixed_dictionaries(parts)
+
+
+def _elliptic_problem(
+    *,
+    size: float,
+    axis_ratio: float,
+    load: float,
+    creepage: float,
+    direction: tuple[float, float],
+    spin: float,
+    shear_modulus: float,
+    **conditions: float,
+) -> EllipticProblem:
+    """Return the problem of √(ab), a/b, p0/G and reduced creepages, so small that nothing slips more than it rolls."""
+    a, b = size * np.sqrt(axis_ratio), size / np.sqrt(axis_ratio)
+    values = {
+        "a": a,
+        "b": b,
+        "normal_force": 2.0 / 3.0 * np.pi * a * b * load * shear_modulus,
+        "shear_modulus": shear_modulus,
+        "longitudinal_creepage": 0.0,
+        "lateral_creepage": 0.0,
+        "spin": 0.0,
+        **conditions,
+    }
+    problem = EllipticProblem.from_si(**{name: np.asarray(value, dtype=np.float64) for name, value in values.items()})
+    problem = at_reduced(problem, creepage * direction[0], creepage * direction[1], spin)
+    creepages = Creepages.of(problem)
+    fastest = np.hypot(creepages.longitudinal, creepages.lateral) + np.abs(creepages.spin) * max(a, b)
+    return problem.with_creepages(*creepages.times(1.0 / np.maximum(fastest, 1.0)))
+
+
+@cache
 def _shares(shape: tuple[int, ...]) -> st.SearchStrategy[Array]:
     return arrays(np.float64, shape, elements=st.floats(0.0, 1.0, width=64), fill=st.nothing())
 

@@ -7,18 +7,22 @@ products. What that may do to a result is found by a step of `STEP` in each valu
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from functools import partial
+from typing import Any, TypeAlias
 
 import numpy as np
 import pint
 
 from wearlaw.arrays import Array
+from wearlaw.base_rig import Rig
 from wearlaw.errors import WearlawError
-from wearlaw.models import ContactModel, Model, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.records import Contact
 from wearlaw.registry import application_registry
 from wearlaw.rig import TwinDisc
+from wearlaw.tangential import ContactModel, Geometry, Model
 from wearlaw.testing.contact_checks import random_problems
+from wearlaw.testing.ellipses import WHEEL_RAIL, random_ellipses
 from wearlaw.testing.examples import SAME, assert_close
 from wearlaw.testing.sampling import EPS, random_contacts
 from wearlaw.units import Q
@@ -66,7 +70,8 @@ def _computed(model: Model) -> Array:
     if isinstance(model, WearLaw):
         return model.rate(random_contacts(POINTS))
     assert isinstance(model, ContactModel)
-    return model.solve(random_problems(POINTS)).tangential_force
+    problems: dict[Geometry, Any] = {"line": random_problems(POINTS), "ellipse": random_ellipses(POINTS)}
+    return np.stack([model.solve(problems[geometry]).tangential_force for geometry in model.geometries()])
 
 
 def units_of_conditions_do_not_matter(model: Model) -> None:
@@ -78,17 +83,18 @@ def units_of_conditions_do_not_matter(model: Model) -> None:
         _compare(_contacts(), lambda given: model.rate(Contact.from_arrays(**given)), OF_CONTACTS)
         return
     assert isinstance(model, ContactModel)
-    pipeline = TwinDisc.suros() | model
+    for geometry in model.geometries():
+        rig, loads, creepages = GIVEN[geometry]
+        random = np.random.default_rng(7)
+        rolling = {name: random.integers(-2000, 2000, POINTS) * step for name, step in creepages.items()}
+        for load, (low, high) in loads.items():
+            values = {load: np.rint(random.uniform(low, high, POINTS)), **rolling}
+            _compare(values, partial(_solved, rig | model), OF_CONDITIONS)
 
-    def solved(given: dict[str, Any]) -> Array:
-        solution = pipeline(**given, friction_coefficient=0.46)
-        return np.stack([solution.tangential_force.m_as("N"), solution.mean_slip.m_as("")])
 
-    random = np.random.default_rng(7)
-    creepage = random.integers(-2000, 2000, POINTS) * 1e-4
-    for load, (low, high) in LOADS.items():
-        values = {load: np.rint(random.uniform(low, high, POINTS)), "creepage": creepage}
-        _compare(values, solved, OF_CONDITIONS)
+def _solved(pipeline: Any, given: dict[str, Any]) -> Array:
+    solution = pipeline(**given, friction_coefficient=0.46)
+    return np.stack([solution.tangential_force.m_as("N"), solution.mean_slip.m_as("")])
 
 
 def _contacts() -> Values:
@@ -114,20 +120,32 @@ def _compare(values: Values, computed: Callable[[dict[str, Any]], Array], units:
     assert_close(computed(other), due, f"the result of values in {in_words} in place of SI", 0.0, allowed)
 
 
-LOADS = {
-    "normal_force": (1e2, 9e3),
-    "normal_force_per_width": (1e4, 9e5),
-    "max_pressure": (1e8, 1.5e9),
-}
-"""Loads of steel discs within their elastic limit, from low to high in SI."""
-
 OF_CONDITIONS = {
     "normal_force": ("N", "kN"),
     "normal_force_per_width": ("N/m", "N/mm"),
     "max_pressure": ("Pa", "MPa"),
     "creepage": ("", "%"),
+    "longitudinal_creepage": ("", "%"),
+    "lateral_creepage": ("", "%"),
+    "spin": ("1/m", "1/mm"),
 }
 """Conditions with their SI units and others."""
+
+Given: TypeAlias = tuple[Rig, dict[str, tuple[float, float]], dict[str, float]]
+
+GIVEN: dict[Geometry, Given] = {
+    "line": (
+        TwinDisc.suros(),
+        {"normal_force": (1e2, 9e3), "normal_force_per_width": (1e4, 9e5), "max_pressure": (1e8, 1.5e9)},
+        {"creepage": 1e-4},
+    ),
+    "ellipse": (
+        WHEEL_RAIL,
+        {"normal_force": (1e4, 9e4), "max_pressure": (1e8, 1e9)},
+        {"longitudinal_creepage": 1e-5, "lateral_creepage": 1e-5, "spin": 1e-3},
+    ),
+}
+"""For each geometry a rig, loads of steel within its elastic limit, from low to high in SI, and steps of creepages."""
 
 OF_CONTACTS = {
     "pressure": ("Pa", "MPa"),

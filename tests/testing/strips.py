@@ -1,0 +1,133 @@
+"""A contact model of ellipses that marches along strips, as simple as it can be and right."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+
+import wearlaw as wl
+
+
+class Strips(wl.ContactModel):
+    """Kalker's simplified theory with a parabolic bound, sampled in the middle of equal cells along strips.
+
+    From one middle to the next the traction grows by w = dq/dx in stick, and is clipped to the bound. Half of what is
+    clipped off at both ends of such a step is slip in either cell; so that q·s sums to what is fed in.
+    """
+
+    name: ClassVar[str] = "strips"
+    source: ClassVar[str] = "J. J. Kalker, Vehicle System Dynamics 11 (1982) 1-13"
+
+    # What the traction would grow by behind the last middle is left out: half of one of 32 cells, of the mean slip.
+    elliptic_accuracy: ClassVar[float] = 1.6e-2
+
+    cells: int = 32
+    """Number of cells of a strip [-]."""
+    strips: int = 32
+    """Number of strips [-]."""
+
+    def refined(self) -> Strips:
+        return self.model_copy(update={"cells": 2 * self.cells, "strips": 2 * self.strips})
+
+    def solve_ellipse(self, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        # Chebyshev's quadrature of the second kind, exact for the area.
+        angle = np.pi * np.arange(1, self.strips + 1) / (self.strips + 1)
+        return self.at(problem, -np.cos(angle), np.pi / (self.strips + 1) * np.sin(angle))
+
+    def on_strips(self, problem: wl.EllipticProblem, shares: Any) -> wl.EllipticContact | None:
+        edges = np.concatenate([[-1.0], 0.5 * (shares[1:] + shares[:-1]), [1.0]])
+        return self.at(problem, shares, np.diff(edges))
+
+    def at(self, problem: wl.EllipticProblem, shares: Any, widths: Any) -> wl.EllipticContact:
+        """Return the contact on strips at y = `shares` × b, which stand for `widths` × b."""
+        a, b = problem.a[..., None, None], problem.b[..., None, None]
+        known = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
+        modulus = problem.shear_modulus
+        along, across, turning = (
+            value[..., None, None]
+            for value in (
+                8.0 * problem.a / (3.0 * known.c11 * modulus),
+                8.0 * problem.a / (3.0 * known.c22 * modulus),
+                np.pi * problem.a * np.sqrt(problem.a / problem.b) / (4.0 * known.c23 * modulus),
+            )
+        )
+        creepages = (problem.longitudinal_creepage, problem.lateral_creepage, problem.spin)
+        creep_x, creep_y, spin = (creepage[..., None, None] for creepage in creepages)
+        half_length = a * np.sqrt(1.0 - shares**2)
+        x = half_length * ((2.0 * np.arange(self.cells)[:, None] + 1.0) / self.cells - 1.0)
+        step = 2.0 / self.cells * half_length
+        y = np.broadcast_to(b * shares, x.shape)
+        centre = 2.0 * problem.friction_coefficient * problem.normal_force / problem.patch_area
+        bound = centre[..., None, None] * np.maximum(1.0 - (x / a) ** 2 - shares**2, 0.0)
+        grow = (
+            (creep_x / along - spin * y / turning) * step,
+            (creep_y / across - spin * (x - 0.5 * step) / turning) * step,
+        )
+        traction, clipped = self.marched(grow, bound)
+        length = np.broadcast_to(step, x.shape)
+        slip = along * clipped[0] / length, across * clipped[1] / length
+        area = length * b * widths
+        return wl.EllipticContact.from_strips(
+            problem,
+            wl.CreepForces(
+                longitudinal=(traction[0] * area).sum(axis=(-2, -1)),
+                lateral=(traction[1] * area).sum(axis=(-2, -1)),
+                spin_moment=-((x * traction[1] + y * traction[0]) * area).sum(axis=(-2, -1)),
+            ),
+            x=x,
+            y=problem.b[..., None] * shares,
+            length=length,
+            strip_width=problem.b[..., None] * widths,
+            traction=traction,
+            slip=slip,
+            traction_bound=bound,
+        )
+
+    def marched(self, grow: Any, bound: Any) -> tuple[Any, Any]:
+        """Return the traction in the middles, and what is clipped off around them."""
+        traction, clipped = np.zeros((2, *bound.shape)), np.zeros((2, *bound.shape))
+        grow = np.stack(np.broadcast_arrays(*grow, bound)[:2])
+        now = np.zeros_like(grow[..., 0, :])
+        for k in range(self.cells):
+            free = now + (0.5 if k == 0 else 1.0) * grow[..., k, :]
+            size = np.hypot(*free)
+            over = size > bound[..., k, :]
+            now = np.where(over, free * np.divide(bound[..., k, :], size, out=np.zeros_like(size), where=over), free)
+            traction[..., k, :] = now
+            clipped[..., k, :] += (1.0 if k == 0 else 0.5) * (free - now)
+            if k > 0:
+                clipped[..., k - 1, :] += 0.5 * (free - now)
+        clipped[..., -1, :] += 0.5 * now  # at the trailing edge, where the bound is zero
+        return traction, clipped
+
+
+class Means(wl.CreepForceModel):
+    """Shen, Hedrick and Elkins's forces: those of linear theory times one factor, so that they reach μN and no more."""
+
+    name: ClassVar[str] = "means"
+    source: ClassVar[str] = "Z. Y. Shen, J. K. Hedrick, J. A. Elkins, Vehicle System Dynamics 12 (1983) 79-83"
+
+    @property
+    def exemptions(self) -> Any:
+        return {"stick": "one node slips as a whole"}
+
+    def creep_forces(self, problem: wl.EllipticProblem) -> wl.CreepForces:
+        known = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
+        ab, lateral, spin = problem.a * problem.b, problem.lateral_creepage, problem.spin
+        along, across, turning = (
+            problem.shear_modulus * ab * linear
+            for linear in (
+                known.c11 * problem.longitudinal_creepage,
+                known.c22 * lateral + np.sqrt(ab) * known.c23 * spin,
+                ab * known.c33 * spin - np.sqrt(ab) * known.c23 * lateral,
+            )
+        )
+        reduced = np.hypot(along, across) / (problem.friction_coefficient * problem.normal_force)
+        left = np.minimum(reduced, 3.0) / 3.0
+        factor = self.factor(problem, reduced) * (1.0 - left + left**2 / 3.0) * 3.0 / np.maximum(reduced, 3.0)
+        return wl.CreepForces(longitudinal=factor * along, lateral=factor * across, spin_moment=factor * turning)
+
+    def factor(self, problem: wl.EllipticProblem, reduced: Any) -> Any:  # noqa: ARG002  for those that are wrong
+        """Return what the forces are multiplied by; `reduced` is the force of linear theory over μN."""
+        return np.ones_like(reduced)

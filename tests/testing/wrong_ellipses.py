@@ -1,0 +1,276 @@
+"""Contact models of ellipses that are wrong in one way each, made from a march along strips."""
+
+# ruff: noqa: ARG002  the signature is that of the base
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+import wearlaw as wl
+from tests.testing.strips import Strips
+
+
+class Spoilt(Strips):
+    """Base of models whose contact is right before they spoil it."""
+
+    def at(self, problem: wl.EllipticProblem, shares: Any, widths: Any) -> wl.EllipticContact:
+        return self.spoilt(super().at(problem, shares, widths), problem)
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        raise NotImplementedError
+
+
+def times(contact: wl.EllipticContact, factor: Any) -> wl.EllipticContact:
+    """Return the contact with all forces and tractions multiplied, one factor for each operating point."""
+    fields = ("traction", "traction_x", "traction_y")
+    totals = ("tangential_force", "force_x", "force_y", "moment_z", "wear_index")
+    return contact.replaced(
+        **{name: getattr(contact, name) * np.asarray(factor)[..., None, None] for name in fields},
+        **{name: getattr(contact, name) * factor for name in totals},
+    )
+
+
+class AxisTooMany(Spoilt):
+    """The lateral force has an axis too many."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(force_y=contact.force_y[..., None])
+
+
+class WidthOfEachNode(Spoilt):
+    """The width of a strip is given at its nodes."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(strip_width=np.broadcast_to(contact.strip_width[..., None, :], contact.x.shape))
+
+
+class NoNumberOnTheEdge(Spoilt):
+    """One node holds no number."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        slip = contact.slip_y.copy()
+        slip[..., 0, 0] = np.nan
+        return contact.replaced(slip_y=slip)
+
+
+class ForgetsSpeed(Spoilt):
+    """The rolling speed is always 1 m/s."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(rolling_speed=np.ones(problem.batch_shape))
+
+
+class RigidSlipOfTranslation(Spoilt):
+    """What it gives as rigid slip lacks that of the spin."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(rigid_slip=np.hypot(problem.longitudinal_creepage, problem.lateral_creepage))
+
+
+class BeyondTheEdge(Spoilt):
+    """The outermost strips lie outside."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(y=1.01 * contact.y)
+
+
+class Rectangle(Spoilt):
+    """Strips are all as long as the patch."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        share = np.sqrt(1.0 - (contact.y / problem.b[..., None, None]) ** 2)
+        return contact.replaced(area=contact.area / share)
+
+
+class TwiceThePressure(Spoilt):
+    """The pressure carries twice the load."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(pressure=2.0 * contact.pressure)
+
+
+class MomentOnTheWheel(Spoilt):
+    """The moment has the sign of that on the upper body."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        index = contact.wear_index - 2.0 * problem.spin * contact.moment_z
+        return contact.replaced(moment_z=-contact.moment_z, wear_index=index)
+
+
+class LongitudinalOnly(Spoilt):
+    """What it gives as magnitude of the traction is its longitudinal component."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(traction=np.abs(contact.traction_x))
+
+
+class SumOfForces(Spoilt):
+    """The tangential force is the sum of its components' magnitudes."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(tangential_force=np.abs(contact.force_x) + np.abs(contact.force_y))
+
+
+class SlipsAgainstLateralTraction(Spoilt):
+    """The lateral slip has the opposite sign."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(slip_y=-contact.slip_y)
+
+
+class LeaksBetweenPoints(Spoilt):
+    """Depends on the largest spin of the batch."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return times(contact, 1.0 - 1e-6 * (np.abs(problem.spin) < np.abs(problem.spin).max()))
+
+
+class TurnsTheProblem(Strips):
+    """Takes another spin in place."""
+
+    def solve_ellipse(self, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        contact = super().solve_ellipse(problem)
+        np.multiply(problem.spin, 2.0, out=problem.spin)
+        return contact
+
+
+CALLS: list[int] = []
+
+
+class SofterEachTime(Spoilt):
+    """Softer with each call."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        CALLS.append(1)
+        return times(contact, 1.0 - 1e-12 * len(CALLS))
+
+
+class SinglePrecisionForces(Strips):
+    """The forces are rounded to single precision."""
+
+    def creep_forces(self, problem: wl.EllipticProblem) -> wl.CreepForces:
+        forces = super().creep_forces(problem)
+        return dataclasses.replace(forces, longitudinal=forces.longitudinal.astype(np.float32).astype(np.float64))
+
+
+class FirstPatchForAll(Spoilt):
+    """With one axis of operating points, all slip as the first."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        one_axis = len(problem.batch_shape) == 1
+        return contact.replaced(slip_x=np.broadcast_to(contact.slip_x[0], contact.x.shape)) if one_axis else contact
+
+
+class WeakerBrakes(Spoilt):
+    """A thousandth less in braking."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return times(contact, np.where(problem.longitudinal_creepage < 0.0, 0.999, 1.0))
+
+
+class LeftIsNotRight(Spoilt):
+    """A thousandth more where spin and longitudinal creepage have one sign."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return times(contact, np.where(problem.longitudinal_creepage * problem.spin > 0.0, 1.001, 1.0))
+
+
+class AlwaysWears(Spoilt):
+    """The wear index has an offset of 1e-7 N, also in free rolling."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(wear_index=contact.wear_index + 1e-7)
+
+
+class ForgetsTheSpin(Spoilt):
+    """The wear index lacks what the spin feeds in."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(wear_index=contact.wear_index - problem.spin * contact.moment_z)
+
+
+class ForcesOfAnother(Strips):
+    """The forces alone are larger than those of the contact."""
+
+    def creep_forces(self, problem: wl.EllipticProblem) -> wl.CreepForces:
+        forces = super().creep_forces(problem)
+        return dataclasses.replace(forces, spin_moment=forces.spin_moment * (1.0 + 1e-12))
+
+
+class OverBoundInOneCell(Spoilt):
+    """One cell carries a thousandth too much."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        factor = np.ones(contact.traction.shape)
+        factor[..., -1, 0] = 1.001
+        return contact.replaced(
+            traction=factor * contact.traction,
+            traction_x=factor * contact.traction_x,
+            traction_y=factor * contact.traction_y,
+        )
+
+
+class EachComponentHasTheBound(Strips):
+    """Clips the components one by one, so that their vector may be larger by √2."""
+
+    def marched(self, grow: Any, bound: Any) -> tuple[Any, Any]:
+        traction, clipped = super().marched(grow, bound)
+        return np.clip(np.sqrt(2.0) * traction, -bound, bound), clipped
+
+
+class SlipsEverywhere(Spoilt):
+    """A tenth of the creepage is slip everywhere."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        more = 0.1 * np.hypot(problem.longitudinal_creepage, problem.lateral_creepage)[..., None, None]
+        return contact.replaced(slip=contact.slip + more)
+
+
+class SlipsTooFastInFullSlip(Spoilt):
+    """A tenth too much slip."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(slip=1.1 * contact.slip, slip_x=1.1 * contact.slip_x, slip_y=1.1 * contact.slip_y)
+
+
+class FirstCellsStick(Spoilt):
+    """The first cell of each strip never slips."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        slip = contact.slip.copy()
+        slip[..., 0, :] = 0.0
+        return contact.replaced(slip=slip)
+
+
+CAUGHT: dict[Any, str] = {
+    AxisTooMany: "elliptic_contact_has_the_shape_of_the_problem",
+    WidthOfEachNode: "elliptic_contact_has_the_shape_of_the_problem",
+    NoNumberOnTheEdge: "elliptic_contact_is_finite",
+    ForgetsSpeed: "elliptic_contact_carries_the_conditions",
+    RigidSlipOfTranslation: "elliptic_contact_carries_the_conditions",
+    BeyondTheEdge: "nodes_cover_the_ellipse",
+    Rectangle: "nodes_cover_the_ellipse",
+    TwiceThePressure: "pressure_on_the_ellipse_sums_to_the_load",
+    MomentOnTheWheel: "traction_vectors_sum_to_the_forces",
+    LongitudinalOnly: "magnitudes_are_those_of_the_vectors",
+    SumOfForces: "magnitudes_are_those_of_the_vectors",
+    SlipsAgainstLateralTraction: "no_node_gains_energy",
+    LeaksBetweenPoints: "batch_of_ellipses_equals_loop",
+    TurnsTheProblem: "elliptic_problem_is_not_changed",
+    SofterEachTime: "elliptic_solutions_agree_to_the_bit",
+    SinglePrecisionForces: "elliptic_solution_is_in_double_precision",
+    FirstPatchForAll: "wear_laws_run_on_the_ellipse",
+    WeakerBrakes: "forces_are_odd_in_the_creepages",
+    LeftIsNotRight: "forces_are_mirrored_with_the_creepages",
+    AlwaysWears: "zero_creepages_give_nothing",
+    ForgetsTheSpin: "wear_index_is_forces_times_creepages",
+    ForcesOfAnother: "creep_forces_are_those_of_the_contact",
+    OverBoundInOneCell: "traction_vector_keeps_its_bound",
+    EachComponentHasTheBound: "traction_vector_keeps_its_bound",
+    SlipsEverywhere: "nothing_slips_below_the_bound",
+    SlipsTooFastInFullSlip: "translation_reaches_full_slip",
+    FirstCellsStick: "translation_reaches_full_slip",
+}
+"""The check that must catch each."""

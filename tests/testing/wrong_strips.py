@@ -1,0 +1,99 @@
+"""Contact models of ellipses whose energy, refinements, strips or conditions are wrong, made from a march on strips."""
+
+# ruff: noqa: ARG002  the signature is that of the base
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import wearlaw as wl
+from tests.testing.strips import Strips
+from tests.testing.wrong_ellipses import Spoilt, times
+
+
+class LosesEnergyOfTranslation(Spoilt):
+    """A tenth of the slip is missing."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(slip=0.9 * contact.slip, slip_x=0.9 * contact.slip_x, slip_y=0.9 * contact.slip_y)
+
+
+class LosesEnergyOnAnyStrips(Spoilt):
+    """One per cent of the slip is missing, less than its accuracy, however fine the strips."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return contact.replaced(slip=0.99 * contact.slip, slip_x=0.99 * contact.slip_x, slip_y=0.99 * contact.slip_y)
+
+
+class ForcesAreNoSumOnAnyStrips(Spoilt):
+    """The forces are larger than the sum of the tractions by less than its accuracy, and the slip as much."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        contact = contact.replaced(slip=1.01 * contact.slip, slip_x=1.01 * contact.slip_x, slip_y=1.01 * contact.slip_y)
+        return contact.replaced(force_x=1.01 * contact.force_x, force_y=1.01 * contact.force_y)
+
+
+class RefinedHasAsManyStrips(Strips):
+    """What it calls refined has as many strips and cells."""
+
+    def refined(self) -> RefinedHasAsManyStrips:
+        return self
+
+
+class DoesNotConverge(Spoilt):
+    """The forces go up and down with the refinement, by less than its accuracy."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        odd = round(np.log2(self.cells)) % 2
+        return times(contact, np.full(problem.batch_shape, 1.0 - 0.01 * odd))
+
+
+class StripsOfHalfTheWear(Strips):
+    """On the strips that are asked for, it slips half as much."""
+
+    def on_strips(self, problem: wl.EllipticProblem, shares: Any) -> wl.EllipticContact | None:
+        contact = super().on_strips(problem, shares)
+        assert contact is not None
+        return contact.replaced(slip=0.5 * contact.slip, slip_x=0.5 * contact.slip_x, slip_y=0.5 * contact.slip_y)
+
+
+class StripsSomewhereElse(Strips):
+    """It gives its own strips in place of those that are asked for."""
+
+    def on_strips(self, problem: wl.EllipticProblem, shares: Any) -> wl.EllipticContact | None:
+        contact = self.solve_ellipse(problem)
+        return (
+            contact
+            if contact.x.shape[-1] == len(shares)
+            else self.model_copy(update={"strips": len(shares)}).solve_ellipse(problem)
+        )
+
+
+class CountsMillionths(Spoilt):
+    """Slips less by 1e-12 where the lateral creepage is an odd number of hundred-thousandths."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        factor = np.where((1e5 * problem.lateral_creepage) % 2.0 == 1.0, 1.0 - 1e-12, 1.0)[..., None, None]
+        return contact.replaced(slip=contact.slip * factor)
+
+
+class OtherwiseForOnePoint(Spoilt):
+    """Solves one operating point by itself in another way."""
+
+    def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
+        return times(contact, 1.0 - 1e-9 * (problem.size == 1))
+
+
+CAUGHT: dict[Any, str] = {
+    LosesEnergyOfTranslation: "translation_dissipates_the_energy_fed_in",
+    LosesEnergyOnAnyStrips: "refined_strips_improve_the_sums",
+    ForcesAreNoSumOnAnyStrips: "refined_strips_improve_the_sums",
+    RefinedHasAsManyStrips: "refined_strips_improve_the_sums",
+    DoesNotConverge: "refined_strips_improve_the_forces",
+    StripsOfHalfTheWear: "other_strips_have_the_same_sums",
+    StripsSomewhereElse: "other_strips_have_the_same_sums",
+    CountsMillionths: "units_of_conditions_do_not_matter",
+    OtherwiseForOnePoint: "acceleration_does_not_matter",
+}
+"""The check that must catch each."""
