@@ -22,9 +22,10 @@ from wearlaw.figures.measured_points import known_variables
 from wearlaw.figures.spec import FigureSpec
 from wearlaw.grid import Grid
 from wearlaw.measurement import Measurement
-from wearlaw.models import Model
 from wearlaw.rig import Disc, TwinDisc
 from wearlaw.specification import ContactModelField, MaterialField, WearLawField
+from wearlaw.tangential import Model
+from wearlaw.uncertainty.specification import UncertainPoint
 from wearlaw.units import Length, Quantity, Speed, Unit, text_of
 
 CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
@@ -99,6 +100,8 @@ class Case(Configuration):
     """Grids of operating points, each under a name."""
     profiles: dict[str, Grid] = Field(default_factory=dict)
     """Single operating points at which stresses and slip along the patch are shown, each under a name."""
+    uncertainty: dict[str, UncertainPoint] = Field(default_factory=dict)
+    """Operating points that are not known exactly, each under a name; for `wearlaw uncertainty`."""
     measured: Measurement | None = None
     """Tests of a lab, to be shown beside the predictions."""
     sections: tuple[Annotated[str, AfterValidator(_section)], ...] = ()
@@ -118,7 +121,7 @@ class Case(Configuration):
 
     @model_validator(mode="after")
     def _consistent(self) -> Case:
-        for kind, names in (("sweeps", self.sweeps), ("profiles", self.profiles)):
+        for kind, names in (("sweeps", self.sweeps), ("profiles", self.profiles), ("uncertainty", self.uncertainty)):
             for name in names:
                 if not name.isidentifier():
                     raise ValueError(f"{kind}: the name '{name}' must be made of letters, digits and underscores")
@@ -126,7 +129,12 @@ class Case(Configuration):
             if profile.axes():
                 raise ValueError(f"profiles.{name}: a profile is at one operating point; give each condition one value")
         labels(self.contact_models)
-        labels(self.wear_laws)
+        laws = dict(zip(labels(self.wear_laws), self.wear_laws, strict=True))
+        for name, point in self.uncertainty.items():
+            try:
+                point.check_laws(laws)
+            except InputError as error:
+                raise ValueError(f"uncertainty.{name}.{error}") from None
         twice = sorted({name for name in self.sections if self.sections.count(name) > 1})
         if twice:
             raise ValueError(f"sections: '{twice[0]}' is listed twice; leave one out")

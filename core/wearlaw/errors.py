@@ -77,6 +77,10 @@ class CompositionError(WearlawError, TypeError):
     """Stages of a pipeline are in the wrong order or do not fit each other."""
 
 
+class SweepError(WearlawError, RuntimeError):
+    """A sweep cannot be finished, since its worker processes die; what was done before is kept where it is on disk."""
+
+
 class ModelError(WearlawError, RuntimeError):
     """A contact model or wear law broke its contract: wrong shape, or a value that is not finite."""
 
@@ -129,6 +133,10 @@ class RangeWarning(WearlawWarning):
 
 class FitWarning(WearlawWarning):
     """A fit is there, but is less certain than its numbers say."""
+
+
+class WorkerWarning(WearlawWarning):
+    """A worker process of a sweep died, and what it was at is computed again."""
 
 
 class PluginWarning(WearlawWarning):

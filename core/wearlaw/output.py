@@ -10,11 +10,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from wearlaw.case import CASE_FILE, written
+from wearlaw.case import CASE_FILE, Case, written
 from wearlaw.errors import OutputError
 from wearlaw.report.latex import latex_table
 from wearlaw.report.tables import tables
-from wearlaw.study import Study
+from wearlaw.study import BAND, RATES, Study
+from wearlaw.sweeping.space import check_disk, check_memory
+from wearlaw.sweeping.targets import ITEM
 from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
 
 if TYPE_CHECKING:
@@ -29,6 +31,10 @@ FIGURES = "figures"
 REPORT = "report.html"
 TABLES = "tables"
 FigureFormat = Literal["png", "pdf", "svg"]
+COPIES = 2
+"""How often a result is in memory: as it was computed, and among those of the other pairs."""
+ROW_IN_MEMORY, ROW_ON_DISK = 800, 400
+"""Bytes that a row of the table of results takes in memory, measured, and as CSV."""
 METADATA: dict[FigureFormat, Any] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
 """What matplotlib would write into a figure, and must not, for the same bytes each time."""
 T = TypeVar("T")
@@ -101,6 +107,22 @@ def _move(inside: Path, target: Path, replaced: Path) -> None:
         if replaced.exists():
             replaced.rename(target)
         raise
+
+
+def check_room(case: Case, folder: Path) -> None:
+    """Refuse a case whose results would not fit into memory or on the disk.
+
+    Raises
+    ------
+    InputError
+        With the size that is needed.
+    """
+    contacts, pairs = len(case.contact_models), len(case.contact_models) * len(case.wear_laws)
+    points = sum(grid.size for grid in case.sweeps.values())
+    numbers = points * (len(OF_POINT) + len(OF_CONTACT) * contacts + (len(RATES) + len(BAND)) * pairs)
+    rows = points * pairs
+    check_memory(COPIES * ITEM * numbers + ROW_IN_MEMORY * rows, "give the sweeps fewer points")
+    check_disk(2 * ITEM * numbers + ROW_ON_DISK * rows, folder)
 
 
 def write(

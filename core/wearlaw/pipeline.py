@@ -2,32 +2,42 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Generic, Self, TypeVar, Unpack, overload
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, Unpack, overload
 
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
-from wearlaw.arrays import Array
-from wearlaw.conditions import TwinDiscConditions
+from wearlaw.blocks import Columns
+from wearlaw.composition import check_geometry, check_scale, check_traction, needs_discs, warn_of_calibration
+from wearlaw.conditions import TwinDiscConditions, WheelRailConditions
 from wearlaw.configuration import Configuration
-from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
+from wearlaw.ellipse import CreepForces, EllipticProblem
+from wearlaw.elliptic_wear import creep_forces, elliptic_wear
+from wearlaw.errors import CompositionError, InputError
 from wearlaw.integrate import integrate_contact, integrate_wear
 from wearlaw.line import LineProblem
-from wearlaw.models import ContactModel, Scale, WearLaw
-from wearlaw.ranges import RangeWatch
+from wearlaw.models import WearLaw
+from wearlaw.ranges import RangeWatch, elliptic_mean, line_mean
 from wearlaw.result import ContactSolution, Prediction
 from wearlaw.rig import TwinDisc
 from wearlaw.specification import ContactModelField, WearLawField
+from wearlaw.tangential import Scale
 from wearlaw.uncertainty.distributions import Distribution, PublishedRange
-from wearlaw.units import Quantity, QuantityLike
+from wearlaw.units import Quantity, QuantityLike, shortened
+from wearlaw.wheel_rail import WheelRail
+from wearlaw.wheel_rail_result import WheelRailContact, WheelRailPrediction
 
 if TYPE_CHECKING:
+    import os
+
+    import pandas
+    import xarray
     from numpy.typing import ArrayLike
 
     from wearlaw.uncertainty.result import Uncertainty
 
-RigT = TypeVar("RigT", bound=TwinDisc)
+RigT = TypeVar("RigT", bound=TwinDisc | WheelRail)
 
 ORDER = 'the order is rig | wl.contact_model("exact") | wl.patch_mean(), where it is needed, | wl.wear_law("usfd")'
 
@@ -50,11 +60,25 @@ class ContactPipeline(Configuration, Generic[RigT]):
     """A rig with a contact model: predicts traction and slip, and takes a wear law to predict wear."""
 
     rig: RigT
-    """The test rig."""
+    """The two bodies that roll on each other."""
     contact_model: ContactModelField
     """The theory of the tangential contact."""
     use_patch_mean: bool = False
     """Whether the resolved contact is replaced by its patch means."""
+
+    @field_validator("rig", mode="before")
+    @classmethod
+    def _of_its_fields(cls, value: Any) -> Any:
+        if isinstance(value, dict):
+            return (WheelRail if "wheel_radius" in value else TwinDisc)(**value)
+        if not isinstance(value, (TwinDisc, WheelRail)):
+            raise ValueError(f"must be a TwinDisc or a WheelRail, got {shortened(value)}")
+        return value
+
+    @model_validator(mode="after")
+    def _solves(self) -> Self:
+        check_geometry(self.rig, self.contact_model)
+        return self
 
     @property
     def scale(self) -> Scale:
@@ -76,16 +100,24 @@ class ContactPipeline(Configuration, Generic[RigT]):
         if not isinstance(stage, WearLaw):
             raise CompositionError(f"a contact model is followed by wl.patch_mean() or a wear law, not by {stage!r}")
         pipeline = Pipeline(contact=self, wear_law=stage)
-        _warn_of_calibration(self.scale, self.contact_model, stage)
+        warn_of_calibration(self.rig, self.contact_model, self.scale, stage)
         return pipeline
 
-    def __call__(self: ContactPipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> ContactSolution:
-        """Return the contact under the given conditions; see `TwinDisc.problem` for these."""
-        problem = self.rig.problem(**conditions)
-        check_traction(self.contact_model, problem)
-        self.rig.warn_of_plasticity(problem, stacklevel=2)
-        force = integrate_contact(self.contact_model, problem)
-        return ContactSolution(self.rig, self.contact_model, self.scale, problem, force)
+    @overload
+    def __call__(self: ContactPipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> ContactSolution: ...
+    @overload
+    def __call__(self: ContactPipeline[WheelRail], **conditions: Unpack[WheelRailConditions]) -> WheelRailContact: ...
+    def __call__(self, **conditions: Any) -> ContactSolution | WheelRailContact:
+        """Return the contact under the given conditions; see the `problem` of the rig for these."""
+        rig, model = self.rig, self.contact_model
+        if isinstance(rig, WheelRail):
+            ellipse = rig.problem(**conditions)
+            rig.warn_of_plasticity(ellipse.max_pressure, stacklevel=2)
+            return WheelRailContact(rig, model, self.scale, ellipse, creep_forces(model, ellipse))
+        problem = rig.problem(**conditions)
+        check_traction(model, problem)
+        rig.warn_of_plasticity(problem.max_pressure, stacklevel=2)
+        return ContactSolution(rig, model, self.scale, problem, integrate_contact(model, problem))
 
     def creepage_for(
         self: ContactPipeline[TwinDisc],
@@ -112,6 +144,7 @@ class ContactPipeline(Configuration, Generic[RigT]):
         """
         from wearlaw.inverse import creepage_for
 
+        needs_discs(self.rig, "creepage_for")
         return creepage_for(self, tangential_force, traction_coefficient, conditions)
 
 
@@ -129,7 +162,7 @@ class Pipeline(Configuration, Generic[RigT]):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        _check_scale(self.contact.scale, self.contact.contact_model, self.wear_law)
+        check_scale(self.contact.scale, self.contact.contact_model, self.wear_law)
         return self
 
     def __repr__(self) -> str:
@@ -140,37 +173,131 @@ class Pipeline(Configuration, Generic[RigT]):
         def __or__(self, other: object) -> object:
             raise CompositionError(f"a pipeline ends with its wear law, nothing follows it, not {other!r}; {ORDER}")
 
-    def __call__(self: Pipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> Prediction:
-        """Return the contact and the wear under the given conditions; see `TwinDisc.problem` for these."""
-        return self.predict(self.contact.rig.problem(**conditions), stacklevel=3)
+    @overload
+    def __call__(self: Pipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> Prediction: ...
+    @overload
+    def __call__(self: Pipeline[WheelRail], **conditions: Unpack[WheelRailConditions]) -> WheelRailPrediction: ...
+    def __call__(self, **conditions: Any) -> Prediction | WheelRailPrediction:
+        """Return the contact and the wear under the given conditions; see the `problem` of the rig for these."""
+        problem = self.contact.rig.problem(**conditions)
+        return self.predict(problem, stacklevel=3)
 
+    @overload
     def predict(
         self, problem: LineProblem, *, on_block: Callable[[int], None] | None = None, stacklevel: int = 2
-    ) -> Prediction:
+    ) -> Prediction: ...
+    @overload
+    def predict(
+        self, problem: EllipticProblem, *, on_block: Callable[[int], None] | None = None, stacklevel: int = 2
+    ) -> WheelRailPrediction: ...
+    def predict(
+        self,
+        problem: LineProblem | EllipticProblem,
+        *,
+        on_block: Callable[[int], None] | None = None,
+        stacklevel: int = 2,
+    ) -> Prediction | WheelRailPrediction:
         """Return the contact and the wear for a contact problem that the rig has made.
 
         Parameters
         ----------
-        problem : LineProblem
-            From `TwinDisc.problem`.
+        problem : LineProblem or EllipticProblem
+            From `TwinDisc.problem` or `WheelRail.problem`.
         on_block : callable, optional
             Called with the number of operating points done after each block of them, to show progress.
         stacklevel : int
             Which caller warnings name; 2 is the caller of this method.
         """
-        rig, model, scale = self.contact.rig, self.contact.contact_model, self.contact.scale
-        check_traction(model, problem)
-        rig.warn_of_plasticity(problem, stacklevel=stacklevel)
+        self.contact.rig.warn_of_plasticity(problem.max_pressure, stacklevel=stacklevel)
         watch = RangeWatch(self.wear_law)
-
-        def see(part: LineProblem, force: Array) -> None:
-            watch.see(part, force)
-            if on_block is not None:
-                on_block(part.creepage.size)
-
-        wear = integrate_wear(model, self.wear_law, problem, scale, see)
+        found = self.watched(problem, watch, on_block)
         watch.warn(stacklevel)
-        return Prediction(rig, model, scale, problem, self.wear_law, wear)
+        return found
+
+    def watched(
+        self, problem: LineProblem | EllipticProblem, watch: RangeWatch, on_block: Callable[[int], None] | None = None
+    ) -> Prediction | WheelRailPrediction:
+        """Return what `predict` does, without its warnings; `watch` sees the operating points."""
+        rig, model, scale, law = self.contact.rig, self.contact.contact_model, self.contact.scale, self.wear_law
+
+        def see(part: LineProblem | EllipticProblem, columns: Columns) -> None:
+            if isinstance(part, EllipticProblem):
+                watch.see(part.size, partial(elliptic_mean, part, CreepForces.of(columns)))
+            else:
+                watch.see(part.size, partial(line_mean, part, columns["tangential_force"]))
+            if on_block is not None:
+                on_block(part.size)
+
+        if isinstance(rig, WheelRail) and isinstance(problem, EllipticProblem):
+            return WheelRailPrediction(rig, model, scale, problem, law, elliptic_wear(model, law, problem, scale, see))
+        if isinstance(rig, TwinDisc) and isinstance(problem, LineProblem):
+            check_traction(model, problem)
+            return Prediction(rig, model, scale, problem, law, integrate_wear(model, law, problem, scale, see))
+        raise InputError(f"problem: {type(problem).__name__} is not what a {type(rig).__name__} makes")
+
+    def sweep(
+        self,
+        table: pandas.DataFrame | xarray.Dataset | None = None,
+        *,
+        outputs: Sequence[str] = ("wear_rate",),
+        workers: int = 1,
+        client: Any = None,
+        store: str | os.PathLike[str] | None = None,
+        resume: bool = False,
+        progress: bool = False,
+        **conditions: Any,
+    ) -> xarray.Dataset:
+        """Return predictions at all combinations of the conditions that are arrays, or at the rows of a table.
+
+        Parameters
+        ----------
+        table : pandas.DataFrame or xarray.Dataset, optional
+            Operating points row by row, a condition a column, with units by type (pint), `attrs["units"]` or heads
+            such as "creepage [%]"; the conditions that are given besides are the same in all rows.
+        outputs : sequence of str
+            What is kept: names of properties of a prediction, such as "wear_rate" or "tangential_force".
+        workers : int
+            How many processes of this machine take part; they are kept for later sweeps.
+        client : distributed.Client, optional
+            A cluster of dask.distributed, in place of `workers`.
+        store : path, optional
+            A folder for the results, in zarr format, where they are written block by block. An interrupted sweep leaves
+            there what is done. Without it the results are in memory.
+        resume : bool
+            Whether to go on with the sweep that `store` holds a part of, if it does.
+        progress : bool
+            Whether to show a progress bar with rate and time left.
+        **conditions
+            Those of a prediction; each array is an axis, with one value for each of its coordinates.
+
+        Returns
+        -------
+        xarray.Dataset
+            The outputs along the conditions, which are its coordinates; units are in `attrs["units"]`. With `store`
+            values are read from there when they are used.
+
+        Raises
+        ------
+        InputError
+            If conditions or outputs are not possible, or the results would not fit into memory or on the disk.
+        OutputError
+            If `store` holds anything else than an unfinished part of the same sweep.
+        SweepError
+            If workers die again and again.
+        """
+        from wearlaw.sweeping.sweep import sweep
+
+        return sweep(
+            self,
+            table,
+            conditions,
+            outputs=outputs,
+            workers=workers,
+            client=client,
+            store=store,
+            resume=resume,
+            progress=progress,
+        )
 
     def uncertainty(
         self: Pipeline[TwinDisc],
@@ -201,35 +328,5 @@ class Pipeline(Configuration, Generic[RigT]):
         """
         from wearlaw.uncertainty.result import Uncertainty
 
+        needs_discs(self.contact.rig, "uncertainty")
         return Uncertainty(self, conditions, law or {}, samples, seed)
-
-
-def _check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
-    """Refuse a law of the whole patch on a contact that is resolved into cells."""
-    if law.scale == "patch" and scale != "patch":
-        raise CompositionError(
-            f"wear law '{law.name}' is stated for the means of the whole patch, but contact model '{model.name}'"
-            f' resolves it into cells; put wl.patch_mean() between them, or use wl.contact_model("global")'
-        )
-
-
-def _warn_of_calibration(scale: Scale, model: ContactModel, law: WearLaw) -> None:
-    """Warn of parameters that were fitted for another contact."""
-    calibration = law.calibration
-    if calibration is not None and not calibration.covers(model, scale):
-        used = "its patch means" if scale == "patch" else "its cells"
-        warnings.warn(
-            f"the parameters of wear law '{law.name}' were fitted for {calibration}, but are used with"
-            f" {model!r} and {used}; check them against data, or choose parameters fitted for that contact",
-            CalibrationWarning,
-            stacklevel=3,
-        )
-
-
-def check_traction(model: ContactModel, problem: LineProblem) -> None:
-    """Refuse a measured traction for a contact model that has no use for it."""
-    if problem.traction_coefficient is not None and not model.uses_measured_traction:
-        raise ConditionsError(
-            f"traction_coefficient: contact model '{model.name}' computes the traction itself; leave"
-            ' traction_coefficient out, or use wl.contact_model("global")'
-        )

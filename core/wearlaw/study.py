@@ -17,12 +17,16 @@ from wearlaw.case import Case
 from wearlaw.configuration import known_name, parts
 from wearlaw.errors import InputError, ModelError, WearlawError, WearlawWarning, did_you_mean
 from wearlaw.material import Material
-from wearlaw.models import Model, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.notes import Notes
 from wearlaw.pairs import Pair, compose, labelled
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
 from wearlaw.sections import Section
+from wearlaw.sweeping.checkpoint import Checkpoint
+from wearlaw.sweeping.evaluator import Evaluator, points_of
+from wearlaw.sweeping.points import Points
+from wearlaw.tangential import Model
 from wearlaw.units import from_si
 from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
 from wearlaw.version import __version__
@@ -32,8 +36,10 @@ if TYPE_CHECKING:
 
     from wearlaw.figures.curves import FigureData
     from wearlaw.grid import Grid
-    from wearlaw.result import ContactSolution, Prediction
     from wearlaw.shelf import Shelf
+
+RATES, BAND = ("wear_rate", "wear_rate_error"), ("wear_rate_low", "wear_rate_high")
+"""What differs from pair to pair: the wear rate, and its ends over the published range of the law's parameters."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +87,12 @@ class Study:
         return self.sweeps[name]
 
 
-def run(case: Case, on_block: Callable[[int], None] | None = None) -> Study:
+def run(
+    case: Case,
+    on_block: Callable[[int], None] = lambda _: None,
+    workers: int = 1,
+    checkpoint: Checkpoint | None = None,
+) -> Study:
     """Run a case.
 
     Parameters
@@ -90,10 +101,15 @@ def run(case: Case, on_block: Callable[[int], None] | None = None) -> Study:
         The study to run.
     on_block : callable, optional
         Called with the number of evaluations done, `evaluations(case)` in all, to show progress.
+    workers : int
+        How many processes evaluate the sweeps.
+    checkpoint : Checkpoint, optional
+        Where an interrupted run leaves what is done.
     """
     notes = Notes()
+    evaluator = Evaluator(on_block, workers, checkpoint)
     pairs = compose(case.rig, labelled(case.contact_models), labelled(case.wear_laws), notes)
-    sweeps = {name: _sweep(name, grid, case, pairs, notes, on_block) for name, grid in case.sweeps.items()}
+    sweeps = {name: _sweep(name, grid, pairs, notes, evaluator) for name, grid in case.sweeps.items()}
     profiles = {name: _profile(name, grid, case, pairs, notes) for name, grid in case.profiles.items()}
     for dataset in (*sweeps.values(), *profiles.values()):
         dataset.attrs.update(title=case.title, provenance=json.dumps(provenance(case)))
@@ -154,32 +170,28 @@ def used(case: Case) -> dict[str, dict[str, str]]:
     return {kind: dict(sorted(names.items())) for kind, names in origins.items()}
 
 
-def _sweep(
-    name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, on_block: Callable[[int], None] | None
-) -> xarray.Dataset:
+def _sweep(name: str, grid: Grid, pairs: list[Pair], notes: Notes, evaluator: Evaluator) -> xarray.Dataset:
     """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
     import xarray
 
-    problem = grid.problem(case.rig)
+    points = points_of(grid)
+    axes = points.dims
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
     rates: list[dict[str, Array]] = []
-    contacts: dict[str, Prediction] = {}
-    for pair in usable:
+    contacts: dict[str, dict[str, Array]] = {}
+    of_contact, of_point = ([v for v in variables if v not in axes] for variables in (OF_CONTACT, OF_POINT))
+    for number, pair in enumerate(usable):
+        new = pair.contact_model not in contacts
+        outputs = [*RATES, *(of_contact if new else []), *(of_point if not contacts else [])]
         with notes.of(f"sweep '{name}'"):
-            prediction = pair.pipeline.predict(problem, on_block=on_block)
-        rates.append(_rates(pair.pipeline, prediction, on_block))
-        contacts[pair.contact_model] = prediction
-    axes = tuple(grid.axes())
-    first = rates[0]
+            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs)
+        contacts.setdefault(pair.contact_model, found)
+        rates.append(_with_band(f"{name}-{number}", pair.pipeline, points, found, evaluator))
     any_contact = next(iter(contacts.values()))
     variables = {
-        **{v: (("pair", *axes), np.stack([rate[v] for rate in rates])) for v in first},
-        **{
-            v: (("contact_model", *axes), np.stack([_plain(c, v) for c in contacts.values()]))
-            for v in OF_CONTACT
-            if v not in axes
-        },
-        **{v: (axes, _plain(any_contact, v)) for v in OF_POINT if v not in axes},
+        **{v: (("pair", *axes), np.stack([rate[v] for rate in rates])) for v in (*RATES, *BAND)},
+        **{v: (("contact_model", *axes), np.stack([c[v] for c in contacts.values()])) for v in of_contact},
+        **{v: (axes, any_contact[v]) for v in of_point},
     }
     dataset = xarray.Dataset({v: (dims, values, {"units": UNITS[v]}) for v, (dims, values) in variables.items()})
     grid_values = {axis: from_si(values, UNITS[axis]).magnitude for axis, values in grid.axes().items()}
@@ -204,18 +216,16 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
     return usable
 
 
-def _rates(
-    pipeline: Pipeline[TwinDisc], prediction: Prediction, on_block: Callable[[int], None] | None
+def _with_band(
+    key: str, pipeline: Pipeline[TwinDisc], points: Points, found: dict[str, Array], evaluator: Evaluator
 ) -> dict[str, Array]:
-    """Return the wear rate, its error, and its ends over the published range of the law's parameters."""
-    rates = {"wear_rate": _plain(prediction, "wear_rate"), "wear_rate_error": _plain(prediction, "wear_rate_error")}
+    """Return results with the ends of the wear rate over the published range of the law's parameters."""
     ends = []
-    for end in _band_ends(pipeline):
+    for end, one in zip(BAND, _band_ends(pipeline), strict=False):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band has given them already
-            ends.append(_plain(end.predict(prediction.problem, on_block=on_block), "wear_rate"))
-    low, high = ends or (rates["wear_rate"], rates["wear_rate"])
-    return {**rates, "wear_rate_low": low, "wear_rate_high": high}
+            ends.append(evaluator(f"{key}-{end}", one, points, ["wear_rate"])["wear_rate"])
+    return {**found, **dict(zip(BAND, ends or [found["wear_rate"]] * 2, strict=True))}
 
 
 def _band_ends(pipeline: Pipeline[TwinDisc]) -> list[Pipeline[TwinDisc]]:
@@ -264,8 +274,3 @@ def along_main_axis(sweep: xarray.Dataset) -> xarray.Dataset:
     others = [axis for axis in axes_of(sweep) if axis != main_axis(sweep)]
     line = sweep.isel({axis: sweep.sizes[axis] // 2 for axis in others})
     return line if axes_of(line) else line.set_coords("creepage").expand_dims("creepage")
-
-
-def _plain(result: ContactSolution, variable: str) -> Array:
-    """Return a property of a result as plain numbers in the unit of `UNITS`."""
-    return np.asarray(getattr(result, variable).to(UNITS[variable]).magnitude)

@@ -222,6 +222,7 @@ def test_a_wrong_case_is_one_clear_error_and_nothing_is_written(
         (["run", "c.toml", "-o", "."], "output: '.' is the working folder"),
         (["case", "tassini2011"], "there is no case file 'tassini2011'; did you mean 'tassini2010'?"),
         (["show", "usdf"], "no model is called 'usdf'; did you mean 'usfd'?"),
+        (["show", "polack"], "no model is called 'polack'; did you mean 'polach'?"),
     ],
 )
 def test_a_wrong_argument_is_one_clear_error_and_nothing_is_written(
@@ -330,7 +331,10 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
     assert head == ["kind", "name", "distribution", "version"]
     ours = [row for row in rows if row[-2] == "wearlaw"]
     assert ours == [
-        *(["contact", "model", name, "wearlaw", wl.__version__] for name in ("exact", "fastsim", "global")),
+        *(
+            ["contact", "model", name, "wearlaw", wl.__version__]
+            for name in ("exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins")
+        ),
         *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("brr", "kth", "usfd")),
         ["material", "steel", "wearlaw", wl.__version__],
         ["case", "tassini2010", "wearlaw", wl.__version__],

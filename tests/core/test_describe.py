@@ -12,7 +12,7 @@ from tests.core import cases
 from wearlaw import plugins
 from wearlaw.describe import describe
 from wearlaw.docstrings import field_docstrings
-from wearlaw.models import Model
+from wearlaw.tangential import Model
 
 MODELS: dict[str, type[Model]] = {**wl.contact_models(), **wl.wear_laws()}
 
@@ -39,6 +39,27 @@ EXPECTED: dict[str, list[str]] = {
         "bound = 'parabolic' one of 'parabolic', 'elliptic'",
         "flexibility = 'line' one of 'line', 'kalker'",
         "scale: the patch resolved into cells",
+    ],
+    "linear": [
+        "linear: a contact model of wearlaw",
+        "source: J. J. Kalker",
+        "scale: the means of the patch",
+        "does not keep traction_bound: the force is linear in the creepage and passes μN",
+        "does not keep saturation: the force is linear in the creepage and passes μN",
+        "does not keep stick: the one node slips",
+    ],
+    "polach": [
+        "adhesion_reduction = 1.0",
+        "slip_reduction = 1.0",
+        "source: O. Polach, Vehicle System Dynamics Suppl. 33 (1999) 728-739",
+        "scale: the means of the patch",
+        "does not keep stick: the one node slips as a whole",
+        "does not keep saturation: the force tends to μN without reaching it",
+    ],
+    "shen_hedrick_elkins": [
+        "source: Z. Y. Shen, J. K. Hedrick, J. A. Elkins",
+        "scale: the means of the patch",
+        "does not keep stick: the one node slips as a whole",
     ],
     "usfd": [  # Tables 3 and 4 of Tassini et al. (2010)
         "usfd: a wear law of wearlaw",

@@ -409,9 +409,11 @@ def test_slip_is_summed_in_blocks() -> None:
 def test_each_block_is_told_with_its_forces() -> None:
     told: list[tuple[wl.LineProblem, dict[str, Array]]] = []
     problem = Points(seed=16, size=BLOCK + 10).problem
-    integrate.integrate_wear(
-        LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells", lambda part, columns: told.append((part, dict(columns)))
-    )
+
+    def on_block(part: wl.LineProblem, columns: dict[str, Array]) -> None:
+        told.append((part, dict(columns)))
+
+    integrate.integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells", on_block)
     assert [part.creepage.size for part, _ in told] == [BLOCK, 10]
     forces = np.concatenate([columns["tangential_force"] for _, columns in told])
     assert forces == pytest.approx(integrate_contact(LINE_MODELS["exact"], problem), rel=4 * EPS)

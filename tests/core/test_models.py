@@ -47,7 +47,7 @@ class Proportional(wl.WearLaw):
         return contact.wear_index_density
 
 
-@pytest.mark.parametrize("base", [wl.ContactModel, wl.LineContactModel, wl.WearLaw])
+@pytest.mark.parametrize("base", [wl.ContactModel, wl.LineContactModel, wl.CreepForceModel, wl.WearLaw])
 def test_the_bases_are_abstract(base: type[Any]) -> None:
     with pytest.raises(TypeError, match="abstract"):
         base()

@@ -49,7 +49,8 @@ def test_a_model_can_be_made_again_from_its_specification(model: wl.ContactModel
 
 def test_serialising_keeps_the_name_and_the_options() -> None:
     dumped = held({"model": "fastsim", "bound": "elliptic"}).model_dump(mode="json")
-    assert dumped["contact_model"] == {"model": "fastsim", "bound": "elliptic", "flexibility": "line"}
+    given = {"model": "fastsim", "bound": "elliptic", "flexibility": "line"}
+    assert dumped["contact_model"].items() >= given.items()
     assert held(**dumped) == held({"model": "fastsim", "bound": "elliptic"})
 
 

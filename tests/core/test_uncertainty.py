@@ -242,3 +242,15 @@ def test_sobol_needs_a_rate_that_varies() -> None:
     u = USFD.uncertainty(**{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=4)  # all severe
     with pytest.raises(wl.InputError, match="the same in all samples"):
         u.sobol()
+
+
+def test_the_only_input_explains_all_of_the_variance() -> None:
+    u = USFD.uncertainty(
+        **{**FULL_SLIP, "creepage": Q(0.5, "%"), "friction_coefficient": wl.uniform(0.3, 0.4)}, samples=64
+    )
+    assert u.sobol().loc["friction_coefficient"].to_dict() == {
+        "first_order": 1.0,
+        "first_order_error": 0.0,
+        "total_order": 1.0,
+        "total_order_error": 0.0,
+    }

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from wearlaw.cli import data_commands, model_commands, study_commands
+from wearlaw.cli import data_commands, model_commands, study_commands, uncertainty_commands
 from wearlaw.errors import WearlawError
 from wearlaw.version import __version__
 
@@ -33,6 +33,7 @@ def main() -> None:
       wearlaw run tassini2010               the twin-disc study of Tassini et al. (2010)
       wearlaw case tassini2010 > my.toml    a copy of its case file, to edit
       wearlaw run my.toml -o my-results/    your own study
+      wearlaw uncertainty my.toml           how uncertain its predictions are
       wearlaw fit my-tests.csv --help       parameters of a law, fitted to your own tests
       wearlaw compare my-tests.csv --help   which model predicts your tests best
       wearlaw new-plugin NAME --wear-law    your own wear law
@@ -42,5 +43,6 @@ def main() -> None:
             stream.reconfigure(errors="replace")  # a pipe or an old terminal may not have Greek letters
 
 
-for _command in (*study_commands.COMMANDS, *data_commands.COMMANDS, *model_commands.COMMANDS):
-    main.add_command(_command)
+for _module in (study_commands, uncertainty_commands, data_commands, model_commands):
+    for _command in _module.COMMANDS:
+        main.add_command(_command)

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from wearlaw.cli.formats import CommandT, written_formats
-from wearlaw.cli.printing import print_notes, progress
+from wearlaw.cli.printing import print_notes
 from wearlaw.errors import FitError
 from wearlaw.notes import Notes
+from wearlaw.sweeping.progress import Bar
 
 if TYPE_CHECKING:
     from wearlaw.comparison.compare import Predictor
@@ -114,7 +115,7 @@ def _fit(
     tests = _tests(path, friction, "friction_coefficient" in names, notes)
     stage = _rig(rig, notes) | contact_model(contact)
     predict = stage if law is None else _with_law(stage, law, given, names, notes)
-    with notes.of("fit"), progress(bootstrap) as shown:
+    with notes.of("fit"), Bar(bootstrap) as shown:
         shown.stage("fitting")
         return fit_parameters(
             predict,
@@ -235,7 +236,7 @@ def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **
     from wearlaw.fitting.fit import fit as fit_parameters
 
     found, refused = [], []
-    with progress(len(pairs)) as shown:
+    with Bar(len(pairs)) as shown:
         shown.stage("fitting")
         for pair in pairs:
             name = f"{pair.wear_law} fitted on {pair.contact_model}"

@@ -18,8 +18,8 @@ from wearlaw.errors import PluginWarning, UnknownModelError
 from wearlaw.shelf import unknown
 
 if TYPE_CHECKING:
-    from wearlaw.models import Model
     from wearlaw.scaffold import Kind, Licence
+    from wearlaw.tangential import Model
     from wearlaw.testing import Check
 
 
@@ -95,7 +95,7 @@ def check(name: str, options: tuple[str, ...]) -> None:
     wearlaw check usfd
     wearlaw check usfd --option fitted_for=exact
     """  # noqa: D301
-    from wearlaw.models import ContactModel
+    from wearlaw.tangential import ContactModel
 
     model = _model_class(name)(**_fields(options))
     outcomes = [_outcome(one) for one in _checks(model)]

@@ -12,8 +12,9 @@ from wearlaw.case import RigField
 from wearlaw.configuration import Configuration
 from wearlaw.errors import ConfigurationError, InputError
 from wearlaw.fitting.law_files import read_wear_law
-from wearlaw.models import ContactModel, WearLaw
+from wearlaw.models import WearLaw
 from wearlaw.rig import TwinDisc
+from wearlaw.tangential import ContactModel
 
 
 class _WithRig(Configuration, extra="ignore"):

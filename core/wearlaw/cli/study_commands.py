@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,21 +15,35 @@ from rich.table import Table
 from rich.text import Text
 
 from wearlaw.cli.formats import written_formats
-from wearlaw.cli.printing import print_notes, progress
+from wearlaw.cli.printing import print_notes
+from wearlaw.sweeping.progress import Bar
 from wearlaw.version import __version__
 
 if TYPE_CHECKING:
     from wearlaw.output import FigureFormat
     from wearlaw.report.tables import NamedTable
     from wearlaw.study import Study
+    from wearlaw.sweeping.checkpoint import Checkpoint
 
 
 @click.command()
 @click.argument("case")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-results].")
 @click.option("--overwrite", is_flag=True, help="Replace the results of an earlier run in that folder.")
+@click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Processes that take part.")
+@click.option(
+    "--resume", is_flag=True, help="Go on with what an interrupted run has left in FOLDER.partial, if it has."
+)
 @written_formats
-def run(case: str, output: Path | None, overwrite: bool, figure_formats: tuple[FigureFormat, ...], latex: bool) -> None:
+def run(
+    case: str,
+    output: Path | None,
+    overwrite: bool,
+    workers: int,
+    resume: bool,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+) -> None:
     """Run a study: CASE is a case file, or the name of one that is shipped (tassini2010).
 
     Every contact model of the case is paired with every wear law. Results are written as report.html, a page to open in
@@ -35,16 +51,21 @@ def run(case: str, output: Path | None, overwrite: bool, figure_formats: tuple[F
     spelt out.
     """
     from wearlaw.case import load_case
-    from wearlaw.output import fresh_folder, write
+    from wearlaw.output import check_room, fresh_folder, write
     from wearlaw.report.tables import summaries
-    from wearlaw.study import evaluations
+    from wearlaw.study import evaluations, provenance
     from wearlaw.study import run as run_case
+    from wearlaw.sweeping.checkpoint import Checkpoint
 
     loaded = load_case(case)
     folder = output if output is not None else Path(f"{Path(case).stem}-results")
-    with fresh_folder(folder, overwrite) as fresh, progress(evaluations(loaded)) as shown:
-        study = run_case(loaded, shown)
-        names = write(study, fresh, figure_formats, latex, shown.stage)
+    with fresh_folder(folder, overwrite) as fresh:
+        check_room(loaded, folder)
+        checkpoint = Checkpoint(folder.with_name(f"{folder.name}.partial"), provenance(loaded), resume)
+        with _kept(checkpoint), Bar(evaluations(loaded)) as shown:
+            study = run_case(loaded, shown, workers, checkpoint)
+            names = write(study, fresh, figure_formats, latex, shown.stage)
+    checkpoint.remove()
     print_notes(study.notes)
     for table in summaries(study):
         Console().print(_summary(table))
@@ -52,6 +73,17 @@ def run(case: str, output: Path | None, overwrite: bool, figure_formats: tuple[F
     click.echo(f"Results in {folder}:")
     for name in names:
         click.echo(f"  {folder / name}")
+
+
+@contextmanager
+def _kept(checkpoint: Checkpoint) -> Iterator[None]:
+    """Say after an interrupt where what is done is kept."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if checkpoint.folder.exists():
+            click.echo(f"What is done is kept in '{checkpoint.folder}'; add --resume to go on with it.", err=True)
+        raise
 
 
 @click.command()

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.composition import check_traction
 from wearlaw.conditions import UNITS
 from wearlaw.errors import ConditionsError, InputError, UnitError
 from wearlaw.grid import SI_UNITS
 from wearlaw.integrate import integrate_contact
-from wearlaw.pipeline import check_traction
-from wearlaw.ranges import RangeWatch
+from wearlaw.ranges import RangeWatch, line_mean
 from wearlaw.uncertainty.distributions import Distribution, PublishedRange
 from wearlaw.uncertainty.inputs import Uncertain, parameter, split
 from wearlaw.units import WEAR_RATE, Q, Quantity, coefficient, from_si
@@ -123,6 +123,10 @@ class Uncertainty:
             raise InputError("sobol: needs one operating point; give each condition that is not distributed one value")
         if np.ptp(self.wear_rate.magnitude) == 0.0:
             raise InputError("sobol: the wear rate is the same in all samples, so that there is no variance to explain")
+        index = pd.Index([one.name for one in self.inputs], name="input")
+        if len(self.inputs) == 1:  # scipy takes no fewer than two
+            alone = {"first_order": 1.0, "first_order_error": 0.0, "total_order": 1.0, "total_order_error": 0.0}
+            return pd.DataFrame(alone, index=index)
         every: list[Any] = [uniform()] * len(self.inputs)
         size = max(self.samples // SEQUENCES, 2)
         found = [
@@ -133,7 +137,7 @@ class Uncertainty:
         for order in ("first_order", "total_order"):
             shares = np.array([np.ravel(getattr(one, order)) for one in found])
             table |= {order: shares.mean(axis=0), f"{order}_error": shares.std(axis=0, ddof=1) / np.sqrt(SEQUENCES)}
-        return pd.DataFrame(table, index=pd.Index([one.name for one in self.inputs], name="input"))
+        return pd.DataFrame(table, index=index)
 
     def figure_data(self) -> FigureData:
         """Return what `plot` draws."""
@@ -206,9 +210,10 @@ class Uncertainty:
         contact = self._predict.contact
         check_traction(contact.contact_model, flat)
         if stacklevel is not None:
-            contact.rig.warn_of_plasticity(flat, stacklevel=stacklevel)
+            contact.rig.warn_of_plasticity(flat.max_pressure, stacklevel=stacklevel)
             watch = RangeWatch(self._law)
-            watch.see(flat, integrate_contact(contact.contact_model, flat))
+            force = integrate_contact(contact.contact_model, flat)
+            watch.see(flat.size, partial(line_mean, flat, force))
             watch.warn(stacklevel)
         rates = integrate_varying(contact.contact_model, self._law, varied, flat, contact.scale)
         return rates.reshape(shape)

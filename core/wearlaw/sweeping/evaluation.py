@@ -1,0 +1,126 @@
+"""Evaluating a block of a sweep, in whichever process that happens."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pint
+
+from wearlaw import kernels
+from wearlaw.arrays import Array
+from wearlaw.errors import InputError, did_you_mean
+from wearlaw.extremes import extremes
+from wearlaw.pipeline import Pipeline
+from wearlaw.ranges import RangeWatch
+from wearlaw.sweeping.points import Points
+from wearlaw.variables import UNITS
+
+Outputs = dict[str, Array]
+"""Results of a block by name, (points,) each, in the units of its job."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is done with every block.
+
+    Attributes
+    ----------
+    pipeline : Pipeline
+    units : mapping of str to str
+        The unit of each output, by its name.
+    accelerate : bool or None
+        As in `wearlaw.accelerate`, which is set in one process only.
+    """
+
+    pipeline: Pipeline[Any]
+    units: Mapping[str, str]
+    accelerate: bool | None = field(default_factory=kernels.chosen)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What warnings must know of a block.
+
+    Attributes
+    ----------
+    points : int
+        How many operating points it has.
+    max_pressure : float
+        The highest of their maximum pressures [Pa].
+    ranges : mapping of str to tuple
+        For each variable with a range in the law: lowest and highest mean over the patch in SI, and how many points lie
+        outside.
+    """
+
+    points: int
+    max_pressure: float
+    ranges: Mapping[str, tuple[float, float, int]]
+
+
+def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, Seen]:
+    """Return the outputs of a block of operating points, and what warnings must know of it.
+
+    `on_block` is called with the number of points done, several times where that takes long.
+    """
+    kernels.accelerate(job.accelerate)
+    problem = job.pipeline.contact.rig.problem(**part.conditions())
+    watch = RangeWatch(job.pipeline.wear_law)
+    prediction = job.pipeline.watched(problem, watch, on_block)
+    outputs = {name: _in_unit(getattr(prediction, name), unit) for name, unit in job.units.items()}
+    ranges = {name: (seen.lowest, seen.highest, seen.outside) for name, seen in watch.seen.items()}
+    return outputs, Seen(watch.points, extremes(problem.max_pressure)[1], ranges)
+
+
+def notes(pipeline: Pipeline[Any], blocks: Iterable[Seen]) -> list[str]:
+    """Return what a prediction of all blocks together would warn of."""
+    every = list(blocks)
+    watch = RangeWatch(pipeline.wear_law)
+    watch.points = sum(one.points for one in every)
+    for name, seen in watch.seen.items():
+        lowest, highest, outside = zip(*(one.ranges[name] for one in every), strict=True)
+        seen.lowest, seen.highest, seen.outside = min(lowest), max(highest), sum(outside)
+    highest_pressure: Any = np.float64(max(one.max_pressure for one in every))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        pipeline.contact.rig.warn_of_plasticity(highest_pressure, stacklevel=1)
+        watch.warn(stacklevel=1)
+    return [str(one.message) for one in caught]
+
+
+def output_units(pipeline: Pipeline[Any], points: Points, outputs: list[str]) -> dict[str, str]:
+    """Return the unit in which each output is written, found by evaluating the first operating point.
+
+    Raises
+    ------
+    InputError
+        If there is no such output, or it is a condition.
+    """
+    problem = pipeline.contact.rig.problem(**points.part([slice(0, 1)] * len(points.dims)).conditions())
+    prediction = pipeline.watched(problem, RangeWatch(pipeline.wear_law))
+    units = {}
+    for name in outputs:
+        value = getattr(prediction, name, None) if name in _properties(prediction) else None
+        if not isinstance(value, pint.Quantity) or np.shape(value.magnitude) != (1,):
+            known = [one for one in _properties(prediction) if one in UNITS and one not in points.varying]
+            raise InputError(
+                f"outputs: there is no '{name}' at an operating point;{did_you_mean(name, known)}"
+                f" There are: {', '.join(known)}"
+            )
+        if name in points.varying or name in points.fixed:
+            raise InputError(f"outputs: '{name}' is one of the conditions, and among the coordinates of the results")
+        units[name] = UNITS.get(name, str(value.units))
+    return units
+
+
+def _properties(result: object) -> list[str]:
+    """Return the names of the public properties of a result."""
+    found = [name for name in dir(type(result)) if not name.startswith("_")]
+    return [name for name in found if not callable(getattr(type(result), name))]
+
+
+def _in_unit(quantity: Any, unit: str) -> Array:
+    return np.ascontiguousarray(quantity.to(unit).magnitude)

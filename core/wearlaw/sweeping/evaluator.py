@@ -1,0 +1,59 @@
+"""Evaluating the sweeps of a case, on any number of processes, with a checkpoint for what takes long."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from typing import Any
+
+from wearlaw.arrays import Array
+from wearlaw.errors import RangeWarning
+from wearlaw.grid import SI_UNITS, Grid
+from wearlaw.pipeline import Pipeline
+from wearlaw.sweeping.checkpoint import Checkpoint
+from wearlaw.sweeping.evaluation import Job
+from wearlaw.sweeping.points import Points, Varying
+from wearlaw.sweeping.sweep import check_importable, run
+from wearlaw.sweeping.targets import Memory
+from wearlaw.units import Q
+from wearlaw.variables import UNITS
+
+
+def points_of(grid: Grid) -> Points:
+    """Return the operating points of a grid, in SI."""
+    conditions = grid.conditions()
+    varying = {name: Varying(name, conditions.pop(name), SI_UNITS.get(name)) for name in grid.axes()}
+    fixed = {name: Q(float(si), SI_UNITS[name]) if name in SI_UNITS else float(si) for name, si in conditions.items()}
+    return Points(fixed, varying)
+
+
+class Evaluator:
+    """Evaluates pipelines at points.
+
+    Parameters
+    ----------
+    on_block : callable
+        Called with the number of evaluations done.
+    workers : int
+        How many processes take part.
+    checkpoint : Checkpoint, optional
+        Where an interrupted run leaves what is done.
+    """
+
+    def __init__(self, on_block: Callable[[int], None], workers: int, checkpoint: Checkpoint | None) -> None:
+        self._on_block = on_block
+        self._workers = workers
+        self._checkpoint = checkpoint
+
+    def __call__(self, key: str, pipeline: Pipeline[Any], points: Points, outputs: Sequence[str]) -> dict[str, Array]:
+        """Return outputs in the units of `variables.UNITS`, of the shape of the points; `key` names them in the run."""
+        job = Job(pipeline, {name: UNITS[name] for name in outputs})
+        workers = min(self._workers, len(points.blocks()))
+        if workers > 1:
+            check_importable(pipeline)
+        target = self._checkpoint.target(key, job, points) if self._checkpoint else Memory(job, points)
+        with closing(target):
+            for note in run(target, self._on_block, workers):
+                warnings.warn(note, RangeWarning, stacklevel=2)
+        return {name: values.reshape(points.shape) for name, values in target.arrays.items()}

@@ -1,0 +1,143 @@
+"""Sweeps: a prediction at very many operating points, block by block."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import warnings
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from wearlaw.configuration import parts
+from wearlaw.errors import InputError, RangeWarning, WorkerWarning
+from wearlaw.pipeline import Pipeline
+from wearlaw.sweeping.cluster import on_cluster
+from wearlaw.sweeping.evaluation import Job, notes, output_units
+from wearlaw.sweeping.points import Block, Points, outer_product
+from wearlaw.sweeping.processes import Done, in_processes
+from wearlaw.sweeping.progress import Bar
+from wearlaw.sweeping.store import Store, finished
+from wearlaw.sweeping.tables import from_table
+from wearlaw.sweeping.targets import Memory, Target
+from wearlaw.sweeping.worker import evaluated
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def sweep(
+    pipeline: Pipeline[Any],
+    table: Any,
+    conditions: Mapping[str, Any],
+    *,
+    outputs: Sequence[str],
+    workers: int,
+    client: Any,
+    store: str | os.PathLike[str] | None,
+    resume: bool,
+    progress: bool,
+) -> xarray.Dataset:
+    """Return predictions at all points of a sweep; see `Pipeline.sweep`."""
+    if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
+        raise InputError(f"workers: must be the number of processes, at least 1; got {workers!r}")
+    points = outer_product(conditions) if table is None else from_table(table, conditions)
+    job = checked_job(pipeline, points, outputs, workers > 1 or client is not None)
+    if store is None:
+        if resume:
+            raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
+        target: Memory | Store = Memory(job, points)
+    else:
+        path = Path(store)
+        there = finished(job, points, path, resume)
+        if there is not None:
+            return there
+        target = Store(job, points, path, resume)
+    with closing(target), Bar(points.size, progress) as bar:
+        texts = run(target, bar, workers, client)
+        for text in texts:
+            warnings.warn(text, RangeWarning, stacklevel=3)
+        return target.finish(texts)
+
+
+def checked_job(pipeline: Pipeline[Any], points: Points, outputs: Sequence[str], elsewhere: bool) -> Job:
+    """Return what is done at every point, once points and outputs are found to be possible.
+
+    Raises
+    ------
+    InputError
+        If they are not, or if other processes could not find a model.
+    """
+    if isinstance(outputs, str) or not outputs:
+        raise InputError(f'outputs: must be a list of names, such as ["wear_rate"], got {outputs!r}')
+    _check_conditions(pipeline, points)
+    if elsewhere:
+        check_importable(pipeline)
+    return Job(pipeline, output_units(pipeline, points, list(dict.fromkeys(outputs))))
+
+
+def check_importable(pipeline: Pipeline[Any]) -> None:
+    """Refuse models that other processes could not find.
+
+    Raises
+    ------
+    InputError
+        If a model is defined in the script that runs.
+    """
+    for part in parts(pipeline):
+        if type(part).__module__ == "__main__":
+            raise InputError(
+                f"{part.subject()}: is defined in the script or notebook that runs, where other processes do not find"
+                " it; define it in a module and import it from there, or use one process"
+            )
+
+
+def _check_conditions(pipeline: Pipeline[Any], points: Points) -> None:
+    """Find values that cannot be before anything is evaluated: each dimension at the first values of the others."""
+    for dim in points.dims:
+        line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
+        pipeline.contact.rig.problem(**line.conditions())
+
+
+def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:
+    """Evaluate the blocks that are not done yet, and return what a reader of the results must know.
+
+    Parameters
+    ----------
+    target : Target
+        Where the results go. An interrupt leaves there what is done.
+    on_block : callable
+        Called with the number of points done, for each block; first of all for those that were done before.
+    workers, client
+        As in `Pipeline.sweep`.
+    """
+    left = [block for block in target.points.blocks() if block.number not in target.done]
+    on_block(sum(seen.points for seen in target.done.values()))
+    several = client is not None or workers > 1
+    with closing(_elsewhere(target, left, workers, client) if several else _here(target, left, on_block)) as every:
+        for block, seen, deaths in every:
+            target.add(block.number, seen)
+            for death in deaths:
+                warnings.warn(death, WorkerWarning, stacklevel=4)
+            if several:
+                on_block(seen.points)
+    return notes(target.job.pipeline, target.done.values())
+
+
+def _elsewhere(target: Target, blocks: list[Block], workers: int, client: Any) -> Generator[Done, None, None]:
+    """Evaluate blocks in other processes."""
+    job = pickle.dumps(target.job)
+    if client is None:
+        return in_processes(workers, job, target.store, target.points, blocks, target.places)
+    return on_cluster(client, job, target.store, target.points, blocks, target.places)
+
+
+def _here(target: Target, blocks: list[Block], on_block: Callable[[int], None]) -> Generator[Done, None, None]:
+    """Evaluate blocks in this process, with progress also within a block."""
+    for block in blocks:
+        part = target.points.part(block.slices)
+        outputs, seen = evaluated(target.job, block, part, target.store, on_block)
+        for place, values in zip(target.places(block), outputs.values(), strict=True):
+            place[:] = values
+        yield block, seen, []

@@ -1,0 +1,95 @@
+"""Where the results of a sweep go: into memory, or into files that memory maps show."""
+
+from __future__ import annotations
+
+import json
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.sweeping.evaluation import Job, Seen
+from wearlaw.sweeping.journal import Run, run_of
+from wearlaw.sweeping.points import Block, Points
+from wearlaw.sweeping.space import check_memory
+
+if TYPE_CHECKING:
+    import xarray
+
+ITEM = np.dtype(np.float64).itemsize
+
+
+class Target(ABC):
+    """What takes the results of the blocks of a sweep.
+
+    Attributes
+    ----------
+    store : str or None
+        Where those who evaluate blocks write the outputs themselves; None if they hand them back.
+    done : dict of int to Seen
+        What was seen of each block that is done, by its number.
+    """
+
+    store: str | None = None
+
+    def __init__(self, job: Job, points: Points) -> None:
+        self.job = job
+        self.points = points
+        self.done: dict[int, Seen] = {}
+
+    @abstractmethod
+    def places(self, block: Block) -> list[Array]:
+        """Return where the outputs of a block go that are handed back, (points,) each, in the order of the job."""
+
+    def add(self, number: int, seen: Seen) -> None:
+        """Take note that a block is done."""
+        self.done[number] = seen
+
+    def close(self) -> None:  # noqa: B027  (what is in memory needs nothing)
+        """Leave what there is as it is."""
+
+    @property
+    def size(self) -> int:
+        """How many bytes the outputs take."""
+        return self.points.size * len(self.job.units) * ITEM
+
+
+class Arrays(Target):
+    """Results in arrays of this process.
+
+    Attributes
+    ----------
+    arrays : dict of str to ndarray, (points,)
+        The outputs by name.
+    """
+
+    arrays: dict[str, Array]
+
+    def places(self, block: Block) -> list[Array]:
+        """Return where the outputs of a block go."""
+        return [array[block.flat] for array in self.arrays.values()]
+
+
+class Memory(Arrays):
+    """Results in memory."""
+
+    def __init__(self, job: Job, points: Points) -> None:
+        super().__init__(job, points)
+        check_memory(self.size, 'give a folder for them, store="..."')
+        self.arrays = {name: np.empty(points.size) for name in job.units}
+
+    def finish(self, notes: Sequence[str]) -> xarray.Dataset:
+        """Return the results with their labels."""
+        found = self.points.dataset(self.arrays, self.job.units)
+        return found.assign_attrs(attributes(run_of(self.job, self.points), notes))
+
+
+COMPLETE, INCOMPLETE = "complete", "incomplete"
+"""What the attribute "status" of results says."""
+
+
+def attributes(run: Run, notes: Sequence[str]) -> dict[str, str]:
+    """Return the attributes of finished results: where they come from, and what a reader must know."""
+    return {"status": COMPLETE, "provenance": json.dumps(run), "notes": "\n".join(notes)}

@@ -1,0 +1,113 @@
+"""The uncertainty of the predictions of a case: every contact model with every wear law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wearlaw.case import Case
+from wearlaw.errors import InputError
+from wearlaw.notes import Notes
+from wearlaw.pairs import Pair, compose, labelled
+from wearlaw.uncertainty.result import Uncertainty
+from wearlaw.units import WEAR_RATE
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+CONFIDENCE = 0.95
+"""The share of the samples between the ends that the table gives."""
+
+
+@dataclass(frozen=True)
+class UncertainPair:
+    """A pair at an operating point that is not known exactly."""
+
+    point: str
+    pair: Pair
+    uncertainty: Uncertainty
+
+
+@dataclass(frozen=True, eq=False)
+class CaseUncertainty:
+    """How uncertain the predictions of a case are.
+
+    Attributes
+    ----------
+    pairs : tuple of UncertainPair
+    wear_rates : pandas.DataFrame
+        Median and interval for each operating point and pair.
+    indices : pandas.DataFrame
+        Sobol indices, with an input a row.
+    samples : int
+        How many samples were taken of each.
+    notes : tuple of str
+        What a reader must know.
+    """
+
+    pairs: tuple[UncertainPair, ...]
+    wear_rates: pd.DataFrame
+    indices: pd.DataFrame
+    samples: int
+    notes: tuple[str, ...]
+
+
+def uncertainty_of(
+    case: Case, samples: int, seed: int, on_pair: Callable[[int], None] = lambda _: None
+) -> CaseUncertainty:
+    """Return how uncertain the predictions of a case are.
+
+    Parameters
+    ----------
+    case : Case
+        With at least one operating point under `uncertainty`.
+    samples : int
+        How many samples to take, rounded up to a power of two.
+    seed : int
+        The same seed gives the same samples.
+    on_pair : callable, optional
+        Called with 1 after each pair, to show progress.
+
+    Raises
+    ------
+    InputError
+        If nothing in the case is uncertain.
+    """
+    import pandas as pd
+
+    laws = labelled(case.wear_laws)
+    if not any(point.varies(law) for point in case.uncertainty.values() for law in laws):
+        raise InputError(
+            "nothing in the case is uncertain; add a table such as [uncertainty.scatter] with conditions of which some"
+            ' are distributions, as in creepage = {uniform = ["0.5 %", "1.5 %"]}'
+        )
+    notes = Notes()
+    pairs = compose(case.rig, labelled(case.contact_models), laws, notes)
+    found: list[UncertainPair] = []
+    rates, indices = [], []
+    for name, point, pair in ((name, point, pair) for name, point in case.uncertainty.items() for pair in pairs):
+        on_pair(1)
+        subject = f"{name}: {pair.label}"
+        if not point.varies(pair.wear_law):
+            notes.add(f"{subject} is left out, since nothing of it is uncertain")
+            continue
+        with notes.of(subject):
+            one = Uncertainty(pair.pipeline, point.conditions(), point.parameters(pair.wear_law), samples, seed)
+            rates.append({"point": name, "pair": pair.label, **_interval(one)})
+        if np.ptp(one.wear_rate.magnitude) == 0.0:
+            notes.add(f"{subject}: the wear rate is the same in all samples")
+        else:
+            indices.append(one.sobol().reset_index().assign(point=name, pair=pair.label))
+        found.append(UncertainPair(name, pair, one))
+    table = pd.concat(indices, ignore_index=True) if indices else pd.DataFrame(columns=["point", "pair"])
+    ordered = table[["point", "pair", *table.columns.drop(["point", "pair"])]]
+    return CaseUncertainty(tuple(found), pd.DataFrame(rates), ordered, found[0].uncertainty.samples, tuple(notes.texts))
+
+
+def _interval(one: Uncertainty) -> dict[str, float]:
+    low, high = one.interval(CONFIDENCE)
+    ends = {"median": one.median, f"{50 - 50 * CONFIDENCE:g} %": low, f"{50 + 50 * CONFIDENCE:g} %": high}
+    return {f"{name} [{WEAR_RATE}]": float(rate.to(WEAR_RATE).magnitude) for name, rate in ends.items()}

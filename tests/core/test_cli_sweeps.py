@@ -1,0 +1,211 @@
+"""Long runs of cases on the command line, and their uncertainty."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+import wearlaw as wl
+from tests.core.cases import POINT, assert_refused, changed, spaced_folder, table, wearlaw, write
+from tests.core.sweeps import contents, interrupted_after, small_blocks
+from wearlaw import output
+from wearlaw.sweeping import checkpoint, space
+
+__all__ = ["small_blocks"]
+
+LONG = {**POINT, "creepage": {"from": "0.1 %", "to": "10 %", "points": 100, "spacing": "log"}}
+"""Four blocks."""
+
+
+def long_case(path: Path, **changes: Any) -> str:
+    fields = {"contact_models": ["exact"], "wear_laws": ["kth"], "profiles": {}, "sweeps": {"long": LONG}, **changes}
+    return str(write(path, table(**fields)))
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    return spaced_folder(tmp_path, monkeypatch)
+
+
+def interrupted(case: str, monkeypatch: pytest.MonkeyPatch, blocks: int = 6) -> None:
+    """Interrupt a run of 12 blocks: 4 for each end of the law's range, and 4 for its middle."""
+    with monkeypatch.context() as patched:
+        interrupted_after(blocks, patched)
+        result = wearlaw("run", case, "-o", "out")
+    assert result.exit_code == 1
+    assert "What is done is kept in 'out.partial'; add --resume to go on with it." in result.stderr
+    assert not Path("out").exists()
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_a_resumed_run_writes_the_same_bytes_as_an_uninterrupted_one_on_any_number_of_workers(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = long_case(folder / "big.toml")
+    interrupted(case, monkeypatch)
+    assert len(list((folder / "out.partial").glob("*/journal"))) >= 2
+    resumed = wearlaw("run", case, "-o", "out", "--workers", "2", "--resume")
+    assert resumed.exit_code == 0, resumed.output
+    assert not (folder / "out.partial").exists()
+    wearlaw("run", case, "-o", "whole")
+    assert contents(folder / "out") == contents(folder / "whole")
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_what_is_done_is_not_done_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = long_case(folder / "big.toml")
+    interrupted(case, monkeypatch)
+    seen: list[int] = []
+    monkeypatch.setattr("wearlaw.sweeping.progress.Bar.__call__", lambda _, points: seen.append(points))
+    wearlaw("run", case, "-o", "out", "--resume")
+    assert seen[0] == 100
+    assert sum(seen) == 300
+
+
+def test_resuming_where_nothing_was_left_is_running(folder: Path) -> None:
+    result = wearlaw("run", long_case(folder / "big.toml"), "--resume", "--figure-format", "svg")
+    assert result.exit_code == 0
+    assert (folder / "big-results" / "report.html").exists()
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_a_changed_case_or_version_is_not_resumed_and_told_what_changed(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = long_case(folder / "big.toml")
+    interrupted(case, monkeypatch)
+    before = contents(folder / "out.partial")
+    assert_refused(wearlaw("run", case, "-o", "out"), "'out.partial' holds what an interrupted run has done")
+    long_case(folder / "big.toml", sweeps={"long": {**LONG, "friction_coefficient": 0.3}})
+    assert_refused(
+        wearlaw("run", case, "-o", "out", "--resume"), "case.sweeps.long.friction_coefficient: was 0.46, is 0.3"
+    )
+    long_case(folder / "big.toml")
+    monkeypatch.setattr("wearlaw.study.__version__", "99.0")
+    assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "is 99.0")
+    assert contents(folder / "out.partial") == before
+
+
+def test_something_else_in_the_place_of_the_checkpoint_is_kept(folder: Path) -> None:
+    (folder / "out.partial").mkdir()
+    (folder / "out.partial" / "thesis.txt").touch()
+    result = wearlaw("run", long_case(folder / "big.toml"), "-o", "out", "--resume")
+    assert_refused(result, "'out.partial' is in the way, and holds no unfinished run")
+    assert (folder / "out.partial" / "thesis.txt").exists()
+
+
+def test_a_case_too_large_for_memory_or_disk_says_what_it_needs_before_it_starts(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    million = {**LONG, "creepage": {"from": "0.1 %", "to": "10 %", "points": 10_000_000}}
+    case = long_case(folder / "big.toml", sweeps={"long": million})
+    monkeypatch.setattr(space, "available_memory", lambda: 2**30)
+    # 17 numbers twice and a row of the table of 800 bytes for each point: 10^7 (17 x 16 + 800) / 2^30 GiB
+    assert_refused(wearlaw("run", case), "the results need 9.98 GiB of memory, but 1 GiB are free")
+    monkeypatch.setattr(space, "available_memory", lambda: 2**40)
+    monkeypatch.setattr("shutil.disk_usage", lambda _: type("Usage", (), {"free": 2**30}))
+    assert_refused(wearlaw("run", case), "the results need 6.26 GiB on disk, but")
+    assert [path.name for path in folder.iterdir()] == ["big.toml"]
+
+
+def test_a_small_run_makes_no_checkpoint(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(checkpoint, "Files", None)
+    assert wearlaw("run", long_case(folder / "small.toml"), "--figure-format", "svg").exit_code == 0
+
+
+SCATTER = {
+    **POINT,
+    "creepage": {"uniform": ["0.5 %", "1.5 %"]},
+    "friction_coefficient": {"normal": [0.46, 0.03]},
+    "laws": {"kth": {"coefficient": "published_range"}},
+}
+
+
+def uncertain(path: Path, changes: dict[str, Any] | None = None) -> str:
+    fields = table(contact_models=["exact"], wear_laws=["usfd", "kth"], uncertainty={"scatter": SCATTER})
+    for field, value in (changes or {}).items():
+        fields = changed(f"uncertainty.scatter.{field}", value, fields)
+    return str(write(path, fields))
+
+
+def test_uncertainty_of_a_case_is_that_of_its_pairs_with_samples_rounded_up_and_said_so(folder: Path) -> None:
+    result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--samples", "1000", "-o", "out")
+    assert result.exit_code == 0, result.output
+    assert "Samples: 1000 rounded up to 1024, a power of two, as Sobol sequences need it" in result.stdout
+    rates = pd.read_csv(folder / "out" / "wear_rates.csv")
+    predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("kth")
+    u = predict.uncertainty(
+        max_pressure="1500 MPa",
+        creepage=wl.uniform("0.5 %", "1.5 %"),
+        friction_coefficient=wl.normal(0.46, 0.03),
+        law={"coefficient": wl.published_range()},
+        samples=1024,
+    )
+    kth = rates[rates.pair == "kth on exact"].iloc[0]
+    expected = [quantity.magnitude for quantity in (u.median, *u.interval(0.95))]
+    assert kth[2:].tolist() == expected
+    indices = pd.read_csv(folder / "out" / "sobol_indices.csv")
+    assert list(indices[indices.pair == "kth on exact"].input) == ["creepage", "friction_coefficient", "coefficient"]
+    assert list(indices[indices.pair == "usfd on exact"].input) == ["creepage", "friction_coefficient"]
+    assert json.loads((folder / "out" / "uncertainty.json").read_text(encoding="utf-8"))["samples"] == 1024
+    again = wearlaw("uncertainty", str(folder / "out" / "case.toml"), "--samples", "1024", "-o", "again")
+    assert "rounded" not in again.stdout
+    assert contents(folder / "out") == contents(folder / "again")
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"creepage": {"unifrom": ["1 %", "2 %"]}}, "scatter.creepage.unifrom: unknown field; did you mean 'uniform'?"),
+        ({"creepage": {}}, "scatter.creepage: give one of uniform, normal and lognormal; got none of them"),
+        (
+            {"creepage": {"uniform": ["2 %", "1 %"]}},
+            "the upper end of uniform(2.0 %, 1.0 %) must lie above the lower one",
+        ),
+        ({"creepage": {"uniform": ["1 N", "2 N"]}}, "creepage: "),
+        ({"creepage": True}, "must be a value, or a table such as"),
+        ({"friction_coefficient": -0.1}, "friction_coefficient: must be a positive finite number"),
+        ({"laws.kht": {}}, "laws.kht: the case has no such law; did you mean 'kth'?"),
+        (
+            {"laws.kth.coeficient": "published_range"},
+            "laws.kth.coeficient: wear law 'kth' has no published range of it",
+        ),
+        ({"laws.kth.hardness": "2 GPa"}, "scatter.laws.kth.hardness"),
+    ],
+)
+def test_what_cannot_be_uncertain_is_refused_with_its_place(
+    changes: dict[str, Any], message: str, folder: Path
+) -> None:
+    assert_refused(wearlaw("uncertainty", uncertain(folder / "case.toml", changes)), message)
+
+
+def test_a_case_without_uncertainty_says_what_to_add(folder: Path) -> None:
+    assert_refused(wearlaw("uncertainty", long_case(folder / "case.toml")), "add a table such as [uncertainty.scatter]")
+
+
+def test_a_law_of_which_nothing_is_uncertain_is_left_out_and_said_so(folder: Path) -> None:
+    certain = {"friction_coefficient": 0.46, "creepage": "1 %"}
+    result = wearlaw("uncertainty", uncertain(folder / "case.toml", certain), "--samples", "64", "-o", "out")
+    assert "note: scatter: usfd on exact is left out, since nothing of it is uncertain" in result.stderr
+    assert list(pd.read_csv(folder / "out" / "wear_rates.csv").pair) == ["kth on exact"]
+    result = wearlaw("uncertainty", uncertain(folder / "case.toml", {**certain, "laws": {}}))
+    assert_refused(result, "nothing in the case is uncertain")
+
+
+def test_a_wear_rate_that_does_not_vary_has_no_indices(folder: Path) -> None:
+    only_friction = {"creepage": "0.001 %", "friction_coefficient": {"uniform": [0.4, 0.5]}, "laws": {}}
+    fields = table(contact_models=["global"], wear_laws=["kth"], uncertainty={"scatter": {**SCATTER, **only_friction}})
+    result = wearlaw("uncertainty", str(write(folder / "case.toml", fields)), "--samples", "64", "-o", "out")
+    assert "the wear rate is the same in all samples" in result.stderr
+    assert not (folder / "out" / "sobol_indices.csv").exists()
+
+
+def test_the_sizes_that_are_checked_are_those_of_the_files(folder: Path) -> None:
+    case = long_case(folder / "case.toml", sweeps={"long": changed("creepage.points", 5000, dict(LONG))})
+    wearlaw("run", case, "-o", "out", "--figure-format", "svg")
+    row = (folder / "out" / output.CSV).stat().st_size / 5000
+    assert 0.5 * output.ROW_ON_DISK < row < output.ROW_ON_DISK

@@ -1,0 +1,124 @@
+"""Sweeps on several processes of one machine: the same results, whatever happens to the processes."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import wearlaw as wl
+from tests.core.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, predictor, small_blocks
+from wearlaw import Q, kernels
+from wearlaw.sweeping import processes
+
+__all__ = ["small_blocks"]
+
+pytestmark = pytest.mark.usefixtures("small_blocks")
+
+
+def test_several_processes_give_the_same_bytes_as_one() -> None:
+    predict = predictor()
+    one = predict.sweep(**CONDITIONS, outputs=OUTPUTS)
+    two = predict.sweep(**CONDITIONS, outputs=OUTPUTS, workers=2)
+    assert one.identical(two)
+    assert one.wear_rate.to_numpy().tobytes() == two.wear_rate.to_numpy().tobytes()
+
+
+def test_the_processes_are_kept_for_the_next_sweep(monkeypatch: pytest.MonkeyPatch) -> None:
+    predict = predictor()
+    predict.sweep(**CONDITIONS, workers=2)
+    monkeypatch.setattr(subprocess, "Popen", None)
+    predict.sweep(**CONDITIONS, workers=2)
+
+
+def test_a_worker_that_dies_is_reported_and_its_block_evaluated_again(tmp_path: Path) -> None:
+    predict = deadly(tmp_path / "die once")
+    with pytest.warns(
+        wl.WorkerWarning, match=r"a worker process died \(exit code 9\) at block \d, which is evaluated again"
+    ):
+        swept = predict.sweep(**CONDITIONS, outputs=OUTPUTS, workers=2)
+    xr.testing.assert_equal(swept, predict.sweep(**CONDITIONS, outputs=OUTPUTS))
+
+
+def test_a_block_at_which_every_worker_dies_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(processes, "ATTEMPTS", 2)
+    predict = deadly(tmp_path / "die always", always=True)
+    with pytest.raises(
+        wl.SweepError, match=r"block \d was given up, since the worker processes died in all 2 attempts"
+    ):
+        predict.sweep(**CONDITIONS, workers=2)
+
+
+def test_what_a_model_raises_in_a_worker_is_raised_here_and_the_worker_lives_on() -> None:
+    failing = predictor(Failing(slope=Q(1.0, "mm")))
+    with pytest.raises(OverflowError, match="too much"):
+        failing.sweep(**CONDITIONS, workers=2)
+    assert processes._idle.qsize() > 0
+    assert predictor().sweep(**CONDITIONS, workers=2).wear_rate.notnull().all()
+
+
+class Choosing(Failing):
+    """A law that gives wear only where compiled kernels are turned off."""
+
+    name = "choosing"
+
+    def rate(self, contact: wl.Contact) -> wl.Array:
+        return abs(contact.slip) * (kernels.chosen() is False)
+
+
+def test_compiled_kernels_are_turned_off_in_workers_where_they_are_here() -> None:
+    turned_off = predictor(Choosing(slope=Q(1.0, "mm")))
+    assert (turned_off.sweep(**CONDITIONS, workers=2).wear_rate > 0).all()
+    wl.accelerate(None)
+    assert (turned_off.sweep(**CONDITIONS, workers=2).wear_rate == 0).all()
+
+
+SCRIPT = """
+import numpy as np
+import wearlaw as wl
+from wearlaw.sweeping import points
+
+points.BLOCK = 3
+wl.accelerate(False)
+
+@wl.as_wear_law(inputs={"slip": ""}, returns="ug/m/mm^2", source="a test")
+def mine(slip):
+    print("evaluated")
+    return abs(slip)
+
+given = dict(creepage=wl.Q(np.linspace(1, 2, 9), "%"), normal_force="5 kN", friction_coefficient=0.3)
+predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
+print(predict.sweep(**given, workers=2).wear_rate.size)
+try:
+    (wl.TwinDisc.suros() | wl.contact_model("global") | mine).sweep(**given, workers=2)
+except wl.InputError as error:
+    print(error)
+"""
+
+
+def test_a_script_needs_no_guard_and_laws_of_its_own_are_refused_with_a_reason(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(SCRIPT, encoding="utf-8")
+    done = subprocess.run([sys.executable, "-W", "error", script], capture_output=True, text=True, check=True)
+    first, second = done.stdout.splitlines()
+    assert first == "9"
+    assert second.startswith("mine: is defined in the script or notebook that runs")
+    assert done.stderr == ""
+
+
+class Talking(Failing):
+    """A law that prints."""
+
+    name = "talking"
+
+    def rate(self, contact: wl.Contact) -> wl.Array:
+        print("a law that prints", flush=True)
+        return np.zeros_like(contact.slip)
+
+
+def test_what_a_model_prints_in_a_worker_does_not_spoil_its_results() -> None:
+    assert (predictor(Talking(slope=Q(1.0, "mm"))).sweep(**CONDITIONS, workers=2).wear_rate == 0).all()
