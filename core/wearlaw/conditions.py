@@ -24,6 +24,7 @@ class FrictionLaw(Protocol):
 
     def coefficient(self, creep_speed: Array) -> Array:
         """Return μ [-] at creep speeds [m/s], of their shape."""
+        ...
 
 
 class TwinDiscConditions(TypedDict, total=False):

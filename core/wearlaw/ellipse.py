@@ -177,9 +177,9 @@ class EllipticProblem(Batch):
 
     def with_creepages(self, longitudinal: Array, lateral: Array, spin: Array) -> Self:
         """Return the problem at other creepages, as SI arrays of the batch shape."""
-        names = (field.name for field in dataclasses.fields(self))
         creepages = {"longitudinal_creepage": longitudinal, "lateral_creepage": lateral, "spin": spin}
-        return self.from_si(**{name: creepages.get(name, getattr(self, name)) for name in names})
+        arrays: dict[str, Array] = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        return self.from_si(**(arrays | creepages))
 
     def power(self, forces: CreepForces) -> Array:
         """Return the energy dissipated per metre rolled, Tγ = ξFx + ηFy + φMz [N]."""

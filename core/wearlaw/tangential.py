@@ -5,7 +5,7 @@ A model is its configuration: a frozen pydantic record whose fields carry units 
 
 from abc import ABC
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, final, overload
+from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeAlias, final, overload
 
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
@@ -68,6 +68,14 @@ class ContactModel(Model):
 
     uses_measured_traction: ClassVar[bool] = False
     """Whether the model can use a measured traction coefficient."""
+
+    if not TYPE_CHECKING:
+
+        def __new__(cls, *_: object, **__: object) -> Self:
+            """Refuse a model that solves nothing."""
+            if not cls.geometries():
+                raise TypeError(f"{cls.__name__} is abstract: it implements neither solve_line nor solve_ellipse")
+            return super().__new__(cls)
 
     @overload
     def solve(self, problem: LineProblem) -> Contact: ...

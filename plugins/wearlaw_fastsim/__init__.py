@@ -85,8 +85,11 @@ class Fastsim(wl.LineContactModel):
 
     @property
     def elliptic_accuracy(self) -> float:
-        """Found by comparison with many more strips; sums over uniform cells are of first order."""
-        return 2e-3 * (10 / self.strips) ** 2 if self.march == "adaptive" else 1.0 / self.strips
+        """The most that was found, where spin and creepage nearly cancel in a strip; it is of first order.
+
+        Over operating points of wheels on rails the root mean square is fifty times less.
+        """
+        return 0.5 / self.strips if self.march == "adaptive" else 1.0 / self.strips
 
     def solve_ellipse(self, problem: wl.EllipticProblem) -> wl.EllipticContact:
         """Return the contact on strips."""

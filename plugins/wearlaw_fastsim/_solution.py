@@ -9,7 +9,7 @@ from wearlaw import Array
 from wearlaw_fastsim import _march, _strips
 from wearlaw_fastsim._march import Cells, Ellipses, drop_gains, march, strip_centres
 
-STICK_NODES_PER_STRIP, SLIP_NODES_PER_STRIP = 0.3, 1.0
+STICK_NODES_PER_STRIP, SLIP_NODES_PER_STRIP = 0.4, 1.0
 """Nodes along a strip over the number of strips: errors along strips and across them are then of one size."""
 
 CELLS = 16
@@ -55,10 +55,14 @@ def _on_strips(
     problem: wl.EllipticProblem, elliptic: bool, count: int, shares: Array, widths: Array
 ) -> wl.EllipticContact:
     flat = problem.flatten()
-    along = max(round(STICK_NODES_PER_STRIP * count), 3), max(round(SLIP_NODES_PER_STRIP * count), 8)
+    along = max(round(STICK_NODES_PER_STRIP * count), 4), max(round(SLIP_NODES_PER_STRIP * count), 8)
     patches = ellipses(flat, elliptic)
     found = _strips.strips(patches, shares, *along)
     b = flat.b[:, None]
+    rolls_freely = (flat.longitudinal_creepage == 0.0) & (flat.lateral_creepage == 0.0) & (flat.spin == 0.0)
+    if rolls_freely.any():  # nodes of no length at the trailing edge slip
+        for field in (found.traction_x, found.traction_y, found.slip_x, found.slip_y):
+            field[rolls_freely] = 0.0
     contact = wl.EllipticContact.from_strips(
         flat,
         _strips.forces(patches, shares, widths, found),
