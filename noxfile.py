@@ -32,3 +32,5 @@ def bench(session: nox.Session) -> None:
     session.run("python", "-m", "tests.benchmarks.speed", *session.posargs)
     session.run("python", "-m", "tests.benchmarks.fit")
     session.run("python", "tests/benchmarks/study.py")
+    session.install("-e", ".[fast,dask]")
+    session.run("python", "-m", "tests.benchmarks.sweep")

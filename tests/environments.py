@@ -34,8 +34,8 @@ class Environment:
 
     def _dependencies(self) -> Path:
         """Make a folder with all that is installed in the running environment, except wearlaw and its plugins."""
-        folder = self.folder / "dependencies"
-        folder.mkdir()
+        folder = self.folder / "dependencies" / "site-packages"  # hypothesis reads all that is in no such folder
+        folder.mkdir(parents=True)
         for site in {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}:
             for path in Path(site).iterdir():
                 if not (path.suffix == ".pth" or path.name.lstrip("_").startswith("wearlaw")):

@@ -1,10 +1,10 @@
 """Check that new plugins are sound as they are generated: by ruff and mypy --strict, and by their own CI workflow.
 
-Usage: python tests/typing/scaffold.py
+Usage: python tests/typing/scaffold.py ENVIRONMENT
 
-The commands of the workflow of one plugin of each kind are run in a fresh environment, into which they install what
-they need. The tools that they have installed then see plugins with a short and a long name. Exits with 1 where
-anything fails.
+ENVIRONMENT is the folder of a virtual environment that holds wearlaw and what it needs. The commands of the workflow of
+one plugin of each kind are run in it and install what else they need, the tools among them, which then see plugins with
+a short and a long name. Exits with 1 where anything fails.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import os
 import subprocess
 import sys
 import tempfile
-import venv
 from collections.abc import Mapping
 from pathlib import Path
 from typing import get_args
@@ -21,8 +20,6 @@ from typing import get_args
 import yaml  # type: ignore[import-untyped]
 
 from wearlaw.scaffold import LONGEST_NAME, Kind, write_plugin
-
-ROOT = Path(__file__).parents[2]
 
 TOOLS = (
     "ruff check --no-cache --extend-select E501 .",
@@ -33,12 +30,10 @@ TOOLS = (
 WORKFLOW = Path(".github/workflows/tests.yml")
 
 
-def environment(folder: Path) -> dict[str, str]:
-    """Make an environment that holds wearlaw and what it needs, and return the variables that enter it."""
-    venv.create(folder, with_pip=True)
-    subprocess.run([folder / "bin" / "python", "-m", "pip", "install", "--quiet", ROOT], check=True)
-    path = f"{folder / 'bin'}{os.pathsep}{os.environ['PATH']}"
-    return {**os.environ, "VIRTUAL_ENV": str(folder), "PATH": path, "PYTEST_ADDOPTS": "-n auto"}
+def inside(environment: Path) -> dict[str, str]:
+    """Return the variables that enter an environment."""
+    path = f"{environment / 'bin'}{os.pathsep}{os.environ['PATH']}"
+    return {**os.environ, "VIRTUAL_ENV": str(environment), "PATH": path}
 
 
 def workflow(plugin: Path) -> list[str]:
@@ -47,33 +42,37 @@ def workflow(plugin: Path) -> list[str]:
     return [step["run"] for step in steps if "run" in step]
 
 
-def complaints(plugin: Path, commands: list[str], variables: Mapping[str, str]) -> list[str]:
-    """Return what commands say that fail in a plugin's folder."""
+def complaints(folder: Path, commands: list[str], variables: Mapping[str, str]) -> list[str]:
+    """Return what commands say that fail in a folder."""
     said = []
     for command in commands:
         shell = ["bash", "-e", "-c", command]
-        done = subprocess.run(shell, cwd=plugin, env=variables, capture_output=True, text=True, check=False)
+        done = subprocess.run(shell, cwd=folder, env=variables, capture_output=True, text=True, check=False)
         if done.returncode:
-            said.append(f"{plugin.name}: {command}\n{done.stdout}{done.stderr}")
+            said.append(f"{folder.name}: {command}\n{done.stdout}{done.stderr}")
     return said
 
 
-def main() -> int:
+def main(environment: Path) -> int:
     """Check plugins of each kind and return the exit status."""
     said: list[str] = []
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        fresh = {**environment(folder / "environment"), "MYPY_CACHE_DIR": str(folder / "mypy")}
+        folder, short_and_long = Path(name), Path(name) / "short and long"
+        variables = {**inside(environment.resolve()), "MYPY_CACHE_DIR": str(folder / "mypy")}
+        short_and_long.mkdir()
         for kind in get_args(Kind):
             plugin = write_plugin(f"new_{kind}", kind, folder)
             commands = workflow(plugin)
             print("\n".join(f"{plugin.name}: {command}" for command in commands))
-            said += complaints(plugin, commands, fresh) if commands else [f"{plugin.name}: its workflow runs nothing"]
-            for word in ("x", "z" * LONGEST_NAME):
-                said += complaints(write_plugin(word, kind, folder / kind), list(TOOLS), fresh)
+            said += (
+                complaints(plugin, commands, variables) if commands else [f"{plugin.name}: its workflow runs nothing"]
+            )
+            for word in (kind[0], kind[0] * LONGEST_NAME):  # no two alike, for mypy sees them together
+                write_plugin(word, kind, short_and_long)
+        said += complaints(short_and_long, list(TOOLS), variables)
     print("\n".join(said) if said else "no complaints")
     return 1 if said else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(Path(sys.argv[1])))
