@@ -5,12 +5,12 @@ import inspect
 import io
 import re
 from collections.abc import Iterator
-from functools import reduce
+from functools import cached_property, reduce
 from pathlib import Path
 from typing import NamedTuple
 
 import wearlaw as wl
-from wearlaw.conditions import TwinDiscConditions
+from wearlaw.conditions import TwinDiscConditions, WheelRailConditions
 from wearlaw.docstrings import field_docstrings
 from wearlaw.parameters import numbers
 from wearlaw.plugins import installed
@@ -18,14 +18,18 @@ from wearlaw.variables import NAMES, label
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
-CLASSES = (wl.LineProblem, wl.Contact, TwinDiscConditions, wl.ContactSolution, wl.Prediction, wl.LocalWear)
-SHOWN_AS = {"TwinDiscConditions": "conditions"}
+CLASSES = (
+    *(wl.LineProblem, wl.Contact, TwinDiscConditions, wl.ContactSolution, wl.Prediction, wl.LocalWear),
+    *(wl.EllipticProblem, wl.CreepForces, wl.EllipticContact, WheelRailConditions),
+    *(wl.WheelRailContact, wl.WheelRailPrediction),
+)
+SHOWN_AS = {"TwinDiscConditions": "conditions", "WheelRailConditions": "conditions"}
 
 ATTRIBUTE = re.compile(
     r"^(?P<name>\w+) : (?:ndarray|Quantity|array_like).*\n(?P<text>(?: {4}.*(?:\n|$))+)", re.MULTILINE
 )
 DOCUMENTED = re.compile(
-    r"(?:Return (?:the )?)?(?P<meaning>.+?)(?:, (?P<symbol>\S{1,5}))? \[(?P<unit>\S+)\](?P<more>.*?)\.(?=\s[A-Z]|$)"
+    r"(?:Return (?:the )?)?(?P<meaning>.+?)(?:, (?P<symbol>\S{1,5}))? \[(?P<unit>[^]]+)\](?P<more>.*?)\.(?=\s[A-Z]|$)"
 )
 """A meaning and perhaps a symbol before the unit, as in "Hertz's maximum pressure, p0 [Pa]."; to the sentence's end."""
 
@@ -45,11 +49,22 @@ def documented() -> Iterator[Documented]:
     for cls in CLASSES:
         for name, text in (*attributes(cls), *properties(cls)):
             yield read(name, SHOWN_AS.get(cls.__name__, cls.__name__), text)
-    for holder, name in fields(wl.TwinDisc.suros()):
-        yield read(name, type(holder).__name__, field_docstrings(type(holder))[name])
+    for record in (wl.TwinDisc.suros(), wheel_rail(), falling_friction()):
+        for holder, name in fields(record):
+            yield read(name, type(holder).__name__, field_docstrings(type(holder))[name])
     for model in shipped_models():
         for holder, name in fields(model):
             yield read(name, model.name, field_docstrings(type(holder))[name])
+
+
+def wheel_rail() -> wl.WheelRail:
+    """Return a wheel on a rail."""
+    return wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+
+
+def falling_friction() -> wl.FallingFriction:
+    """Return friction that falls with the creep speed."""
+    return wl.FallingFriction(static_coefficient=0.55, limit_ratio=0.4, decay="0.6 s/m")
 
 
 def shipped_models() -> Iterator[wl.WearLaw | wl.ContactModel]:
@@ -73,9 +88,10 @@ def attributes(cls: type) -> Iterator[tuple[str, str]]:
 def properties(cls: type) -> Iterator[tuple[str, str]]:
     """Give name and docstring of public properties that are numbers, and of methods that return a quantity."""
     for name, member in vars(cls).items():
-        function = member.fget if isinstance(member, property) else member
+        function = member.fget if isinstance(member, property) else getattr(member, "func", member)
         returned = getattr(function, "__annotations__", {}).get("return")
-        numeric = ("Quantity", "Array") if isinstance(member, property) else ("Quantity",)
+        read_as_attribute = isinstance(member, (property, cached_property))
+        numeric = ("Quantity", "Array") if read_as_attribute else ("Quantity",)
         if not name.startswith("_") and getattr(returned, "__name__", returned) in numeric:
             yield name, inspect.getdoc(member) or ""
 

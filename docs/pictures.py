@@ -1,4 +1,4 @@
-"""Draws the pictures of the README and the documentation: the shipped study, and the results of the benchmarks.
+"""Draws the pictures of the README and the documentation: the shipped study, conventions, results of the benchmarks.
 
 The picture of the report in a browser stays as it is where there is no chromium with its chromedriver.
 """
@@ -13,8 +13,14 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Arc, Circle, Ellipse, Rectangle
 
+import wearlaw as wl
+from wearlaw import Q
 from wearlaw.case import load_case
 from wearlaw.figures.drawing import LINES, PALETTE, STYLE
 from wearlaw.figures.drawing import draw as drawing_of
@@ -24,6 +30,9 @@ from wearlaw.study import run
 FOLDER = Path(__file__).parent / "pictures"
 GALLERY = Path(__file__).parent / "gallery"
 BENCHMARKS = Path(__file__).parent / "accuracy.csv"
+REFERENCE = Path(__file__).parents[1] / "tests" / "data" / "hertz3d_reference.csv"
+BOUNDS = ("elliptic", "parabolic")
+FORCES = ("Fx", "Fy")
 
 
 def draw() -> None:
@@ -32,6 +41,8 @@ def draw() -> None:
     for figure in study.figures:
         _save(drawing_of(figure), figure.name)
     _save(cost_against_error(), "accuracy_cost_against_error")
+    _save(conventions(), "conventions")
+    _save(fastsim_against_half_space(), "fastsim_against_half_space")
     for script in sorted(GALLERY.glob("*.py")):
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([sys.executable, script], cwd=folder, env={**os.environ, "MPLBACKEND": "agg"}, check=True)
@@ -82,6 +93,161 @@ def cost_against_error() -> Figure:
         axes.set(xscale="log", yscale="log")
         axes.legend(title="with the number of cells")
     return figure
+
+
+def conventions() -> Figure:
+    """Return the axes, creepages and forces of a wheel on a rail: from the side, from above, and rigid slip."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(7.4, 5.6), layout="constrained")
+        rows: Any = [["side", "side", "side", "above", "above", "above"], ["ξ", "ξ", "η", "η", "φ", "φ"]]
+        axes = figure.subplot_mosaic(rows, height_ratios=(1.35, 1.0))
+        _from_the_side(axes["side"])
+        _from_above(axes["above"])
+        _rigid_slip(axes["ξ"], "rigid slip, ξ > 0", lambda x, y: (np.ones_like(x), np.zeros_like(y)))
+        _rigid_slip(axes["η"], "η > 0", lambda x, y: (np.zeros_like(x), np.ones_like(y)))
+        _rigid_slip(axes["φ"], "φ > 0", lambda x, y: (-1.6 * y, -1.6 * x))
+        for one in axes.values():
+            one.set_aspect("equal")
+            one.set_axis_off()
+    return figure
+
+
+def solve_reference() -> tuple[pd.DataFrame, dict[str, wl.EllipticContact]]:
+    """Return the reference cases of the half-space theory, and their solutions by FASTSIM for each bound."""
+    table = pd.read_csv(REFERENCE, comment="#")
+    problem = wl.EllipticProblem(
+        a=Q(6, "mm"),
+        b=Q(6, "mm"),
+        normal_force=Q(100, "kN"),
+        shear_modulus=Q(82, "GPa"),
+        poisson_ratio=0.28,
+        friction_coefficient=0.3,
+        longitudinal_creepage=Q(table.xi.to_numpy(), ""),
+        lateral_creepage=Q(table.eta.to_numpy(), ""),
+        spin=Q(table.phi.to_numpy(), "1/mm"),
+    )
+    return table, {bound: wl.contact_model("fastsim", bound=bound).solve(problem) for bound in BOUNDS}
+
+
+def fastsim_errors() -> tuple[list[str], dict[tuple[str, str], wl.Array]]:
+    """Return the names of the reference cases and, by (force, bound), the errors of FASTSIM there, in % of μN.
+
+    They are forces in the sense of the creepages less those of the half-space theory; where a force is zero by symmetry
+    they are nan.
+    """
+    table, solved = solve_reference()
+    errors = {}
+    for bound, contact in solved.items():
+        for force, value in zip(FORCES, (contact.force_x, contact.force_y), strict=True):
+            reference = -table[f"fullX_{force.lower()}"].to_numpy()
+            errors[force, bound] = np.where(reference == 0.0, np.nan, 100.0 * (value / 30e3 - reference))
+    return [_case(*creepages) for creepages in zip(table.xi, table.eta, table.phi, strict=True)], errors
+
+
+def _case(xi: float, eta: float, phi: float) -> str:
+    parts = {f"ξ = {100 * xi:g} %": xi, f"η = {100 * eta:g} %": eta, f"φ = {1000 * phi:.2g} /m": phi}
+    return ", ".join(name for name, value in parts.items() if value != 0.0)
+
+
+def force_errors_in_words() -> str:
+    """Return the sentence of the theory about the size of these errors."""
+    _, errors = fastsim_errors()
+    sizes = []
+    for bound in BOUNDS:
+        found = np.concatenate([errors[force, bound] for force in FORCES])
+        sizes.append(f"{np.nanmax(np.abs(found)):.1f} % with an rms of {np.sqrt(np.nanmean(found**2)):.1f} %")
+    return "The largest error is {} with the elliptic bound, and {} with the parabolic one.".format(*sizes)
+
+
+def power_errors_in_words() -> str:
+    """Return the sentence about the dissipated power in the reference cases with spin."""
+    table, solved = solve_reference()
+    spin, full = table.phi != 0.0, table.fullX_Tgamma
+    ends = []
+    for bound in reversed(BOUNDS):
+        for power in (solved[bound].cell_wear_index, solved[bound].wear_index):
+            error = 100.0 * (power / full - 1.0)[spin]
+            ends.append(f"{error.min():+.0f} to {error.max():+.0f} %")
+    return (
+        "In the [cases with spin](theory-elliptic.md#what-it-meets-and-what-not), the cells are off by {} and Tγ by {}"
+        " with the parabolic bound, by {} and {} with the elliptic one."
+    ).format(*ends)
+
+
+def fastsim_against_half_space() -> Figure:
+    """Return the errors of the forces case by case."""
+    cases, errors = fastsim_errors()
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(7.4, 5.6), layout="constrained")
+        axes = figure.subplots()
+        axes.axvspan(-0.3, 0.3, color="0.85", lw=0.0, label="uncertainty of the reference")
+        for number, ((force, bound), error) in enumerate(errors.items()):
+            colour, marker = PALETTE[FORCES.index(force)], "os"[FORCES.index(force)]
+            looks: Any = {"color": colour, "marker": marker, "markersize": 6, "linestyle": ""}
+            looks["markerfacecolor"] = colour if bound == BOUNDS[0] else "white"
+            axes.plot(error, np.arange(len(cases)) + 0.1 * (number - 1.5), label=f"{force}, {bound} bound", **looks)
+        axes.axvline(0.0, color="black", lw=0.8)
+        axes.set_yticks(range(len(cases)), cases)
+        axes.set(xlabel="force by FASTSIM less that of the half-space theory [% of μN]", ylim=(len(cases) - 0.5, -0.5))
+        figure.legend(loc="outside lower center", ncols=3)
+    return figure
+
+
+def _from_the_side(axes: Axes) -> None:
+    """Draw a braking wheel on its rail, which rolls to the left as in all panels."""
+    axes.add_patch(Circle((0.0, 1.0), 1.0, fill=False, lw=1.6))
+    axes.add_patch(Rectangle((-1.5, -0.42), 3.0, 0.42, facecolor="0.9", edgecolor="black", lw=1.0))
+    _arrow(axes, (0.0, 1.0), (-0.8, 0.0))
+    axes.text(-0.4, 1.06, "V", ha="center")
+    axes.add_patch(Arc((0.0, 1.0), 1.3, 1.3, theta1=20.0, theta2=90.0, lw=1.8))
+    _arrow(axes, (0.02, 1.65), (-0.1, 0.0))
+    axes.text(0.55, 1.5, "ω")
+    axes.text(0.0, 0.55, "ωR < V,  ξ > 0", ha="center")
+    _arrow(axes, (0.0, -0.1), (-0.7, 0.0), PALETTE[0])
+    axes.text(-0.35, -0.16, "Fx on the rail", color=PALETTE[0], ha="center", va="top")
+    _arrow(axes, (0.0, 0.14), (0.7, 0.0), PALETTE[1], linestyle="--")
+    axes.text(0.78, 0.08, "−Fx on the wheel", color=PALETTE[1])
+    axes.set(xlim=(-1.6, 1.9), ylim=(-0.5, 2.1), title="from the side")
+
+
+def _from_above(axes: Axes) -> None:
+    """Draw the patch with its axes, and the forces on the rail."""
+    axes.add_patch(Ellipse((0.0, 0.0), 2.4, 1.7, facecolor="0.93", edgecolor="black", lw=1.6))
+    for way, name in (((1.7, 0.0), "x"), ((0.0, 1.2), "y")):
+        _arrow(axes, (-way[0], -way[1]), (2.0 * way[0], 2.0 * way[1]), lw=1.0)
+        axes.text(way[0] + 0.06, way[1] - 0.04, name)
+    _arrow(axes, (-0.5, 1.12), (-1.1, 0.0))
+    axes.text(-1.05, 1.2, "rolling, X in CONTACT", ha="center")
+    _arrow(axes, (0.0, 0.0), (-0.8, 0.0), PALETTE[0])
+    axes.text(-0.5, -0.07, "Fx", color=PALETTE[0], ha="center", va="top")
+    _arrow(axes, (0.0, 0.0), (0.0, 0.65), PALETTE[0])
+    axes.text(0.07, 0.5, "Fy", color=PALETTE[0])
+    axes.add_patch(Arc((0.0, 0.0), 0.9, 0.9, theta1=105.0, theta2=172.0, lw=1.8, color=PALETTE[2]))
+    _arrow(axes, (-0.12, 0.432), (0.06, 0.014), PALETTE[2])
+    axes.text(-0.42, 0.32, "φ, Mz", color=PALETTE[2], ha="right")
+    axes.text(-1.26, -0.08, "−a\nleading\nedge", ha="right", va="top")
+    axes.text(1.26, -0.08, "a\ntrailing\nedge", ha="left", va="top")
+    axes.text(0.06, -0.87, "−b", va="top")
+    axes.text(0.06, 0.87, "b")
+    axes.set(xlim=(-2.0, 2.0), ylim=(-1.3, 1.4), title="the patch, with forces on the rail")
+
+
+def _rigid_slip(axes: Axes, title: str, slip: Any) -> None:
+    """Draw the rigid slip over the patch; its longitudinal part points to the left where it is positive."""
+    x, y = (part.ravel() for part in np.meshgrid(np.linspace(-1.0, 1.0, 7), np.linspace(-0.72, 0.72, 5)))
+    inside = x**2 + (y / 0.75) ** 2 < 0.75
+    along, across = slip(x[inside], y[inside])
+    axes.add_patch(Ellipse((0.0, 0.0), 2.2, 1.65, facecolor="0.93", edgecolor="black", lw=1.2))
+    axes.quiver(x[inside], y[inside], -along, across, color=PALETTE[0], pivot="mid", scale=11.0, width=0.011)
+    axes.set(xlim=(-1.3, 1.3), ylim=(-0.9, 0.9), title=title)
+
+
+def _arrow(
+    axes: Axes, start: tuple[float, float], way: tuple[float, float], colour: str = PALETTE[-1], **style: Any
+) -> None:
+    head = (start[0] + way[0], start[1] + way[1])
+    looks = {"arrowstyle": "-|>", "color": colour, "lw": 1.8, "shrinkA": 0.0, "shrinkB": 0.0, **style}
+    axes.annotate("", head, start, arrowprops=looks)
 
 
 def _save(figure: Figure, name: str) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 
+import wearlaw as wl
 from tests import reference
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -201,3 +202,20 @@ def test_the_shaded_interval_leaves_out_a_fortieth_on_each_side() -> None:
     assert np.mean(rates > names["high"].m) == pytest.approx(0.025, abs=3.0 * error)
     shaded = names["left"].patches[0].get_extents().transformed(names["left"].transData.inverted())
     assert (shaded.x0, shaded.x1) == pytest.approx((names["low"].m, names["high"].m), rel=1e-9)
+
+
+def test_the_profile_without_spin_has_the_closed_form_of_its_strips() -> None:
+    names = run("wheel_profile")
+    y, depth = curves(names["figure"])["spin 0.0 1/m"]
+    creepage, load = 0.002, 80e3
+    problem = names["rig"].problem(normal_force=f"{load} N", longitudinal_creepage="0.2 %", friction_coefficient=0.3)
+    a, b = float(problem.a), float(problem.b)
+    # A strip is a line contact with a parabolic bound: ξ times its force, without spin, is what it dissipates.
+    flexibility = 8.0 * a / (3.0 * wl.kalker.coefficients(problem.a / problem.b, 0.28).c11 * problem.shear_modulus)
+    root = np.sqrt(1.0 - (y / (1e3 * b)) ** 2)
+    peak, half = 0.3 * 2.0 * load / (math.pi * a * b) * root**2, a * root
+    share = 1.0 - (1.0 - np.minimum(creepage * half / (2.0 * peak * flexibility), 1.0)) ** 3
+    dissipated = creepage * 4.0 / 3.0 * peak * half * share
+    expected = 5.3e-9 * dissipated / (7850.0 * 2.0 * math.pi * 0.46) * 1e9  # in µm/km
+    accuracy = wl.contact_model("fastsim").elliptic_accuracy  # of sums over the nodes, as a share of full slip
+    assert depth == pytest.approx(expected, abs=accuracy * depth.max())

@@ -13,9 +13,15 @@ from docs import nomenclature
 from docs.nomenclature import Documented, read
 from tests.environments import ROOT
 from wearlaw import records, variables
-from wearlaw.conditions import CONDITIONS
+from wearlaw.conditions import TWIN_DISC, WHEEL_RAIL
 
-SYMBOLS_OF_SEVERAL_NAMES = {"k": "KTH's map has a wear coefficient in each of its four fields"}
+SYMBOLS_OF_SEVERAL_NAMES = {
+    "k": "KTH's map has a wear coefficient in each of its four fields",
+    "a": "half the width of a line and the semi-axis of an ellipse in the rolling direction",
+    "ξ": "the only creepage of discs, the longitudinal one of wheel and rail",
+    "A": "the area of the patch, and the limit of falling friction in its source",
+    "V": "the rolling speed, which the rig of a wheel calls its speed",
+}
 NAMES_OF_SEVERAL_SYMBOLS = {"wear_index_density": "q·s at a point, and Tγ/A as its mean over the patch"}
 IN_NO_CLASS = {"wear_rate_low", "wear_rate_high"}
 """Columns of a study's results, which the page explains below its table."""
@@ -54,9 +60,12 @@ def test_the_table_of_the_documentation_is_that_of_the_code() -> None:
 
 
 def test_all_fields_of_the_records_and_all_conditions_are_in_the_table(documented: list[Documented]) -> None:
-    for record in (wl.LineProblem, wl.Contact):
+    for record in (wl.LineProblem, wl.Contact, wl.EllipticProblem, wl.CreepForces):
         assert {field.name for field in dataclasses.fields(record)} <= names(documented, record.__name__)
-    assert names(documented, "conditions") == set(CONDITIONS)
+    inherited = {field.name for field in dataclasses.fields(wl.Contact)}
+    fields = {field.name for field in dataclasses.fields(wl.EllipticContact)}
+    assert fields - inherited <= names(documented, "EllipticContact")
+    assert names(documented, "conditions") == {*TWIN_DISC.names, *WHEEL_RAIL.names}
 
 
 def test_all_quantities_of_results_are_in_the_table_with_a_unit_of_their_dimension(
@@ -71,6 +80,8 @@ def test_all_quantities_of_results_are_in_the_table_with_a_unit_of_their_dimensi
         "area": "1 mm^2",
     }
     local = wl.Contact.from_arrays(**node, rolling_speed="1 m/s") | wl.wear_law("usfd")
+    roll = nomenclature.wheel_rail() | wl.contact_model("fastsim") | wl.wear_law("kth")
+    on_rail = roll(normal_force="80 kN", longitudinal_creepage="1 %", friction_coefficient=0.3)
     values = {
         **quantities(r, wl.ContactSolution),
         **quantities(r, wl.Prediction),
@@ -79,8 +90,11 @@ def test_all_quantities_of_results_are_in_the_table_with_a_unit_of_their_dimensi
         ("Prediction", "profile_area_rate"): r.profile_area_rate("disc_1"),
         ("Prediction", "mass_lost"): r.mass_lost("1 km", "disc_1"),
         ("Prediction", "mass_per_cycle"): r.mass_per_cycle("disc_1"),
+        **quantities(on_rail, wl.WheelRailContact),
+        **quantities(on_rail, wl.WheelRailPrediction),
+        ("WheelRailPrediction", "mass_lost"): on_rail.mass_lost("1 km", "wheel"),
     }
-    results = ("ContactSolution", "Prediction", "LocalWear")
+    results = ("ContactSolution", "Prediction", "LocalWear", "WheelRailContact", "WheelRailPrediction")
     units = {(one.where, one.name): one.unit for one in documented if one.where in results}
     assert units.keys() - values.keys() == {("LocalWear", "rate")}  # an array, of which local_wear_rate is the quantity
     for place, value in values.items():
@@ -92,8 +106,9 @@ def test_all_numbers_of_rig_and_models_are_in_the_table_with_a_unit_of_their_dim
 ) -> None:
     rig = wl.TwinDisc.suros()
     holders: dict[str, wl.Configuration] = {"TwinDisc": rig, "Disc": rig.disc_1, "Material": rig.disc_1.material}
+    holders |= {"WheelRail": nomenclature.wheel_rail(), "FallingFriction": nomenclature.falling_friction()}
     holders |= {name: wl.wear_law(name) for name in ("brr", "kth", "usfd")}
-    holders |= {name: wl.contact_model(name) for name in ("exact", "fastsim", "global")}
+    holders |= {name: wl.contact_model(name) for name in ("exact", "fastsim", "global", "polach")}
     values = {
         (where, name): value
         for where, holder in holders.items()
@@ -101,6 +116,8 @@ def test_all_numbers_of_rig_and_models_are_in_the_table_with_a_unit_of_their_dim
         if isinstance(value, wl.Quantity)
     }
     values[("Material", "poisson_ratio")] = wl.Q(1.0, "")
+    values |= {("FallingFriction", field): wl.Q(1.0, "") for field in ("static_coefficient", "limit_ratio")}
+    values |= {("polach", field): wl.Q(1.0, "") for field in ("adhesion_reduction", "slip_reduction")}
     values |= {("kth", field): wl.Q(1.0, "") for field in ("high_pressure", "low_speed", "mid_speed", "high_speed")}
     units = {(one.where, one.name): one.unit for one in documented if one.where in holders}
     assert units.keys() == values.keys()
@@ -110,7 +127,7 @@ def test_all_numbers_of_rig_and_models_are_in_the_table_with_a_unit_of_their_dim
 
 def test_records_are_documented_in_si(documented: list[Documented]) -> None:
     for one in documented:
-        if one.where in ("LineProblem", "Contact"):
+        if one.where in ("LineProblem", "Contact", "EllipticProblem", "CreepForces", "EllipticContact"):
             assert one_of(one.unit).to_base_units().magnitude == 1.0, one
 
 

@@ -11,9 +11,12 @@ import sys as _sys
 from importlib import import_module as _import_module
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
-from wearlaw import hertz
+from wearlaw import hertz, hertz_ellipse, kalker
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
+from wearlaw.creep_force_model import CreepForceModel
+from wearlaw.ellipse import CreepForces, EllipticProblem
+from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.errors import (
     CalibrationWarning,
     CaseError,
@@ -29,19 +32,22 @@ from wearlaw.errors import (
     OutputError,
     PluginWarning,
     RangeWarning,
+    SweepError,
     UnitError,
     UnknownModelError,
     WearlawError,
     WearlawWarning,
+    WorkerWarning,
 )
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.friction import FallingFriction
 from wearlaw.functions import as_wear_law
 from wearlaw.hookspecs import INTERFACE_VERSION, hookimpl
-from wearlaw.kernels import accelerate, kernel
+from wearlaw.kernels import accelerate, accelerated, compiled_loop, kernel
 from wearlaw.line import LineFields, LineProblem
 from wearlaw.line_model import FieldVariable, LineContactModel
 from wearlaw.material import Material, steel
-from wearlaw.models import BreakpointMap, Calibration, Claim, ContactModel, LocalWear, Scale, WearLaw
+from wearlaw.models import BreakpointMap, Calibration, LocalWear, WearLaw
 from wearlaw.pipeline import ContactPipeline, PatchMean, Pipeline, patch_mean
 from wearlaw.plugins import (
     contact_model,
@@ -58,11 +64,14 @@ from wearlaw.result import ContactSolution, Prediction
 from wearlaw.rig import Disc, TwinDisc
 from wearlaw.sections import CheckedClaim, Section
 from wearlaw.specification import ContactModelField, WearLawField
+from wearlaw.tangential import Claim, ContactModel, Geometry, Scale
 from wearlaw.uncertainty.distributions import lognormal, normal, published_range, uniform
 from wearlaw.units import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
 from wearlaw.version import __version__
 from wearlaw.wear_tests.reader import read_tests
 from wearlaw.wear_tests.tests import WearTests
+from wearlaw.wheel_rail import WheelRail
+from wearlaw.wheel_rail_result import WheelRailContact, WheelRailPrediction
 
 __all__ = [
     "INTERFACE_VERSION",
@@ -83,16 +92,22 @@ __all__ = [
     "ContactModelField",
     "ContactPipeline",
     "ContactSolution",
+    "CreepForceModel",
+    "CreepForces",
     "Curve",
     "DataError",
     "Density",
     "Disc",
+    "EllipticContact",
+    "EllipticProblem",
+    "FallingFriction",
     "FieldVariable",
     "FigureData",
     "Fit",
     "FitError",
     "FitWarning",
     "FrozenError",
+    "Geometry",
     "InputError",
     "Length",
     "LineContactModel",
@@ -118,6 +133,7 @@ __all__ = [
     "Speed",
     "Stress",
     "Study",
+    "SweepError",
     "TwinDisc",
     "Unit",
     "UnitError",
@@ -127,15 +143,23 @@ __all__ = [
     "WearTests",
     "WearlawError",
     "WearlawWarning",
+    "WheelRail",
+    "WheelRailContact",
+    "WheelRailPrediction",
+    "WorkerWarning",
     "__version__",
     "accelerate",
+    "accelerated",
     "as_wear_law",
     "compare",
+    "compiled_loop",
     "contact_model",
     "contact_models",
     "fit",
     "hertz",
+    "hertz_ellipse",
     "hookimpl",
+    "kalker",
     "kernel",
     "lognormal",
     "material",

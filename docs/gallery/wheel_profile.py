@@ -1,0 +1,31 @@
+"""Wear across the tread of a wheel that slides along the rail and spins on it."""
+
+import matplotlib.pyplot as plt
+
+import wearlaw as wl
+from wearlaw import Q
+
+
+@wl.as_wear_law(
+    inputs={"wear_index_density": "N/mm^2"}, returns="ug/m/mm^2", breakpoints={}, source="USFD's mild regime"
+)
+def energy_law(wear_index_density):
+    return 5.3 * wear_index_density
+
+
+rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+predict = rig | wl.contact_model("fastsim") | energy_law
+
+plt.style.use("seaborn-v0_8-colorblind")
+figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+for spin, line in zip((0.0, 0.3, 0.6), ("-", "--", ":"), strict=True):
+    r = predict(
+        normal_force=Q(80, "kN"), friction_coefficient=0.3, longitudinal_creepage=Q(0.2, "%"), spin=Q(spin, "1/m")
+    )
+    profile = r.wear_profile("wheel")
+    axes.plot(profile.y, profile.depth, line, label=f"spin {spin} 1/m")
+
+axes.set(xlabel="y [mm]", ylabel="depth lost per distance rolled [µm/km]")
+axes.grid(alpha=0.3)
+axes.legend()
+figure.savefig("wheel_profile.png", dpi=150)
