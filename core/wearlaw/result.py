@@ -32,14 +32,13 @@ class Summary:
 
     _summary: ClassVar[tuple[str, ...]]
 
-    @property
-    def _size(self) -> int:
-        """The number of operating points."""
+    def _points(self) -> int:
+        """Return the number of operating points."""
         raise NotImplementedError
 
     def __repr__(self) -> str:
         rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in self._summary)
-        points = "1 operating point" if self._size == 1 else f"{self._size} operating points"
+        points = "1 operating point" if self._points() == 1 else f"{self._points()} operating points"
         return f"{type(self).__name__} of {points}{rows}"
 
 
@@ -187,8 +186,7 @@ class ContactSolution(Summary):
             return xarray.Dataset({k: v.rename(cell="x") for k, v in data.items()}, coords={"x": x.rename(cell="x")})
         return xarray.Dataset(data).set_coords("x")
 
-    @property
-    def _size(self) -> int:
+    def _points(self) -> int:
         return self.problem.size
 
 

@@ -146,8 +146,7 @@ class WheelRailContact(Summary):
     def _slip(self) -> EllipticSlip:
         return elliptic_wear.elliptic_slip(self.contact_model, self.problem, self.scale)
 
-    @property
-    def _size(self) -> int:
+    def _points(self) -> int:
         return self.problem.size
 
 

@@ -197,10 +197,13 @@ def test_the_worked_example_draws_its_picture_from_what_it_stored(tmp_path: Path
 
 
 SCRIPT = """
+import signal
+
 import numpy as np
 import wearlaw as wl
 from wearlaw.sweeping import points
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # tests in the background of a shell have it ignored
 points.BLOCK = 500
 wl.accelerate(False)
 predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("kth")

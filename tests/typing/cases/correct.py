@@ -47,3 +47,26 @@ wl.TwinDisc(
 )
 wl.TwinDisc.suros(diameter="50 mm", track_width=Q(8, "mm"), rotational_speed="300 rpm")
 assert_type(wl.parse("47 mm"), wl.Quantity)
+
+wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius=Q(300, "mm"), material=wl.steel(), speed="30 m/s")
+on_rail = wheel | wl.contact_model("fastsim") | wl.wear_law("usfd")
+assert_type(on_rail, wl.Pipeline[wl.WheelRail])
+worn = on_rail(normal_force="80 kN", longitudinal_creepage="0.2 %", spin="0.3 1/m", friction_coefficient=0.3)
+assert_type(worn, wl.WheelRailPrediction)
+assert_type(worn.spin_moment, wl.Quantity)
+falling = wl.FallingFriction(static_coefficient=0.4, limit_ratio=0.5, decay="0.6 s/m")
+(wheel | wl.contact_model("polach"))(max_pressure="1 GPa", longitudinal_creepage="1 %", friction_coefficient=falling)
+ellipse = wl.EllipticProblem(
+    a=Q(6, "mm"),
+    b=Q(6, "mm"),
+    normal_force=Q(100, "kN"),
+    shear_modulus=Q(82, "GPa"),
+    poisson_ratio=0.28,
+    friction_coefficient=0.3,
+    longitudinal_creepage=Q(0.1, "%"),
+    lateral_creepage=Q(0, "%"),
+    spin=Q(0, "1/mm"),
+)
+solved = wl.contact_model("fastsim", bound="elliptic").solve(ellipse)
+assert_type(solved, wl.EllipticContact)
+assert_type(solved.longitudinal_force, wl.Quantity)

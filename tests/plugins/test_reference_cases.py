@@ -1,0 +1,128 @@
+"""Contacts that CONTACT solved: Carter's problem, and what its FASTSIM gives; see the files for source and licence."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.plugins.full_theory import rows
+from wearlaw import Array, Q
+from wearlaw_fastsim._solution import ellipses
+
+DIGITS = 5e-3
+"""Three digits are printed: half of the last one, of 1.00."""
+
+
+def carter() -> wl.LineProblem:
+    force, modulus, radius = 35780.0 / 0.2, 82e9 / (1.0 - 0.28), 0.5
+    half_width = np.sqrt(4.0 * force * radius / (np.pi * modulus))
+    values = {
+        "normal_force_per_width": force,
+        "half_width": half_width,
+        "max_pressure": 2.0 * force / (np.pi * half_width),
+        "relative_radius": radius,
+        "effective_modulus": modulus,
+        "friction_coefficient": 0.3,
+        "creepage": 0.00024,
+        "rolling_speed": 30.0,
+        "track_width": 0.2,
+        "density": 7850.0,
+    }
+    return wl.LineProblem(**{name: np.asarray(value) for name, value in values.items()})
+
+
+def column(name: str) -> Array:
+    return np.array([float(row[name]) for row in rows("carter.csv")])
+
+
+def near(field: str, x: Array, element: float) -> tuple[Array, Array]:
+    """Return the least and the greatest value of a field of the exact theory within an element on either side."""
+    problem, model = carter(), wl.contact_model("exact")
+    assert isinstance(model, wl.LineContactModel)
+    shifts = element * np.linspace(-1.0, 1.0, 41)
+    places = np.clip(x + shifts[:, None], -problem.half_width, problem.half_width)
+    values = getattr(model.at(problem, wl.Nodes.at(places.reshape(-1), problem.half_width)), field)
+    by_shift = values.reshape(places.shape)
+    return by_shift.min(axis=0), by_shift.max(axis=0)
+
+
+@pytest.mark.parametrize(
+    ("field", "name", "factor"), [("pressure", "pn_MPa", 1e6), ("traction", "pt_MPa", 1e6), ("slip", "slip_rel", 1.0)]
+)
+def test_carters_contact_meets_the_half_space(field: str, name: str, factor: float) -> None:
+    # What is one value in an element there stands for values within an element of its centre here.
+    low, high = near(field, -1e-3 * column("x_mm"), 0.04e-3)
+    found = factor * column(name)
+    assert (found >= low * (1.0 - DIGITS)).all()
+    assert (found <= high * (1.0 + DIGITS)).all()
+
+
+def test_carters_force_meets_the_half_space() -> None:
+    # On 50 elements the stick zone reaches an element less far or farther: 1/50 of μN.
+    problem = carter()
+    force = wl.contact_model("exact").tangential_force(problem)
+    assert force / (0.3 * 35780.0) == pytest.approx(0.64, abs=1e-4)  # Carter's own, with c = 0.6 a
+    assert force == pytest.approx(6955.0, abs=0.3 * 35780.0 / 50)
+
+
+def locomotive(creepage: Array) -> wl.EllipticProblem:
+    return wl.EllipticProblem(
+        a=Q(6.304, "mm"),
+        b=Q(12.61, "mm"),
+        normal_force=Q(106700, "N"),
+        shear_modulus=Q(82000, "MPa"),
+        poisson_ratio=0.28,
+        friction_coefficient=0.33,
+        longitudinal_creepage=Q(creepage, ""),
+        lateral_creepage=Q(0, ""),
+        spin=Q(0, "1/m"),
+    )
+
+
+def test_the_flexibility_of_a_locomotive_wheel_is_that_which_contact_prints() -> None:
+    flexibility = ellipses(locomotive(np.array([1e-3])), elliptic=False).longitudinal_flexibility
+    # mm³/N; half of the fourth digit of L1, and as much of that of a.
+    assert flexibility[0] == pytest.approx(0.5491e-13, rel=2e-4)
+
+
+def test_the_creep_curve_of_a_locomotive_wheel_meets_the_fastsim_of_contact() -> None:
+    curve = rows("creep_curve_fastsim.csv")
+    creepage, force = (np.array([float(row[name]) for row in curve]) for name in ("xi", "fx"))
+    found = wl.contact_model("fastsim").creep_forces(locomotive(creepage)).longitudinal
+    # There are 48/1.1 elements along the longest strip, and the first step is a whole one, so that the traction of a
+    # strip that sticks is that of the place half an element ahead: half of 2a/(48/1.1) times the slope of 2 μp/a that
+    # it has at the most before it slips, which is 1.1/48 of μN, and no traction is lower.
+    excess = (-force - found) / (0.33 * 106700.0)
+    assert (excess <= 1.1 / 48).all()
+    assert (excess >= -2e-3).all()  # four digits, and 0.2 % of FASTSIM's own sums
+    assert excess.max() > 0.005
+
+
+@pytest.mark.parametrize("ratio", [0.2, 0.5, 1.0, 2.0, 5.0])
+def test_the_moment_of_fastsim_follows_from_the_flexibilities_of_its_forces(ratio: float) -> None:
+    problem = wl.EllipticProblem(
+        a=Q(4e-3 * ratio**0.5, "m"),
+        b=Q(4e-3 / ratio**0.5, "m"),
+        normal_force=Q(80, "kN"),
+        shear_modulus=Q(82, "GPa"),
+        poisson_ratio=0.28,
+        friction_coefficient=0.3,
+        longitudinal_creepage=Q(0, ""),
+        lateral_creepage=Q([1e-8, 0], ""),
+        spin=Q([0, 1e-6], "1/m"),
+    )
+    fastsim, linear = (wl.contact_model(name).creep_forces(problem).spin_moment for name in ("fastsim", "linear"))
+    # -∫ (x qy + y qx) over the ellipse of what sticks, (η/L2)(x + ay) across, and for spin -(φ/L3) y (x + ay) along
+    # and (φ/2L3)(ay² - x²) across, with L2 and L3 from C22 and C23.
+    c = wl.kalker.coefficients(np.array(ratio), 0.28)
+    of_creepage = 3.0 * np.pi / 32.0 * np.sqrt(ratio) * c.c22 / c.c23
+    of_spin = 32.0 / (15.0 * np.pi) * ratio**-1.5 * c.c23 / c.c33
+    # 1e-3 is how far the creepages are from none, and the quadrature from exact.
+    assert fastsim / linear == pytest.approx([of_creepage, of_spin], rel=1e-3)
+
+
+def test_the_moment_of_fastsim_on_a_circle_is_15_to_27_per_cent_low() -> None:
+    c = wl.kalker.coefficients(np.array(1.0), 0.28)
+    assert 1.0 - 3.0 * np.pi / 32.0 * c.c22 / c.c23 == pytest.approx(0.27, abs=0.005)
+    assert 1.0 - 32.0 / (15.0 * np.pi) * c.c23 / c.c33 == pytest.approx(0.15, abs=0.005)
