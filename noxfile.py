@@ -30,6 +30,7 @@ def bench(session: nox.Session) -> None:
     """Time wearlaw beside its rivals; the rivals in C need a compiler."""
     session.install("-e", ".[fast]")
     session.run("python", "-m", "tests.benchmarks.speed", *session.posargs)
+    session.run("python", "-m", "tests.benchmarks.wheel_rail")
     session.run("python", "-m", "tests.benchmarks.fit")
     session.run("python", "tests/benchmarks/study.py")
     session.install("-e", ".[fast,dask]")

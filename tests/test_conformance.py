@@ -26,12 +26,8 @@ CONTACT_MODELS: list[wl.ContactModel] = [
     *(
         wl.contact_model("fastsim", bound=bound, march=march, slip=slip)
         for bound in ("parabolic", "elliptic")
-        for march, slip in (("uniform", "local"), ("uniform", "scaled"), ("adaptive", "scaled"))
+        for march, slip in (("uniform", "local"), ("adaptive", "scaled"))
     ),
-    wl.contact_model("linear"),
-    wl.contact_model("shen_hedrick_elkins"),
-    wl.contact_model("polach"),
-    wl.contact_model("polach", slip_reduction=0.4),
     *(
         wl.contact_model("global", total_from=model)
         for model in (
