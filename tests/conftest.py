@@ -1,10 +1,26 @@
-"""How much hypothesis searches: `pytest --hypothesis-profile thorough` searches twenty-five times as long."""
+"""How much hypothesis searches, and the numbers of marks that tests receive.
+
+`pytest --hypothesis-profile thorough` searches twenty-five times as long.
+"""
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import settings
+
+from docs.validation import numbers
 
 # Times of single examples vary with the machine and with what is imported first, so there is no deadline.
 settings.register_profile("default", max_examples=40, deadline=None)
 settings.register_profile("thorough", max_examples=1000, deadline=None)
 settings.load_profile("default")
+
+# A relative tolerance is one: pytest's own floor of 1e-12 would let any value below that pass, as flexibilities in SI.
+type(pytest.approx(1.0)).DEFAULT_ABSOLUTE_TOLERANCE = 0.0  # type: ignore[attr-defined]
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Give a test the numbers of its mark `validates`, so that the page about validation shows what is asserted."""
+    for mark in metafunc.definition.iter_markers("validates"):
+        for name, value in numbers(mark).items():
+            metafunc.parametrize(name, [value], ids=[f"{name}={value}"])
