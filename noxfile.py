@@ -1,31 +1,47 @@
-"""Sessions beyond `.ci/run`: other Python versions, the documentation to look at, its pictures, benchmarks."""
+"""Sessions beyond `.ci/run`: other versions of Python and dependencies, documentation, benchmarks, a release."""
+
+import shutil
+from pathlib import Path
 
 import nox
 
+nox.needs_version = ">=2025.2"
 nox.options.default_venv_backend = "venv"
-nox.options.sessions = ["tests"]
+
+PYPROJECT = nox.project.load_toml()
 
 
 @nox.session(python=["3.11", "3.12", "3.13"])
 def tests(session: nox.Session) -> None:
+    """Test with the newest version of each dependency."""
     session.install("-e", ".[test]")
     session.run("pytest", *session.posargs)
 
 
-@nox.session(python="3.11")
+@nox.session(python="3.11", default=False)
+def minimum(session: nox.Session) -> None:
+    """Test with the lowest version of each dependency that is declared to do."""
+    project = PYPROJECT["project"]
+    declared = project["dependencies"] + project["optional-dependencies"]["test"]
+    session.install("--only-binary=:all:", "-e", ".[test]", *(one.replace(">=", "==") for one in declared))
+    # What these need in turn is the newest, of which they may use what is deprecated by now.
+    session.run("pytest", "-W", "ignore::DeprecationWarning", *session.posargs)
+
+
+@nox.session(python="3.11", default=False)
 def docs(session: nox.Session) -> None:
-    session.install("-e", ".", *nox.project.dependency_groups(nox.project.load_toml(), "docs"))
+    session.install("-e", ".", *nox.project.dependency_groups(PYPROJECT, "docs"))
     session.run("sphinx-build", "-W", "--keep-going", "-b", "html", "docs", "docs/_build/html")
 
 
-@nox.session(python="3.11")
+@nox.session(python="3.11", default=False)
 def pictures(session: nox.Session) -> None:
     """Draw the pictures of the README and the documentation anew; that of the report needs chromium."""
     session.install("-e", ".[test]")
     session.run("python", "docs/pictures.py")
 
 
-@nox.session(python="3.11")
+@nox.session(python="3.11", default=False)
 def bench(session: nox.Session) -> None:
     """Time wearlaw beside its rivals; the rivals in C need a compiler."""
     session.install("-e", ".[fast]")
@@ -35,3 +51,33 @@ def bench(session: nox.Session) -> None:
     session.run("python", "tests/benchmarks/study.py")
     session.install("-e", ".[fast,dask]")
     session.run("python", "-m", "tests.benchmarks.sweep")
+
+
+@nox.session(python="3.11", default=False)
+def repo_review(session: nox.Session) -> None:
+    """Go through the checklist of Scientific Python; `pyproject.toml` says what is declined and why."""
+    session.install("sp-repo-review[cli]")
+    session.run("repo-review", ".")
+
+
+@nox.session(python="3.11", default=False)
+def release(session: nox.Session) -> None:
+    """Build what would be released into dist/, try it, and say what is missing or left to a person."""
+    session.install("build", "check-sdist", "check-wheel-contents", "packaging", "pipx", "twine")
+    shutil.rmtree("dist", ignore_errors=True)
+    session.run("python", "-m", "build")
+    session.run("check-sdist", "--installer=pip")
+    (sdist,), (wheel,) = Path("dist").glob("*.tar.gz"), Path("dist").glob("*.whl")
+    session.run("twine", "check", "--strict", str(sdist), str(wheel))
+    session.run("check-wheel-contents", str(wheel))
+    tried = Path(session.create_tmp())
+    program = ("pipx", "run", "--spec", str(wheel), "wearlaw")
+    session.run(*program, "run", "tassini2010", "-o", str(tried / "out"), env={"PIPX_HOME": str(tried / "pipx")})
+    session.run("python", "-m", "tests.release")
+
+
+@nox.session(python="3.11", default=False)
+def mutation(session: nox.Session) -> None:
+    """Break modules in every small way and see whether their tests fail: `nox -s mutation -- wearlaw_kth`."""
+    session.install("-e", ".[test]", "cosmic-ray>=8.7")
+    session.run("python", "-m", "tests.mutation", *session.posargs)

@@ -1,0 +1,107 @@
+"""A release has one version, and the checklist refuses one that is not ready."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.environments import ROOT
+from tests.release import inconsistencies, main, obstacles
+
+READY = {
+    "core/wearlaw/version.py": '"""The version."""\n\n__version__ = "0.2.0"\n',
+    "CITATION.cff": "title: wearlaw\nversion: 0.2.0\ndate-released: 2027-03-01\n",
+    "CHANGELOG.md": "# Changelog\n\n## 0.2.0 (2027-03-01)\n\n### Added\n\n- All.\n\n"
+    "## 0.1.0 (2026-12-24)\n\n### Added\n\n- Some.\n",
+}
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    if shutil.which("git") is None:
+        pytest.skip("there is no git")
+    for path, text in READY.items():
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text(text, encoding="utf-8")
+    git(tmp_path, "init", "--quiet")
+    commit(tmp_path)
+    return tmp_path
+
+
+def git(project: Path, *arguments: str) -> None:
+    author = ("-c", "user.name=Nobody", "-c", "user.email=nobody@example.org")
+    subprocess.run(("git", "-C", str(project), *author, *arguments), check=True, capture_output=True)
+
+
+def commit(project: Path) -> None:
+    git(project, "add", ".")
+    git(project, "commit", "--quiet", "--allow-empty", "--message", "All")
+
+
+def edit(project: Path, path: str, old: str, new: str) -> None:
+    text = (project / path).read_text(encoding="utf-8")
+    assert old in text
+    (project / path).write_text(text.replace(old, new), encoding="utf-8")
+
+
+def test_the_files_of_wearlaw_agree_on_its_version() -> None:
+    assert list(inconsistencies(ROOT)) == []
+
+
+def test_a_project_that_is_ready_is_told_what_a_person_has_to_do(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(project) == 0
+    assert "git tag --annotate v0.2.0" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "message"),
+    [
+        ("core/wearlaw/version.py", "0.2.0", "0.3.0", "CITATION.cff: its version is ['0.2.0'], but"),
+        ("CITATION.cff", "0.2.0", "0.1.0", "CITATION.cff: its version is ['0.1.0'], but"),
+        ("CHANGELOG.md", "## 0.2.0", "## 0.3.0", "CHANGELOG.md: its first version must be 0.2.0"),
+        ("CHANGELOG.md", "0.1.0 (2026-12-24)", "0.1.0, 2026-12-24", "each heading must read"),
+        ("CHANGELOG.md", "## 0.1.0", "## 0.2.0", "the versions do not fall"),
+        ("CHANGELOG.md", "## 0.1.0", "## 0.10.0", "the versions do not fall"),
+        ("CHANGELOG.md", "### Added\n\n- All", "### News\n\n- All", "0.2.0: its entries must stand under"),
+        ("CHANGELOG.md", "### Added\n\n- All", "- All", "0.2.0: its entries must stand under"),
+    ],
+)
+def test_files_that_disagree_are_named(project: Path, path: str, old: str, new: str, message: str) -> None:
+    edit(project, path, old, new)
+    assert any(message in found for found in inconsistencies(project))
+    assert main(project) == 1
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "message"),
+    [
+        ("CHANGELOG.md", "2027-03-01", "unreleased", "write the date of the release into the heading of 0.2.0"),
+        ("CITATION.cff", "2027-03-01", "2027-02-28", "date-released must be the date in the changelog"),
+        ("CHANGELOG.md", "- All.\n", "", "0.2.0 has no entry"),
+    ],
+)
+def test_a_release_that_is_not_written_up_is_refused(
+    project: Path, path: str, old: str, new: str, message: str
+) -> None:
+    edit(project, path, old, new)
+    commit(project)
+    assert any(message in found for found in obstacles(project))
+    assert main(project) == 1
+
+
+def test_a_release_of_what_is_not_committed_is_refused(project: Path) -> None:
+    (project / "notes.txt").touch()
+    assert [re.sub(r"\s+", " ", found) for found in obstacles(project)] == [
+        "these files are not as committed: ?? notes.txt "
+    ]
+
+
+def test_a_version_that_is_released_is_not_released_again(project: Path) -> None:
+    git(project, "tag", "v0.2.0")
+    assert list(obstacles(project)) == ["0.2.0 is released: the tag v0.2.0 is there; raise the version"]
