@@ -1,13 +1,15 @@
 """Runs the code blocks of README.md and docs/ as tests and compares their output.
 
 Blocks of ``python`` run in one namespace a page, blocks of ``console`` in a shell, both in an empty folder. A
-block with a caption is a file of that name, which the blocks after it find there.
+block with a caption is a file of that name, which the blocks after it find there. What a page installs is there for
+its own shells only. Of blocks of ``matlab`` the names are looked up in the files that they read.
 """
 
 from __future__ import annotations
 
 import doctest
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -20,19 +22,46 @@ from sybil.parsers.myst.lexers import DirectiveLexer
 from sybil.region import Region
 
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+MATLAB_READS = re.compile(r'(\w*read\w*)\("([^"]+)"(?:, "([^"]+)")?(?:, "([^"]+)")?')
+"""A function of MATLAB, its file, and the variable and attribute that it reads there."""
 
 
 def run_console(example: Example) -> None:
     """Run each line that starts with "$ " and compare what it prints with the lines that follow it."""
     for block in ("\n" + example.parsed).split("\n$ ")[1:]:
         command, _, expected = block.partition("\n")
-        path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-        environment = {**os.environ, "PATH": path, "PYTHONUNBUFFERED": "1"}
         printed = subprocess.run(
-            command, shell=True, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+            command,
+            shell=True,
+            env=environment(example.namespace["_installed"].name),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
         ).stdout
         if not doctest.OutputChecker().check_output(expected, printed, OPTIONS):
             raise AssertionError(f"$ {command}\nexpected:\n{expected}\nprinted:\n{printed}")
+
+
+def environment(installed: str) -> dict[str, str]:
+    """Return the variables of a shell in which pip installs into a folder of its own, without a network."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    pip = {"PIP_TARGET": installed, "PIP_NO_DEPS": "1", "PIP_NO_INDEX": "1", "PIP_NO_BUILD_ISOLATION": "0"}  # 0 is "no"
+    return {**os.environ, "PATH": path, "PYTHONUNBUFFERED": "1", "PYTHONPATH": installed, **pip}
+
+
+def check_matlab(example: Example) -> None:
+    """Look up each variable, attribute and column that is read, since there is no MATLAB to run."""
+    import h5py  # type: ignore[import-untyped]
+    import pandas as pd
+
+    for function, file, variable, attribute in MATLAB_READS.findall(example.parsed):
+        if function == "readtable":
+            columns = re.findall(r'\.\("([^"]+)"\)', example.parsed)
+            assert columns
+            pd.read_csv(file)[columns]
+        else:
+            with h5py.File(file) as opened:
+                assert opened[variable].attrs[attribute] if attribute else opened[variable][()].size
 
 
 def captioned_files(document: Any) -> Any:
@@ -53,13 +82,17 @@ def enter_folder(namespace: dict[str, Any]) -> None:
     namespace["_folder"] = tempfile.TemporaryDirectory()
     os.chdir(namespace["_folder"].name)
     sys.path.insert(0, namespace["_folder"].name)
+    namespace["_installed"] = tempfile.TemporaryDirectory()
+    in_shells = Path(namespace["_installed"].name) / "sitecustomize.py"
+    in_shells.write_text(f"import site; site.addsitedir({namespace['_installed'].name!r})")  # for `pip install -e`
 
 
 def leave_folder(namespace: dict[str, Any]) -> None:
-    """Go back and remove the folder."""
+    """Go back and remove the folders."""
     sys.path.remove(namespace["_folder"].name)
     os.chdir(namespace["_home"])
     namespace["_folder"].cleanup()
+    namespace["_installed"].cleanup()
 
 
 pytest_collect_file = Sybil(
@@ -67,6 +100,7 @@ pytest_collect_file = Sybil(
         captioned_files,
         PythonCodeBlockParser(doctest_optionflags=OPTIONS),
         CodeBlockParser(language="console", evaluator=run_console),
+        CodeBlockParser(language="matlab", evaluator=check_matlab),
     ],
     patterns=["README.md", "docs/*.md"],
     setup=enter_folder,

@@ -16,9 +16,10 @@ pictures.draw()
 project = "wearlaw"
 author = "The wearlaw developers"
 version = release = wearlaw.__version__
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
+extensions = ["rendering", "myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
+html_math_renderer = "mathml"
 html_theme = "furo"
 html_title = "wearlaw"
 exclude_patterns = ["_build"]

@@ -22,6 +22,7 @@ from matplotlib.patches import Arc, Circle, Ellipse, Rectangle
 import wearlaw as wl
 from wearlaw import Q
 from wearlaw.case import load_case
+from wearlaw.figures.curves import BLACK
 from wearlaw.figures.drawing import LINES, PALETTE, STYLE
 from wearlaw.figures.drawing import draw as drawing_of
 from wearlaw.output import write
@@ -43,6 +44,8 @@ def draw() -> None:
     _save(cost_against_error(), "accuracy_cost_against_error")
     _save(conventions(), "conventions")
     _save(fastsim_against_half_space(), "fastsim_against_half_space")
+    for figure in (creep_forces(), falling_friction()):
+        _save(drawing_of(figure), figure.name)
     for script in sorted(GALLERY.glob("*.py")):
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([sys.executable, script], cwd=folder, env={**os.environ, "MPLBACKEND": "agg"}, check=True)
@@ -89,7 +92,7 @@ def cost_against_error() -> Figure:
             axes.plot(errors, times, label=method, marker="*" if method.startswith("wearlaw") else "o", **style)
             for row, error, time in zip(points, errors, times, strict=True) if len(points) > 1 else ():
                 axes.annotate(row["cells"], (error, time), (0, 6), textcoords="offset points", ha="center", fontsize=7)
-        axes.set(xlabel="rms relative error of the wear rate", ylabel="time of an operating point [µs]")
+        axes.set(xlabel="rms relative error of the wear rate [-]", ylabel="time of an operating point [µs]")
         axes.set(xscale="log", yscale="log")
         axes.legend(title="with the number of cells")
     return figure
@@ -112,20 +115,25 @@ def conventions() -> Figure:
     return figure
 
 
-def solve_reference() -> tuple[pd.DataFrame, dict[str, wl.EllipticContact]]:
-    """Return the reference cases of the half-space theory, and their solutions by FASTSIM for each bound."""
-    table = pd.read_csv(REFERENCE, comment="#")
-    problem = wl.EllipticProblem(
+def reference_problem(xi: Any, eta: Any, phi: Any) -> wl.EllipticProblem:
+    """Return the contact of the reference cases under other creepages [-] and spin [1/mm]."""
+    return wl.EllipticProblem(
         a=Q(6, "mm"),
         b=Q(6, "mm"),
         normal_force=Q(100, "kN"),
         shear_modulus=Q(82, "GPa"),
         poisson_ratio=0.28,
         friction_coefficient=0.3,
-        longitudinal_creepage=Q(table.xi.to_numpy(), ""),
-        lateral_creepage=Q(table.eta.to_numpy(), ""),
-        spin=Q(table.phi.to_numpy(), "1/mm"),
+        longitudinal_creepage=Q(xi, ""),
+        lateral_creepage=Q(eta, ""),
+        spin=Q(phi, "1/mm"),
     )
+
+
+def solve_reference() -> tuple[pd.DataFrame, dict[str, wl.EllipticContact]]:
+    """Return the reference cases of the half-space theory, and their solutions by FASTSIM for each bound."""
+    table = pd.read_csv(REFERENCE, comment="#")
+    problem = reference_problem(table.xi.to_numpy(), table.eta.to_numpy(), table.phi.to_numpy())
     return table, {bound: wl.contact_model("fastsim", bound=bound).solve(problem) for bound in BOUNDS}
 
 
@@ -191,6 +199,40 @@ def fastsim_against_half_space() -> Figure:
         axes.set(xlabel="force by FASTSIM less that of the half-space theory [% of μN]", ylim=(len(cases) - 0.5, -0.5))
         figure.legend(loc="outside lower center", ncols=3)
     return figure
+
+
+def creep_forces() -> wl.FigureData:
+    """Return the forces of the models under longitudinal creepage alone and spin alone, with the half-space theory."""
+    table = pd.read_csv(REFERENCE, comment="#")
+    panels = []
+    parts = ("x", "xi", "longitudinal creepage ξ [%]", 100.0, 6e-3), ("y", "phi", "spin φ [1/m]", 1000.0, 2e-3)
+    for part, creepage, label, unit, last in parts:
+        given = np.linspace(0.0, last, 121)
+        problem = reference_problem(**{"xi": 0.0, "eta": 0.0, "phi": 0.0, creepage: given})
+        curves = []
+        for number, name in enumerate(("fastsim", "linear", "shen_hedrick_elkins", "polach")):
+            force = getattr(wl.contact_model(name).solve(problem), f"force_{part}")
+            curves.append(wl.Curve(name, unit * given, force / 30e3, number, number))
+        alone = table[(table[creepage] != 0.0) & ((table[["xi", "eta", "phi"]] != 0.0).sum(axis=1) == 1)]
+        x, y = unit * alone[creepage].to_numpy(), -alone[f"fullX_f{part}"].to_numpy()
+        curves.append(wl.Curve("half-space theory", x, y, BLACK, points=True))
+        y_axis = wl.PlotAxis(f"F{part}/(μN) [-]", ends=(0.0, 1.1))
+        panels.append(wl.Panel(wl.PlotAxis(label), y_axis, tuple(curves)))
+    return wl.FigureData("creep_forces", "Forces of the models of elliptic contact", tuple(panels))
+
+
+def falling_friction() -> wl.FigureData:
+    """Return the traction coefficient of two models under friction that falls with the creep speed."""
+    friction = wl.FallingFriction(static_coefficient=0.55, limit_ratio=0.4, decay="0.6 s/m")
+    rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+    given = np.geomspace(0.01, 10.0, 121)
+    curves = []
+    for number, model in ((0, wl.contact_model("fastsim")), (3, wl.contact_model("polach", slip_reduction=0.4))):
+        c = (rig | model)(normal_force="80 kN", longitudinal_creepage=Q(given, "%"), friction_coefficient=friction)
+        curves.append(wl.Curve(model.name, given, c.traction_coefficient.m, number, number))
+    curves.append(wl.Curve("friction coefficient", given, c.friction_coefficient.m, BLACK, 1))
+    axes = wl.PlotAxis("longitudinal creepage ξ [%]", "log"), wl.PlotAxis("traction coefficient T/N [-]")
+    return wl.FigureData("falling_friction", "Friction that falls", (wl.Panel(*axes, tuple(curves)),))
 
 
 def _from_the_side(axes: Axes) -> None:

@@ -1,0 +1,51 @@
+"""Makes pages that need no network, with formulas as MathML, and tells the command line in its own words."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import click
+from docutils import nodes
+from docutils.parsers.rst import Directive
+from docutils.utils.math.latex2mathml import tex2mathml
+from sphinx.errors import ExtensionError
+
+from wearlaw.cli import main
+
+LOADED = re.compile(r'<(?:script|img|link|iframe)\b[^>]*\b(?:src|href)="(?:https?:)?//[^"]*"')
+"""What a browser loads from the network by itself, unlike the target of a link."""
+
+
+def mathml(translator: Any, node: nodes.math | nodes.math_block) -> None:
+    """Write a formula in a language of browsers, where Sphinx would load MathJax from the network."""
+    block = isinstance(node, nodes.math_block)
+    formula = tex2mathml(node.astext(), as_block=block)
+    translator.body.append(f'<div style="margin: 1em 0; overflow-x: auto">{formula}</div>' if block else formula)
+    raise nodes.SkipNode
+
+
+class CommandLine(Directive):
+    """A section for each command, with what its --help prints."""
+
+    def run(self) -> list[nodes.Node]:
+        program = click.Context(main, info_name="wearlaw")
+        return [self._section(click.Context(main.commands[name], program, name)) for name in main.commands]
+
+    def _section(self, command: click.Context) -> nodes.section:
+        name, text = command.command_path, command.get_help()
+        title = nodes.title(name, "", nodes.literal(name, name))
+        return nodes.section("", title, nodes.literal_block(text, text, language="text"), ids=[nodes.make_id(name)])
+
+
+def check_offline(app: Any, exception: Exception | None) -> None:
+    """Refuse pages that would look otherwise without a network."""
+    loaded = {found for page in Path(app.outdir).rglob("*.html") for found in LOADED.findall(page.read_text("utf-8"))}
+    if loaded and exception is None:
+        raise ExtensionError(f"pages need the network: {', '.join(sorted(loaded))}")
+
+
+def setup(app: Any) -> dict[str, bool]:
+    app.add_html_math_renderer("mathml", inline_renderers=(mathml, None), block_renderers=(mathml, None))
+    app.add_directive("command-line", CommandLine)
+    app.connect("build-finished", check_offline)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
