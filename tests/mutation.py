@@ -1,0 +1,235 @@
+"""Mutation testing: break a module in every small way, and see whether its tests fail; see `mutation.md`.
+
+The mutations are those of cosmic-ray, and two more: a quantity in a text such as "47 mm" grows by one per cent, and a
+call for its effect alone, or a raise, is left out. No file is changed: each mutant is compiled in a process of its own,
+forked from one that has imported what does not change, so that a mutant costs little more than its tests.
+"""
+
+from __future__ import annotations
+
+import gc
+import importlib
+import importlib.machinery
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from types import CodeType
+from typing import Any
+
+import hypothesis
+import pytest
+from cosmic_ray.ast import ast_nodes, get_ast
+from cosmic_ray.mutating import mutate_code
+from cosmic_ray.operators.provider import OperatorProvider
+from parso.python.tree import Keyword, String
+
+ROOT = Path(__file__).parents[1]
+
+TESTS = {
+    "wearlaw_brr": "plugins/test_brr.py",
+    "wearlaw_exact": "plugins/test_exact_kernel.py plugins/test_exact.py test_numbers.py",
+    "wearlaw_fastsim": "plugins/test_fastsim_kernel.py plugins/test_fastsim_first_slip.py plugins/test_fastsim.py"
+    " plugins/test_fastsim_strips.py plugins/test_fastsim_march.py",
+    "wearlaw_global": "plugins/test_global.py",
+    "wearlaw_kth": "plugins/test_kth.py",
+    "wearlaw_linear": "plugins/test_linear.py",
+    "wearlaw_polach": "plugins/test_polach.py",
+    "wearlaw_sheffield": "plugins/test_sheffield_tables.py plugins/test_sheffield_claims.py"
+    " plugins/test_sheffield_contact_claims.py plugins/test_sheffield_law_claims.py"
+    " plugins/test_sheffield_local_claims.py",
+    "wearlaw_shen_hedrick_elkins": "plugins/test_shen_hedrick_elkins.py",
+    "wearlaw_usfd": "plugins/test_usfd.py",
+    "wearlaw.composition": "core/test_pipeline.py core/test_wheel_rail_result.py",
+    "wearlaw.contact_pipeline": "core/test_pipeline.py core/test_inverse.py core/test_wheel_rail.py test_interface.py",
+    "wearlaw.hertz": "core/test_hertz.py",
+    "wearlaw.hertz_ellipse": "core/test_hertz_ellipse.py",
+    "wearlaw.parameters": "core/test_varying.py",
+    "wearlaw.pipeline": "core/test_pipeline.py core/test_uncertainty.py core/test_wheel_rail.py"
+    " core/test_wheel_rail_result.py test_interface.py",
+    "wearlaw.records": "core/test_records.py core/test_contact_from_arrays.py",
+    "wearlaw.units": "core/test_units.py",
+}
+"""The test files of each package or module; a plugin must pass the conformance kit too."""
+
+BINARY = ["Add_Sub", "Sub_Add", "Mul_Div", "Div_Mul", "Pow_Mul", "FloorDiv_Div", "BitOr_BitAnd", "BitAnd_BitOr"]
+COMPARISON = ["Lt_LtE", "Lt_GtE", "LtE_Lt", "LtE_Gt", "Gt_GtE", "Gt_LtE", "GtE_Gt", "GtE_Lt"]
+COMPARISON += ["Eq_NotEq", "NotEq_Eq", "Is_IsNot", "IsNot_Is"]
+OPERATORS = [
+    *(f"ReplaceBinaryOperator_{pair}" for pair in BINARY),
+    *(f"ReplaceComparisonOperator_{pair}" for pair in COMPARISON),
+    *("ReplaceUnaryOperator_USub_UAdd", "ReplaceUnaryOperator_Delete_Not", "AddNot", "ReplaceAndWithOr"),
+    *("ReplaceOrWithAnd", "ReplaceTrueWithFalse", "ReplaceFalseWithTrue", "ReplaceBreakWithContinue"),
+    *("ReplaceContinueWithBreak", "ExceptionReplacer", "NumberReplacer", "ZeroIterationForLoop"),
+]
+"""One replacement or two of each operator; the others of cosmic-ray fall to the same tests."""
+
+SHARED = {
+    *("_pytest", "click", "h5netcdf", "h5py", "jinja2", "matplotlib", "mpmath", "numpy", "packaging", "pandas", "pint"),
+    *("plotly", "pydantic", "pydantic_core", "rich", "scipy", "sybil", "xarray"),
+}
+"""What is imported once; for mutants of a plugin, the core of wearlaw too."""
+
+PYTEST = [
+    *("-x", "-q", "--assert=plain", "--override-ini=addopts=", "--hypothesis-profile=mutation"),
+    *("-p", "_hypothesis_pytestplugin", "-p", "no:cacheprovider", "-p", "no:unraisableexception"),
+]
+
+FACTOR, LEAST = 4.0, 20.0
+"""A mutant is killed if its tests take so many times as long as without it, and at least so many seconds."""
+
+
+class _NumberInText:
+    """Make a quantity in a text one per cent larger."""
+
+    def mutation_positions(self, node: Any) -> Iterator[Any]:
+        if isinstance(node, String) and re.fullmatch(r"""["'][-+]?[0-9.]+(e-?\d+)? \S*[a-zA-Z%]\S*["']""", node.value):
+            yield node.start_pos, node.end_pos
+
+    def mutate(self, node: Any, _: int) -> Any:
+        number, _, unit = node.value[1:-1].partition(" ")
+        return String(f'"{float(number) * 1.01 or 0.01:.12g} {unit}"', node.start_pos, node.prefix)
+
+
+class _LeftOut:
+    """Leave out a call for its effect alone, or a raise."""
+
+    def mutation_positions(self, node: Any) -> Iterator[Any]:
+        call = node.type in ("atom_expr", "power") and node.parent.type == "simple_stmt"
+        if call or node.type == "raise_stmt":
+            yield node.start_pos, node.end_pos
+
+    def mutate(self, node: Any, _: int) -> Any:
+        return Keyword("pass", node.start_pos, node.get_first_leaf().prefix)
+
+
+def mutants(source: str) -> Iterator[tuple[int, str, str]]:
+    """Yield line, name of the operator and source of each mutant."""
+    provider, tree = OperatorProvider(), get_ast(source)
+    for operator in (*(provider[name]() for name in OPERATORS), _NumberInText(), _LeftOut()):
+        places = [(node, position) for node in ast_nodes(tree) for position in operator.mutation_positions(node)]
+        for occurrence, (node, position) in enumerate(places):
+            if not _is_of_a_signature(node):
+                yield position[0][0], type(operator).__name__.lstrip("_"), mutate_code(source, operator, occurrence)
+
+
+def _is_of_a_signature(node: Any) -> bool:
+    """Return whether a node stands in the type of a name, an argument or a result, or is the star among arguments."""
+    if node.parent is not None and node.parent.type in ("parameters", "param", "arglist", "argument"):
+        return bool(node.type == "operator")
+    while node.parent is not None:
+        siblings, parent = node.parent.children, node.parent
+        before = siblings[next(i for i, sibling in enumerate(siblings) if sibling is node) - 1]
+        if (parent.type in ("annassign", "tfpdef") and before == ":") or (parent.type == "funcdef" and before == "->"):
+            return True
+        node = parent
+    return False
+
+
+def run_tests(path: Path, source: str, tests: list[str]) -> int:
+    """Return pytest's exit code in a process that compiles the module at `path` from `source`."""
+    original = importlib.machinery.SourceFileLoader.get_code
+
+    def get_code(loader: importlib.machinery.SourceFileLoader, fullname: str) -> CodeType | None:
+        return compile(source, path, "exec") if loader.path == str(path) else original(loader, fullname)
+
+    importlib.machinery.SourceFileLoader.get_code = get_code  # type: ignore[assignment, method-assign]
+    silent = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(silent, 1)
+    os.dup2(silent, 2)
+    search = (hypothesis.Phase.explicit, hypothesis.Phase.generate)  # which example fails is of no interest
+    hypothesis.settings.register_profile(
+        "mutation", max_examples=20, deadline=None, derandomize=True, database=None, phases=search
+    )
+    subprocess.run = lambda *_, **__: pytest.skip("another process runs no mutant")
+    os.environ |= {"WEARLAW_ACCELERATE": "0", "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["NUMBA_CACHE_DIR"] = folder  # no compiled mutant is kept
+        return int(pytest.main([*PYTEST, *tests]))
+
+
+def in_a_fork(work: Callable[[], int], limit: float) -> int | None:
+    """Return the number that work in a process of its own ends with, or None if it takes longer than `limit` [s]."""
+    child = os.fork()
+    if child == 0:
+        os.setsid()
+        try:
+            os._exit(work())
+        finally:
+            os._exit(1)
+    end = time.monotonic() + limit
+    while time.monotonic() < end:
+        done, status = os.waitpid(child, os.WNOHANG)
+        if done:
+            return os.waitstatus_to_exitcode(status)
+        time.sleep(0.02)
+    os.killpg(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return None
+
+
+def run_unchanged(path: Path, tests: list[str]) -> float:
+    """Run the tests, import what they imported and the mutants do not change, and return how long they took [s]."""
+    shared = SHARED if (ROOT / "core") in path.parents else SHARED | {"wearlaw"}
+    start = time.monotonic()
+    with tempfile.NamedTemporaryFile("r", encoding="utf-8") as names:
+
+        def run() -> int:
+            code = run_tests(path, path.read_text(encoding="utf-8"), tests)
+            found = [name for name in sys.modules if name.partition(".")[0] in shared]
+            Path(names.name).write_text("\n".join(found), encoding="utf-8")
+            return code
+
+        if in_a_fork(run, 600.0) != 0:
+            raise SystemExit(f"{' '.join(tests)}: fails without a mutation")
+        seconds = time.monotonic() - start
+        for name in names.read().split():
+            importlib.import_module(name)
+    gc.freeze()  # the collections of the mutants leave out what is shared
+    return seconds
+
+
+def report(path: Path, runs: list[list[str]]) -> None:
+    """Print the mutants of a module that survive all runs of tests, and how many there are."""
+    source = path.read_text(encoding="utf-8")
+    limits = [max(LEAST, FACTOR * run_unchanged(path, tests)) for tests in runs]
+    start, killed, total = time.monotonic(), 0, 0
+    for line, operator, mutant in mutants(source):
+        total += 1
+        if all(
+            in_a_fork(partial(run_tests, path, mutant, tests), limit) == 0
+            for tests, limit in zip(runs, limits, strict=True)
+        ):
+            before, after = source.splitlines()[line - 1], mutant.splitlines()[line - 1]
+            print(f"{path.relative_to(ROOT)}:{line}: {operator}\n  - {before.strip()}\n  + {after.strip()}", flush=True)
+        else:
+            killed += 1
+    seconds = time.monotonic() - start
+    print(f"{path.relative_to(ROOT)}: {killed} of {total} mutants killed in {seconds:.0f} s", flush=True)
+
+
+def main(names: list[str]) -> None:
+    """Test the mutants of the named packages and modules, or of all."""
+    if unknown := set(names) - set(TESTS):
+        raise SystemExit(f"unknown: {', '.join(unknown)}; there are: {', '.join(TESTS)}")
+    for name in names or TESTS:
+        runs = [[f"tests/{path}" for path in TESTS[name].split()]]
+        if name.startswith("wearlaw."):
+            paths = [ROOT / "core" / f"{name.replace('.', '/')}.py"]
+        else:
+            paths = sorted((ROOT / "plugins" / name).glob("*.py"))
+            kit = name.removeprefix("wearlaw_")
+            if name != "wearlaw_sheffield":
+                runs.append(["tests/test_conformance.py", "-k", f"test_the_model_conforms and {kit}-"])
+        for path in paths:
+            report(path, runs)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
