@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 from wearlaw import hertz, hertz_ellipse, kalker
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
+from wearlaw.contact_pipeline import ContactPipeline, PatchMean, patch_mean
 from wearlaw.creep_force_model import CreepForceModel
 from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
@@ -48,7 +49,7 @@ from wearlaw.line import LineFields, LineProblem
 from wearlaw.line_model import FieldVariable, LineContactModel
 from wearlaw.material import Material, steel
 from wearlaw.models import BreakpointMap, Calibration, LocalWear, WearLaw
-from wearlaw.pipeline import ContactPipeline, PatchMean, Pipeline, patch_mean
+from wearlaw.pipeline import Pipeline
 from wearlaw.plugins import (
     contact_model,
     contact_models,

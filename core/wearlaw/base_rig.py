@@ -18,7 +18,7 @@ from wearlaw.tangential import ContactModel, Geometry
 from wearlaw.units import from_si, scalar_si
 
 if TYPE_CHECKING:
-    from wearlaw.pipeline import ContactPipeline
+    from wearlaw.contact_pipeline import ContactPipeline
 
 TINY = float(np.sqrt(np.finfo(np.float64).tiny))
 """The least length or pressure in SI whose square is a float of full precision."""
@@ -39,7 +39,7 @@ class Rig(Configuration, ABC):
 
     def __or__(self, model: ContactModel) -> ContactPipeline[Any]:
         """Return the pipeline that solves this rig's contact with a contact model."""
-        from wearlaw.pipeline import ContactPipeline
+        from wearlaw.contact_pipeline import ContactPipeline
 
         if not isinstance(model, ContactModel):
             raise CompositionError(
@@ -50,7 +50,7 @@ class Rig(Configuration, ABC):
 
     def warn_of_plasticity(self, max_pressure: Array, stacklevel: int) -> None:
         """Warn once if the maximum pressure [Pa] is beyond the elastic limit of a body's material."""
-        limit, (_, highest) = self._elastic_limit, extremes(max_pressure)
+        limit, highest = self._elastic_limit, float(max_pressure.max(initial=0.0))
         if highest > limit:
             warnings.warn(
                 f"the maximum pressure reaches {from_si(highest, 'MPa')!r}, beyond the material's elastic limit of"
@@ -66,7 +66,7 @@ class Rig(Configuration, ABC):
         return min((scalar_si(limit, "Pa") for limit in limits if limit is not None), default=np.inf)
 
 
-def check_scale(sizes: dict[str, Array], friction_coefficient: Array) -> None:
+def check_sizes(sizes: dict[str, Array], friction_coefficient: Array) -> None:
     """Refuse loads and sizes [SI] so far from any contact that floats overflow or lose their precision."""
     for name, value in sizes.items():
         low, high = extremes(value)

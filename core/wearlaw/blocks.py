@@ -9,6 +9,7 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.batch import Batch
+from wearlaw.errors import ConditionsError
 
 Columns: TypeAlias = dict[str, Array]
 """Arrays with one entry an operating point."""
@@ -37,7 +38,7 @@ def by_block(
     """
     points = problem.size
     if points == 0:
-        raise ValueError("an empty batch has no totals")
+        raise ConditionsError("problem: holds no operating points; give at least one")
     whole: Columns = {}
     if points > block:
         np.empty(KEPT, dtype=np.uint8)

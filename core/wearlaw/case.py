@@ -9,7 +9,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import pint
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
@@ -27,6 +27,8 @@ from wearlaw.specification import ContactModelField, MaterialField, WearLawField
 from wearlaw.tangential import Model
 from wearlaw.uncertainty.specification import UncertainPoint
 from wearlaw.units import Length, Quantity, Speed, Unit, text_of
+
+ModelT = TypeVar("ModelT", bound=Model)
 
 CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
 """The names under which a run writes its case, and the tests that it was given as a file."""
@@ -129,7 +131,7 @@ class Case(Configuration):
             if profile.axes():
                 raise ValueError(f"profiles.{name}: a profile is at one operating point; give each condition one value")
         labels(self.contact_models)
-        laws = dict(zip(labels(self.wear_laws), self.wear_laws, strict=True))
+        laws = labelled(self.wear_laws)
         for name, point in self.uncertainty.items():
             try:
                 point.check_laws(laws)
@@ -146,8 +148,8 @@ class Case(Configuration):
     def _contents(self) -> Contents:
         return Contents(
             rig=self.rig,
-            contact_models=dict(zip(labels(self.contact_models), self.contact_models, strict=True)),
-            wear_laws=dict(zip(labels(self.wear_laws), self.wear_laws, strict=True)),
+            contact_models=labelled(self.contact_models),
+            wear_laws=labelled(self.wear_laws),
             sweeps=self.sweeps,
             profiles=self.profiles,
             measured=known_variables(self.measured.data) if self.measured else (),
@@ -164,6 +166,11 @@ def labels(models: Sequence[Model]) -> list[str]:
         options = [f"{field}={_shown(getattr(model, field))}" for field in _telling_apart(namesakes)]
         found.append(f"{model.name}({', '.join(options)})" if options else model.name)
     return found
+
+
+def labelled(models: Sequence[ModelT]) -> dict[str, ModelT]:
+    """Return models by `labels`."""
+    return dict(zip(labels(models), models, strict=True))
 
 
 def _telling_apart(models: Sequence[Model]) -> list[str]:

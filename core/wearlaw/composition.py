@@ -24,7 +24,7 @@ def check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
     if law.scale == "patch" and scale != "patch":
         raise CompositionError(
             f"wear law '{law.name}' is stated for the means of the whole patch, but contact model '{model.name}'"
-            f' resolves it into cells; put wl.patch_mean() between them, or use wl.contact_model("global")'
+            ' resolves it into cells; put wl.patch_mean() between them, or use wl.contact_model("global")'
         )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol, Required, TypeAlias, TypedDict, TypeGuard
 
 import numpy as np
@@ -95,12 +96,6 @@ CREEPAGE = Unit("", positive=False, limit=1.0)
 COEFFICIENTS = ("friction_coefficient", "traction_coefficient")
 """The conditions that are plain numbers."""
 
-UNITS = {**LOADS, "creepage": CREEPAGE}
-"""The conditions of a twin-disc test that have units."""
-
-CONDITIONS = (*UNITS, *COEFFICIENTS)
-"""All conditions of a twin-disc test."""
-
 SPIN = Unit("1/m", positive=False)
 """Spin has either sign."""
 
@@ -124,10 +119,27 @@ class ConditionTable:
     coefficients: tuple[str, ...]
     examples: Mapping[str, str]
 
-    @property
+    @cached_property
+    def units(self) -> dict[str, Unit]:
+        """The conditions that have a unit."""
+        return {**self.loads, **self.creepages}
+
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """All conditions."""
-        return (*self.loads, *self.creepages, *self.coefficients)
+        return (*self.units, *self.coefficients)
+
+    def si(self, name: str, value: object) -> Array:
+        """Return the value of a condition in SI, or raise a `UnitError` that names the condition."""
+        unit = self.units.get(name)
+        return coefficient(value, name) if unit is None else unit.si(value, name)
+
+    def unknown(self, name: str) -> ConditionsError:
+        """Return what to raise for a condition that the rig does not take."""
+        names = self.names
+        return ConditionsError(
+            f"{name}: unknown condition;{did_you_mean(name, names)} The conditions are: {', '.join(names)}"
+        )
 
 
 TWIN_DISC = ConditionTable(
@@ -155,16 +167,17 @@ def condition_arrays(
     friction = given.get("friction_coefficient")
     if _is_law(friction):
         given["friction_coefficient"] = 1.0
-    units = {**table.loads, **table.creepages}
+    units = table.units
     arrays: Arrays = {}
-    for name, value in given.items():
+    for name, value in given.items():  # not by `table.si`, whose calls take a hundredth of a prediction
         if name in units:
             arrays[name] = units[name].si(value, name)
         elif name in table.coefficients:
             arrays[name] = coefficient(value, name)
     _check_names(conditions, arrays, table)
     for name in table.creepages:
-        arrays.setdefault(name, np.zeros(()))
+        if name not in arrays:
+            arrays[name] = np.zeros(())
     arrays = broadcast(arrays)
     if _is_law(friction):
         arrays["friction_coefficient"] = friction.coefficient(creep_speed(arrays))
@@ -178,12 +191,10 @@ def _is_law(friction: object) -> TypeGuard[FrictionLaw]:
 
 def _check_names(conditions: Mapping[str, Any], arrays: Arrays, table: ConditionTable) -> None:
     """Refuse conditions that are unknown, missing, or give the load twice."""
+    names = table.names
     for name in conditions:
-        if name not in table.names:
-            raise ConditionsError(
-                f"{name}: unknown condition;{did_you_mean(name, table.names)}"
-                f" The conditions are: {', '.join(table.names)}"
-            )
+        if name not in names:
+            raise table.unknown(name)
     loads = [name for name in table.loads if name in arrays]
     if len(loads) != 1:
         raise ConditionsError(

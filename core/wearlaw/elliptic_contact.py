@@ -93,7 +93,7 @@ class EllipticContact(Contact):
         traction, slip : pair of ndarray, (batch, nodes, strips)
             Their components along x and y [Pa], [-].
         traction_bound : ndarray, (batch, nodes, strips)
-            [Pa].
+            The largest magnitude that the model allows for the traction [Pa].
         """
         a, b = problem.a[..., None, None], problem.b[..., None, None]
         across = y[..., None, :]

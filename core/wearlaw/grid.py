@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from wearlaw.arrays import Array
-from wearlaw.conditions import CONDITIONS, CREEPAGE, LOADS
+from wearlaw.conditions import TWIN_DISC
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError
 from wearlaw.line import LineProblem
 from wearlaw.rig import TwinDisc
-from wearlaw.units import Q, Unit, coefficient
-
-UNITS: dict[str, Unit] = {**LOADS, "creepage": CREEPAGE}
-"""The conditions that have a unit."""
+from wearlaw.units import Q
 
 SI_UNITS = {"normal_force": "N", "normal_force_per_width": "N/m", "max_pressure": "Pa", "creepage": ""}
-"""Their coherent SI units."""
-
+"""The coherent SI units of the conditions that have a unit."""
 
 MOST_POINTS = 10_000_000
 """The largest grid that is taken on."""
@@ -54,7 +51,7 @@ class Axis(Configuration):
 
     def values(self, name: str) -> Array:
         """Return the values of the condition `name` in SI."""
-        first, last = float(_si(name, self.start)), float(_si(name, self.stop))
+        first, last = float(TWIN_DISC.si(name, self.start)), float(TWIN_DISC.si(name, self.stop))
         if self.spacing == "linear":
             return np.linspace(first, last, self.points)
         if first * last <= 0:
@@ -102,14 +99,14 @@ class Grid(Configuration):
     def _possible(self) -> Grid:
         """Find what is wrong with the conditions when they are read, not when they are used."""
         extremes = {name: np.array([values.min(), values.max()]) for name, values in self.conditions().items()}
-        TwinDisc.suros().problem(**_with_units(extremes))
+        TwinDisc.suros().problem(**with_units(extremes))
         if self.size > MOST_POINTS:
             raise InputError(f"the axes make a grid of {self.size} points; at most {MOST_POINTS} are possible")
         return self
 
     def conditions(self) -> dict[str, Array]:
         """Return the SI values of each condition that is given, of shape () or (values,)."""
-        given = {name: getattr(self, name) for name in CONDITIONS}
+        given = {name: getattr(self, name) for name in TWIN_DISC.names}
         return {name: _values(name, value) for name, value in given.items() if value is not None}
 
     def axes(self) -> dict[str, Array]:
@@ -128,10 +125,11 @@ class Grid(Configuration):
             name: values.reshape([-1 if axis == name else 1 for axis in axes]) if name in axes else values
             for name, values in self.conditions().items()
         }
-        return rig.problem(**_with_units(shaped))
+        return rig.problem(**with_units(shaped))
 
 
-def _with_units(conditions: dict[str, Array]) -> Any:
+def with_units(conditions: Mapping[str, Array]) -> dict[str, Any]:
+    """Return conditions in SI as a rig takes them."""
     return {name: Q(si, SI_UNITS[name]) if name in SI_UNITS else si for name, si in conditions.items()}
 
 
@@ -139,9 +137,5 @@ def _values(name: str, value: Any) -> Array:
     if isinstance(value, Axis):
         return value.values(name)
     if isinstance(value, tuple):
-        return np.array([float(_si(name, item)) for item in value])
-    return _si(name, value)
-
-
-def _si(name: str, value: float | str) -> Array:
-    return UNITS[name].si(value, name) if name in UNITS else coefficient(value, name)
+        return np.array([float(TWIN_DISC.si(name, item)) for item in value])
+    return TWIN_DISC.si(name, value)

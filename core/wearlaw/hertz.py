@@ -31,7 +31,7 @@ def half_width(normal_force_per_width: Array, radius: float, modulus: float) -> 
 
 
 def max_pressure(normal_force_per_width: Array, half_width: Array) -> Array:
-    """Return p0 = 2 P / (π a) [Pa] (Johnson, eq. 4.44)."""
+    """Return p0 = 2 P / (π a) [Pa] (Johnson, eq. 4.45)."""
     return normal_force_per_width * (2.0 / np.pi) / half_width
 
 
@@ -41,7 +41,7 @@ def force_from_max_pressure(max_pressure: Array, radius: float, modulus: float) 
 
 
 def pressure(x: Array, half_width: Array, max_pressure: Array) -> Array:
-    """Return p = p0 √(1-(x/a)²) [Pa] inside the patch, 0 outside (Johnson, eq. 4.45).
+    """Return p = p0 √(1-(x/a)²) [Pa] inside the patch, 0 outside (Johnson, eq. 4.44).
 
     The product (a-x)(a+x) keeps full precision next to the edges.
     """

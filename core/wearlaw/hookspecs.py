@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 PROJECT = "wearlaw"
 
 INTERFACE_VERSION = 1
-"""The version of what a plugin can rely on: these hooks and the base classes in `wearlaw.models`.
+"""The version of what a plugin can rely on: these hooks and the public names of `wearlaw`.
 
 It rises when a plugin that worked would no longer do. A plugin module that sets ``wearlaw_interface = N`` is only
 loaded by a wearlaw whose version is at least N.

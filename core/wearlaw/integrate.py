@@ -12,7 +12,6 @@ The last two come with an error estimate. The number of cells of a plot has no p
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -24,6 +23,7 @@ from wearlaw.blocks import Columns, OnBlock, by_block
 from wearlaw.crossings import crossings
 from wearlaw.errors import ModelError
 from wearlaw.extremes import extremes
+from wearlaw.finite import check_finite
 from wearlaw.kernels import accelerated
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
@@ -52,7 +52,15 @@ EPS = float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlipTotals:
-    """How much of the patch slips at each operating point, as SI arrays of the batch shape."""
+    """How the patch slips at each operating point, as SI arrays of the batch shape.
+
+    Attributes
+    ----------
+    mean_slip : ndarray
+        Area mean of the magnitude of the slip [-].
+    slip_area : ndarray
+        Area of what slips [m²].
+    """
 
     mean_slip: Array
     slip_area: Array
@@ -89,7 +97,7 @@ def integrate_contact(model: ContactModel, problem: LineProblem) -> Array:
 
 
 def integrate_slip(model: ContactModel, problem: LineProblem, scale: Scale) -> SlipTotals:
-    """Return how much of the patch slips."""
+    """Return how the patch slips."""
 
     def columns(part: LineProblem) -> Columns:
         contact = solve(model, part, scale)
@@ -279,22 +287,3 @@ def thinning_error(contact: Contact, rate: Array) -> Array:
     thinned = middle.sum(-1) - weighted[..., :whole].sum(-1)
     error: Array = np.abs(halves[0] - halves[1]) + np.abs(thinned) / contact.patch_area
     return error
-
-
-def check_finite(model: ContactModel, values: Columns, problem: LineProblem) -> None:
-    """Raise a `ModelError` that names the operating points, if a value is not finite."""
-    for name, value in values.items():
-        low, high = extremes(value)
-        if not (math.isfinite(low) and math.isfinite(high)):
-            raise ModelError(
-                f"contact model '{model.name}' gave a {name.replace('_', ' ')} that is not finite"
-                f" for {_ranges(problem)}"
-            )
-
-
-def _ranges(problem: LineProblem) -> str:
-    creepage, pressure = problem.creepage, problem.max_pressure
-    return (
-        f"creepages from {creepage.min():g} to {creepage.max():g}"
-        f" and maximum pressures from {pressure.min():g} to {pressure.max():g} Pa"
-    )

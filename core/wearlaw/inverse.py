@@ -13,7 +13,7 @@ from wearlaw.errors import ConditionsError, UnitError
 from wearlaw.units import Quantity, Unit, from_si, real_array
 
 if TYPE_CHECKING:
-    from wearlaw.pipeline import ContactPipeline
+    from wearlaw.contact_pipeline import ContactPipeline
     from wearlaw.rig import TwinDisc
 
 SMALLEST = 1e-30
@@ -34,12 +34,7 @@ def creepage_for(
         target = _finite(traction_coefficient)
     else:
         target = Unit("N", positive=False).si(tangential_force, "tangential_force") / problem.normal_force
-    try:
-        shape = np.broadcast_shapes(problem.batch_shape, target.shape)
-    except ValueError:
-        raise ConditionsError(
-            f"the shapes of the traction {target.shape} and of the conditions {problem.batch_shape} do not broadcast"
-        ) from None
+    shape = _broadcast(target.shape, problem.batch_shape)
     flat = problem.broadcast_to(shape).flatten()
     due = np.abs(np.broadcast_to(target, shape).reshape(-1))
 
@@ -62,6 +57,15 @@ def creepage_for(
         root = elementwise.find_root(lacking, (start[search], np.zeros(search.size)), args=(points[search],))
         creepage[search] = np.exp(root.x)
     return from_si(np.copysign(creepage.reshape(shape), target), "%")
+
+
+def _broadcast(traction: tuple[int, ...], conditions: tuple[int, ...]) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(traction, conditions)
+    except ValueError:
+        raise ConditionsError(
+            f"the shapes of the traction {traction} and of the conditions {conditions} do not broadcast"
+        ) from None
 
 
 def _finite(traction_coefficient: object) -> Array:

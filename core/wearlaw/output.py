@@ -207,11 +207,11 @@ def save_figure(figure: FigureData, folder: Path, name: str, formats: Sequence[F
     from wearlaw.figures.drawing import draw
 
     drawn = draw(figure)
-    names = [f"{name}.{extension}" for extension in dict.fromkeys(formats)]
-    for extension, file in zip(dict.fromkeys(formats), names, strict=True):
+    files: dict[FigureFormat, str] = {extension: f"{name}.{extension}" for extension in formats}
+    for extension, file in files.items():
         with mpl.rc_context({"pdf.fonttype": 42, "svg.hashsalt": "wearlaw"}):
             drawn.savefig(folder / file, dpi=150, metadata=METADATA[extension])
-    return names
+    return list(files.values())
 
 
 def _by_name(kind: str, named: Iterable[tuple[str, T]]) -> dict[str, T]:

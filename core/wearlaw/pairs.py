@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TypeVar
 
-from wearlaw.case import labels
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.models import WearLaw
 from wearlaw.notes import Notes
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
-from wearlaw.tangential import ContactModel, Model
-
-ModelT = TypeVar("ModelT", bound=Model)
+from wearlaw.tangential import ContactModel
 
 
 @dataclass(frozen=True)
@@ -29,11 +25,6 @@ class Pair:
     def label(self) -> str:
         """What the pair is called in results."""
         return f"{self.wear_law} on {self.contact_model}"
-
-
-def labelled(models: Sequence[ModelT]) -> dict[str, ModelT]:
-    """Return models by `labels`."""
-    return dict(zip(labels(models), models, strict=True))
 
 
 def compose(

@@ -9,7 +9,7 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.ellipse import CreepForces, EllipticProblem
-from wearlaw.errors import RangeWarning
+from wearlaw.errors import ModelError, RangeWarning
 from wearlaw.extremes import extremes
 from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
@@ -63,23 +63,37 @@ class _Seen:
 
 def line_mean(problem: LineProblem, force: Array, variable: str) -> Array:
     """Return a variable of `Contact` as its mean over a line contact, where the tangential force is `force` [N]."""
-    if variable == "pressure":
-        return problem.normal_force / problem.patch_area
-    if variable == "slip":
-        return np.abs(problem.creepage)
-    if variable == "slip_speed":
-        return np.abs(problem.creepage) * problem.rolling_speed
-    wear_index = force * problem.creepage
-    return wear_index / problem.patch_area if variable == "wear_index_density" else wear_index
+    return _mean(
+        problem, lambda: np.abs(force), lambda: np.abs(problem.creepage), lambda: force * problem.creepage, variable
+    )
 
 
 def elliptic_mean(problem: EllipticProblem, forces: CreepForces, variable: str) -> Array:
     """Return a variable of `Contact` as its mean over an ellipse, as in `EllipticContact.of_patch`."""
-    if variable == "pressure":
-        return problem.normal_force / problem.patch_area
-    if variable == "slip":
-        return problem.rigid_slip
-    if variable == "slip_speed":
-        return problem.rigid_slip * problem.rolling_speed
-    wear_index = problem.power(forces)
-    return wear_index / problem.patch_area if variable == "wear_index_density" else wear_index
+    return _mean(
+        problem, lambda: forces.tangential, lambda: problem.rigid_slip, lambda: problem.power(forces), variable
+    )
+
+
+def _mean(
+    problem: LineProblem | EllipticProblem,
+    force: Callable[[], Array],
+    slip: Callable[[], Array],
+    wear_index: Callable[[], Array],
+    variable: str,
+) -> Array:
+    """Return a variable of `Contact` as its mean, from the magnitudes of force and slip and from the wear index."""
+    match variable:
+        case "pressure":
+            return problem.normal_force / problem.patch_area
+        case "traction":
+            return force() / problem.patch_area
+        case "slip":
+            return slip()
+        case "slip_speed":
+            return slip() * problem.rolling_speed
+        case "wear_index_density":
+            return wear_index() / problem.patch_area
+        case "wear_index":
+            return wear_index()
+    raise ModelError(f"`valid_range` names '{variable}', which is no variable of a contact that has a patch mean")

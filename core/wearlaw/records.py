@@ -32,7 +32,6 @@ UNITS = {
 }
 """The units in which variables of a `Contact` are shown; the record itself holds SI."""
 
-
 _FROM_ARRAYS = {
     "pressure": Unit("MPa", positive=False),
     "traction": Unit("MPa", positive=False),
@@ -162,13 +161,13 @@ class Contact:
         speed = Unit("m/s").si(rolling_speed, "rolling_speed")
         nodes = _broadcast({name: _FROM_ARRAYS[name].si(value, name) for name, value in given.items()}, speed.ndim)
         p, q, s, a = nodes.values()
+        axes = tuple(range(speed.ndim, p.ndim))
         if (p < 0).any():
             raise InputError("pressure: must not be negative; a pressure that presses the bodies together is positive")
-        if (a < 0).any() or not (a.sum(axis=tuple(range(speed.ndim, a.ndim))) > 0).all():
+        if (a < 0).any() or not (a.sum(axis=axes) > 0).all():
             raise InputError("area: must not be negative, and not zero at all nodes of a contact")
         if (q * s < 0).any():
             raise InputError("traction and slip: must have the same sign at every node; turn the sign of one of them")
-        axes = tuple(range(speed.ndim, p.ndim))
         return cls(
             **nodes,
             traction_bound=np.full(p.shape, np.inf),

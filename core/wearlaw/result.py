@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -27,14 +28,14 @@ PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
 
 
-class Summary:
+class Summary(ABC):
     """What shows itself by some of its properties."""
 
     _summary: ClassVar[tuple[str, ...]]
 
+    @abstractmethod
     def _points(self) -> int:
         """Return the number of operating points."""
-        raise NotImplementedError
 
     def __repr__(self) -> str:
         rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in self._summary)

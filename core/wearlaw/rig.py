@@ -10,7 +10,7 @@ from pydantic import model_validator
 
 from wearlaw import hertz
 from wearlaw.arrays import Array
-from wearlaw.base_rig import Rig, check_scale
+from wearlaw.base_rig import Rig, check_sizes
 from wearlaw.conditions import TWIN_DISC, TwinDiscConditions, condition_arrays
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError, UnitError
@@ -30,7 +30,7 @@ from wearlaw.units import (
 )
 
 if TYPE_CHECKING:
-    from wearlaw.pipeline import ContactPipeline
+    from wearlaw.contact_pipeline import ContactPipeline
 
 
 class Disc(Configuration):
@@ -146,11 +146,11 @@ class TwinDisc(Rig):
         """
         constants = self._constants
         arrays = condition_arrays(conditions, TWIN_DISC, lambda a: constants["rolling_speed"] * np.abs(a["creepage"]))
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_scale` refuses what comes of it
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` refuses what comes of it
             per_width = self._normal_force_per_width(arrays)
             half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
             max_pressure = hertz.max_pressure(per_width, half_width)
-        check_scale({"half width": half_width, "max pressure": max_pressure}, arrays["friction_coefficient"])
+        check_sizes({"half width": half_width, "max pressure": max_pressure}, arrays["friction_coefficient"])
         shape = arrays["creepage"].shape
         same = {name: np.broadcast_to(value, shape) for name, value in constants.items()} if shape else constants
         return LineProblem(

@@ -55,12 +55,13 @@ class _OrName:
 MaterialField = Annotated[Material, BeforeValidator(_material), _OrName]
 """A field that takes a material, its name, or a table of its fields."""
 
+_AS_TABLE = PlainSerializer(specification, return_type=dict[str, Any], when_used="json")
 _SCHEMA = WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "object", "required": ["model"]}]}, mode="validation")
 
 ContactModelField = Annotated[
     ContactModel,
     BeforeValidator(_maker(plugins.contact_model)),
-    PlainSerializer(specification, return_type=dict[str, Any], when_used="json"),
+    _AS_TABLE,
     _SCHEMA,
 ]
 """A field that takes a contact model, its name, or a table of its name and options."""
@@ -68,7 +69,7 @@ ContactModelField = Annotated[
 WearLawField = Annotated[
     WearLaw,
     BeforeValidator(_maker(plugins.wear_law)),
-    PlainSerializer(specification, return_type=dict[str, Any], when_used="json"),
+    _AS_TABLE,
     _SCHEMA,
 ]
 """A field that takes a wear law, its name, or a table of its name and options."""

@@ -13,13 +13,13 @@ import numpy as np
 
 from wearlaw import plugins
 from wearlaw.arrays import Array
-from wearlaw.case import Case
+from wearlaw.case import Case, labelled
 from wearlaw.configuration import known_name, parts
 from wearlaw.errors import InputError, ModelError, WearlawError, WearlawWarning, did_you_mean
 from wearlaw.material import Material
 from wearlaw.models import WearLaw
 from wearlaw.notes import Notes
-from wearlaw.pairs import Pair, compose, labelled
+from wearlaw.pairs import Pair, compose
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
 from wearlaw.sections import Section
@@ -122,16 +122,16 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
     """Return what the plugin makes of a study."""
     found = plugins.installed()
     make = found.sections.find(name, found.broken)
+    subject = f"section '{name}' of {found.sections.origin(name)}"
     try:
         with notes.of(f"section '{name}'"):
             section = make(study)
     except WearlawError as error:
-        raise InputError(f"section '{name}' of {found.sections.origin(name)}: {error}") from error
+        raise InputError(f"{subject}: {error}") from error
     except Exception as error:
-        cause = f"{type(error).__name__}: {error}"
-        raise ModelError(f"section '{name}' of {found.sections.origin(name)} failed with {cause}") from error
+        raise ModelError(f"{subject} failed with {type(error).__name__}: {error}") from error
     if not isinstance(section, Section):
-        raise ModelError(f"section '{name}' of {found.sections.origin(name)} must be a Section, got {section!r}")
+        raise ModelError(f"{subject} must be a Section, got {section!r}")
     return section
 
 
@@ -271,6 +271,10 @@ def main_axis(sweep: xarray.Dataset) -> str:
 
 def along_main_axis(sweep: xarray.Dataset) -> xarray.Dataset:
     """Return a sweep along its main axis, with the other axes at their middle value."""
-    others = [axis for axis in axes_of(sweep) if axis != main_axis(sweep)]
-    line = sweep.isel({axis: sweep.sizes[axis] // 2 for axis in others})
+    return along(sweep, main_axis(sweep))
+
+
+def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
+    """Return a sweep along an axis, with the others at their middle value; along its creepage if it has none."""
+    line = sweep.isel({other: sweep.sizes[other] // 2 for other in axes_of(sweep) if other != axis})
     return line if axes_of(line) else line.set_coords("creepage").expand_dims("creepage")

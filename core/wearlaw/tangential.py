@@ -65,6 +65,7 @@ class ContactModel(Model):
     """
 
     scale: ClassVar[Scale] = "cells"
+    """"patch" where the model gives the means of the whole patch only."""
 
     uses_measured_traction: ClassVar[bool] = False
     """Whether the model can use a measured traction coefficient."""
@@ -110,7 +111,7 @@ class ContactModel(Model):
     def _cannot_solve(self, geometry: Geometry) -> CompositionError:
         return CompositionError(
             f"contact model '{self.name}' does not solve {PATCHES[geometry]}, only"
-            f" {' and '.join(PATCHES[known] for known in self.geometries()) or 'nothing'}"
+            f" {' and '.join(PATCHES[known] for known in self.geometries())}"
         )
 
     def tangential_force(self, problem: LineProblem) -> Array:

@@ -84,6 +84,9 @@ _QUANTITY_TEXT = re.compile(
     r"\s*(?P<number>[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan))\s*(?P<unit>(?:(?:(?<=\s)1(?=\s*/)|[^\d\s+.-]).*)?)"
 )
 
+HEAD = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?")
+"""The head of a column, as in "creepage [%]": its name, and its unit if it gives one."""
+
 
 @dataclass(frozen=True)
 class Unit:

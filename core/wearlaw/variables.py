@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from wearlaw import records
 from wearlaw.units import WEAR_RATE
 
 UNITS = {
@@ -11,9 +12,7 @@ UNITS = {
     "wear_rate_error": WEAR_RATE,
     "tangential_force": "N",
     "traction_coefficient": "",
-    "wear_index": "N",
     "averaged_wear_index": "N",
-    "wear_index_density": "N/mm^2",
     "stick_ratio": "",
     "mean_slip": "%",
     "half_width": "mm",
@@ -22,11 +21,7 @@ UNITS = {
     "normal_force_per_width": "kN/m",
     "creepage": "%",
     "friction_coefficient": "",
-    "x": "mm",
-    "pressure": "MPa",
-    "traction": "MPa",
-    "traction_bound": "MPa",
-    "slip": "%",
+    **records.UNITS,
 }
 """The unit in which each variable is written and drawn."""
 

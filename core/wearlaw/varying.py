@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.blocks import blocks
-from wearlaw.integrate import BLOCK, NODE_BLOCK, check_finite, closed_form, integrate_wear, over_slip_zone, solve
+from wearlaw.finite import check_finite
+from wearlaw.integrate import BLOCK, NODE_BLOCK, closed_form, integrate_wear, over_slip_zone, solve
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import WearLaw

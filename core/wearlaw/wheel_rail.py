@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from wearlaw import hertz, hertz_ellipse
-from wearlaw.base_rig import Rig, check_scale
+from wearlaw.base_rig import Rig, check_sizes
 from wearlaw.conditions import WHEEL_RAIL, WheelRailConditions, condition_arrays
 from wearlaw.ellipse import EllipticProblem
 from wearlaw.errors import InputError
@@ -19,7 +19,7 @@ from wearlaw.tangential import ContactModel, Geometry
 from wearlaw.units import Length, Quantity, QuantityLike, Speed, Unit, scalar_si
 
 if TYPE_CHECKING:
-    from wearlaw.pipeline import ContactPipeline
+    from wearlaw.contact_pipeline import ContactPipeline
 
 Radius = Annotated[Quantity, Unit("mm", positive=False, infinite=True)]
 
@@ -113,14 +113,14 @@ class WheelRail(Rig):
             WHEEL_RAIL,
             lambda a: patch.rolling_speed * np.hypot(a["longitudinal_creepage"], a["lateral_creepage"]),
         )
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_scale` refuses what comes of it
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` refuses what comes of it
             if "max_pressure" in arrays:
                 pressure = arrays.pop("max_pressure")
                 arrays["normal_force"] = (pressure / patch.max_pressure) ** 3
             scale = np.cbrt(arrays["normal_force"])
             a, b = patch.a * scale, patch.b * scale
             max_pressure = hertz_ellipse.max_pressure(arrays["normal_force"], a, b)
-        check_scale(
+        check_sizes(
             {"longer semi-axis": np.maximum(a, b), "shorter semi-axis": np.minimum(a, b), "max pressure": max_pressure},
             arrays["friction_coefficient"],
         )

@@ -10,7 +10,6 @@ from pydantic import Field
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_fastsim import _solution
 from wearlaw_fastsim._kernel import elliptic_excess, parabolic_excess
 
 ON_ELLIPSE = ("march", "strips", "slip")
@@ -93,6 +92,8 @@ class Fastsim(wl.LineContactModel):
 
     def solve_ellipse(self, problem: wl.EllipticProblem) -> wl.EllipticContact:
         """Return the contact on strips."""
+        from wearlaw_fastsim import _solution  # most of what there is to import, and not needed on a line
+
         solve = _solution.adaptive if self.march == "adaptive" else _solution.uniform
         contact = solve(problem, self.bound == "elliptic", self.strips)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
@@ -101,6 +102,8 @@ class Fastsim(wl.LineContactModel):
         """Return the contact on strips at y = `shares` × b; a uniform march has its own strips."""
         if self.march == "uniform":
             return None
+        from wearlaw_fastsim import _solution
+
         contact = _solution.on_strips(problem, self.bound == "elliptic", self.strips, shares)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 

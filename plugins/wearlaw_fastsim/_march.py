@@ -68,9 +68,8 @@ class Ellipses:
 
     def part(self, part: slice) -> Self:
         """Return some of the operating points."""
-        names = [field.name for field in dataclasses.fields(self)[:-1]]
-        arrays = (array[part] for array in self.arrays)
-        return type(self)(**dict(zip(names, arrays, strict=True)), elliptic=self.elliptic)
+        names = (field.name for field in dataclasses.fields(self)[:-1])
+        return dataclasses.replace(self, **{name: getattr(self, name)[part] for name in names})
 
     def cell_lengths(self, cells: int, strips: int) -> Array:
         """Return the length of the cells of each strip [m], of shape (points, strips)."""
@@ -115,9 +114,8 @@ class Cells:
 
     def part(self, part: slice) -> Self:
         """Return the cells of some of the operating points."""
-        names = [field.name for field in dataclasses.fields(self)]
-        arrays = (array[part] for array in self.arrays)
-        return type(self)(**dict(zip(names, arrays, strict=True)))
+        names = (field.name for field in dataclasses.fields(self))
+        return dataclasses.replace(self, **{name: getattr(self, name)[part] for name in names})
 
 
 def strip_centres(strips: int) -> Array:

@@ -56,9 +56,10 @@ def even_strips(count: int) -> tuple[Array, Array]:
     return np.cos(angle), np.pi / (count + 1) * np.sin(angle)
 
 
-def strips(ellipses: Ellipses, y_share: Array, stick_nodes: int = 3, slip_nodes: int = 8) -> StripFields:
+def strips(ellipses: Ellipses, y_share: Array, stick_nodes: int, slip_nodes: int) -> StripFields:
     """Return the fields of strips at y = b y_share, |y_share| < 1, of shape (strips,).
 
+    Each has `stick_nodes` before it first slips, and `slip_nodes` from there on.
     The last axis counts the strips, but the first in memory is that of the nodes.
     """
     half_length, greatest, growth = _growth(ellipses, y_share)

@@ -17,6 +17,17 @@ WEAR_RATE = "ug/m/mm^2"
 HIGHEST = 25.0
 """The highest creepage of the paper's simulations [%]."""
 
+TESTED = (0.2, 20.0)
+"""The creepages of the public tests [%]."""
+
+PARTIAL = np.array([0.1, 0.5, 1.0])
+"""Creepages in partial slip at which numbers are given [%]."""
+
+
+def borders(law: str, variable: str) -> tuple[float, ...]:
+    """Return the values of a variable, in SI, at which a law branches."""
+    return (wl.wear_law(law).breakpoints or {})[variable]
+
 
 @dataclass(frozen=True)
 class Bench:
@@ -55,21 +66,29 @@ class Bench:
         kinks = np.array([self.full_slip, *(100.0 * border / self.full_force for border in self.usfd_borders)])
         return np.union1d(regular, kinks[kinks < HIGHEST])
 
-    def predict(self, model: wl.ContactModel | str, law: wl.WearLaw, creepage: Array | float) -> wl.Prediction:
-        """Return the prediction at creepages [%], also with parameters that were fitted for another contact."""
+    def predict(
+        self,
+        model: wl.ContactModel | str,
+        law: wl.WearLaw,
+        creepage: Array | float,
+        loads: wl.Quantity | None = None,
+    ) -> wl.Prediction:
+        """Return the prediction at creepages [%] and the load of the bench, or at other loads per width.
+
+        The law may have parameters that were fitted for another contact.
+        """
         contact = wl.contact_model(model) if isinstance(model, str) else model
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", wl.WearlawWarning)  # that is what the claims are about
             return (self.rig | contact | law)(
-                normal_force_per_width=self.normal_force_per_width,
+                normal_force_per_width=self.normal_force_per_width if loads is None else loads,
                 creepage=Q(creepage, "%"),
                 friction_coefficient=self.friction_coefficient,
             )
 
     def rate(self, model: wl.ContactModel | str, law: wl.WearLaw, creepage: Array | None = None) -> Array:
         """Return the wear rate [µg/m/mm²] at creepages [%], by default those of the bench."""
-        prediction = self.predict(model, law, self.creepage if creepage is None else creepage)
-        return np.asarray(prediction.wear_rate.to(WEAR_RATE).magnitude)
+        return _rate(self.predict(model, law, self.creepage if creepage is None else creepage))
 
     def force(self, model: wl.ContactModel | str, creepage: Array | None = None) -> Array:
         """Return the tangential force over that of full slip, T/(μN), at creepages [%]."""
@@ -78,14 +97,7 @@ class Bench:
 
     def rate_at_loads(self, model: str, law: wl.WearLaw, loads: Array) -> Array:
         """Return the wear rate [µg/m/mm²] at loads [kN/m] and 1 % creepage."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", wl.WearlawWarning)
-            prediction = (self.rig | wl.contact_model(model) | law)(
-                normal_force_per_width=Q(loads, "kN/m"),
-                creepage=Q(1.0, "%"),
-                friction_coefficient=self.friction_coefficient,
-            )
-        return np.asarray(prediction.wear_rate.to(WEAR_RATE).magnitude)
+        return _rate(self.predict(model, law, 1.0, Q(loads, "kN/m")))
 
     @cached_property
     def wear_index(self) -> Array:
@@ -95,12 +107,12 @@ class Bench:
 
     @cached_property
     def patch_area(self) -> float:
-        """[mm²]."""
+        """Area of the patch [mm²]."""
         return float(1e6 * self._problem.patch_area)
 
     @cached_property
     def rolling_speed(self) -> float:
-        """[m/s]."""
+        """Rolling speed [m/s]."""
         return wl.scalar_si(self.rig.rolling_speed, "m/s")
 
     @cached_property
@@ -124,10 +136,14 @@ class Bench:
     @cached_property
     def usfd_borders(self) -> tuple[float, float]:
         """The wear indices Tγ [N] where severe and where catastrophic wear begins, for the global USFD law."""
-        mild, severe = (wl.wear_law("usfd").breakpoints or {})["wear_index_density"]
+        mild, severe = borders("usfd", "wear_index_density")
         return mild * 1e-6 * self.patch_area, severe * 1e-6 * self.patch_area
 
     def between(self, lowest: float, highest: float) -> NDArray[np.bool_]:
         """Return which creepages have a wear index [N] in a range, its ends included."""
         rounding = 1e-9
         return (self.wear_index >= lowest * (1.0 - rounding)) & (self.wear_index <= highest * (1.0 + rounding))
+
+
+def _rate(prediction: wl.Prediction) -> Array:
+    return np.asarray(prediction.wear_rate.to(WEAR_RATE).magnitude)

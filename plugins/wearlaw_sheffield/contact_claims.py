@@ -6,11 +6,8 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_sheffield.bench import Bench
+from wearlaw_sheffield.bench import PARTIAL, Bench
 from wearlaw_sheffield.wording import SAME, SIMILAR, largest, percent
-
-PARTIAL = np.array([0.1, 0.5, 1.0])
-"""Creepages in partial slip at which numbers are given [%]."""
 
 FULL_SLIP_TESTS = 3.0
 """The lowest creepage of a test in full slip [%]."""

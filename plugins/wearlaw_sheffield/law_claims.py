@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_sheffield.bench import Bench
+from wearlaw_sheffield.bench import PARTIAL, TESTED, Bench, borders
 from wearlaw_sheffield.wording import CLOSE, SIMILAR, first_crossing, largest, percent
 
 LOWEST = 5.0
@@ -146,7 +146,7 @@ def brr_jumps(bench: Bench) -> wl.CheckedClaim:
 
 def brr_plateau_is_shorter(bench: Bench) -> wl.CheckedClaim:
     """Compare the ranges of the severe regimes."""
-    mild, severe = (wl.wear_law("brr").breakpoints or {})["wear_index"]
+    mild, severe = borders("brr", "wear_index")
     begin, end = bench.usfd_borders
     return wl.CheckedClaim(
         statement="The main difference of BRR from USFD is that its severe regime is shorter, so that it gives more"
@@ -161,12 +161,12 @@ def kth_proportional(bench: Bench) -> wl.CheckedClaim:
     """Look at KTH over the wear index in partial slip, and from full slip to 20 % creepage."""
     share = _kth(bench) / bench.wear_index
     share = share / share[np.searchsorted(bench.creepage, bench.full_slip)]
-    full = (bench.creepage >= bench.full_slip) & (bench.creepage <= 20.0)
+    full = (bench.creepage >= bench.full_slip) & (bench.creepage <= TESTED[1])
     most, _ = largest(share[full] - 1.0, bench.creepage[full])
     border, at_lowest = bench.full_force * bench.full_slip / 100.0, float(np.interp(LOWEST, bench.wear_index, share))
     return wl.CheckedClaim(
         statement="KTH keeps roughly the same proportionality between W.I. and wear rate within each wear regime (up"
-        f" to the 20 % creepage of the tests; similar from {LOWEST:g} N on).",
+        f" to the {TESTED[1]:g} % creepage of the tests; similar from {LOWEST:g} N on).",
         where="Section 5.1.1",
         found=f"In full slip, from {border:.1f} N, the wear rate over W.I. is constant within {100 * abs(most):.2f} %;"
         f" below, in mild wear, it is {at_lowest:.3g} times as much at {LOWEST:g} N.",
@@ -195,7 +195,7 @@ def usfd_quadratic(bench: Bench) -> wl.CheckedClaim:
     partial = bench.creepage < 0.98 * bench.full_slip
     exponent, creepage = _exponent(bench, _usfd(bench))[partial], bench.creepage[partial]
     rounded_to_two = float(creepage[exponent >= 1.5].max(initial=0.0))
-    listed = ", ".join(f"{float(np.interp(x, creepage, exponent)):.2f} at {x:g} %" for x in (0.01, *PARTIAL_SLIP))
+    listed = ", ".join(f"{float(np.interp(x, creepage, exponent)):.2f} at {x:g} %" for x in (0.01, *PARTIAL))
     return wl.CheckedClaim(
         statement="In partial slip USFD grows with the square of the creepage (the exponent rounds to 2 over more than"
         " half of the range of partial slip).",
@@ -204,10 +204,6 @@ def usfd_quadratic(bench: Bench) -> wl.CheckedClaim:
         f" {bench.full_slip:.2f} % of partial slip.",
         holds=rounded_to_two > 0.5 * bench.full_slip,
     )
-
-
-PARTIAL_SLIP = (0.1, 0.5, 1.0)
-"""Creepages in partial slip at which the exponent is given [%]."""
 
 
 def brr_like_usfd(bench: Bench) -> wl.CheckedClaim:
@@ -225,7 +221,7 @@ def brr_like_usfd(bench: Bench) -> wl.CheckedClaim:
 def straight_in_full_slip(bench: Bench) -> wl.CheckedClaim:
     """Fit straight lines to USFD and KTH within each regime in full slip."""
     begin, end = (float(np.interp(w, bench.wear_index, bench.creepage)) for w in bench.usfd_borders)
-    speed = (wl.wear_law("kth").breakpoints or {})["slip_speed"][0] / bench.rolling_speed * 100.0
+    speed = borders("kth", "slip_speed")[0] / bench.rolling_speed * 100.0
     ranges = {
         "USFD mild": (_usfd(bench), bench.full_slip, begin),
         "USFD severe": (_usfd(bench), begin, end),

@@ -5,12 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 import wearlaw as wl
-from wearlaw import Q
-from wearlaw_sheffield.bench import Bench
+from wearlaw import Array, Q
+from wearlaw_sheffield.bench import TESTED, Bench, borders
 from wearlaw_sheffield.wording import SAME, SIMILAR, largest, percent
-
-TESTED = (0.2, 20.0)
-"""The creepages of the public tests [%]."""
 
 GIVEN = np.array([0.2, 0.5, 1.0, 10.0, 19.0, 20.0])
 """Creepages at which rates on cells are compared in words [%]."""
@@ -38,6 +35,11 @@ def local_claims(bench: Bench) -> tuple[wl.CheckedClaim, ...]:
     )
 
 
+def _tested(bench: Bench) -> Array:
+    """Return the creepages of the bench [%] within the range of the public tests."""
+    return bench.creepage[(bench.creepage >= TESTED[0]) & (bench.creepage <= TESTED[1])]
+
+
 def _apart(bench: Bench, one: str, other: str, law: wl.WearLaw) -> str:
     """Return in words how far the rates of a law on two contact models are apart at some creepages."""
     shares = bench.rate(one, law, GIVEN) / bench.rate(other, law, GIVEN) - 1.0
@@ -47,7 +49,7 @@ def _apart(bench: Bench, one: str, other: str, law: wl.WearLaw) -> str:
 def kth_same_on_both_theories(bench: Bench) -> wl.CheckedClaim:
     """Compare KTH on the cells of both theories."""
     law = wl.wear_law("kth")
-    x = bench.creepage[(bench.creepage >= TESTED[0]) & (bench.creepage <= TESTED[1])]
+    x = _tested(bench)
     shares = bench.rate("fastsim", law, x) / bench.rate("exact", law, x) - 1.0
     most, at = largest(shares, x)
     return wl.CheckedClaim(
@@ -64,7 +66,7 @@ def kth_same_on_both_theories(bench: Bench) -> wl.CheckedClaim:
 def kth_local_like_global(bench: Bench) -> wl.CheckedClaim:
     """Compare KTH on the cells of the exact theory with KTH on the patch means, over creepage and over load."""
     law = wl.wear_law("kth")
-    x = bench.creepage[(bench.creepage >= TESTED[0]) & (bench.creepage <= TESTED[1])]
+    x = _tested(bench)
     local, mean = bench.rate("exact", law, x), bench.rate("global", law, x)
     most, at = largest(local / mean - 1.0, x)
     partial = x < bench.full_slip
@@ -128,7 +130,7 @@ def usfd_too_high_in_catastrophic(bench: Bench) -> wl.CheckedClaim:
 
 def lower_slip_speed(bench: Bench) -> wl.CheckedClaim:
     """Find the creepage at which the slip speed reaches the lower threshold of KTH."""
-    lower, _ = (wl.wear_law("kth").breakpoints or {})["slip_speed"]
+    lower, _ = borders("kth", "slip_speed")
     creepage = 100.0 * lower / bench.rolling_speed
     return wl.CheckedClaim(
         statement="A slip velocity of 0.2 m/s is a creepage above 20 % (20 to 21 %).",
@@ -140,7 +142,7 @@ def lower_slip_speed(bench: Bench) -> wl.CheckedClaim:
 
 def upper_slip_speed(bench: Bench) -> wl.CheckedClaim:
     """Find the creepage at which the slip speed reaches the upper threshold of KTH."""
-    _, upper = (wl.wear_law("kth").breakpoints or {})["slip_speed"]
+    _, upper = borders("kth", "slip_speed")
     creepage, highest = 100.0 * upper / bench.rolling_speed, float(bench.creepage[-1])
     return wl.CheckedClaim(
         statement="The threshold of 0.7 m/s lies outside the range of creepage.",
@@ -150,7 +152,7 @@ def upper_slip_speed(bench: Bench) -> wl.CheckedClaim:
     )
 
 
-def _load_of_mean_pressure(bench: Bench, pressure: float) -> tuple[float, float]:
+def _loads_at_pressure(bench: Bench, pressure: float) -> tuple[float, float]:
     """Return the loads [kN/m] at which the mean and the maximum pressure reach a value [Pa]."""
     loads = [
         bench.rig.problem(max_pressure=Q(highest, "Pa"), creepage=Q(1, "%"), friction_coefficient=0.3)
@@ -162,8 +164,8 @@ def _load_of_mean_pressure(bench: Bench, pressure: float) -> tuple[float, float]
 
 def pressure_threshold(bench: Bench) -> wl.CheckedClaim:
     """Find the load at which the pressure reaches the threshold of KTH."""
-    (threshold,) = (wl.wear_law("kth").breakpoints or {})["pressure"]
-    mean, highest = _load_of_mean_pressure(bench, threshold)
+    (threshold,) = borders("kth", "pressure")
+    mean, highest = _loads_at_pressure(bench, threshold)
     return wl.CheckedClaim(
         statement="The normal pressure of 2.1 GPa is a normal force of 2300 kN/m (similar).",
         where="Section 5.2",
@@ -175,8 +177,7 @@ def pressure_threshold(bench: Bench) -> wl.CheckedClaim:
 
 def thresholds_beyond_tests(bench: Bench, model: str) -> wl.CheckedClaim:
     """Compare the thresholds of KTH with the largest slip speed and pressure in the tests."""
-    breakpoints = wl.wear_law("kth").breakpoints or {}
-    lower, (threshold,) = breakpoints["slip_speed"][0], breakpoints["pressure"]
+    (lower, _), (threshold,) = borders("kth", "slip_speed"), borders("kth", "pressure")
     contact = bench.predict(model, wl.wear_law("kth"), TESTED[1]).contact
     speed, pressure = float(contact.slip_speed.max()), float(contact.pressure.max())
     highest = float(contact.slip.max()) - TESTED[1] / 100.0

@@ -11,8 +11,8 @@ import pandas as pd
 
 import wearlaw as wl
 from wearlaw import Array, Q
-from wearlaw_sheffield.bench import WEAR_RATE, Bench
-from wearlaw_sheffield.tables import USFD_UNITS, number, usfd_parameters
+from wearlaw_sheffield.bench import TESTED, WEAR_RATE, Bench
+from wearlaw_sheffield.tables import USFD_UNITS, number, shown_unit, usfd_parameters
 from wearlaw_sheffield.wording import SIMILAR, percent
 
 FREE = ("q_s", "m_c", "tr_sc")
@@ -30,6 +30,9 @@ STARTS = 0
 """Starting points of a fit besides the published set, which is near enough."""
 
 Norm = Literal["absolute", "relative"]
+
+NORMS: tuple[Norm, ...] = ("absolute", "relative")
+"""Measures of the difference from the global law."""
 
 THEORY = {"exact": "exact theory", "fastsim": "simplified theory"}
 
@@ -64,8 +67,7 @@ class Fitted:
     @property
     def law(self) -> wl.WearLaw:
         """The law with the fitted parameters."""
-        values = {name: Q(value, USFD_UNITS[name]) for name, value in self.parameters.items()}
-        return wl.wear_law("usfd", fitted_for=self.model, **values)
+        return _law(self.model, self.parameters)
 
 
 def section(study: wl.Study) -> wl.Section:
@@ -87,9 +89,6 @@ def section(study: wl.Study) -> wl.Section:
     )
 
 
-NORMS: tuple[Norm, ...] = ("absolute", "relative")
-
-
 def fitted(bench: Bench, model: str, highest: float, norm: Norm) -> Fitted:
     """Return the fit for a contact model up to a creepage [%]."""
     creepage = np.linspace(highest / POINTS, highest, POINTS)
@@ -107,12 +106,16 @@ def fitted(bench: Bench, model: str, highest: float, norm: Norm) -> Fitted:
         predict = bench.rig | wl.contact_model(model) | published
         found = wl.fit(predict, tests, free=FREE, scatter=norm, bootstrap=0, starts=STARTS)
     values = {name: number(found.parameters[name], USFD_UNITS[name]) for name in FREE}
-    one = Fitted(model, highest, norm, values, 0.0, 0.0)
     rms, of_published = (
         float(np.sqrt(np.mean(_residuals(bench.rate(model, law, creepage), target, norm) ** 2)))
-        for law in (one.law, published)
+        for law in (_law(model, values), published)
     )
     return Fitted(model, highest, norm, values, rms, of_published)
+
+
+def _law(model: str, parameters: dict[str, float]) -> wl.WearLaw:
+    values = {name: Q(value, USFD_UNITS[name]) for name, value in parameters.items()}
+    return wl.wear_law("usfd", fitted_for=model, **values)
 
 
 def _residuals(local: Array, target: Array, norm: Norm) -> Array:
@@ -121,13 +124,13 @@ def _residuals(local: Array, target: Array, norm: Norm) -> Array:
 
 def _in_words(bench: Bench, model: str, law: wl.WearLaw) -> str:
     """Return how far a fitted law and the paper's set are from the global law."""
-    tested = bench.creepage >= 0.2
+    tested = bench.creepage >= TESTED[0]
     target = bench.rate("global", wl.wear_law("usfd"))
     said = []
     for name, one in (("the fit", law), ("the paper's set", wl.wear_law("usfd", fitted_for=model))):
         share = (bench.rate(model, one) / target - 1.0)[tested]
         said.append(f"{name} differs by {percent(float(share.min()))} to {percent(float(share.max()))}")
-    return f"From 0.2 to {bench.creepage[-1]:g} % creepage, with the {THEORY[model]}, {', '.join(said)}."
+    return f"From {TESTED[0]:g} to {bench.creepage[-1]:g} % creepage, with the {THEORY[model]}, {', '.join(said)}."
 
 
 def _spread(fits: list[Fitted], model: str) -> str:
@@ -135,12 +138,8 @@ def _spread(fits: list[Fitted], model: str) -> str:
     said = []
     for name in FREE:
         values = [one.parameters[name] for one in fits if one.model == model]
-        said.append(f"{name} from {min(values):.1f} to {max(values):.1f} {_shown_unit(name)}")
+        said.append(f"{name} from {min(values):.1f} to {max(values):.1f} {shown_unit(name)}")
     return f"With the {THEORY[model]} they give {', '.join(said)}."
-
-
-def _shown_unit(name: str) -> str:
-    return USFD_UNITS[name].replace("ug", "µg").replace("mm^2", "mm²")
 
 
 def follows_from_a_fit(fits: list[Fitted], model: str) -> wl.CheckedClaim:
@@ -152,7 +151,7 @@ def follows_from_a_fit(fits: list[Fitted], model: str) -> wl.CheckedClaim:
 
     nearest = min((one for one in fits if one.model == model), key=apart)
     listed = ", ".join(
-        f"{name} {nearest.parameters[name]:.1f} against {published[name]:g} {_shown_unit(name)}" for name in FREE
+        f"{name} {nearest.parameters[name]:.1f} against {published[name]:g} {shown_unit(name)}" for name in FREE
     )
     return wl.CheckedClaim(
         statement=f"The corrected parameters for the {THEORY[model]} are those with which USFD on cells follows the"
@@ -171,7 +170,7 @@ def side_by_side(shown: dict[str, Fitted]) -> pd.DataFrame:
         published = usfd_parameters(model)
         columns[f"{THEORY[model]}, paper"] = list(published.values())
         columns[f"{THEORY[model]}, fit"] = [round(one.parameters.get(name, published[name]), 2) for name in USFD_UNITS]
-    return pd.DataFrame({"parameter": [f"{name} [{_shown_unit(name)}]" for name in USFD_UNITS], **columns})
+    return pd.DataFrame({"parameter": [f"{name} [{shown_unit(name)}]" for name in USFD_UNITS], **columns})
 
 
 def sensitivity(fits: list[Fitted], norm: Norm) -> pd.DataFrame:
@@ -181,7 +180,7 @@ def sensitivity(fits: list[Fitted], norm: Norm) -> pd.DataFrame:
         {
             "contact model": one.model,
             "up to creepage [%]": one.highest,
-            **{f"{name} [{_shown_unit(name)}]": round(value, 2) for name, value in one.parameters.items()},
+            **{f"{name} [{shown_unit(name)}]": round(value, 2) for name, value in one.parameters.items()},
             f"rms of the fit {unit}": round(one.rms, 4),
             f"rms of the paper's set {unit}": round(one.rms_published, 4),
         }
@@ -193,7 +192,7 @@ def sensitivity(fits: list[Fitted], norm: Norm) -> pd.DataFrame:
 
 def residual_figure(bench: Bench, shown: dict[str, Fitted], norm: Norm) -> wl.FigureData:
     """Return the differences from the global law over the creepage, of the fit and of the paper's set."""
-    inside = bench.creepage >= 0.2
+    inside = bench.creepage >= TESTED[0]
     x, target = bench.creepage[inside], bench.rate("global", wl.wear_law("usfd"))[inside]
 
     def curve(model: str, label: str, law: wl.WearLaw, style: int) -> wl.Curve:

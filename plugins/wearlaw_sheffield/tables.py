@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pandas as pd
 
 import wearlaw as wl
@@ -23,7 +21,7 @@ the slip in partial slip, without which slip jumps where it begins and dissipate
 
 def section(study: wl.Study) -> wl.Section:
     """Return the section with the four tables."""
-    kth = fields(wl.wear_law("kth"))
+    kth = dict(wl.wear_law("kth"))
     return wl.Section(
         title="Tables 1 to 4 of the paper",
         text=TEXT.format(hardness=f"{kth['hardness']:~P}", ratio=printed_slip(study.case.rig)),
@@ -36,11 +34,6 @@ def section(study: wl.Study) -> wl.Section:
     )
 
 
-def fields(law: wl.WearLaw) -> dict[str, Any]:
-    """Return the fields of a law by name."""
-    return dict(law)
-
-
 def number(quantity: wl.Quantity, unit: str) -> float:
     """Return the magnitude in a unit, without the rounding of the conversion."""
     return float(f"{quantity.to(unit).magnitude:.12g}")
@@ -48,7 +41,7 @@ def number(quantity: wl.Quantity, unit: str) -> float:
 
 def table_1() -> pd.DataFrame:
     """Return the regimes of BRR: the lost section in mm² per km is each expression, with Tγ in N and D in mm."""
-    brr = fields(wl.wear_law("brr"))
+    brr = dict(wl.wear_law("brr"))
     mild, severe = (f"{number(brr[name], 'N'):g}" for name in ("mild_limit", "severe_limit"))
     slope, steep = (f"{number(brr[name], 'mm^3/km/N'):g}" for name in ("mild_slope", "severe_slope"))
     plateau, offset = (f"{number(brr[name], 'mm^3/km'):g}" for name in ("plateau", "severe_offset"))
@@ -64,9 +57,10 @@ def table_2() -> pd.DataFrame:
     """Return the map of KTH with both ends of k."""
     kth = wl.wear_law("kth")
     band = kth.band() or (kth, kth, kth)
-    low, high = (dict(fields(law.explicit())["coefficient"]) for law in (band[0], band[-1]))
-    limit = f"{number(fields(kth)['pressure_threshold'], 'GPa'):g}"
-    slow, fast = (f"{number(fields(kth)[name], 'm/s'):g}" for name in ("lower_slip_speed", "upper_slip_speed"))
+    low, high = (dict(dict(law.explicit())["coefficient"]) for law in (band[0], band[-1]))
+    borders = dict(kth)
+    limit = f"{number(borders['pressure_threshold'], 'GPa'):g}"
+    slow, fast = (f"{number(borders[name], 'm/s'):g}" for name in ("lower_slip_speed", "upper_slip_speed"))
     where = {
         "high_pressure": (f"p > {limit}", "any ṡ"),
         "low_speed": (f"p < {limit}", f"ṡ < {slow}"),
@@ -96,15 +90,20 @@ USFD_UNITS = {"m_m": "ug/m/N", "q_s": "ug/m/mm^2", "m_c": "ug/m/N", "tr_sc": "N/
 """The parameters of USFD with their units."""
 
 
+def shown_unit(parameter: str) -> str:
+    """Return the unit of a parameter of USFD as tables show it."""
+    return USFD_UNITS[parameter].replace("ug", "µg").replace("mm^2", "mm²")
+
+
 def usfd_parameters(fitted_for: str) -> dict[str, float]:
     """Return the published parameters of USFD in `USFD_UNITS`."""
-    law = fields(wl.wear_law("usfd", fitted_for=fitted_for))
+    law = dict(wl.wear_law("usfd", fitted_for=fitted_for))
     return {name: number(law[name], unit) for name, unit in USFD_UNITS.items()}
 
 
 def table_4() -> pd.DataFrame:
     """Return the original and the corrected parameters of USFD."""
-    heads = [f"{name} [{unit.replace('ug', 'µg').replace('mm^2', 'mm²')}]" for name, unit in USFD_UNITS.items()]
+    heads = [f"{name} [{shown_unit(name)}]" for name in USFD_UNITS]
     columns = {"original, on patch means": "global", "exact theory": "exact", "simplified theory": "fastsim"}
     sets = {head: list(usfd_parameters(name).values()) for head, name in columns.items()}
     return pd.DataFrame({"parameter": heads, **sets})

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from wearlaw.cli.formats import CommandT, written_formats
-from wearlaw.cli.printing import print_notes
+from wearlaw.cli.printing import print_notes, print_results
 from wearlaw.errors import FitError
 from wearlaw.notes import Notes
 from wearlaw.sweeping.progress import Bar
@@ -17,10 +16,11 @@ from wearlaw.sweeping.progress import Bar
 if TYPE_CHECKING:
     from wearlaw.comparison.compare import Predictor
     from wearlaw.comparison.result import Comparison
+    from wearlaw.contact_pipeline import ContactPipeline
     from wearlaw.fitting.result import Fit
     from wearlaw.output import FigureFormat
     from wearlaw.pairs import Pair
-    from wearlaw.pipeline import ContactPipeline, Pipeline
+    from wearlaw.pipeline import Pipeline
     from wearlaw.rig import TwinDisc
     from wearlaw.wear_tests.tests import WearTests
 
@@ -88,7 +88,7 @@ def fit(
         names = write_fit(fitted, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
     click.echo(repr(fitted))
-    _print_results(folder, names)
+    print_results(folder, names)
 
 
 def _fit(
@@ -185,7 +185,7 @@ def compare(
         names = write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
     click.echo(repr(comparison))
-    _print_results(folder, names)
+    print_results(folder, names)
 
 
 def _compare(
@@ -270,12 +270,6 @@ def _tests(path: str, friction: float | None, fitted: bool, notes: Notes) -> Wea
     if friction is not None and not fitted and tests.friction_coefficient is not None:
         notes.add(f"--friction {friction:g} is not used, since the tests have a column friction_coefficient")
     return tests
-
-
-def _print_results(folder: Path, names: Iterable[str]) -> None:
-    click.echo(f"Results in {folder}:")
-    for name in names:
-        click.echo(f"  {folder / name}")
 
 
 COMMANDS = (fit, compare)

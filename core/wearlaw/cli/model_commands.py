@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @click.command("plugins")
 def list_plugins() -> None:
-    """List the installed contact models and wear laws, and what failed to load."""
+    """List what the installed plugins provide, by kind and name, and what failed to load."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PluginWarning)  # what is left out is listed below
         found = plugins.installed()
@@ -95,9 +95,10 @@ def check(name: str, options: tuple[str, ...]) -> None:
     wearlaw check usfd
     wearlaw check usfd --option fitted_for=exact
     """  # noqa: D301
+    from wearlaw.cli.parsing import fields
     from wearlaw.tangential import ContactModel
 
-    model = _model_class(name)(**_fields(options))
+    model = _model_class(name)(**fields("--option", options))
     outcomes = [_outcome(one) for one in _checks(model)]
     not_claimed = model.exemptions if isinstance(model, ContactModel) else {}
     for claim, reason in not_claimed.items():
@@ -105,13 +106,6 @@ def check(name: str, options: tuple[str, ...]) -> None:
     click.echo(f"{outcomes.count(True)} ok, {outcomes.count(False)} failed, {len(not_claimed)} not claimed")
     if not all(outcomes):
         sys.exit(1)
-
-
-def _fields(options: tuple[str, ...]) -> dict[str, str]:
-    for option in options:
-        if "=" not in option:
-            raise click.UsageError(f"--option: write it as FIELD=VALUE, got '{option}'")
-    return dict(option.split("=", 1) for option in options)
 
 
 def _checks(model: Model) -> Iterable[Check]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 
 import click
@@ -11,7 +10,7 @@ from wearlaw import plugins
 from wearlaw.case import RigField
 from wearlaw.configuration import Configuration
 from wearlaw.errors import ConfigurationError, InputError
-from wearlaw.fitting.law_files import read_wear_law
+from wearlaw.fitting.law_files import read_toml, read_wear_law
 from wearlaw.models import WearLaw
 from wearlaw.rig import TwinDisc
 from wearlaw.tangential import ContactModel
@@ -35,11 +34,7 @@ def read_rig(path: Path | None) -> TwinDisc:
     if path is None:
         return TwinDisc.suros()
     try:
-        return _WithRig(**tomllib.loads(path.read_text(encoding="utf-8"))).rig
-    except OSError as error:
-        raise InputError(f"cannot read the rig '{path}': {error.strerror or error}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"the rig '{path}' is not valid TOML: {error}") from None
+        return _WithRig(**read_toml("the rig", path)).rig
     except ConfigurationError as error:
         raise InputError(f"the rig '{path}' is wrong in:" + "".join(f"\n  {p}" for p in error.problems)) from None
 
@@ -55,7 +50,7 @@ def listed(option: str, text: str) -> list[str]:
 def fields(option: str, settings: tuple[str, ...]) -> dict[str, str]:
     """Return settings such as "q_s=56 ug/m/mm^2" by field."""
     for setting in settings:
-        if not setting.partition("=")[1]:
+        if "=" not in setting:
             raise click.UsageError(f"{option}: write it as FIELD=VALUE, got '{setting}'")
     return dict(setting.split("=", 1) for setting in settings)
 

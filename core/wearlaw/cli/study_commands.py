@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from wearlaw.cli.formats import written_formats
-from wearlaw.cli.printing import print_notes
+from wearlaw.cli.printing import print_notes, print_results
 from wearlaw.sweeping.progress import Bar
 from wearlaw.version import __version__
 
@@ -70,9 +70,7 @@ def run(
     for table in summaries(study):
         Console().print(_summary(table))
     _print_used(study)
-    click.echo(f"Results in {folder}:")
-    for name in names:
-        click.echo(f"  {folder / name}")
+    print_results(folder, names)
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from wearlaw.cli.formats import written_formats
-from wearlaw.cli.printing import print_notes
+from wearlaw.cli.printing import print_notes, print_results
 from wearlaw.sweeping.progress import Bar
 
 if TYPE_CHECKING:
@@ -56,9 +56,7 @@ def uncertainty(
     for table in (found.wear_rates, found.indices):
         if len(table):
             click.echo(table.to_string(index=False, float_format=lambda number: f"{number:.4g}"))
-    click.echo(f"Results in {folder}:")
-    for name in names:
-        click.echo(f"  {folder / name}")
+    print_results(folder, names)
 
 
 COMMANDS = (uncertainty,)

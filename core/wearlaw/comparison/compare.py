@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.case import labelled
 from wearlaw.comparison.agreement import Information, agreement
 from wearlaw.comparison.result import Compared, Comparison, Names
 from wearlaw.composition import needs_discs
@@ -16,7 +17,6 @@ from wearlaw.errors import InputError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.fitting.result import Fit
 from wearlaw.notes import Notes
-from wearlaw.pairs import labelled
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
 from wearlaw.tangential import Model
@@ -66,8 +66,8 @@ def compare(
     Notes
     -----
     A law that was fitted to the same tests follows their scatter too, and agrees the better the more parameters it
-    has. AIC (see `Information`) weighs one against the other. It is blank for what was not fitted to these tests, to
-    their wear rates alone, and where fits take the tests to scatter in different ways.
+    has. AIC (see `Information`) weighs one against the other. It is blank for what was not fitted to the wear rates of
+    these very tests, and to them alone, and where fits take the tests to scatter in different ways.
     """
     return compare_named(_named(predictors), tests, friction_coefficient)
 
@@ -131,7 +131,8 @@ def _pipeline(predictor: Predictor) -> Pipeline[TwinDisc]:
 
 
 def _has_wear_rate(tests: WearTests) -> NDArray[np.bool_]:
-    return ~np.isnan(tests.columns.get("wear_rate", np.full(len(tests), np.nan)))
+    missing: NDArray[np.bool_] = np.isnan(tests.wear_rate.magnitude)
+    return ~missing
 
 
 def _with_wear_rate(tests: WearTests, notes: Notes) -> WearTests:

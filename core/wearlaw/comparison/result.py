@@ -9,7 +9,7 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.comparison.agreement import Agreement, Information
-from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
 from wearlaw.units import WEAR_RATE, in_unit
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
 
 COUNTS = ("tests", "without_ratio", "fitted")
 """The columns of a table that hold whole numbers."""
-
-BLACK = 6
-"""The colour of the lines that predictors are seen against."""
 
 
 class Names(NamedTuple):

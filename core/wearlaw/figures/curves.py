@@ -7,6 +7,9 @@ from typing import Literal
 
 from wearlaw.arrays import Array
 
+BLACK = 6
+"""The number of black, the last colour of the palette: of what was measured, and of lines to compare with."""
+
 
 @dataclass(frozen=True, eq=False)
 class Curve:
@@ -23,7 +26,7 @@ class Curve:
     low, high : ndarray, (points,), or None
         The ends of a band about it.
     points : bool
-        Whether it consists of measured points, which no line joins.
+        Whether it consists of points, which no line joins.
     """
 
     label: str
@@ -75,3 +78,8 @@ class FigureData:
     panels: tuple[Panel, ...]
     caption: str = ""
     bands: str = "published range of parameters"
+
+
+def has_band(figure: FigureData) -> bool:
+    """Return whether a figure has a band about any line; points have bars."""
+    return any(curve.low is not None and not curve.points for panel in figure.panels for curve in panel.curves)

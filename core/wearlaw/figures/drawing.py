@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
+from wearlaw.figures.curves import has_band
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -93,12 +95,8 @@ def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
         list(entries),
         loc="outside lower center",
         ncols=len(entries) if sum(widths) <= LEGEND_WIDTH else max(1, LEGEND_WIDTH // max(widths)),
-        title=_literal(f"bands: {figure.bands}") if _has_band(figure) else None,
+        title=_literal(f"bands: {figure.bands}") if has_band(figure) else None,
     )
-
-
-def _has_band(figure: FigureData) -> bool:
-    return any(curve.low is not None and not curve.points for panel in figure.panels for curve in panel.curves)
 
 
 def _literal(text: str) -> str:

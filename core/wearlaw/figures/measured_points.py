@@ -36,8 +36,7 @@ def measured_points(tests: WearTests, rig: TwinDisc) -> dict[str, Array]:
     friction = tests.columns.get("friction_coefficient", np.ones(len(tests)))  # nothing here depends on it
     given: Any = {load: from_si(tests.columns[load], COLUMNS[load].unit)}
     problem = rig.problem(creepage=tests.creepage, friction_coefficient=friction, **given)
-    missing = np.full(len(tests), np.nan)
-    force = tests.columns.get("traction_coefficient", missing) * problem.normal_force
+    force = tests.traction_coefficient.magnitude * problem.normal_force
     wear_index = force * abs(problem.creepage)
     values = {
         **tests.columns,

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wearlaw.case import labels
-from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.measured_points import measured_points
 from wearlaw.figures.spec import OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
-from wearlaw.study import axes_of, main_axis
+from wearlaw.study import along, main_axis
 from wearlaw.units import from_si
 from wearlaw.variables import NAMES, UNITS, label
 
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from wearlaw.arrays import Array
     from wearlaw.grid import Grid
     from wearlaw.study import Study
-
-MEASURED = 6
-"""The colour of measured points."""
 
 
 def figures_of(study: Study) -> tuple[FigureData, ...]:
@@ -80,10 +77,7 @@ def _conditions(grid: Grid, axis: str) -> dict[str, str]:
 
 def _over_sweep(study: Study, spec: FigureSpec, window: Window, axis: str) -> list[Curve]:
     """Return the wear rate of each pair, or other variables of each contact model."""
-    sweep = study.sweeps[spec.sweep or ""]
-    line = sweep.isel({other: sweep.sizes[other] // 2 for other in axes_of(sweep) if other != axis})
-    if not axes_of(line):
-        line = line.set_coords("creepage").expand_dims("creepage")
+    line = along(study.sweeps[spec.sweep or ""], axis)
     shown = window.shown
     if shown == ("wear_rate",):
         curves = [_rate(study, line, spec.x, pair) for pair in spec.pairs or line.pair.values.tolist()]
@@ -139,7 +133,7 @@ def _measured(study: Study, x: str, y: str) -> Curve:
         measured.label,
         along[there],
         across[there],
-        MEASURED,
+        BLACK,
         low=None if uncertainty is None else (across - spread)[there],
         high=None if uncertainty is None else (across + spread)[there],
         points=True,

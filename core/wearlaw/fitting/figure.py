@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.fitting.observations import Observations, contact_of, predictions, wear_index_density
 from wearlaw.line import LineProblem
 from wearlaw.units import Q, in_unit
@@ -45,7 +45,7 @@ def figure_data(fit: Fit) -> FigureData:
 
 def _panel(fit: Fit, one: Observations) -> Panel:
     x = "wear_index_density" if one.observable == "wear_rate" else "creepage"
-    measured = Curve("measured", _along(fit, one.problem, x), _shown(one, one.measured), colour=6, points=True)
+    measured = Curve("measured", _along(fit, one.problem, x), _shown(one, one.measured), colour=BLACK, points=True)
     scale: Literal["log", "linear"] = (
         "log" if one.observable == "wear_rate" and (one.measured > 0.0).all() else "linear"
     )

@@ -17,6 +17,9 @@ from wearlaw.variables import UNITS
 UNSEEN = 1e-6
 """Influence of a parameter, over the greatest, that counts as none; a hundred times the error of the derivatives."""
 
+INVOLVED = 0.1
+"""Share in the combination that the tests do not determine, from which a parameter is named as one of it."""
+
 SIGNIFICANCE = 0.99
 """Probability of the F test. A border that may lie anywhere finds more by chance than the test expects, hence not
 0.95 (D. W. K. Andrews, Econometrica 61 (1993) 821-856)."""
@@ -86,7 +89,7 @@ def _unseen(fit: Solutions, free: FreeParameters) -> list[str]:
 def _collinear(fit: Solutions, free: FreeParameters) -> list[str]:
     slopes = fit.jacobian[0]
     _, singular, directions = np.linalg.svd(slopes / np.linalg.norm(slopes, axis=0), full_matrices=False)
-    return _chosen(free, np.abs(directions[-1]) > 0.1) if singular[-1] < UNSEEN else []
+    return _chosen(free, np.abs(directions[-1]) > INVOLVED) if singular[-1] < UNSEEN else []
 
 
 def _is_worse(one: Solutions, best: Solutions, more: int) -> bool:

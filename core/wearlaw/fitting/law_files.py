@@ -37,6 +37,22 @@ def write_wear_law(path: str | os.PathLike[str], law: WearLaw, provenance: Mappi
         raise OutputError(f"cannot write '{path}': {error.strerror or error}") from None
 
 
+def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Return what a TOML file holds, which describes the subject.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or is not TOML.
+    """
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"cannot read {subject} '{path}': {error.strerror or error}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{subject} '{path}' is not valid TOML: {error}") from None
+
+
 def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
     """Return the wear law that a TOML file describes in its table ``[wear_law]``.
 
@@ -50,12 +66,7 @@ def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
     InputError
         If the file is missing, is not TOML, or does not describe a law of an installed plugin.
     """
-    try:
-        fields = tomllib.loads(Path(path).read_text(encoding="utf-8")).get("wear_law")
-    except OSError as error:
-        raise InputError(f"cannot read wear law '{path}': {error.strerror or error}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"wear law '{path}' is not valid TOML: {error}") from None
+    fields = read_toml("wear law", path).get("wear_law")
     if not isinstance(fields, dict) or not isinstance(fields.get("model"), str):
         raise InputError(f"wear law '{path}' needs a table [wear_law] with the name of the law, as in model = \"usfd\"")
     name = fields.pop("model")

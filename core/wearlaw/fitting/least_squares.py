@@ -22,7 +22,7 @@ STEP = float(np.sqrt(np.finfo(np.float64).eps))
 """Step of the difference quotients: its error and that of rounding are about equal."""
 
 TOLERANCE = 1e-8
-"""Change of the parameters, and relative change of the sum of squares, below which a fit has converged."""
+"""Change of the parameters below which a fit has converged; that of the sum of squares, relatively, is its square."""
 
 ITERATIONS = 100
 """Iterations after which a fit has not converged; smooth problems take about ten."""

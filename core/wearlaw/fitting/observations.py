@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.composition import needs_discs
+from wearlaw.contact_pipeline import ContactPipeline
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.integrate import integrate_contact, integrate_wear
 from wearlaw.line import LineProblem
-from wearlaw.pipeline import ContactPipeline, Pipeline
+from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
 from wearlaw.units import in_unit
 from wearlaw.variables import UNITS

@@ -17,6 +17,7 @@ from wearlaw.models import WearLaw
 from wearlaw.registry import si_factor
 from wearlaw.units import Quantity, from_si
 from wearlaw.variables import UNITS
+from wearlaw.wear_tests.columns import head
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
@@ -123,7 +124,7 @@ class Fit:
                 pd.DataFrame(
                     {
                         "label": one.tests.labels,
-                        "observable": f"{one.observable} [{shown}]" if shown else one.observable,
+                        "observable": head(one.observable),
                         "creepage [%]": one.tests.creepage.magnitude,
                         "measured": from_si(one.measured, shown).magnitude,
                         "predicted": from_si(predicted, shown).magnitude,

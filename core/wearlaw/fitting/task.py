@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
+from wearlaw.contact_pipeline import ContactPipeline
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
 from wearlaw.fitting.observations import AnyPipeline, Observations, Scatter, observe
-from wearlaw.pipeline import ContactPipeline, Pipeline
-from wearlaw.units import QuantityLike
+from wearlaw.pipeline import Pipeline
+from wearlaw.units import QuantityLike, coefficient
 from wearlaw.wear_tests.tests import WearTests
 
 NEAR = 10.0
@@ -51,7 +52,13 @@ class Task:
         scatter: Literal["relative", "absolute"],
         bounds: Mapping[str, tuple[QuantityLike | float, QuantityLike | float]],
     ) -> Task:
-        """Return what is to be done, or refuse it."""
+        """Return what is to be done.
+
+        Raises
+        ------
+        FitError
+            If the tests do not hold what is needed, or a parameter is not known.
+        """
         law = None
         if isinstance(predict, Pipeline):
             law = predict.wear_law.explicit()
@@ -83,7 +90,13 @@ class Task:
         return np.concatenate([one.residuals(values) for one in self.observations], axis=-1) * self.weights
 
     def solve(self, starts: int, seed: int) -> Solutions:
-        """Return the best fit, or refuse it if the tests do not determine it."""
+        """Return the best fit.
+
+        Raises
+        ------
+        FitError
+            If it has not converged, or the tests do not determine it.
+        """
         bounds, first = self.free.bounds, np.zeros(len(self.free.names))
         target = np.zeros(self.weights.size)
         reach = np.where(self.free.positive, math.log(NEAR), NEAR)
@@ -118,7 +131,7 @@ def _first_friction(tests: WearTests, given: float | None) -> float:
             " 'traction_coefficient', 'tangential_force [N]' or 'frictional_heat [W]', or give friction_coefficient"
         )
     if given is not None:
-        return float(given)
+        return float(coefficient(given, FRICTION))
     if tests.friction_coefficient is not None:
         return float(np.mean(tests.friction_coefficient))
     return float(np.nanmax(traction))

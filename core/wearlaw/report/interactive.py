@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis, has_band
 from wearlaw.figures.drawing import LINES, PALETTE
 
 DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
@@ -60,9 +60,7 @@ def plotly_figure(figure: FigureData) -> Json:
 
 def _bands(figure: FigureData) -> Json:
     """Return the title of the legend, which says what bands are, if there are any."""
-    curves = (curve for panel in figure.panels for curve in panel.curves)
-    banded = any(curve.low is not None and not curve.points for curve in curves)
-    return {"title": {"text": literal(f"bands: {figure.bands}")}} if banded else {}
+    return {"title": {"text": literal(f"bands: {figure.bands}")}} if has_band(figure) else {}
 
 
 def literal(text: str) -> str:

@@ -2,12 +2,11 @@ r"""Tables for LaTeX, with the rules of booktabs: a paper takes one in by \input
 
 from __future__ import annotations
 
-import numbers
 import re
 import unicodedata
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
+from wearlaw.report import tables
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -58,19 +57,12 @@ def latex_table(frame: pd.DataFrame) -> str:
 
 
 def cell(value: Any) -> str:
-    """Return a value as LaTeX shows it: numbers with four digits, nothing for what is missing."""
-    import pandas as pd
-
-    if pd.isna(value):
-        return ""
-    if isinstance(value, (bool, np.bool_)):
-        return "yes" if value else "no"
-    if not isinstance(value, numbers.Real):
-        return escaped(str(value))
-    mantissa, power, exponent = f"{value:.4g}".replace("inf", r"\infty").partition("e")
-    if isinstance(value, numbers.Integral) or not power:
-        return f"${value if isinstance(value, numbers.Integral) else mantissa}$"
-    return rf"${mantissa} \times 10^{{{int(exponent)}}}$"
+    """Return a value as LaTeX shows it."""
+    shown = tables.cell(value)
+    if not shown.number:
+        return escaped(shown.text)
+    mantissa = shown.text.replace("inf", r"\infty")
+    return rf"${mantissa} \times 10^{{{shown.power}}}$" if shown.power else f"${mantissa}$"
 
 
 def escaped(text: str) -> str:

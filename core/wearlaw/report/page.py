@@ -5,30 +5,18 @@ It loads nothing: plotly.js stands in it, which is nearly all of its 5 MB, and i
 
 from __future__ import annotations
 
-import numbers
 import re
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from wearlaw.figures.curves import FigureData
 from wearlaw.report.interactive import plotly_figure
-from wearlaw.report.tables import models, parameters, summaries
+from wearlaw.report.tables import Cell, cell, models, parameters, summaries
 from wearlaw.study import Study, used
 from wearlaw.version import __version__
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-@dataclass(frozen=True)
-class Cell:
-    """A cell of a table: a text, or a number with its power of ten if it has one."""
-
-    text: str
-    power: str = ""
-    number: bool = False
 
 
 def report(study: Study, case_text: str) -> str:
@@ -71,7 +59,7 @@ def report(study: Study, case_text: str) -> str:
 
 def cells(frame: pd.DataFrame) -> tuple[list[Cell], list[list[Cell]]]:
     """Return the heads of a table and its rows; the head of a column of numbers stands to the right, as they do."""
-    rows = [[_cell(value) for value in row] for row in frame.itertuples(index=False, name=None)]
+    rows = [[_printed(cell(value)) for value in row] for row in frame.itertuples(index=False, name=None)]
     heads = [
         Cell(str(head), number=any(row[number].number for row in rows)) for number, head in enumerate(frame.columns)
     ]
@@ -93,13 +81,8 @@ def _heading(figure: FigureData, study: Study) -> str:
     return figure.title if figure.title != study.case.title else spaced(figure.name)
 
 
-def _cell(value: Any) -> Cell:
-    """Return a cell: numbers with four digits, nothing for what is missing."""
-    if value is None or value != value:
-        return Cell("")
-    if isinstance(value, (bool, np.bool_)):
-        return Cell("yes" if value else "no")
-    if isinstance(value, numbers.Integral) or not isinstance(value, numbers.Real):
-        return Cell(str(value), number=isinstance(value, numbers.Integral))
-    mantissa, _, power = f"{value:.4g}".partition("e")
-    return Cell(mantissa.replace("-", "−"), str(int(power)).replace("-", "−") if power else "", number=True)
+def _printed(one: Cell) -> Cell:
+    """Return a cell in which a number has the minus sign of print."""
+    if not one.number:
+        return one
+    return replace(one, text=one.text.replace("-", "−"), power=one.power.replace("-", "−"))

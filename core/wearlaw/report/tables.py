@@ -5,6 +5,7 @@ Each can be written as CSV, with every digit, and for LaTeX, as it is shown.
 
 from __future__ import annotations
 
+import numbers
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -35,6 +36,29 @@ class NamedTable:
     name: str
     title: str
     frame: pd.DataFrame
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell of a table: a text, or a number with its power of ten if it has one."""
+
+    text: str
+    power: str = ""
+    number: bool = False
+
+
+def cell(value: Any) -> Cell:
+    """Return what a table shows of a value: numbers with four digits, nothing for what is missing."""
+    import pandas as pd
+
+    if value is None or value is pd.NA or value != value:
+        return Cell("")
+    if isinstance(value, (bool, np.bool_)):
+        return Cell("yes" if value else "no")
+    if isinstance(value, numbers.Integral) or not isinstance(value, numbers.Real):
+        return Cell(str(value), number=isinstance(value, numbers.Integral))
+    mantissa, _, power = f"{value:.4g}".partition("e")
+    return Cell(mantissa, str(int(power)) if power else "", number=True)
 
 
 def tables(study: Study) -> list[NamedTable]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from string import Template
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias
 
 from packaging.utils import canonicalize_name
 
@@ -27,8 +27,6 @@ Kind: TypeAlias = Literal["wear_law", "contact_model"]
 Licence: TypeAlias = Literal["bsd-3-clause", "mit", "none"]
 """The licence of the plugin; "none" leaves the choice for later."""
 
-LICENCES = get_args(Licence)
-
 _SPDX = {"bsd-3-clause": "BSD-3-Clause", "mit": "MIT"}
 
 _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
@@ -39,14 +37,13 @@ LONGEST_NAME = 24
 
 @dataclass(frozen=True)
 class _Example:
-    kind: str
-    law: str
+    text: str
     pipeline: str
 
 
 _EXAMPLES: dict[Kind, _Example] = {
-    "wear_law": _Example("wear law", "Archard's law", 'wl.contact_model("exact") | wl.wear_law("{}")'),
-    "contact_model": _Example("contact model", "full slip", 'wl.contact_model("{}") | wl.wear_law("usfd")'),
+    "wear_law": _Example("Archard's law", 'wl.contact_model("exact") | wl.wear_law("{}")'),
+    "contact_model": _Example("full slip", 'wl.contact_model("{}") | wl.wear_law("usfd")'),
 }
 
 
@@ -86,7 +83,7 @@ def write_plugin(name: str, kind: Kind, parent: Path, licence: Licence = "none")
     return folder
 
 
-def class_name(name: str) -> str:
+def _class_name(name: str) -> str:
     """Return the name of the class that implements a model: TwoSlopes for two_slopes."""
     return "".join(word.capitalize() for word in name.split("_"))
 
@@ -99,7 +96,7 @@ def _check_name(name: str, kind: Kind) -> None:
         )
     if len(name) > LONGEST_NAME:
         raise InputError(f"name: must have at most {LONGEST_NAME} characters, got {len(name)}: {name!r}")
-    made = class_name(name)
+    made = _class_name(name)
     if made.startswith("Test") or made in {"None", "True", "False", "Check", "ClassVar", "Field", "Mapping"}:
         raise InputError(f"name: {name!r} would name its class {made}, which means something else; choose another")
     for taker in _takers(name, kind):
@@ -129,9 +126,9 @@ def _files(name: str, kind: Kind, licence: Licence) -> dict[str, str]:
     example = _EXAMPLES[kind]
     values = {
         "name": name,
-        "class_name": class_name(name),
-        "kind": example.kind,
-        "example": example.law,
+        "class_name": _class_name(name),
+        "kind": kind.replace("_", " "),
+        "example": example.text,
         "pipeline": example.pipeline.format(name),
         "version": __version__,
         "year": str(datetime.datetime.now(tz=datetime.UTC).year),

@@ -43,7 +43,7 @@ def sweep(
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise InputError(f"workers: must be the number of processes, at least 1; got {workers!r}")
     points = outer_product(conditions) if table is None else from_table(table, conditions)
-    job = checked_job(pipeline, points, outputs, workers > 1 or client is not None)
+    job = _checked_job(pipeline, points, outputs, workers > 1 or client is not None)
     if store is None:
         if resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
@@ -61,7 +61,7 @@ def sweep(
         return target.finish(texts)
 
 
-def checked_job(pipeline: Pipeline[Any], points: Points, outputs: Sequence[str], elsewhere: bool) -> Job:
+def _checked_job(pipeline: Pipeline[Any], points: Points, outputs: Sequence[str], elsewhere: bool) -> Job:
     """Return what is done at every point, once points and outputs are found to be possible.
 
     Raises

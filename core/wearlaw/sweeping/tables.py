@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Mapping
 from typing import Any, TypeAlias
@@ -13,16 +12,13 @@ import pint
 from wearlaw.errors import ConditionsError, DataError, UnitError
 from wearlaw.registry import symbol
 from wearlaw.sweeping.points import Points, Varying, axis, split
-from wearlaw.units import Q
+from wearlaw.units import HEAD, Q
 
 ROW = "row"
 """The dimension of the rows of a table that has no name for them."""
 
-Head: TypeAlias = tuple[str, str | None, Any, str | None]
+Column: TypeAlias = tuple[str, str | None, Any, str | None]
 """Head, dimension, values and unit of a column."""
-
-HEAD = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?")
-"""A column's head, as in "creepage [%]"."""
 
 
 def from_table(table: Any, conditions: Mapping[str, Any]) -> Points:
@@ -59,7 +55,7 @@ def from_table(table: Any, conditions: Mapping[str, Any]) -> Points:
     return Points(fixed, found, rows)
 
 
-def _columns(table: Any) -> tuple[list[Head], dict[str, Any]]:
+def _columns(table: Any) -> tuple[list[Column], dict[str, Any]]:
     """Return the columns, and what the rows are called."""
     pandas, xarray = sys.modules.get("pandas"), sys.modules.get("xarray")  # loaded if the table is one of theirs
     if pandas is not None and isinstance(table, pandas.DataFrame):
@@ -72,11 +68,11 @@ def _columns(table: Any) -> tuple[list[Head], dict[str, Any]]:
     )
 
 
-def _of_pandas(table: Any) -> tuple[list[Head], dict[str, Any]]:
+def _of_pandas(table: Any) -> tuple[list[Column], dict[str, Any]]:
     if table.index.nlevels > 1:
         raise DataError("table: its index has several levels; call reset_index() on it")
     dim = str(table.index.name or ROW)
-    columns: list[Head] = [(str(head), dim, *_typed(table[head])) for head in table.columns]
+    columns: list[Column] = [(str(head), dim, *_typed(table[head])) for head in table.columns]
     return columns, {dim: (dim, table.index.to_numpy())}
 
 
@@ -88,7 +84,7 @@ def _typed(column: Any) -> tuple[Any, str | None]:
     return column.to_numpy(), column.attrs.get("units")
 
 
-def _of_xarray(table: Any) -> tuple[list[Head], dict[str, Any]]:
+def _of_xarray(table: Any) -> tuple[list[Column], dict[str, Any]]:
     dims = [str(dim) for dim in table.dims]
     if len(dims) != 1:
         raise DataError(f"table: must have one dimension, that of its rows, got {', '.join(dims) or 'none'}")

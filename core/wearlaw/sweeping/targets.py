@@ -1,4 +1,4 @@
-"""Where the results of a sweep go: into memory, or into files that memory maps show."""
+"""Where the results of a sweep go: what takes them, and those that stay in memory."""
 
 from __future__ import annotations
 

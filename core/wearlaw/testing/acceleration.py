@@ -14,9 +14,8 @@ from wearlaw.pipeline import Pipeline
 from wearlaw.records import Contact
 from wearlaw.rig import TwinDisc
 from wearlaw.tangential import ContactModel, Model
-from wearlaw.testing.contact_checks import SUM
 from wearlaw.testing.ellipses import WHEEL_RAIL
-from wearlaw.testing.examples import SAME, assert_close
+from wearlaw.testing.examples import SAME, SUM, assert_close
 from wearlaw.testing.sampling import random_contacts, rows
 from wearlaw.units import Q
 
@@ -121,4 +120,4 @@ def _of_ellipse(model: ContactModel, part: slice | int) -> tuple[Array, Array]:
 STEEPEST = sum(abs(slope) for _, slope in Ramps().ramps)
 """Slopes of the ramps, of which each is rounded as the whole dissipation is [kg/m/N]."""
 
-COMMON = (acceleration_does_not_matter,)
+CHECKS = (acceleration_does_not_matter,)

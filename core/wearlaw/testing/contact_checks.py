@@ -21,12 +21,16 @@ from wearlaw.quadrature import uniform_cells
 from wearlaw.records import Contact
 from wearlaw.tangential import QUADRATURE, ContactModel
 from wearlaw.testing.bisection import lost_digits
-from wearlaw.testing.examples import SAME, assert_close, for_each
+from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
 from wearlaw.testing.sampling import EPS
+from wearlaw.testing.shared_checks import (
+    assert_double,
+    assert_finite,
+    assert_solved_alike,
+    assert_unchanged,
+    friction_limit,
+)
 from wearlaw.testing.strategies import line_problems
-
-SUM = 64.0 * EPS
-"""Relative error of a sum over the nodes of a zone."""
 
 
 def with_creepage(problem: LineProblem, creepage: Array | float) -> LineProblem:
@@ -43,11 +47,6 @@ def repeated(problem: LineProblem, shape: tuple[int, ...]) -> LineProblem:
 def saturation(problem: LineProblem) -> Array:
     """Return μa/R, at which Carter's theory slips everywhere."""
     return problem.friction_coefficient * problem.half_width / problem.relative_radius
-
-
-def friction_limit(problem: LineProblem) -> Array:
-    """Return μN."""
-    return problem.friction_coefficient * problem.normal_force
 
 
 def error_of_force(model: ContactModel) -> float:
@@ -92,11 +91,7 @@ def contact_is_finite(model: ContactModel) -> None:
     """Every field and total is a finite number; the traction bound may be infinite."""
 
     def examine(problem: LineProblem) -> None:
-        contact = model.solve(problem)
-        for field in dataclasses.fields(contact):
-            value = getattr(contact, field.name)
-            bad = np.isnan(value).any() or (field.name != "traction_bound" and np.isinf(value).any())
-            assert not bad, f"{field.name} is not finite: {value!r}"
+        assert_finite(model.solve(problem))
 
     for_each(line_problems(), examine)
 
@@ -164,7 +159,7 @@ def traction_and_slip_follow_the_creepage(model: ContactModel) -> None:
 
 
 def random_problems(points: int) -> LineProblem:
-    """Return steel discs under random loads, frictions, sizes and speeds; always the same ones."""
+    """Return discs of many sizes and stiffnesses under many loads, frictions and speeds; always the same ones."""
     random = np.random.default_rng(5)
     radius, modulus = 10.0 ** random.uniform(-3, 1, points), 10.0 ** random.uniform(9, 12, points)
     half_width = 2.0 * radius * 10.0 ** random.uniform(-5, np.log10(3e-2), points)
@@ -208,9 +203,7 @@ def problem_is_not_changed(model: ContactModel) -> None:
         batch = repeated(problem, (2,))
         before = copy.deepcopy(batch)
         model.solve(batch)
-        for field in dataclasses.fields(batch):
-            same = np.array_equal(getattr(batch, field.name), getattr(before, field.name))
-            assert field.name == "traction_coefficient" or same, f"the model changed the problem's {field.name}"
+        assert_unchanged(batch, before)
 
     for_each(line_problems(), examine)
 
@@ -219,14 +212,7 @@ def solutions_agree_to_the_bit(model: ContactModel) -> None:
     """The same problem gives the same contact again, with another problem in between."""
 
     def examine(problems: tuple[LineProblem, LineProblem]) -> None:
-        first = model.solve(problems[0])
-        kept = copy.deepcopy(first)
-        model.solve(problems[1])
-        second = model.solve(problems[0])
-        for field in dataclasses.fields(Contact):
-            for contact in (first, second):
-                same = np.array_equal(getattr(contact, field.name), getattr(kept, field.name))
-                assert same, f"two solutions of one problem differ in {field.name}"
+        assert_solved_alike(model, *problems)
 
     for_each(st.tuples(line_problems(), line_problems()), examine)
 
@@ -234,10 +220,7 @@ def solutions_agree_to_the_bit(model: ContactModel) -> None:
 def solution_is_in_double_precision(model: ContactModel) -> None:
     """The force is a float64 and exact to rounding, in steps of 1e-8 of creepage, friction and half-width."""
     problem = random_problems(64)
-    contact = model.solve(problem)
-    for field in dataclasses.fields(contact):
-        kind = getattr(contact, field.name).dtype
-        assert kind == np.float64, f"{field.name} is of type {kind}, not float64"
+    assert_double(model.solve(problem))
     # An iteration that ends at 1e-10 moves a change of 1e-8 by a fiftieth; single precision, by six of it.
     rounding = min(error_of_force(model), 1e-10)
     for name in ("creepage", "friction_coefficient", "half_width"):

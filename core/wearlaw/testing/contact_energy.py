@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from wearlaw.arrays import Array
@@ -11,9 +9,10 @@ from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import Contact
-from wearlaw.tangential import QUADRATURE, Claim, ContactModel
-from wearlaw.testing.contact_checks import SUM, friction_limit, random_problems, saturation, with_creepage
-from wearlaw.testing.examples import assert_close, for_each
+from wearlaw.tangential import QUADRATURE, ContactModel
+from wearlaw.testing.contact_checks import random_problems, saturation, with_creepage
+from wearlaw.testing.examples import SUM, assert_close, for_each
+from wearlaw.testing.shared_checks import Claims, friction_limit
 from wearlaw.testing.strategies import line_problems
 
 MANY = 512
@@ -79,29 +78,39 @@ def energy_balance_improves_with_refinement(model: LineContactModel) -> None:
 def refined_nodes_improve_the_sums(model: ContactModel) -> None:
     """On nodes refined three times, sums of energy and traction are eight times as good, or as good as quadrature."""
     problem = _many_problems()
+    models = refinements(model)
+    coarse, fine = (chosen.solve(problem) for chosen in (models[0], models[-1]))
+    for name, error in (("energy", _energy_error), ("traction", _traction_error)):
+        assert_improved(name, error(coarse), error(fine))
+
+
+def refinements(model: ContactModel) -> list[ContactModel]:
+    """Return the model, and the same on nodes refined once, twice and so on, `REFINEMENTS` times."""
     models = [model]
     for _ in range(REFINEMENTS):
         finer = models[-1].refined()
         assert finer is not None, "`refined` returns a model, but not of what it returned"
         models.append(finer)
-    coarse, fine = (chosen.solve(problem) for chosen in (models[0], models[-1]))
-    for name, error in (("energy", _energy_error), ("traction", _traction_error)):
-        before, behind = error(coarse), error(fine)
-        assert behind <= max(CHANCE * before / 2**REFINEMENTS, QUADRATURE), (
-            f"the sum of {name} is off by {before:.2g}, and still by {behind:.2g} on {2**REFINEMENTS} times finer nodes"
-        )
+    return models
 
 
-CLAIMS: dict[Claim, tuple[Callable[[ContactModel], None], ...]] = {
+def assert_improved(name: str, before: float, behind: float) -> None:
+    """Assert that the error of a sum over nodes has fallen as one of first order does, or to that of quadrature."""
+    assert behind <= max(CHANCE * before / 2**REFINEMENTS, QUADRATURE), (
+        f"the sum of {name} is off by {before:.2g}, and still by {behind:.2g} on {2**REFINEMENTS} times finer nodes"
+    )
+
+
+CLAIMS: Claims = {
     "energy_balance": (slip_dissipates_the_energy_fed_in,),
 }
 
-CLAIMS_OF_FIELDS: dict[Claim, tuple[Callable[[LineContactModel], None], ...]] = {
+CLAIMS_OF_FIELDS: Claims = {
     "energy_balance": (energy_balance_improves_with_refinement,),
 }
 """The checks of each claim that need a model which knows its fields at any position."""
 
-CLAIMS_OF_REFINED: dict[Claim, tuple[Callable[[ContactModel], None], ...]] = {
+CLAIMS_OF_REFINED: Claims = {
     "energy_balance": (refined_nodes_improve_the_sums,),
 }
 """The checks of each claim that need a model which can refine its nodes."""

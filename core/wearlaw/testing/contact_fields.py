@@ -10,8 +10,8 @@ from wearlaw.arrays import Array
 from wearlaw.line import LineProblem
 from wearlaw.line_model import FieldVariable, LineContactModel
 from wearlaw.quadrature import Nodes
-from wearlaw.testing.contact_checks import SUM, random_problems
-from wearlaw.testing.examples import SAME, assert_close
+from wearlaw.testing.contact_checks import random_problems
+from wearlaw.testing.examples import SAME, SUM, assert_close
 
 POINTS = 64
 """Operating points, from almost all stick to full slip."""

@@ -12,13 +12,13 @@ from wearlaw.tangential import ContactModel
 from wearlaw.testing.bisection import Indices, find_jumps
 from wearlaw.testing.contact_checks import (
     error_of_force,
-    friction_limit,
     random_problems,
     repeated,
     saturation,
     with_creepage,
 )
 from wearlaw.testing.examples import SAME, assert_close, for_each
+from wearlaw.testing.shared_checks import friction_limit
 from wearlaw.testing.strategies import line_problems
 
 

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from hypothesis import strategies as st
 
 from wearlaw.arrays import Array
 from wearlaw.line import LineProblem
-from wearlaw.tangential import Claim, ContactModel
+from wearlaw.records import Contact
+from wearlaw.tangential import ContactModel
 from wearlaw.testing.contact_checks import (
-    SUM,
     error_of_force,
     error_of_traction,
-    friction_limit,
     saturation,
     solutions,
     with_creepage,
 )
-from wearlaw.testing.examples import SAME, assert_close, for_each
+from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
+from wearlaw.testing.shared_checks import Claims, friction_limit, full_slip, steps_into_full_slip
 from wearlaw.testing.strategies import line_problems, log_uniform
 
 
@@ -68,39 +66,18 @@ def full_slip_is_met_from_both_sides(model: ContactModel) -> None:
     """
 
     def examine(problem: LineProblem) -> None:
-        full = _full_slip(model, problem)
-        steps = np.array([_steps(model, problem, full, gap) for gap in (1e-4, 1e-8)])
-        for name, (far, near), rounding in zip(
-            ("force", "mean slip"), steps.T, (SAME, SAME + model.accuracy), strict=True
-        ):
-            assert near <= 0.01 * far + 2.0 * rounding, (
-                f"the {name} jumps by {near:.2g} of its value into full slip, at the creepage {float(full):g}"
+
+        def solved(creepage: Array) -> Contact:
+            return model.solve(with_creepage(problem, creepage))
+
+        full = full_slip(solved, 100.0 * saturation(problem))
+        far, near = (steps_into_full_slip(solved, full, gap) for gap in (1e-4, 1e-8))
+        for name, rounding in (("force", SAME), ("mean slip", SAME + model.accuracy)):
+            assert near[name] <= 0.01 * far[name] + 2.0 * rounding, (
+                f"the {name} jumps by {near[name]:.2g} of its value into full slip, at the creepage {float(full):g}"
             )
 
     for_each(line_problems(), examine)
-
-
-def _steps(model: ContactModel, problem: LineProblem, full: Array, gap: float) -> list[float]:
-    """Return by which share the force, and the mean slip over creepage, differ on both sides of full slip."""
-    creepage = [full * (1.0 + side * gap) for side in (-1.0, 1.0)]
-    below, above = (model.solve(with_creepage(problem, at)) for at in creepage)
-    slip_below, slip_above = below.mean_slip / creepage[0], above.mean_slip / creepage[1]
-    return [
-        float(abs(1.0 - below.tangential_force / above.tangential_force)),
-        float(abs(1.0 - slip_below / slip_above)),
-    ]
-
-
-def _full_slip(model: ContactModel, problem: LineProblem) -> Array:
-    """Return the least creepage at which the force has its limit and nothing sticks, to rounding, by bisection."""
-    low, high = np.zeros_like(problem.creepage), 100.0 * saturation(problem)
-    limit = model.solve(with_creepage(problem, high)).tangential_force * (1.0 - SAME)
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        contact = model.solve(with_creepage(problem, middle))
-        reached = (contact.tangential_force >= limit) & (contact.stick_ratio <= SUM)
-        low, high = np.where(reached, low, middle), np.where(reached, middle, high)
-    return high
 
 
 def initial_slope_is_that_of_the_half_space(model: ContactModel) -> None:
@@ -135,11 +112,10 @@ def contacts_are_similar(model: ContactModel) -> None:
     for_each(st.tuples(line_problems(), line_problems()), examine)
 
 
-CLAIMS: dict[Claim, tuple[Callable[[ContactModel], None], ...]] = {
+CLAIMS: Claims = {
     "traction_bound": (traction_keeps_its_bound,),
     "stick": (what_sticks_does_not_slip,),
     "saturation": (full_slip_is_reached, full_slip_is_met_from_both_sides),
     "initial_slope": (initial_slope_is_that_of_the_half_space,),
     "similarity": (contacts_are_similar,),
 }
-"""The checks of each claim."""

@@ -9,15 +9,13 @@ import numpy as np
 import pint
 
 from wearlaw.docstrings import field_docstrings
+from wearlaw.functions import VARIABLES
 from wearlaw.models import WearLaw
-from wearlaw.records import NODE_VARIABLES
+from wearlaw.records import Contact
 from wearlaw.tangential import Claim, ContactModel, Model
 from wearlaw.testing.examples import for_each
 from wearlaw.testing.law_shape import contacts_for
 from wearlaw.testing.sampling import forward
-
-VARIABLES = (*NODE_VARIABLES, "wear_index")
-"""What a law may branch in or be monotone in."""
 
 
 def model_is_documented(model: Model) -> None:
@@ -62,7 +60,7 @@ def band_is_ordered(law: WearLaw) -> None:
     if band is None:
         return
 
-    def examine(contact: Any) -> None:
+    def examine(contact: Contact) -> None:
         low, middle, high = (end.rate(forward(contact)) for end in band)
         assert (low <= middle).all(), f"the low end {low!r} lies above the middle {middle!r}"
         assert (middle <= high).all(), f"the middle {middle!r} lies above the high end {high!r}"

@@ -23,7 +23,6 @@ from wearlaw.tangential import ContactModel
 from wearlaw.testing.acceleration import Ramps
 from wearlaw.testing.bisection import lost_digits
 from wearlaw.testing.ellipses import (
-    SUM,
     WHEEL_RAIL,
     Creepages,
     assert_same_forces,
@@ -32,8 +31,9 @@ from wearlaw.testing.ellipses import (
     replaced,
     translation,
 )
-from wearlaw.testing.examples import SAME, assert_close, for_each
+from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
 from wearlaw.testing.sampling import EPS
+from wearlaw.testing.shared_checks import assert_double, assert_finite, assert_solved_alike, assert_unchanged
 from wearlaw.testing.strategies import elliptic_problems
 from wearlaw.units import Q
 
@@ -82,11 +82,7 @@ def elliptic_contact_is_finite(model: ContactModel) -> None:
     """On an ellipse every field and total is a finite number; the traction bound may be infinite."""
 
     def examine(problem: EllipticProblem) -> None:
-        contact = model.solve(problem)
-        for field in dataclasses.fields(contact):
-            value = getattr(contact, field.name)
-            bad = np.isnan(value).any() or (field.name != "traction_bound" and np.isinf(value).any())
-            assert not bad, f"{field.name} is not finite: {value!r}"
+        assert_finite(model.solve(problem))
 
     for_each(elliptic_problems(), examine)
 
@@ -205,23 +201,14 @@ def elliptic_problem_is_not_changed(model: ContactModel) -> None:
     before = copy.deepcopy(problem)
     model.solve(problem)
     model.creep_forces(problem)
-    for field in dataclasses.fields(problem):
-        same = np.array_equal(getattr(problem, field.name), getattr(before, field.name))
-        assert same, f"the model changed the problem's {field.name}"
+    assert_unchanged(problem, before)
 
 
 def elliptic_solutions_agree_to_the_bit(model: ContactModel) -> None:
     """The same elliptic problem gives the same contact again, with another problem in between."""
 
     def examine(problems: tuple[EllipticProblem, EllipticProblem]) -> None:
-        first = model.solve(problems[0])
-        kept = copy.deepcopy(first)
-        model.solve(problems[1])
-        second = model.solve(problems[0])
-        for field in dataclasses.fields(EllipticContact):
-            for contact in (first, second):
-                same = np.array_equal(getattr(contact, field.name), getattr(kept, field.name))
-                assert same, f"two solutions of one problem differ in {field.name}"
+        assert_solved_alike(model, *problems)
 
     for_each(st.tuples(elliptic_problems(), elliptic_problems()), examine)
 
@@ -229,10 +216,7 @@ def elliptic_solutions_agree_to_the_bit(model: ContactModel) -> None:
 def elliptic_solution_is_in_double_precision(model: ContactModel) -> None:
     """On an ellipse all is float64, and the force exact to rounding, in steps of 1e-8 of creepage, friction and a."""
     problem = random_ellipses(64)
-    contact = model.solve(problem)
-    for field in dataclasses.fields(contact):
-        kind = getattr(contact, field.name).dtype
-        assert kind == np.float64, f"{field.name} is of type {kind}, not float64"
+    assert_double(model.solve(problem))
     # An iteration that ends at 1e-10 moves a change of 1e-8 by a fiftieth; single precision, by six of it.
     rounding = min(error_of_sums(model), 1e-10)
     for name in ("longitudinal_creepage", "friction_coefficient", "a"):

@@ -10,27 +10,22 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
-from wearlaw.tangential import QUADRATURE, Claim, ContactModel
+from wearlaw.tangential import QUADRATURE, ContactModel
+from wearlaw.testing.contact_energy import CHANCE, REFINEMENTS, assert_improved, refinements
 from wearlaw.testing.ellipse_checks import forces_of, sums_of
 from wearlaw.testing.ellipses import (
     Creepages,
     assert_same_forces,
     error_of_sums,
-    friction_limit,
     random_ellipses,
     sliding_power,
 )
 from wearlaw.testing.examples import assert_close, for_each
+from wearlaw.testing.shared_checks import Claims, friction_limit
 from wearlaw.testing.strategies import elliptic_problems
 
 PATCHES = 8
 """Patches over which an error is averaged, and with it over their strips."""
-
-CHANCE = 1.3
-"""What chance adds to a mean error of strips in which slip begins anywhere in a cell; see `contact_energy`."""
-
-REFINEMENTS = 3
-"""How often nodes are halved; a first-order error falls to an eighth."""
 
 STRIPS = 200
 """Strips of equal width, whose sums of what is a parabola across the patch are off by 1/(2 `STRIPS`²) of it."""
@@ -57,33 +52,22 @@ def refined_strips_improve_the_sums(model: ContactModel) -> None:
     """
     problem = random_ellipses(PATCHES)
     straight = problem.with_creepages(*Creepages.of(problem).times(1.0, 1.0, 0.0))
-    models = _refined(model)
+    models = refinements(model)
     nodes = [chosen.solve(problem[0]).x.size for chosen in models]
     assert (np.diff(nodes) >= nodes[:-1]).all(), f"`refined` has {nodes[1:]} nodes, from {nodes[0]}"
     for name, error, of in (("energy", _energy_error, straight), ("traction", _traction_error, problem)):
         before, behind = (float(_each(error, chosen, of).mean()) for chosen in (models[0], models[-1]))
-        assert behind <= max(CHANCE * before / 2**REFINEMENTS, QUADRATURE), (
-            f"the sum of {name} is off by {before:.2g}, and still by {behind:.2g} on {2**REFINEMENTS} times finer nodes"
-        )
+        assert_improved(name, before, behind)
 
 
 def refined_strips_improve_the_forces(model: ContactModel) -> None:
     """Each refinement changes the forces half as much as the one before, or less, or no more than quadrature."""
     problem = random_ellipses(PATCHES)
-    forces = [_each(_forces, chosen, problem) for chosen in _refined(model)]
+    forces = [_each(_forces, chosen, problem) for chosen in refinements(model)]
     first, *_, last = (np.abs(fine - coarse).mean() for coarse, fine in pairwise(forces))
     assert last <= max(CHANCE * first / 2 ** (REFINEMENTS - 1), QUADRATURE), (
         f"the first refinement changes the forces by {first:.2g} μN, the last one by {last:.2g}"
     )
-
-
-def _refined(model: ContactModel) -> list[ContactModel]:
-    models = [model]
-    for _ in range(REFINEMENTS):
-        finer = models[-1].refined()
-        assert finer is not None, "`refined` returns a model, but not of what it returned"
-        models.append(finer)
-    return models
 
 
 Measure = Callable[[EllipticProblem, EllipticContact], Array]
@@ -132,11 +116,11 @@ def other_strips_have_the_same_sums(model: ContactModel) -> None:
     assert_close(energy, own.cell_wear_index, "the energy summed over the strips", 0.0, error * sliding_power(problem))
 
 
-CLAIMS: dict[Claim, tuple[Callable[[ContactModel], None], ...]] = {
+CLAIMS: Claims = {
     "energy_balance": (translation_dissipates_the_energy_fed_in,),
 }
 
-CLAIMS_OF_REFINED: dict[Claim, tuple[Callable[[ContactModel], None], ...]] = {
+CLAIMS_OF_REFINED: Claims = {
     "energy_balance": (refined_strips_improve_the_sums,),
 }
 """The checks of each claim that need a model which can refine its nodes."""

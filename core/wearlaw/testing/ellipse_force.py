@@ -13,18 +13,17 @@ from wearlaw.tangential import ContactModel
 from wearlaw.testing.bisection import Indices, find_jumps
 from wearlaw.testing.ellipse_checks import forces_of
 from wearlaw.testing.ellipses import (
-    SUM,
     Creepages,
     assert_same_forces,
     at_magnitude,
     at_reduced,
-    friction_limit,
     random_ellipses,
     sliding_power,
     translation,
     unit_creepages,
 )
-from wearlaw.testing.examples import SAME, assert_close, for_each
+from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
+from wearlaw.testing.shared_checks import friction_limit
 from wearlaw.testing.strategies import elliptic_problems
 
 

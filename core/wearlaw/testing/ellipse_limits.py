@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from hypothesis import strategies as st
 
 from wearlaw.arrays import Array
 from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
-from wearlaw.tangential import Claim, ContactModel
+from wearlaw.tangential import ContactModel
 from wearlaw.testing.ellipses import (
-    SUM,
     Creepages,
     assert_same_forces,
     at_magnitude,
     at_reduced,
     error_of_sums,
-    friction_limit,
     random_ellipses,
     replaced,
     sliding_power,
     translation,
 )
-from wearlaw.testing.examples import SAME, assert_close, for_each
+from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
+from wearlaw.testing.shared_checks import Claims, friction_limit, full_slip, steps_into_full_slip
 from wearlaw.testing.strategies import elliptic_problems, log_uniform
 
 POINTS = 32
@@ -116,8 +113,8 @@ def full_slip_on_the_ellipse_is_met_from_both_sides(model: ContactModel) -> None
     def solved(reduced: Array) -> EllipticContact:
         return model.solve(at_magnitude(problem, reduced))
 
-    full = _full_slip(solved)
-    far, near = (_steps(solved, full, gap) for gap in (1e-4, 1e-8))
+    full = full_slip(solved, np.full(POINTS, FAR))
+    far, near = (steps_into_full_slip(solved, full, gap) for gap in (1e-4, 1e-8))
     error = SUM + (0.0 if model.scale == "patch" else model.elliptic_accuracy)
     for name, rounding in (("force", SUM), ("mean slip", error)):
         # What begins as a square root, c √gap (1 + d √gap), falls to a fiftieth where d is as low as -50.
@@ -126,28 +123,6 @@ def full_slip_on_the_ellipse_is_met_from_both_sides(model: ContactModel) -> None
             f"the {name} jumps by {near[name][wrong].max():.2g} of its value into full slip, at {full[wrong][0]:g} of"
             " the creepage that linear theory needs for μN"
         )
-
-
-def _steps(solved: Callable[[Array], EllipticContact], full: Array, gap: float) -> dict[str, Array]:
-    """Return by which share the force, and the mean slip over creepage, differ on both sides of full slip."""
-    below, above = (solved(full * (1.0 + side * gap)) for side in (-1.0, 1.0))
-    slip = below.mean_slip / above.mean_slip * (1.0 + gap) / (1.0 - gap)
-    return {
-        "force": np.abs(1.0 - below.tangential_force / above.tangential_force),
-        "mean slip": np.abs(1.0 - slip),
-    }
-
-
-def _full_slip(solved: Callable[[Array], EllipticContact]) -> Array:
-    """Return the least reduced creepages at which the force has its limit and nothing sticks, to rounding."""
-    low, high = np.zeros(POINTS), np.full(POINTS, FAR)
-    limit = solved(high).tangential_force * (1.0 - SAME)
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        contact = solved(middle)
-        reached = (contact.tangential_force >= limit) & (contact.stick_ratio <= SUM)
-        low, high = np.where(reached, low, middle), np.where(reached, middle, high)
-    return high
 
 
 def initial_slopes_are_kalkers(model: ContactModel) -> None:
@@ -209,11 +184,10 @@ def elliptic_contacts_are_similar(model: ContactModel) -> None:
     for_each(st.tuples(elliptic_problems(), st.tuples(factor, factor, factor, log_uniform(0.1, 1.0), factor)), examine)
 
 
-CLAIMS: dict[Claim, tuple[Callable[[ContactModel], None], ...]] = {
+CLAIMS: Claims = {
     "traction_bound": (traction_vector_keeps_its_bound, forces_stay_below_friction),
     "stick": (nothing_slips_below_the_bound,),
     "saturation": (translation_reaches_full_slip, full_slip_on_the_ellipse_is_met_from_both_sides),
     "initial_slope": (initial_slopes_are_kalkers,),
     "similarity": (elliptic_contacts_are_similar,),
 }
-"""The checks of each claim."""

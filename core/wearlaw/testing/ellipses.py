@@ -17,15 +17,12 @@ from wearlaw.arrays import Array
 from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.material import steel
 from wearlaw.tangential import ContactModel
-from wearlaw.testing.examples import SAME, assert_close
-from wearlaw.testing.sampling import EPS
+from wearlaw.testing.examples import SAME, SUM, assert_close
+from wearlaw.testing.shared_checks import friction_limit
 from wearlaw.wheel_rail import WheelRail
 
 SATURATION = (3.0, 32.0 / (3.0 * np.pi))
 """Reduced creepages at which a theory may saturate."""
-
-SUM = 64.0 * EPS
-"""Error of a sum over the nodes, as a share of what it is without cancellation."""
 
 WHEEL_RAIL = WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=steel(), speed="30 m/s")
 """A new wheel on straight track."""
@@ -123,11 +120,6 @@ def lever(problem: EllipticProblem) -> Array:
     """Return √((a²+b²)/5) [m], the rms distance from the centre that Hertz's pressure has."""
     arm: Array = np.hypot(problem.a, problem.b) / np.sqrt(5.0)
     return arm
-
-
-def friction_limit(problem: EllipticProblem) -> Array:
-    """Return μN."""
-    return problem.friction_coefficient * problem.normal_force
 
 
 def sliding_power(problem: EllipticProblem) -> Array:

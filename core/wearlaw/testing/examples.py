@@ -20,6 +20,9 @@ EXAMPLES = 25
 SAME = 16.0 * EPS
 """Relative difference of two orders of the same few operations: vector and scalar code may round differently."""
 
+SUM = 64.0 * EPS
+"""Error of a sum over nodes, as a share of what it is without cancellation."""
+
 _SETTINGS = settings(
     max_examples=EXAMPLES,
     derandomize=True,

@@ -14,14 +14,18 @@ from collections.abc import Callable
 from typing import Any
 
 
+def computed(model: Any, arguments: list[Any]) -> list[Any]:
+    """Return what a wear law computes for contacts, or a contact model for problems."""
+    if hasattr(model, "rate"):
+        return [model.rate(contact) for contact in arguments]
+    contacts = [model.solve(problem) for problem in arguments]
+    return [value for found in contacts for value in (found.tangential_force, found.traction, found.slip)]
+
+
 def made_again(way: Callable[[], Any], arguments: list[Any]) -> tuple[str, Any]:
     """Return what a model computes, or why it could not be made."""
     try:
-        model = way()
-        if hasattr(model, "rate"):
-            return "", [model.rate(contact) for contact in arguments]
-        contacts = [model.solve(problem) for problem in arguments]
-        return "", [value for found in contacts for value in (found.tangential_force, found.traction, found.slip)]
+        return "", computed(way(), arguments)
     except Exception as error:
         return f"{type(error).__name__}: {error}", None
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from wearlaw.errors import InputError
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import WearLaw
-from wearlaw.tangential import Claim, ContactModel, Model
+from wearlaw.tangential import ContactModel, Model
 from wearlaw.testing import (
     acceleration,
     contact_checks,
@@ -30,11 +30,11 @@ from wearlaw.testing import (
     unit_checks,
 )
 from wearlaw.testing.roundtrip import RoundTrip
+from wearlaw.testing.shared_checks import Claims
 
 CheckFunction: TypeAlias = Callable[..., None]
-Claims: TypeAlias = Mapping[Claim, tuple[CheckFunction, ...]]
 
-COMMON: tuple[CheckFunction, ...] = (*declarations.COMMON, *unit_checks.CHECKS, *acceleration.COMMON)
+COMMON: tuple[CheckFunction, ...] = (*declarations.COMMON, *unit_checks.CHECKS, *acceleration.CHECKS)
 """Checks of wear laws and contact models."""
 
 
@@ -157,5 +157,5 @@ def _claimed(model: ContactModel, tables: list[Claims]) -> list[CheckFunction]:
     return [f for table in tables for claim, of in table.items() if claim not in model.exemptions for f in of]
 
 
-def _check(function: Callable[..., None], model: Model) -> Check:
+def _check(function: CheckFunction, model: Model) -> Check:
     return Check(function.__name__, inspect.getdoc(function) or "", lambda: function(model))

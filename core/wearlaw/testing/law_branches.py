@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.functions import VARIABLES
 from wearlaw.models import BreakpointMap, WearLaw
 from wearlaw.records import Contact
 from wearlaw.testing.bisection import Function, Indices, find_jumps, find_kinks, lost_digits
@@ -83,8 +84,7 @@ def _declared(values: BreakpointMap, start: Contact, end: Contact) -> bool:
 
 
 def _at(contact: Contact) -> str:
-    names = ("pressure", "traction", "slip", "slip_speed", "wear_index_density", "wear_index")
-    return ", ".join(f"{name} {float(at_nodes(contact, name)[0, 0]):.6g}" for name in names) + " in SI units"
+    return ", ".join(f"{name} {float(at_nodes(contact, name)[0, 0]):.6g}" for name in VARIABLES) + " in SI units"
 
 
 def declared_jumps_exist(law: WearLaw) -> None:

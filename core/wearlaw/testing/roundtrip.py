@@ -6,7 +6,6 @@ import pickle
 import subprocess
 import sys
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,12 +14,11 @@ import tomli_w
 from wearlaw.models import WearLaw
 from wearlaw.rig import TwinDisc
 from wearlaw.tangential import ContactModel, Geometry, Model
+from wearlaw.testing import fresh
 from wearlaw.testing.ellipses import random_ellipses
 from wearlaw.testing.examples import assert_close
 from wearlaw.testing.sampling import random_contacts
 from wearlaw.units import Q
-
-FRESH = Path(__file__).with_name("fresh.py")
 
 
 class RoundTrip:
@@ -45,7 +43,7 @@ class RoundTrip:
     def _same(self, way: str) -> None:
         error, computed = self._answer[way]
         assert not error, f"the model cannot be made again from {way}: {error}"
-        for found, due in zip(computed, self._computed, strict=True):
+        for found, due in zip(computed, fresh.computed(self.model, self._arguments), strict=True):
             assert_close(found, due, f"what the model computes after {way}")
 
     @cached_property
@@ -61,14 +59,6 @@ class RoundTrip:
             "ellipse": random_ellipses(4),
         }
         return [problems[geometry] for geometry in self.model.geometries()]
-
-    @property
-    def _computed(self) -> list[Any]:
-        if isinstance(self.model, WearLaw):
-            return [self.model.rate(contact) for contact in self._arguments]
-        assert isinstance(self.model, ContactModel)
-        contacts = [self.model.solve(problem) for problem in self._arguments]
-        return [value for found in contacts for value in (found.tangential_force, found.traction, found.slip)]
 
     @property
     def _pickled(self) -> bytes:
@@ -90,7 +80,7 @@ class RoundTrip:
         }
         # The path comes first and by itself, since reading the rest needs it.
         request = pickle.dumps((sys.path, pickle.dumps(text)))
-        done = subprocess.run([sys.executable, str(FRESH)], input=request, capture_output=True, check=False)
+        done = subprocess.run([sys.executable, fresh.__file__], input=request, capture_output=True, check=False)
         message = done.stderr.decode().strip().splitlines()
         assert done.returncode == 0, (
             f"a fresh process cannot import {cls.__module__}.{cls.__qualname__}: {message[-1:]}"

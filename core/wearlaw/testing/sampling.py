@@ -101,7 +101,7 @@ def retotalled(contact: Contact, **changed: Array) -> Contact:
 def aimed(contact: Contact, variable: str, value: Array | float) -> Contact:
     """Return the contact with a variable set to a value at all nodes; where it cannot be reached, as it was.
 
-    A density of wear index is reached by traction, a slip speed by slip, the wear index by area.
+    A wear-index density is reached by traction, a slip speed by slip, the wear index by area.
     """
     target = np.broadcast_to(np.asarray(value, dtype=np.float64), contact.pressure.shape)
     sign = np.where(contact.traction + contact.slip < 0, -1.0, 1.0)

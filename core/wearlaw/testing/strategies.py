@@ -33,6 +33,16 @@ def log_uniform(low: float, high: float) -> st.SearchStrategy[float]:
     return st.floats(np.log10(low), np.log10(high)).map(lambda exponent: float(10.0**exponent))
 
 
+def _at_and_beside(values: tuple[float, ...]) -> st.SearchStrategy[float]:
+    """Return floats that crowd at some values, on both sides of each."""
+    return st.builds(
+        lambda value, side, gap: value * (1.0 + side * gap),
+        st.sampled_from(values),
+        st.sampled_from([-1.0, 0.0, 1.0]),
+        log_uniform(1e-12, 1e-1),
+    )
+
+
 @st.composite
 def materials(draw: st.DrawFn) -> Material:
     """Draw an elastic material, from polymer to ceramic: E from 1 to 1000 GPa, any Poisson's ratio."""
@@ -96,12 +106,7 @@ def line_problems(crowded: tuple[float, ...] = (1.0, 1.5)) -> st.SearchStrategy[
     crowded : tuple of float
         Creepages over μa/R to crowd at; full slip is at 1 in Carter's theory and at 3/2 in FASTSIM's.
     """
-    at_full_slip = st.builds(
-        lambda centre, side, gap: centre * (1.0 + side * gap),
-        st.sampled_from(crowded),
-        st.sampled_from([-1.0, 0.0, 1.0]),
-        log_uniform(1e-12, 1e-1),
-    )
+    at_full_slip = _at_and_beside(crowded)
     return st.builds(
         _line_problem,
         radii=st.tuples(log_uniform(1e-3, 10.0), st.just(np.inf) | log_uniform(1e-3, 10.0)),
@@ -167,12 +172,6 @@ def elliptic_problems(draw: st.DrawFn, crowded: tuple[float, ...] = SATURATION) 
 @cache
 def _parts_of_ellipse(crowded: tuple[float, ...]) -> st.SearchStrategy[dict[str, Any]]:
     """Return the arguments of `_elliptic_problem`; once, since hypothesis takes as long to set them up as to draw."""
-    at_saturation = st.builds(
-        lambda centre, side, gap: centre * (1.0 + side * gap),
-        st.sampled_from(crowded),
-        st.sampled_from([-1.0, 0.0, 1.0]),
-        log_uniform(1e-12, 1e-1),
-    )
     directions = st.floats(-np.pi, np.pi).map(lambda angle: (np.cos(angle), np.sin(angle)))
     parts: dict[str, st.SearchStrategy[Any]] = {
         "size": log_uniform(1e-5, 2e-2),
@@ -183,7 +182,7 @@ def _parts_of_ellipse(crowded: tuple[float, ...]) -> st.SearchStrategy[dict[str,
         "friction_coefficient": log_uniform(1e-2, 1.5),
         "rolling_speed": log_uniform(1e-2, 100.0),
         "density": st.floats(1e3, 2e4),
-        "creepage": log_uniform(1e-3, 1e2) | at_saturation,
+        "creepage": log_uniform(1e-3, 1e2) | _at_and_beside(crowded),
         "direction": st.sampled_from([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]) | directions,
         "spin": st.just(0.0) | st.builds(lambda sign, size: sign * size, _SIGNS, log_uniform(1e-3, 30.0)),
     }

@@ -9,14 +9,14 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.errors import InputError
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.units import from_si
+from wearlaw.units import Quantity, from_si
 from wearlaw.variables import UNITS, label
 
 if TYPE_CHECKING:
     from wearlaw.uncertainty.result import Uncertainty
 
 CONFIDENCE = 0.95
-"""The share of the samples that is marked."""
+"""The share of the samples in an interval, where none is given."""
 
 STEPS = 512
 """Points of the cumulative distribution."""
@@ -64,6 +64,5 @@ def _along_axis(uncertainty: Uncertainty) -> Panel:
     return Panel(PlotAxis(label(name)), PlotAxis(label("wear_rate")), (curve,))
 
 
-def _plain(quantity: object) -> Array:
-    magnitude: Array = np.asarray(quantity.to(UNITS["wear_rate"]).magnitude)  # type: ignore[attr-defined]
-    return magnitude
+def _plain(quantity: Quantity) -> Array:
+    return np.asarray(quantity.to(UNITS["wear_rate"]).magnitude)

@@ -9,8 +9,8 @@ from typing import Any
 import pint
 
 from wearlaw.arrays import Array
-from wearlaw.conditions import CONDITIONS, UNITS
-from wearlaw.errors import ConditionsError, InputError, did_you_mean
+from wearlaw.conditions import TWIN_DISC
+from wearlaw.errors import InputError, did_you_mean
 from wearlaw.models import WearLaw
 from wearlaw.parameters import number_in_si, numbers
 from wearlaw.uncertainty.distributions import Distribution, PublishedRange, uniform
@@ -54,19 +54,9 @@ def condition(name: str, given: Distribution) -> Uncertain:
     UnitError
         If the distribution has the wrong unit.
     """
-    if name not in CONDITIONS:
-        raise ConditionsError(
-            f"{name}: unknown condition;{did_you_mean(name, CONDITIONS)} The conditions are: {', '.join(CONDITIONS)}"
-        )
-    if name in UNITS:
-        unit = UNITS[name]
-        first = float(unit.si(given.first, name))
-        second = (
-            given.second if given.kind == "lognormal" else float(Unit(unit.unit, positive=False).si(given.second, name))
-        )
-    else:
-        first, second = (float(coefficient(value, name)) for value in (given.first, given.second))
-    return Uncertain(name, given, {name: (first, _checked(name, given, first, float(second)))}, False, str(given))
+    if name not in TWIN_DISC.names:
+        raise TWIN_DISC.unknown(name)
+    return _uncertain(name, given, TWIN_DISC.units.get(name), of_law=False)
 
 
 def parameter(name: str, given: object, law: WearLaw) -> Uncertain:
@@ -90,14 +80,21 @@ def parameter(name: str, given: object, law: WearLaw) -> Uncertain:
     if name not in known:
         hint = did_you_mean(name, known)
         raise InputError(f"wear law '{law.name}' has no number '{name}';{hint} There are: {', '.join(known)}")
-    number, ends = known[name], (given.first, given.second)
-    if isinstance(number, pint.Quantity):
-        unit = Unit(str(number.units), positive=False)
-        first = float(unit.si(given.first, name))
-        second = given.second if given.kind == "lognormal" else unit.si(given.second, name)
+    number = known[name]
+    unit = Unit(str(number.units), positive=False) if isinstance(number, pint.Quantity) else None
+    return _uncertain(name, given, unit, of_law=True)
+
+
+def _uncertain(name: str, given: Distribution, unit: Unit | None, of_law: bool) -> Uncertain:
+    """Return an input of one number; where no unit is due, it is a coefficient."""
+    if unit is None:
+        first, second = (float(coefficient(value, name)) for value in (given.first, given.second))
     else:
-        first, second = (float(coefficient(end, name)) for end in ends)
-    return Uncertain(name, given, {name: (first, _checked(name, given, first, float(second)))}, True, str(given))
+        first = float(unit.si(given.first, name))
+        is_factor = given.kind == "lognormal"
+        second = float(given.second if is_factor else Unit(unit.unit, positive=False).si(given.second, name))
+    _check(name, given, first, second)
+    return Uncertain(name, given, {name: (first, second)}, of_law, str(given))
 
 
 def _published(name: str, law: WearLaw) -> Uncertain:
@@ -119,14 +116,13 @@ def _published(name: str, law: WearLaw) -> Uncertain:
     return Uncertain(name, uniform(0.0, 1.0), ends, True, "published_range()")
 
 
-def _checked(name: str, given: Distribution, first: float, second: float) -> float:
+def _check(name: str, given: Distribution, first: float, second: float) -> None:
     if given.kind == "uniform" and not second > first:
         raise InputError(f"{name}: the upper end of {given} must lie above the lower one")
     if given.kind == "normal" and not second > 0.0:
         raise InputError(f"{name}: the standard deviation of {given} must be positive")
     if given.kind == "lognormal" and not first > 0.0:
         raise InputError(f"{name}: the median of {given} must be positive")
-    return second
 
 
 def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], list[Uncertain]]:

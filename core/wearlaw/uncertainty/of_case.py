@@ -8,18 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wearlaw.case import Case
+from wearlaw.case import Case, labelled
 from wearlaw.errors import InputError
 from wearlaw.notes import Notes
-from wearlaw.pairs import Pair, compose, labelled
+from wearlaw.pairs import Pair, compose
+from wearlaw.uncertainty.figure import CONFIDENCE
 from wearlaw.uncertainty.result import Uncertainty
 from wearlaw.units import WEAR_RATE
 
 if TYPE_CHECKING:
     import pandas as pd
-
-CONFIDENCE = 0.95
-"""The share of the samples between the ends that the table gives."""
 
 
 @dataclass(frozen=True)
@@ -78,21 +76,20 @@ def uncertainty_of(
     """
     import pandas as pd
 
-    laws = labelled(case.wear_laws)
-    if not any(point.varies(law) for point in case.uncertainty.values() for law in laws):
+    notes = Notes()
+    pairs = compose(case.rig, labelled(case.contact_models), labelled(case.wear_laws), notes)
+    if not any(point.varies(pair.wear_law) for point in case.uncertainty.values() for pair in pairs):
         raise InputError(
             "nothing in the case is uncertain; add a table such as [uncertainty.scatter] with conditions of which some"
             ' are distributions, as in creepage = {uniform = ["0.5 %", "1.5 %"]}'
         )
-    notes = Notes()
-    pairs = compose(case.rig, labelled(case.contact_models), laws, notes)
     found: list[UncertainPair] = []
     rates, indices = [], []
     for name, point, pair in ((name, point, pair) for name, point in case.uncertainty.items() for pair in pairs):
-        on_pair(1)
         subject = f"{name}: {pair.label}"
         if not point.varies(pair.wear_law):
             notes.add(f"{subject} is left out, since nothing of it is uncertain")
+            on_pair(1)
             continue
         with notes.of(subject):
             one = Uncertainty(pair.pipeline, point.conditions(), point.parameters(pair.wear_law), samples, seed)
@@ -102,6 +99,7 @@ def uncertainty_of(
         else:
             indices.append(one.sobol().reset_index().assign(point=name, pair=pair.label))
         found.append(UncertainPair(name, pair, one))
+        on_pair(1)
     table = pd.concat(indices, ignore_index=True) if indices else pd.DataFrame(columns=["point", "pair"])
     ordered = table[["point", "pair", *table.columns.drop(["point", "pair"])]]
     return CaseUncertainty(tuple(found), pd.DataFrame(rates), ordered, found[0].uncertainty.samples, tuple(notes.texts))

@@ -10,14 +10,15 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.composition import check_traction
-from wearlaw.conditions import UNITS
-from wearlaw.errors import ConditionsError, InputError, UnitError
-from wearlaw.grid import SI_UNITS
+from wearlaw.conditions import TWIN_DISC, broadcast
+from wearlaw.errors import InputError, UnitError
+from wearlaw.grid import with_units
 from wearlaw.integrate import integrate_contact
 from wearlaw.ranges import RangeWatch, line_mean
 from wearlaw.uncertainty.distributions import Distribution, PublishedRange
+from wearlaw.uncertainty.figure import CONFIDENCE, figure_data
 from wearlaw.uncertainty.inputs import Uncertain, parameter, split
-from wearlaw.units import WEAR_RATE, Q, Quantity, coefficient, from_si
+from wearlaw.units import WEAR_RATE, Q, Quantity, from_si
 from wearlaw.varying import integrate_varying
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ class Uncertainty:
         """The wear rate that half of the samples exceed [kg/m/m²]."""
         return self._quantile(0.5)
 
-    def interval(self, confidence: float = 0.95) -> tuple[Quantity, Quantity]:
+    def interval(self, confidence: float = CONFIDENCE) -> tuple[Quantity, Quantity]:
         """Return the ends of the interval that leaves out as many samples below as above [kg/m/m²].
 
         Parameters
@@ -141,8 +142,6 @@ class Uncertainty:
 
     def figure_data(self) -> FigureData:
         """Return what `plot` draws."""
-        from wearlaw.uncertainty.figure import figure_data
-
         return figure_data(self)
 
     def plot(self) -> Figure:
@@ -163,31 +162,20 @@ class Uncertainty:
     @cached_property
     def known(self) -> dict[str, Array]:
         """The conditions that are not distributed, in SI."""
-        return {
-            name: UNITS[name].si(value, name) if name in UNITS else coefficient(value, name)
-            for name, value in self._known.items()
-        }
+        return {name: TWIN_DISC.si(name, value) for name, value in self._known.items()}
 
     @property
     def shape(self) -> tuple[int, ...]:
         """The shape of the conditions that are not distributed."""
-        try:
-            return np.broadcast_shapes(*(array.shape for array in self.known.values()))
-        except ValueError:
-            shapes = ", ".join(f"{name} {array.shape}" for name, array in self.known.items())
-            raise ConditionsError(f"the shapes of the conditions do not broadcast: {shapes}") from None
+        return np.broadcast_shapes(*(array.shape for array in broadcast(self.known).values()))
 
     def _problem(self, sampled: dict[str, Array]) -> LineProblem:
         """Return the contact problem at all operating points and samples, the latter along the last axis."""
         known = {name: array[..., None] for name, array in self.known.items()}
-        given: dict[str, Any] = {
-            name: Q(si, SI_UNITS[name]) if name in SI_UNITS else si for name, si in (known | sampled).items()
-        }
+        given: Any = with_units(known | sampled)
         try:
             return self._predict.contact.rig.problem(**given)
         except UnitError as error:
-            if not sampled:
-                raise
             raise InputError(
                 f"{error}\nThe values are samples of its distribution; choose one without such values, such as"
                 " wl.lognormal or wl.uniform"
@@ -203,8 +191,8 @@ class Uncertainty:
         of_law: dict[str, Array] = {}
         for one, row in zip(self.inputs, inside, strict=True):
             (of_law if one.of_law else conditions).update(one.values(row))
-        problem = self._problem(conditions)
         shape = (*self.shape, probability.shape[-1])
+        problem = self._problem(conditions)
         flat = problem.broadcast_to(shape).flatten()
         varied = {name: np.broadcast_to(values, shape).reshape(-1) for name, values in of_law.items()}
         contact = self._predict.contact
@@ -222,6 +210,7 @@ class Uncertainty:
         lines = [f"Uncertainty of the wear rate, {self.samples} samples"]
         if not self.shape:
             low, high = self.interval()
-            lines += [f"{'median':20} {self.median!r}", f"{'95 % of the samples':20} {low!r} to {high!r}"]
+            share = f"{100 * CONFIDENCE:g} % of the samples"
+            lines += [f"{'median':20} {self.median!r}", f"{share:20} {low!r} to {high!r}"]
         lines += [f"{one.name:20} {one.shown}" for one in self.inputs]
         return "\n  ".join(lines)

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from wearlaw.conditions import CONDITIONS
+from wearlaw.conditions import TWIN_DISC
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.grid import Value
@@ -52,7 +52,7 @@ def _uncertain(value: Any) -> Any:
     raise InputError(f"must be a value, or a table such as {{uniform = [0.3, 0.5]}}; got {value!r}")
 
 
-Uncertain = Annotated[float | str | Spread, BeforeValidator(_uncertain)]
+Condition = Annotated[float | str | Spread, BeforeValidator(_uncertain)]
 """A value, or its distribution."""
 
 Parameter = Annotated[Literal["published_range"] | Spread, BeforeValidator(_uncertain)]
@@ -65,17 +65,17 @@ class UncertainPoint(Configuration):
     Exactly one of `normal_force`, `normal_force_per_width` and `max_pressure` gives the load.
     """
 
-    normal_force: Uncertain | None = None
+    normal_force: Condition | None = None
     """N, with its unit."""
-    normal_force_per_width: Uncertain | None = None
+    normal_force_per_width: Condition | None = None
     """P, with its unit."""
-    max_pressure: Uncertain | None = None
+    max_pressure: Condition | None = None
     """p0, with its unit."""
-    creepage: Uncertain
+    creepage: Condition
     """ξ, in percent or as a ratio."""
-    friction_coefficient: Uncertain
+    friction_coefficient: Condition
     """μ, a plain number."""
-    traction_coefficient: Uncertain | None = None
+    traction_coefficient: Condition | None = None
     """Measured T/N, a plain number; for contact models that can use it."""
     laws: dict[str, dict[str, Parameter]] = Field(default_factory=dict)
     """For each wear law, by its name in the results, its parameters that are distributed."""
@@ -90,7 +90,7 @@ class UncertainPoint(Configuration):
 
     def conditions(self) -> dict[str, Any]:
         """Return the conditions as `Pipeline.uncertainty` takes them."""
-        given = {name: getattr(self, name) for name in CONDITIONS}
+        given = {name: getattr(self, name) for name in TWIN_DISC.names}
         return {name: _distribution(value) for name, value in given.items() if value is not None}
 
     def varies(self, law: str) -> bool:

@@ -13,12 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from wearlaw.errors import DataError, UnitError, did_you_mean
+from wearlaw.units import HEAD
 from wearlaw.wear_tests.columns import COLUMNS, factor, faulty_columns, head
 
 TEXTS = ("label", "comment")
 """The columns of text."""
-
-_HEAD = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?")
 
 
 class Row(NamedTuple):
@@ -143,7 +142,7 @@ def _bare(text: str) -> str:
 
 def _meaning(line: int, text: str, place: int, wrong: Problems) -> tuple[str, float]:
     """Return the name of a column, "" if it is none, and the factor from its unit to SI, NaN if that is wrong."""
-    match = _HEAD.fullmatch(text)
+    match = HEAD.fullmatch(text)
     name, unit = (match["name"], match["unit"]) if match else (text, None)
     if not text:
         wrong.add(line, "", f"the head of column {place + 1} is empty")

@@ -1,0 +1,86 @@
+"""What the checks of contacts on a line and of those on an ellipse have in common."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+from collections.abc import Callable, Mapping
+from typing import TypeAlias
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.ellipse import EllipticProblem
+from wearlaw.line import LineProblem
+from wearlaw.records import Contact
+from wearlaw.tangential import Claim, ContactModel
+from wearlaw.testing.examples import SAME, SUM
+
+Claims: TypeAlias = Mapping[Claim, tuple[Callable[..., None], ...]]
+"""The checks of each claim that a contact model may be exempt from."""
+
+ContactProblem: TypeAlias = LineProblem | EllipticProblem
+
+Solved: TypeAlias = Callable[[Array], Contact]
+"""From the creepages of some problems, in SI or reduced, to the contacts."""
+
+
+def friction_limit(problem: ContactProblem) -> Array:
+    """Return μN."""
+    return problem.friction_coefficient * problem.normal_force
+
+
+def assert_finite(contact: Contact) -> None:
+    """Assert that every field and total is a finite number; the traction bound may be infinite."""
+    for field in dataclasses.fields(contact):
+        value = getattr(contact, field.name)
+        bad = np.isnan(value).any() or (field.name != "traction_bound" and np.isinf(value).any())
+        assert not bad, f"{field.name} is not finite: {value!r}"
+
+
+def assert_double(contact: Contact) -> None:
+    """Assert that every field and total is a float64."""
+    for field in dataclasses.fields(contact):
+        kind = getattr(contact, field.name).dtype
+        assert kind == np.float64, f"{field.name} is of type {kind}, not float64"
+
+
+def assert_unchanged(problem: ContactProblem, before: ContactProblem) -> None:
+    """Assert that the arrays of a problem are those of the copy from before."""
+    for field in dataclasses.fields(problem):
+        same = np.array_equal(getattr(problem, field.name), getattr(before, field.name))
+        assert same, f"the model changed the problem's {field.name}"
+
+
+def assert_solved_alike(model: ContactModel, problem: ContactProblem, other: ContactProblem) -> None:
+    """Assert that a problem has the same contact to the bit before and after another one is solved."""
+    first = model.solve(problem)
+    kept = copy.deepcopy(first)
+    model.solve(other)
+    second = model.solve(problem)
+    for field in dataclasses.fields(kept):
+        for contact in (first, second):
+            same = np.array_equal(getattr(contact, field.name), getattr(kept, field.name))
+            assert same, f"two solutions of one problem differ in {field.name}"
+
+
+def full_slip(solved: Solved, high: Array) -> Array:
+    """Return the least creepages at which the force is what it is at `high` and nothing sticks, to rounding."""
+    low = np.zeros_like(high)
+    limit = solved(high).tangential_force * (1.0 - SAME)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        contact = solved(middle)
+        reached = (contact.tangential_force >= limit) & (contact.stick_ratio <= SUM)
+        low, high = np.where(reached, low, middle), np.where(reached, middle, high)
+    return high
+
+
+def steps_into_full_slip(solved: Solved, full: Array, gap: float) -> dict[str, Array]:
+    """Return by which share the force, and the mean slip over creepage, differ a `gap` below and above full slip."""
+    below, above = (solved(full * (1.0 + side * gap)) for side in (-1.0, 1.0))
+    slip = below.mean_slip / above.mean_slip * (1.0 + gap) / (1.0 - gap)
+    return {
+        "force": np.abs(1.0 - below.tangential_force / above.tangential_force),
+        "mean slip": np.abs(1.0 - slip),
+    }
