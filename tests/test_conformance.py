@@ -68,6 +68,15 @@ CASES = [
 ]
 
 
+@pytest.mark.validates(
+    "invariants",
+    (
+        "Every contact model and wear law, in all its options, passes the conformance kit: signs, units, "
+        "limits, energy, jumps, slopes, full slip, batches"
+    ),
+    source="what must hold of any model (see the page on the kit)",
+    held_to="the bounds that each check states",
+)
 @pytest.mark.parametrize("check", CASES)
 def test_the_model_conforms(check: Check) -> None:
     check()

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import resource
-import subprocess
 import sys
 import warnings
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+import wearlaw as wl
+from tests.benchmarks.memory import in_fresh_process, peak_mib
 from tests.benchmarks.points import DEFAULT_FORCE, DEFAULT_FRICTION, Predict, pipeline, workload
-from tests.benchmarks.timing import Times, accelerator, cpu_time, in_mode, side_by_side
+from tests.benchmarks.timing import Times, cpu_time, in_mode, side_by_side
 from wearlaw import Q, RangeWarning
 from wearlaw.conditions import TWIN_DISC, condition_arrays
 
@@ -33,7 +33,7 @@ def scalar_seconds(on: bool, rounds: int = 101, calls: int = 100) -> tuple[float
 
     A time in seconds, unlike a ratio, holds for an undisturbed machine only, which the fastest round comes closest to.
     """
-    accelerator(on)
+    wl.accelerate(on)
     predict = pipeline()
     load, creepage = Q(DEFAULT_FORCE, "N"), Q(1.0, "%")
 
@@ -57,7 +57,7 @@ def rim(on: bool, rounds: int) -> Times:
 
 def peak_memory(on: bool) -> tuple[float, float]:
     """Return the peak memory [MiB] of a fresh process after a small sweep and after that of `MEMORY_POINTS`."""
-    before, after = _in_fresh_process("peaks", on)
+    before, after = in_fresh_process("tests.benchmarks.limits", "peaks", str(int(on)))
     return before, after
 
 
@@ -67,22 +67,13 @@ def page_faults(on: bool) -> tuple[float, float]:
     The results of all sweeps are kept, so that each needs new memory for its own, and only for them unless temporaries
     go back to the system.
     """
-    (faults,) = _in_fresh_process("faults", on)
+    (faults,) = in_fresh_process("tests.benchmarks.limits", "faults", str(int(on)))
     return faults, RESULTS * SWEEP * np.dtype(np.float64).itemsize / PAGE
-
-
-def _in_fresh_process(what: str, on: bool) -> list[float]:
-    # The peak that a process reports includes that of the one which started it, so a small one does that.
-    launcher = "import subprocess, sys; sys.exit(subprocess.run(sys.argv[1:]).returncode)"
-    command = [sys.executable, "-c", launcher, sys.executable, "-m", "tests.benchmarks.limits", what, str(int(on))]
-    project = Path(__file__).parents[2]
-    printed = subprocess.run(command, cwd=project, stdout=subprocess.PIPE, text=True, check=True).stdout
-    return [float(number) for number in printed.split()]
 
 
 def linearity(on: bool) -> tuple[dict[int, float], float]:
     """Return the CPU seconds of sweeps by number of points, and the exponent fitted to them."""
-    accelerator(on)
+    wl.accelerate(on)
     predict, seconds = pipeline(), {}
     predict(**workload(DECADES[0]).conditions())
     for count in DECADES:
@@ -96,17 +87,12 @@ def _sweep(predict: Predict, conditions: dict[str, Any]) -> object:
     return predict(**conditions).wear_rate
 
 
-def _peak_mib() -> float:
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return peak / (2**20 if sys.platform == "darwin" else 2**10)
-
-
 def _print_peaks() -> None:
     predict = pipeline()
     _sweep(predict, workload(DECADES[0]).conditions())
-    before = _peak_mib()
+    before = peak_mib()
     _sweep(predict, workload(MEMORY_POINTS).conditions())
-    print(before, _peak_mib())
+    print(before, peak_mib())
 
 
 def _print_faults() -> None:
@@ -121,5 +107,5 @@ def _print_faults() -> None:
 
 if __name__ == "__main__":
     warnings.simplefilter("ignore", RangeWarning)
-    accelerator(sys.argv[2] == "1")
+    wl.accelerate(sys.argv[2] == "1")
     {"peaks": _print_peaks, "faults": _print_faults}[sys.argv[1]]()

@@ -58,16 +58,11 @@ def modes() -> dict[str, bool]:
     return {"NumPy": False, "numba": True} if importlib.util.find_spec("numba") else {"NumPy": False}
 
 
-def accelerator(on: bool) -> None:
-    """Turn wearlaw's compiled kernels on or off in this process."""
-    wl.accelerate(on)
-
-
 def in_mode(on: bool, work: Callable[[], object]) -> Callable[[], object]:
     """Return some work to be done with the accelerator on or off."""
 
     def turned() -> object:
-        accelerator(on)
+        wl.accelerate(on)
         return work()
 
     return turned

@@ -7,17 +7,16 @@ there; FASTSIM on few nodes, as wearlaw chooses them, beside the march in NumPy.
 from __future__ import annotations
 
 import argparse
-import subprocess
 import sys
 import warnings
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 
 import wearlaw as wl
 from tests.benchmarks import report
+from tests.benchmarks.memory import in_fresh_process
 from tests.benchmarks.report import Gate
 from tests.benchmarks.rivals import CHECK, FAST, PLAIN_LIBRARY, compilers
 from tests.benchmarks.timing import Times, in_mode, modes, side_by_side
@@ -150,12 +149,7 @@ def _errors(found: Outcome, exact: Outcome, problem: wl.EllipticProblem) -> tupl
 
 def memory(name: str, on: bool) -> Gate:
     """Return the gate on the peak memory of many operating points in a process of their own."""
-    # The peak that a process reports includes that of the one which started it, so a small one does that.
-    launcher = "import subprocess, sys; sys.exit(subprocess.run(sys.argv[1:]).returncode)"
-    command = [sys.executable, "-c", launcher, sys.executable, "-m", "tests.benchmarks.wheel_rail_memory", str(int(on))]
-    project = Path(__file__).parents[2]
-    printed = subprocess.run(command, cwd=project, stdout=subprocess.PIPE, text=True, check=True).stdout
-    before, peak, seconds, points = map(float, printed.split())
+    before, peak, seconds, points = in_fresh_process("tests.benchmarks.wheel_rail_memory", str(int(on)))
     print(f"{name}: {points:.0e} points, {seconds:.0f} s of CPU; peak memory {before:.0f} MiB before, {peak:.0f} after")
     return Gate(f"peak memory of {points:.0e} points, {name} [MiB]", peak, 1024.0)
 

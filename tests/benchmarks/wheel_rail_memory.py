@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import resource
 import sys
 import time
 import warnings
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 
 import wearlaw as wl
-from tests.benchmarks.timing import accelerator
+from tests.benchmarks.memory import peak_mib
 from wearlaw import Q
 
 FEW, POINTS = 10**3, 10**6
@@ -29,16 +28,10 @@ def conditions(count: int) -> dict[str, Any]:
     }
 
 
-def peak_mib() -> float:
-    """Return the peak memory of this process so far."""
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return peak / (2**20 if sys.platform == "darwin" else 2**10)
-
-
 def main() -> None:
     """Print the peak after few and after many points, the CPU seconds of the many, and their number."""
     warnings.simplefilter("ignore", wl.WearlawWarning)
-    accelerator(sys.argv[1] == "1")
+    wl.accelerate(sys.argv[1] == "1")
     rig = wl.WheelRail(
         wheel_radius=Q(460, "mm"),
         rail_head_radius=Q(300, "mm"),

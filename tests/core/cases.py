@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import inspect
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,9 @@ Table = dict[str, Any]
 
 POINT = {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46}
 SWEEP = {**POINT, "creepage": {"from": "0.1 %", "to": "10 %", "points": 5, "spacing": "log"}}
+TESTS_HEAD = "label,creepage [%],normal_force [kN],wear_rate [ug/m/mm^2]"
+TESTS_CSV = f"{TESTS_HEAD}\na,1,7.4,30\nb,2,7.4,40\n"
+"""Two tests as a file holds them."""
 
 
 def table(**changes: Any) -> Table:
@@ -95,10 +99,10 @@ class Coarse(wl.ContactModel):
         return wl.Contact.from_line(problem, fields, x=x, length=np.diff(edges), force_per_width=force)
 
 
-Install = Callable[[type[wl.ContactModel] | type[wl.WearLaw]], None]
+InstallModel = Callable[[type[wl.ContactModel] | type[wl.WearLaw]], None]
 
 
-def installer(monkeypatch: pytest.MonkeyPatch) -> Install:
+def installer(monkeypatch: pytest.MonkeyPatch) -> InstallModel:
     """Return what puts a model among the installed ones until the test ends, as one of the plugin "testing"."""
     found = plugins.installed()
     origin = Origin("testing", "wearlaw-testing", "9.8.7")
@@ -131,3 +135,16 @@ def spaced_folder(parent: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     here.mkdir()
     monkeypatch.chdir(here)
     return here
+
+
+def files(folder: Path) -> set[str]:
+    """Return the files below a folder."""
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+def following_line() -> int:
+    """Return the number of the line two below the call: the one inside the `with` that follows it."""
+    frame = inspect.currentframe()
+    assert frame is not None
+    assert frame.f_back is not None
+    return frame.f_back.f_lineno + 2

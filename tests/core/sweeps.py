@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,6 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import Linear
 from wearlaw import Array, Q
-from wearlaw.sweeping import points
 
 CONDITIONS: dict[str, Any] = {
     "creepage": Q(np.geomspace(0.1, 10.0, 20), "%"),
@@ -23,15 +21,6 @@ CONDITIONS: dict[str, Any] = {
 """240 operating points."""
 
 OUTPUTS = ["wear_rate", "tangential_force"]
-
-
-@pytest.fixture
-def small_blocks(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Blocks of 24 points: 10 of them; without numba, which would be loaded in each worker."""
-    monkeypatch.setattr(points, "BLOCK", 30)
-    wl.accelerate(False)
-    yield
-    wl.accelerate(None)
 
 
 def predictor(law: wl.WearLaw | None = None) -> wl.Pipeline[wl.TwinDisc]:

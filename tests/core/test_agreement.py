@@ -9,9 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.strategies import EPS
 from wearlaw.comparison.agreement import agreement
-
-EPS = float(np.finfo(np.float64).eps)
 
 RATES = st.lists(st.tuples(*[st.floats(1e-6, 1e6)] * 2), min_size=2, max_size=20).map(lambda r: np.array(r).T)
 

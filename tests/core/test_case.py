@@ -12,12 +12,10 @@ import pytest
 import tomli_w
 
 import wearlaw as wl
-import wearlaw_sheffield
 from tests.core import cases
-from tests.core.cases import Install, case, changed, table
+from tests.core.cases import InstallModel, case, changed, table
 from wearlaw import plugins
 from wearlaw.case import Case, case_schema, case_text, labels, load_case, written
-from wearlaw.wear_tests.reader import text_of_tests
 
 
 def load(tmp_path: Path, content: cases.Table) -> Case:
@@ -35,62 +33,7 @@ def validator() -> Any:
     return jsonschema.Draft202012Validator(schema)
 
 
-@pytest.fixture
-def install(monkeypatch: pytest.MonkeyPatch) -> Install:
-    return cases.installer(monkeypatch)
-
-
-# What is shipped
-
-
-def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:
-    assert list(plugins.installed().cases.items()) == ["tassini2010"]
-    package = Path(wearlaw_sheffield.__file__).parent
-    assert case_text("tassini2010") == (package / "tassini2010.toml").read_text(encoding="utf-8")
-
-
-def test_the_shipped_case_sweeps_what_section_5_2_of_the_paper_sweeps() -> None:
-    shipped = load_case("tassini2010")
-    creepage, load = shipped.sweeps["creepage"].conditions(), shipped.sweeps["load"].conditions()
-    # Tassini et al., Wear 268 (2010) 660-667, section 5.2: 0.001 to 25 % at 741.43 kN/m; 74.14 to 14829 kN/m at 1 %.
-    np.testing.assert_allclose(creepage["creepage"][[0, -1]], [1e-5, 0.25], rtol=1e-14)
-    assert creepage["normal_force_per_width"] == pytest.approx(741.43e3, rel=1e-14)
-    np.testing.assert_allclose(load["normal_force_per_width"][[0, -1]], [74.14e3, 14829e3], rtol=1e-14)
-    assert load["creepage"] == pytest.approx(0.01, rel=1e-14)
-    assert creepage["friction_coefficient"] == load["friction_coefficient"] == 0.46
-    assert shipped.rig == wl.TwinDisc.suros()
-    assert labels(shipped.contact_models) == ["global", "exact", "fastsim"]
-    assert labels(shipped.wear_laws) == ["usfd", "kth", "brr"]
-    assert shipped.wear_laws[0] == wl.wear_law("usfd", fitted_for="global")
-
-
-def test_the_shipped_tests_give_the_published_traction() -> None:
-    # Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, Table 3: slip [%] and heat [W], 1500 MPa, 400 rpm.
-    slip = np.array([0.2, 0.5, 1.0, 3.0, 7.5, 10.0, 15.0, 20.0])
-    heat = np.array([1.3, 9.2, 25.7, 102.6, 246.0, 327.8, 492.1, 728.4])
-    speed = np.pi * 0.047 * 400.0 / 60.0
-    measured = load_case("tassini2010").measured
-    assert measured is not None
-    assert measured.data == wl.read_tests("lewis2004")
-    traction = measured.data.traction_coefficient
-    # Reading and the conversion of units round a few times: a few units in the last place.
-    np.testing.assert_allclose(measured.data.creepage.to("").magnitude, slip / 100.0, rtol=1e-14)
-    np.testing.assert_allclose(traction.magnitude, heat / (slip / 100.0 * speed) / 7414.3, rtol=1e-14)
-    # Half a digit of the printed ones.
-    printed = [0.089, 0.252, 0.352, 0.469, 0.449, 0.449, 0.450, 0.499]
-    np.testing.assert_allclose(traction.magnitude, printed, rtol=0, atol=5e-4)
-    assert traction[measured.data.creepage >= wl.Q(3, "%")].mean().magnitude == pytest.approx(0.463, abs=5e-4)
-    assert "secondary transcription" in measured.data.source
-
-
-def test_the_shipped_tests_are_at_the_pressure_and_speed_of_the_rig() -> None:
-    tests, rig = wl.read_tests("lewis2004"), wl.TwinDisc.suros()
-    problem = rig.problem(**tests.conditions(wl.contact_model("exact"), 0.46))
-    # Half a unit of the last printed digit, of a force that goes with the square of the pressure.
-    np.testing.assert_allclose(problem.max_pressure, 1.5e9, rtol=0.5 * 0.05 / 7414.3)
-    (speed,) = {float(line.split(",")[3]) for line in text_of_tests("lewis2004").splitlines()[4:]}
-    assert speed == pytest.approx(wl.scalar_si(rig.rolling_speed, "m/s"), rel=4e-16)  # the order of products rounds
-
+# Measured tests
 
 OWN_TESTS = """\
 creepage [%],normal_force [kN],traction_coefficient,wear_rate [ug/m/mm^2]
@@ -414,8 +357,8 @@ class Law(cases.Linear):
 OwnCoefficients.__name__ = OwnCoefficients.__qualname__ = "Coefficients"  # as KTH's
 
 
-def test_the_schema_knows_the_options_of_every_installed_model(install: Install) -> None:
-    install(Law)
+def test_the_schema_knows_the_options_of_every_installed_model(install_model: InstallModel) -> None:
+    install_model(Law)
     validator = jsonschema.Draft202012Validator(case_schema())
 
     def valid(**law: Any) -> bool:

@@ -7,9 +7,7 @@ import os
 import subprocess
 import sys
 import warnings
-from collections.abc import Iterator
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,8 +17,8 @@ import xarray
 
 import wearlaw as wl
 from tests.core import cases
-from tests.core.cases import assert_refused, changed, table, wearlaw, write
-from wearlaw import plugins
+from tests.core.cases import assert_refused, changed, files, table, wearlaw, write
+from tests.core.distributions import Install
 from wearlaw.case import case_schema, case_text
 
 
@@ -29,19 +27,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return cases.spaced_folder(tmp_path, monkeypatch)
 
 
-@pytest.fixture
-def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave out what takes most of the time of a small run."""
-    monkeypatch.setattr("wearlaw.output.write_figures", lambda *_: [])
-
-
-def files(folder: Path) -> set[str]:
-    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
-
-
 # run
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_a_study_is_run_and_its_files_are_listed_as_they_are(folder: Path) -> None:
     write(folder / "my case.toml", table())
     result = wearlaw("run", "my case.toml", "-o", "out folder")
@@ -57,7 +46,7 @@ def test_a_study_is_run_and_its_files_are_listed_as_they_are(folder: Path) -> No
     assert notes[1].startswith("note: brr on exact is left out: ")
 
 
-@pytest.mark.usefixtures("no_figures")
+@pytest.mark.usefixtures("blank_figures")
 def test_results_go_into_a_folder_named_after_the_case(folder: Path) -> None:
     (folder / "cases").mkdir()
     write(folder / "cases" / "mine.toml", table(wear_laws=["usfd"], contact_models=["global"], profiles={}))
@@ -71,7 +60,7 @@ def rows_of(printed: str) -> dict[str, list[str]]:
     return {row[0].strip(): row[1:] for row in rows if len(row) == 6}
 
 
-@pytest.mark.usefixtures("no_figures")
+@pytest.mark.usefixtures("blank_figures")
 def test_the_short_table_shows_the_rates_and_the_band(folder: Path) -> None:
     write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["usfd", "kth"], profiles={}))
     printed = wearlaw("run", "c.toml").stdout
@@ -89,7 +78,7 @@ def test_the_short_table_shows_the_rates_and_the_band(folder: Path) -> None:
     assert len(rows) == 4
 
 
-@pytest.mark.usefixtures("no_figures")
+@pytest.mark.usefixtures("blank_figures")
 def test_the_short_table_keeps_its_numbers_whole_beside_long_names(folder: Path) -> None:
     models: list[Any] = [
         {"model": "fastsim", "bound": bound, "flexibility": "kalker"} for bound in ("parabolic", "elliptic")
@@ -103,7 +92,7 @@ def test_the_short_table_keeps_its_numbers_whole_beside_long_names(folder: Path)
     assert "…" not in printed
 
 
-@pytest.mark.usefixtures("no_figures")
+@pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize("creepage", ["0.5 %", "0 %", ["1 %", "2 %"]])
 def test_short_sweeps_have_a_short_table(folder: Path, creepage: Any) -> None:
     write(folder / "c.toml", table(sweeps={"short": {**cases.POINT, "creepage": creepage}}, wear_laws=["usfd"]))
@@ -114,7 +103,7 @@ def test_short_sweeps_have_a_short_table(folder: Path, creepage: Any) -> None:
     assert row.split()[3:] == [f"{rate:.4g}" for rate in rates]
 
 
-@pytest.mark.usefixtures("no_figures")
+@pytest.mark.usefixtures("blank_figures")
 def test_progress_is_shown_on_a_terminal_and_not_elsewhere(folder: Path) -> None:
     write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["kth"], profiles={}))
     assert wearlaw("run", "c.toml").stderr == ""
@@ -124,13 +113,14 @@ def test_progress_is_shown_on_a_terminal_and_not_elsewhere(folder: Path) -> None
     assert "writing the report" in on_terminal.stderr
 
 
-@pytest.mark.usefixtures("no_figures")
+@pytest.mark.usefixtures("blank_figures")
 def test_units_that_look_like_markup_are_printed(folder: Path) -> None:
     load = {"normal_force_per_width": ["700 kN/m", "800 kN/m"], "creepage": "1 %", "friction_coefficient": 0.4}
     write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["kth"], profiles={}, sweeps={"load": load}))
     assert "by normal force per width [kN/m]" in " ".join(wearlaw("run", "c.toml").stdout.split())
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_figures_and_tables_are_written_in_the_formats_that_are_asked_for(folder: Path) -> None:
     write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["usfd"], profiles={}))
     result = wearlaw("run", "c.toml", "--figure-format", "svg", "--figure-format", "pdf", "--latex")
@@ -152,8 +142,9 @@ def test_an_unknown_figure_format_is_refused_with_the_known_ones(folder: Path) -
     assert_refused(refused, "'gif' is not one of 'png', 'pdf', 'svg'", exit_code=2)
 
 
-def test_the_shipped_study_and_an_edited_copy_of_it_give_equal_results(folder: Path) -> None:
-    """The copy is made and run as from a shell, with every warning an error."""
+@pytest.mark.usefixtures("blank_figures")
+def test_the_shipped_study_and_a_copy_of_its_file_give_equal_results(folder: Path) -> None:
+    """The copy is made and run as from a shell, with figures and with every warning an error."""
     program = Path(sys.executable).parent / "wearlaw"
     script = f"'{program}' case tassini2010 > 'my case.toml' && '{program}' run 'my case.toml' -o copy"
     environment = {**os.environ, "PYTHONWARNINGS": "error"}
@@ -237,7 +228,7 @@ def test_a_wrong_argument_is_one_clear_error_and_nothing_is_written(
     assert files(folder) == before
 
 
-@pytest.mark.usefixtures("no_figures")
+@pytest.mark.usefixtures("blank_figures")
 def test_earlier_results_are_only_replaced_when_asked(folder: Path) -> None:
     write(folder / "c.toml", table(profiles={}))
     assert wearlaw("run", "c.toml").exit_code == 0
@@ -307,23 +298,6 @@ def test_help_says_how_to_begin_and_every_command_has_its_own(flag: str) -> None
 # plugins
 
 
-@pytest.fixture
-def look_again() -> Iterator[None]:
-    """Search for plugins anew in the test, and again after it."""
-    plugins.installed.cache_clear()
-    yield
-    plugins.installed.cache_clear()
-
-
-def distribution(folder: Path, name: str, module: str) -> None:
-    """Put a distribution of one plugin into a folder."""
-    info = folder / f"{name}-1.2.3.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.2.3\n")
-    (info / "entry_points.txt").write_text(f"[wearlaw]\n{name} = {name}_module\n")
-    (folder / f"{name}_module.py").write_text(module)
-
-
 def test_all_models_are_listed_with_their_distribution_and_version() -> None:
     result = wearlaw("plugins")
     assert result.exit_code == 0
@@ -344,11 +318,9 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
     assert result.stderr == ""
 
 
-@pytest.mark.usefixtures("look_again")
-def test_what_failed_to_load_is_named_once_with_its_cause(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    distribution(folder, "crumbling", "raise RuntimeError('no licence found')\n")
-    distribution(folder, "misspelt", "import wearlaw as wl\n\n@wl.hookimpl\ndef wearlaw_wear_law(): return []\n")
-    monkeypatch.syspath_prepend(folder)
+def test_what_failed_to_load_is_named_once_with_its_cause(install: Install) -> None:
+    install("crumbling", "raise RuntimeError('no licence found')\n", "1.2.3")
+    install("misspelt", "import wearlaw as wl\n\n@wl.hookimpl\ndef wearlaw_wear_law(): return []\n", "1.2.3")
     result = wearlaw("plugins")
     assert result.exit_code == 0
     assert "usfd" in result.stdout
@@ -358,122 +330,10 @@ def test_what_failed_to_load_is_named_once_with_its_cause(folder: Path, monkeypa
     assert "wearlaw_wear_law" in misspelt
 
 
-@pytest.mark.usefixtures("look_again")
-def test_a_plugin_that_was_left_out_is_named_where_its_model_is_missed(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    distribution(folder, "crumbling", "raise RuntimeError('no licence found')\n")
-    monkeypatch.syspath_prepend(folder)
+def test_a_plugin_that_was_left_out_is_named_where_its_model_is_missed(install: Install, folder: Path) -> None:
+    install("crumbling", "raise RuntimeError('no licence found')\n", "1.2.3")
     write(folder / "c.toml", table(wear_laws=["crumbling"]))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.PluginWarning)
         assert_refused(wearlaw("run", "c.toml"), "left out: crumbling 1.2.3 (plugin 'crumbling'): RuntimeError: no lic")
         assert_refused(wearlaw("show", "crumbling"), "left out: crumbling 1.2.3 (plugin 'crumbling')")
-
-
-# check
-
-
-class SaidCheck:
-    """A check that fails with a message, or passes where there is none."""
-
-    doc = "The rate is fine.\n\nAt every node."
-
-    def __init__(self, name: str, message: str | None = None) -> None:
-        self.name = name
-        self.message = message
-
-    def __call__(self) -> None:
-        if self.message is not None:
-            raise AssertionError(self.message)
-
-
-Checked = list[wl.ContactModel | wl.WearLaw]
-
-
-@pytest.fixture
-def said(monkeypatch: pytest.MonkeyPatch) -> tuple[list[SaidCheck], Checked]:
-    """Put given checks in the place of the kit's, and return them with the models that were checked."""
-    given: list[SaidCheck] = []
-    checked: Checked = []
-
-    def checks(model: wl.ContactModel | wl.WearLaw) -> Iterator[SaidCheck]:
-        checked.append(model)
-        yield from given
-
-    monkeypatch.setitem(sys.modules, "wearlaw.testing", SimpleNamespace(checks=checks))
-    return given, checked
-
-
-def test_each_check_has_a_line_and_they_are_counted(said: tuple[list[SaidCheck], Checked]) -> None:
-    said[0][:] = [SaidCheck("shape"), SaidCheck("finite"), SaidCheck("batch")]
-    result = wearlaw("check", "usfd")
-    assert result.exit_code == 0
-    assert result.stdout == "ok shape\nok finite\nok batch\n3 ok, 0 failed, 0 not claimed\n"
-    assert said[1] == [wl.wear_law("usfd")]
-
-
-def test_a_failed_check_says_the_first_line_of_why_and_the_others_go_on(
-    said: tuple[list[SaidCheck], Checked],
-) -> None:
-    said[0][:] = [SaidCheck("shape", "it has 3 axes\nnot 2"), SaidCheck("finite", ""), SaidCheck("batch")]
-    result = wearlaw("check", "usfd")
-    assert result.exit_code == 1
-    assert result.stdout == (
-        "FAILED shape: it has 3 axes\nFAILED finite: The rate is fine.\nok batch\n1 ok, 2 failed, 0 not claimed\n"
-    )
-    assert "Traceback" not in result.stderr
-
-
-def test_what_a_contact_model_does_not_claim_is_said(said: tuple[list[SaidCheck], Checked]) -> None:
-    said[0][:] = [SaidCheck("shape")]
-    result = wearlaw("check", "exact", "--option", "slip=as_printed")
-    assert result.stdout == (
-        "ok shape\nnot claimed energy_balance: the printed slip lacks a term in partial slip\n"
-        "1 ok, 0 failed, 1 not claimed\n"
-    )
-    assert result.exit_code == 0
-    assert said[1] == [wl.contact_model("exact", slip="as_printed")]
-
-
-def test_options_may_be_repeated_and_hold_an_equals_sign(said: tuple[list[SaidCheck], Checked]) -> None:
-    result = wearlaw("check", "usfd", "--option", "fitted_for=exact", "--option", "q_s=56 ug/m/mm^2")
-    assert result.exit_code == 0
-    assert said[1] == [wl.wear_law("usfd", fitted_for="exact", q_s="56 ug/m/mm^2")]
-    assert_refused(wearlaw("check", "usfd", "--option", "q_s=a=b"), "usfd: q_s: 'a=b' is not a number with a unit")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message", "exit_code"),
-    [
-        (["usdf"], "no model is called 'usdf'; did you mean 'usfd'?", 1),
-        (["usfd", "--option", "fited_for=exact"], "usfd: fited_for: unknown field; did you mean 'fitted_for'?", 1),
-        (["usfd", "--option", "exact"], "--option: write it as FIELD=VALUE, got 'exact'", 2),
-    ],
-)
-def test_a_model_that_cannot_be_checked_is_one_clear_error(
-    said: tuple[list[SaidCheck], Checked], arguments: list[str], message: str, exit_code: int
-) -> None:
-    assert_refused(wearlaw("check", *arguments), message, exit_code)
-    assert not said[1]
-
-
-def test_without_hypothesis_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [name for name in sys.modules if name.startswith("wearlaw.testing")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, "hypothesis", None)
-    assert_refused(wearlaw("check", "usfd"), 'pip install "wearlaw[test]"')
-
-
-def test_a_law_that_breaks_its_contract_fails_the_checks(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Negative(cases.Linear):
-        name = "negative"
-
-        def rate(self, contact: wl.Contact) -> wl.Array:
-            return -super().rate(contact)
-
-    cases.installer(monkeypatch)(Negative)
-    result = wearlaw("check", "negative", "--option", "slope=1 m")
-    assert result.exit_code == 1
-    assert "\nFAILED rate_is_never_negative: " in result.stdout
-    assert "\nok no_slip_no_wear\n" in result.stdout

@@ -13,8 +13,10 @@ from click.testing import Result
 
 import wearlaw as wl
 from tests.core import cases
-from tests.core.cases import assert_refused, wearlaw
+from tests.core.cases import assert_refused, files, wearlaw
 from wearlaw import Q
+
+pytestmark = pytest.mark.usefixtures("blank_figures")
 
 CREEPAGE = [0.2, 0.5, 1.0, 2.0, 5.0, 12.0, 16.0, 18.0, 20.0]
 SCATTER = [1.1, 0.9, 1.05, 0.97, 1.02, 0.93, 1.08, 0.99, 0.98]
@@ -46,10 +48,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     here = cases.spaced_folder(tmp_path, monkeypatch)
     write_tests(rows(rates() * SCATTER))
     return here
-
-
-def files(folder: Path) -> set[str]:
-    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
 
 
 def listed(result: Result, folder: str) -> set[str]:
@@ -287,6 +285,23 @@ def test_a_folder_with_other_results_is_never_touched(
     assert_refused(wearlaw(*command, "-o", "out", *flag), "output: 'out' does not hold results of wearlaw")
     assert files(folder) == {"tests.csv", str(Path("out") / other)}
     assert (folder / "out" / other).read_text() == "precious"
+
+
+@pytest.mark.parametrize("command", [FIT, COMPARE], ids=["fit", "compare"])
+def test_a_full_disk_is_one_clear_error_and_leaves_earlier_results_as_they_were(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, command: tuple[str, ...]
+) -> None:
+    assert wearlaw(*command, "-o", "out").exit_code == 0
+    before = {name: (folder / name).read_bytes() for name in files(folder)}
+
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("wearlaw.data_output.save_figure", full)  # after tables were written
+    result = wearlaw(*command, "-o", "out", "--overwrite")
+    assert_refused(result, "output: cannot write the results: No space left on device")
+    assert {name: (folder / name).read_bytes() for name in files(folder)} == before
+    assert {path.name for path in folder.iterdir()} == {"tests.csv", "out"}
 
 
 def test_a_fit_does_not_replace_a_comparison(folder: Path) -> None:

@@ -11,11 +11,9 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import POINT, assert_refused, changed, spaced_folder, table, wearlaw, write
-from tests.core.sweeps import contents, interrupted_after, small_blocks
+from tests.core.sweeps import contents, interrupted_after
 from wearlaw import output
 from wearlaw.sweeping import checkpoint, space
-
-__all__ = ["small_blocks"]
 
 LONG = {**POINT, "creepage": {"from": "0.1 %", "to": "10 %", "points": 100, "spacing": "log"}}
 """Four blocks."""
@@ -196,12 +194,35 @@ def test_a_law_of_which_nothing_is_uncertain_is_left_out_and_said_so(folder: Pat
     assert_refused(result, "nothing in the case is uncertain")
 
 
+def test_a_case_whose_only_uncertain_law_cannot_be_used_is_refused(folder: Path) -> None:
+    """BRR is stated for the whole patch, which the exact model resolves, so that no pair has it."""
+    fields = table(contact_models=["exact"], wear_laws=["usfd", "brr"], uncertainty={"scatter": SCATTER})
+    slope = {"normal": ["0.25 mm^3/km/N", "0.01 mm^3/km/N"]}
+    certain = {"friction_coefficient": 0.46, "creepage": "1 %", "laws": {"brr": {"mild_slope": slope}}}
+    for field, value in certain.items():
+        fields = changed(f"uncertainty.scatter.{field}", value, fields)
+    result = wearlaw("uncertainty", str(write(folder / "case.toml", fields)))
+    assert_refused(result, "nothing in the case is uncertain")
+
+
 def test_a_wear_rate_that_does_not_vary_has_no_indices(folder: Path) -> None:
     only_friction = {"creepage": "0.001 %", "friction_coefficient": {"uniform": [0.4, 0.5]}, "laws": {}}
     fields = table(contact_models=["global"], wear_laws=["kth"], uncertainty={"scatter": {**SCATTER, **only_friction}})
     result = wearlaw("uncertainty", str(write(folder / "case.toml", fields)), "--samples", "64", "-o", "out")
     assert "the wear rate is the same in all samples" in result.stderr
     assert not (folder / "out" / "sobol_indices.csv").exists()
+
+
+def test_a_full_disk_is_one_clear_error_and_leaves_nothing_of_the_uncertainty(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("wearlaw.uncertainty.written.save_figure", full)  # after tables were written
+    result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--samples", "64", "-o", "out")
+    assert_refused(result, "output: cannot write the results: No space left on device")
+    assert [path.name for path in folder.iterdir()] == ["case.toml"]
 
 
 def test_the_sizes_that_are_checked_are_those_of_the_files(folder: Path) -> None:

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.strategies import EPS
 from wearlaw import Q
 
-EPS = np.finfo(float).eps
 FOUR_NODES: Any = {
     "pressure": Q([100, 800, 900, 300], "MPa"),
     "traction": Q([30, 200, 350, 120], "MPa"),
@@ -19,6 +19,7 @@ FOUR_NODES: Any = {
     "area": Q([1, 1, 1, 0.5], "mm^2"),
     "rolling_speed": Q(1.2, "m/s"),
 }
+NODES = ("pressure", "traction", "slip", "area")
 
 
 def test_the_totals_are_the_sums_over_the_nodes() -> None:
@@ -74,6 +75,11 @@ def test_a_patch_with_two_axes_of_nodes_and_a_batch() -> None:
     assert wear.local_wear_rate.magnitude.shape == shape
 
 
+def test_one_node_is_a_contact() -> None:
+    contact = wl.Contact.from_arrays(**{**FOUR_NODES, **{name: FOUR_NODES[name][3:] for name in NODES}})
+    assert contact.normal_force == pytest.approx(150.0, rel=4 * EPS)  # [N]
+
+
 @pytest.mark.parametrize(
     ("changes", "error", "message"),
     [
@@ -85,6 +91,9 @@ def test_a_patch_with_two_axes_of_nodes_and_a_batch() -> None:
         ({"traction": Q([1, np.nan, 1, 1], "MPa")}, wl.UnitError, "traction: must be a number"),
         ({"pressure": Q([1, -2, 3, 4], "MPa")}, wl.InputError, "pressure: must not be negative"),
         ({"slip": Q(-0.1, "%")}, wl.InputError, "traction and slip: must have the same sign"),
+        ({"pressure": Q(-0.5, "Pa")}, wl.InputError, "pressure: must not be negative"),
+        ({"slip": Q([0, 0, 0, -1e-9], "%")}, wl.InputError, "traction and slip: must have the same sign"),
+        ({name: FOUR_NODES[name][:0] for name in NODES}, wl.InputError, r"at least one node .* area \(0,\)"),
         ({"area": Q([1, 2], "mm^2")}, wl.InputError, r"do not broadcast: pressure \(4,\), .* area \(2,\)"),
         ({"rolling_speed": Q([1, 1], "m/s")}, wl.InputError, "at least one node behind the 1 axes of rolling_speed"),
     ],

@@ -1,3 +1,5 @@
+"""Where a field crosses a value: by closed forms and by a search, against roots worked out by hand."""
+
 from __future__ import annotations
 
 import math

@@ -14,8 +14,8 @@ import pytest
 from pydantic import Field
 
 import wearlaw as wl
+from wearlaw.contact_pipeline import ContactPipeline
 from wearlaw.docstrings import field_docstrings
-from wearlaw.pipeline import ContactPipeline
 
 CLASS = '''
 class Toy(wl.Configuration):

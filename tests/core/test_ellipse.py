@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.strategies import EPS
 from wearlaw import Q
-
-EPS = float(np.finfo(np.float64).eps)
 
 GIVEN: dict[str, Any] = {
     "a": Q(6, "mm"),

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.strategies import EPS
 from wearlaw import Array, Q
-
-EPS = float(np.finfo(np.float64).eps)
 
 
 def problem(points: int = 2) -> wl.EllipticProblem:

@@ -11,6 +11,7 @@ import wearlaw as wl
 from tests.core.fits import (
     ALL,
     CREEPAGE,
+    EXACT,
     FRICTION,
     GLOBAL,
     PRESSURE,
@@ -120,6 +121,13 @@ def test_rates_of_zero_are_refused_where_scatter_is_by_a_factor() -> None:
         wl.WearTests.from_arrays(**conditions, wear_rate=tests.wear_rate),
         ["q_s"],
     )
+
+
+@pytest.mark.parametrize("given", [0.0, -1, True, "0.4", np.nan])
+def test_a_friction_coefficient_that_is_none_is_refused_by_name(given: Any) -> None:
+    tests = traction_tests([0.45, 0.46, 0.44], [3.0, 10.0, 20.0])
+    with pytest.raises(wl.InputError, match=r"^friction_coefficient: "):
+        wl.fit(EXACT, tests, free=["friction_coefficient"], friction_coefficient=given, bootstrap=0)
 
 
 def test_measurements_that_are_not_there_are_refused() -> None:

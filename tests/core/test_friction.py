@@ -14,9 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
+from tests.strategies import EPS
 from wearlaw import Array, Q
-
-EPS = float(np.finfo(np.float64).eps)
 
 # Polach, Wear 258 (2005) 992-1000, Table 2: typical parameters on dry rails.
 DRY: dict[str, Any] = {"static_coefficient": 0.55, "limit_ratio": 0.4, "decay": "0.6 s/m"}
@@ -33,17 +32,24 @@ ELLIPTIC = [name for name, model in wl.contact_models().items() if "ellipse" in 
 LINE = [name for name, model in wl.contact_models().items() if "line" in model.geometries()]
 
 
+@pytest.mark.validates(
+    "creep-forces",
+    "`FallingFriction`",
+    source="Polach 2005",
+    held_to="{roundings} ε, relative",
+    roundings=8,
+)
 @given(
     speed=st.floats(0.0, 100.0),
     static=st.floats(0.05, 1.0),
     ratio=st.floats(0.01, 1.0),
     decay=st.floats(1e-3, 10.0),
 )
-def test_the_coefficient_is_polachs(speed: float, static: float, ratio: float, decay: float) -> None:
+def test_the_coefficient_is_polachs(roundings: int, speed: float, static: float, ratio: float, decay: float) -> None:
     friction = wl.FallingFriction(static_coefficient=static, limit_ratio=ratio, decay=Q(decay, "s/m"))
     expected = static * ((1.0 - ratio) * math.exp(-decay * speed) + ratio)
     # exp takes over the rounding of its argument, as far as it is not small itself: x e^-x < 1
-    assert float(friction.coefficient(np.array(speed))) == pytest.approx(expected, rel=8 * EPS)
+    assert float(friction.coefficient(np.array(speed))) == pytest.approx(expected, rel=roundings * EPS)
 
 
 def test_it_starts_at_the_static_coefficient_and_halves_its_fall_in_ln_2_over_b() -> None:

@@ -157,6 +157,16 @@ def test_a_declaration_that_does_not_fit_is_refused(changes: dict[str, Any], mes
         decorate(**changes)
 
 
+def test_jumps_of_several_variables_are_declared_by_their_names() -> None:
+    law = decorate(
+        lambda p, s: p * s,
+        inputs={"pressure": "GPa", "slip": "%"},
+        breakpoints={"pressure": [1.0, 2.0], "slip": [0.5, 1.0]},
+        jumps={"pressure": [2.0], "slip": [0.5]},
+    )
+    assert law.jumps == {"pressure": pytest.approx((2e9,)), "slip": pytest.approx((5e-3,))}
+
+
 def test_a_function_that_returns_what_is_no_rate_is_refused_where_it_is_used() -> None:
     with pytest.raises(wl.ModelError, match="not finite"):
         (RIG | wl.contact_model("global") | decorate(lambda w: w * np.nan))(**POINT)

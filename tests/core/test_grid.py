@@ -9,7 +9,8 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw.grid import MOST_POINTS, SI_UNITS, UNITS, Grid
+from wearlaw.conditions import TWIN_DISC
+from wearlaw.grid import MOST_POINTS, SI_UNITS, Axis, Grid
 
 RIG = wl.TwinDisc.suros()
 
@@ -57,6 +58,11 @@ def test_a_log_axis_has_a_constant_ratio_and_a_linear_one_a_constant_distance() 
     np.testing.assert_allclose(np.diff(linear["friction_coefficient"]), 0.7 / 3.0, rtol=1e-14)
 
 
+def test_an_axis_made_in_python_is_that_of_its_table() -> None:
+    axis: Any = {"from": "1 %", "to": "2 %", "points": 3}
+    assert grid(creepage=Axis(**axis)) == grid(creepage=axis)
+
+
 def test_an_axis_is_linear_unless_it_says_log() -> None:
     ends = {"from": 0.1, "to": 0.4, "points": 4}
     assert grid(friction_coefficient=ends) == grid(friction_coefficient={**ends, "spacing": "linear"})
@@ -83,8 +89,8 @@ def test_every_load_is_read_with_its_unit(load: str, text: str, other_unit: str,
 
 
 def test_units_of_conditions_agree_with_their_si_units() -> None:
-    assert UNITS.keys() == SI_UNITS.keys()
-    for name, unit in UNITS.items():
+    assert TWIN_DISC.units.keys() == SI_UNITS.keys()
+    for name, unit in TWIN_DISC.units.items():
         assert unit.si(Q(0.5, SI_UNITS[name]), name) == 0.5
 
 

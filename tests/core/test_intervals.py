@@ -45,13 +45,20 @@ def straight(scatter: Any) -> tuple[Any, Solutions, Any]:
     return model, fitted(model, [0.0, 0.0]), target
 
 
-def test_the_covariance_of_a_line_is_that_of_linear_regression() -> None:
+@pytest.mark.validates(
+    "fitting",
+    "Standard errors and covariance of a line",
+    source="scipy's linregress; the normal equations",
+    held_to="{within:g}, relative",
+    within=1e-06,
+)
+def test_the_covariance_of_a_line_is_that_of_linear_regression(within: float) -> None:
     _, fit, target = straight(np.random.default_rng(0).standard_normal(X.size))
     textbook = stats.linregress(X, target)
-    np.testing.assert_allclose(standard_errors(fit)[0], [textbook.intercept_stderr, textbook.stderr], rtol=1e-6)
+    np.testing.assert_allclose(standard_errors(fit)[0], [textbook.intercept_stderr, textbook.stderr], rtol=within)
     columns = np.stack([np.ones_like(X), X], axis=-1)
     variance = fit.cost[0] / (X.size - 2)
-    np.testing.assert_allclose(covariance(fit)[0], variance * np.linalg.inv(columns.T @ columns), rtol=1e-6)
+    np.testing.assert_allclose(covariance(fit)[0], variance * np.linalg.inv(columns.T @ columns), rtol=within)
 
 
 def test_student_intervals_of_a_line_are_those_of_the_textbook() -> None:
@@ -68,7 +75,15 @@ def test_the_leverage_of_a_line_is_that_of_the_textbook() -> None:
     np.testing.assert_allclose(leverage(fit), exact, rtol=1e-6)
 
 
-def test_for_normal_scatter_the_bootstrap_agrees_with_student() -> None:
+@pytest.mark.validates(
+    "fitting",
+    "The studentised bootstrap with normal scatter",
+    source="Student's t",
+    held_to="{tails:g} + {draws:g} standard errors (its tails and its draws)",
+    tails=0.3,
+    draws=4.0 * 0.04,
+)
+def test_for_normal_scatter_the_bootstrap_agrees_with_student(tails: float, draws: float) -> None:
     # The residuals of the fit are the quantiles of a normal distribution, in an order that is orthogonal to the line.
     scatter = stats.norm.ppf((np.arange(X.size) + 0.5) / X.size)[np.random.default_rng(4).permutation(X.size)]
     model, fit, _ = straight(scatter)
@@ -78,7 +93,7 @@ def test_for_normal_scatter_the_bootstrap_agrees_with_student() -> None:
     # A quantile t of 8000 draws has the standard error √(0.025 · 0.975/8000)/density(t), 0.04 with 10 degrees of
     # freedom; twelve residuals have no tails beyond 1.7, which takes less than 0.3 from a quantile of 2.23.
     for ours, theirs in zip(by_bootstrap, by_student, strict=True):
-        assert np.abs((ours - theirs) / error).max() < 0.3 + 4.0 * 0.04
+        assert np.abs((ours - theirs) / error).max() < tails + draws
 
 
 def mean_of(target: Any) -> Any:
@@ -203,7 +218,17 @@ def usfd(theta: Any) -> Any:
     return np.log(np.minimum(m_m * W, q_s) + m_c * np.maximum(W - tr_sc, 0.0))
 
 
-def test_intervals_of_a_law_with_kinks_hold_the_true_parameters_as_often_as_they_say() -> None:
+@pytest.mark.validates(
+    "fitting",
+    "Intervals of {level:.0%} hold the true parameters of USFD that often",
+    source="100 synthetic data sets",
+    held_to="not fewer than a binomial does with a probability of {chance:g}",
+    level=0.95,
+    chance=0.001,
+)
+def test_intervals_of_a_law_with_kinks_hold_the_true_parameters_as_often_as_they_say(
+    level: float, chance: float
+) -> None:
     fits, bounds = 100, Bounds(np.full(4, -3.0), np.full(4, 3.0))
     targets = usfd(np.zeros((1, 4))) + 0.1 * np.random.default_rng(5).standard_normal((fits, W.size))
     best = fit_many(usfd, targets, np.zeros((fits, 4)), bounds)
@@ -212,8 +237,8 @@ def test_intervals_of_a_law_with_kinks_hold_the_true_parameters_as_often_as_they
         one = Solutions(*(getattr(best, name)[[number]] for name in ("theta", "residuals", "jacobian", "converged")))
         model = to(usfd, targets[number])
         replicates = replicate(model, one, bounds, np.zeros(W.size, dtype=np.intp), 200, number)
-        low, high = studentised_intervals(one, replicates, 0.95)
+        low, high = studentised_intervals(one, replicates, level)
         held += (low <= 0.0) & (high >= 0.0)
     # Of 100 intervals that hold the truth with probability 0.95, fewer than these 87 do once in a thousand times.
     # Plain percentiles of unscaled residuals hold it 83 to 90 times here.
-    assert held.min() >= stats.binom.ppf(1e-3, fits, 0.95)
+    assert held.min() >= stats.binom.ppf(chance, fits, level)

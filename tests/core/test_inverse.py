@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
+from tests.strategies import EPS
 from wearlaw import Q
 
 RIG = wl.TwinDisc.suros()
 LOAD: Any = {"normal_force_per_width": Q(741.43, "kN/m"), "friction_coefficient": 0.46}
-EPS = float(np.finfo(np.float64).eps)
 SATURATION = (
     0.46 * float((RIG | wl.contact_model("exact"))(creepage="1 %", **LOAD).half_width.to("m").magnitude) / 11.75e-3
 )
@@ -26,20 +26,34 @@ def plain(quantity: Any) -> Any:
     return quantity.to("").magnitude
 
 
+@pytest.mark.validates(
+    "line-contact",
+    "`creepage_for` inverts Carter's force",
+    source="the quadratic solved by hand",
+    held_to="{roundings} ε over the root of what T lacks of μN",
+    roundings=64,
+)
 @given(share=SHARES)
-def test_exact_inverts_carter(share: float) -> None:
+def test_exact_inverts_carter(share: float, roundings: int) -> None:
     found = plain((RIG | wl.contact_model("exact")).creepage_for(traction_coefficient=0.46 * share, **LOAD))
     # T/μN = d (2 - d). The root is as exact as T, whose error grows by dξ/dT · T/ξ <= 1/√(1 - share).
     due = share / (1.0 + np.sqrt(1.0 - share)) * SATURATION
-    assert found == pytest.approx(due, rel=64 * EPS / np.sqrt(1.0 - share))
+    assert found == pytest.approx(due, rel=roundings * EPS / np.sqrt(1.0 - share))
 
 
+@pytest.mark.validates(
+    "line-contact",
+    "`creepage_for` inverts FASTSIM's force",
+    source="the cubic solved by hand",
+    held_to="{roundings} ε over what T lacks of μN, to the power ⅔",
+    roundings=64,
+)
 @given(share=SHARES)
-def test_fastsim_inverts_the_cube(share: float) -> None:
+def test_fastsim_inverts_the_cube(share: float, roundings: int) -> None:
     found = plain((RIG | wl.contact_model("fastsim")).creepage_for(traction_coefficient=0.46 * share, **LOAD))
     # T/μN = 1 - (1-d)³, saturated at 1.5 times Carter's creepage.
     due = -np.expm1(np.log1p(-share) / 3.0) * 1.5 * SATURATION
-    assert found == pytest.approx(due, rel=64 * EPS / (1.0 - share) ** (2 / 3))
+    assert found == pytest.approx(due, rel=roundings * EPS / (1.0 - share) ** (2 / 3))
 
 
 @pytest.mark.parametrize("name", ["exact", "fastsim", "global"])

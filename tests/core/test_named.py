@@ -13,42 +13,11 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import case, table, wearlaw
-from tests.core.test_plugins import Install, install  # noqa: F401  (a fixture)
+from tests.core.distributions import LAB, Install
 from wearlaw import plugins
 from wearlaw.case import Case, case_schema, case_text, load_case
 from wearlaw.study import provenance, run
 
-LAB = """
-    import wearlaw as wl
-
-    @wl.hookimpl
-    def wearlaw_parameter_sets():
-        fitted_for = wl.Calibration(
-            contact_model="exact",
-            scale="cells",
-            materials="two steels of a test",
-            stated_range=(("wear_index_density", "0 N/mm^2", "40 N/mm^2"),),
-            source="made up for a test",
-        )
-        return {
-            "lab_2026": wl.wear_law(
-                "usfd", m_m="6 ug/m/N", q_s="60 ug/m/mm^2", m_c="70 ug/m/N", tr_sc="80 N/mm^2", fitted_for=fitted_for
-            )
-        }
-
-    @wl.hookimpl
-    def wearlaw_materials():
-        soft = wl.steel(youngs_modulus="190 GPa", density="7800 kg/m^3")
-        return {"soft_steel": soft, "steel_of_rail_b": soft}
-
-    @wl.hookimpl
-    def wearlaw_cases():
-        return {"lab_study": "title = 'A study of the lab'"}
-
-    @wl.hookimpl
-    def wearlaw_tests():
-        return {"lab_tests": "creepage [%],max_pressure [MPa],wear_rate [ug/m/mm^2]\\n1,1500,30\\n"}
-"""
 POINT: Any = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46}
 RIG = wl.TwinDisc.suros()
 
@@ -59,7 +28,7 @@ def test_the_steel_and_the_study_come_from_a_plugin_like_any_other() -> None:
     assert plugins.installed().cases.origin("tassini2010").entry_point == "sheffield"
 
 
-def test_a_parameter_set_is_looked_up_like_a_law_and_takes_options(install: Install) -> None:  # noqa: F811
+def test_a_parameter_set_is_looked_up_like_a_law_and_takes_options(install: Install) -> None:
     install("lab", LAB)
     law = wl.wear_law("lab_2026")
     assert law == wl.parameter_sets()["lab_2026"]
@@ -70,7 +39,7 @@ def test_a_parameter_set_is_looked_up_like_a_law_and_takes_options(install: Inst
 
 
 def test_a_parameter_set_says_what_it_was_fitted_for_and_its_range(
-    install: Install,  # noqa: F811
+    install: Install,
     recwarn: pytest.WarningsRecorder,
 ) -> None:
     install("lab", LAB)
@@ -85,7 +54,7 @@ def test_a_parameter_set_says_what_it_was_fitted_for_and_its_range(
         predict(**{**POINT, "creepage": "10 %"})
 
 
-def test_a_law_with_a_calibration_of_its_own_survives_json(install: Install) -> None:  # noqa: F811
+def test_a_law_with_a_calibration_of_its_own_survives_json(install: Install) -> None:
     install("lab", LAB)
     predict = RIG | wl.contact_model("exact") | wl.wear_law("lab_2026")
     again: wl.Pipeline[wl.TwinDisc] = wl.Pipeline.model_validate_json(predict.model_dump_json())
@@ -93,7 +62,7 @@ def test_a_law_with_a_calibration_of_its_own_survives_json(install: Install) -> 
     assert hash(again) == hash(predict)
 
 
-def test_case_files_name_parameter_sets_and_materials(install: Install) -> None:  # noqa: F811
+def test_case_files_name_parameter_sets_and_materials(install: Install) -> None:
     install("lab", LAB)
     rig = {"preset": "suros", "material": "soft_steel"}
     changes: Any = {"rig": rig, "contact_models": ["exact"], "wear_laws": ["lab_2026"]}
@@ -106,14 +75,14 @@ def test_case_files_name_parameter_sets_and_materials(install: Install) -> None:
     assert not validator.is_valid(table(**{**changes, "wear_laws": ["lab_2027"]}))
 
 
-def test_cases_of_plugins_are_shipped_cases(install: Install) -> None:  # noqa: F811
+def test_cases_of_plugins_are_shipped_cases(install: Install) -> None:
     install("lab", LAB)
     assert case_text("lab_study") == "title = 'A study of the lab'"
     with pytest.raises(wl.CaseError, match="case 'lab_study' is wrong in:\n  rig: is missing"):
         load_case("lab_study")
 
 
-def test_tests_of_plugins_are_shipped_tests(install: Install) -> None:  # noqa: F811
+def test_tests_of_plugins_are_shipped_tests(install: Install) -> None:
     install("lab", LAB)
     tests = wl.read_tests("lab_tests")
     assert tests.wear_rate.to("kg/m^3").magnitude == pytest.approx(30e-3, rel=1e-15)
@@ -122,7 +91,7 @@ def test_tests_of_plugins_are_shipped_tests(install: Install) -> None:  # noqa: 
         wl.read_tests("lab_test")
 
 
-def test_wrong_tests_of_a_plugin_are_refused_where_they_are_read(install: Install) -> None:  # noqa: F811
+def test_wrong_tests_of_a_plugin_are_refused_where_they_are_read(install: Install) -> None:
     install("lab", LAB.replace("1,1500,30", "1,0,30"))
     with pytest.raises(
         wl.DataError, match=r"the tests 'lab_tests' are wrong in:\n  line 2, column 'max_pressure \[MPa"
@@ -130,7 +99,7 @@ def test_wrong_tests_of_a_plugin_are_refused_where_they_are_read(install: Instal
         wl.read_tests("lab_tests")
 
 
-def test_two_sets_of_tests_of_one_name_are_refused_with_both_plugins(install: Install) -> None:  # noqa: F811
+def test_two_sets_of_tests_of_one_name_are_refused_with_both_plugins(install: Install) -> None:
     install("lab", LAB.replace("lab_tests", "lewis2004"))
     with pytest.raises(
         wl.UnknownModelError, match=r"test set 'lewis2004' is .* more than once, by lab 1\.0 .* and wear"
@@ -138,7 +107,7 @@ def test_two_sets_of_tests_of_one_name_are_refused_with_both_plugins(install: In
         wl.read_tests("lewis2004")
 
 
-def test_the_provenance_names_where_tests_come_from(install: Install, tmp_path: Path) -> None:  # noqa: F811
+def test_the_provenance_names_where_tests_come_from(install: Install, tmp_path: Path) -> None:
     install("lab", LAB, version="1.2.3")
     path = tmp_path / "own.csv"
     path.write_text("creepage [%],normal_force [kN],wear_rate [ug/m/mm^2]\n1,7,30\n", encoding="utf-8")
@@ -164,7 +133,7 @@ LAB_STUDY = """
 """
 
 
-def test_the_provenance_names_where_a_set_a_material_and_a_case_come_from(install: Install) -> None:  # noqa: F811
+def test_the_provenance_names_where_a_set_a_material_and_a_case_come_from(install: Install) -> None:
     install("lab", LAB.replace("\"title = 'A study of the lab'\"", repr(LAB_STUDY)), version="1.2.3")
     loaded = load_case("lab_study")
     assert loaded == Case(**tomllib.loads(case_text("lab_study")))
@@ -179,7 +148,7 @@ def test_the_provenance_names_where_a_set_a_material_and_a_case_come_from(instal
 
 
 def test_a_material_under_two_names_and_a_set_from_the_list_of_all_keep_the_name_they_were_found_by(
-    install: Install,  # noqa: F811
+    install: Install,
 ) -> None:
     install("lab", LAB)
     rig = {"preset": "suros", "material": "soft_steel"}
@@ -188,7 +157,7 @@ def test_a_material_under_two_names_and_a_set_from_the_list_of_all_keep_the_name
     assert said["parameter_sets"] == {"lab_2026": "lab 1.0"}
 
 
-def test_what_was_not_looked_up_by_name_is_not_in_the_provenance(install: Install) -> None:  # noqa: F811
+def test_what_was_not_looked_up_by_name_is_not_in_the_provenance(install: Install) -> None:
     install("lab", LAB)
     changed = wl.wear_law("lab_2026").model_copy(update={"m_c": "75 ug/m/N"})
     steel = wl.material("soft_steel").model_copy()
@@ -198,7 +167,7 @@ def test_what_was_not_looked_up_by_name_is_not_in_the_provenance(install: Instal
 
 
 def test_a_run_says_what_it_used(
-    install: Install,  # noqa: F811
+    install: Install,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -212,7 +181,7 @@ def test_a_run_says_what_it_used(
     assert printed[start + 2] == "Results in own-results:"
 
 
-def test_two_cases_of_one_name_are_refused_with_both_plugins(install: Install) -> None:  # noqa: F811
+def test_two_cases_of_one_name_are_refused_with_both_plugins(install: Install) -> None:
     install("lab", LAB.replace("lab_study", "tassini2010"))
     with pytest.raises(wl.UnknownModelError, match=r"more than once, by lab 1\.0 .* and wearlaw "):
         case_text("tassini2010")
@@ -228,7 +197,7 @@ def test_two_cases_of_one_name_are_refused_with_both_plugins(install: Install) -
     ],
 )
 def test_what_is_not_of_its_kind_is_left_out_with_the_reason(
-    install: Install,  # noqa: F811
+    install: Install,
     old: str,
     new: str,
     cause: str,

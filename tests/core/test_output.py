@@ -90,7 +90,8 @@ def test_every_figure_is_written_once_in_each_format(tmp_path: Path, point: Stud
 def test_tables_are_csv_with_every_digit_and_latex_when_asked(tmp_path: Path, study: Study, latex: bool) -> None:
     write(study, tmp_path, (), latex)
     for one in tables(study):
-        read = pd.read_csv(tmp_path / "tables" / f"{one.name}.csv", dtype=dict.fromkeys(("value", "parameter"), str))
+        text = dict.fromkeys(("value", "parameter"), str)
+        read = pd.read_csv(tmp_path / "tables" / f"{one.name}.csv", dtype=text, float_precision="round_trip")
         pd.testing.assert_frame_equal(read, one.frame, check_dtype=False, check_exact=True)
         assert (tmp_path / "tables" / f"{one.name}.tex").is_file() == latex
 
@@ -130,6 +131,12 @@ def test_the_netcdf_file_holds_every_dataset_whole_in_a_group(study: Study, resu
             assert groups[path][name].attrs["units"] == UNITS[str(name)]
 
 
+@pytest.mark.validates(
+    "reproducibility",
+    "The case file in the results runs again to the same results",
+    source="the first run",
+    held_to="identical datasets",
+)
 def test_the_case_file_in_the_results_runs_again_to_the_same_results(study: Study, results: Path) -> None:
     read = load_case(str(results / CASE_FILE))
     assert read == RAN
@@ -149,7 +156,7 @@ def test_results_of_models_that_share_a_name_keep_their_labels_when_run_again() 
 
 
 def test_the_csv_has_one_row_a_pair_and_operating_point_with_units_in_its_head(results: Path) -> None:
-    rows = pd.read_csv(results / CSV)
+    rows = pd.read_csv(results / CSV, float_precision="round_trip")
     # Pairs × points: 5 × 5, 5 × 10, 5 × 1, and 3 × 2 where only the global model can be used.
     assert dict(rows["sweep"].value_counts()) == {"lattice": 50, "creepage": 25, "measured": 6, "point": 5}
     units = {name: f" [{UNITS[name]}]" if UNITS[name] else "" for name in UNITS}
@@ -168,7 +175,7 @@ def test_the_csv_has_one_row_a_pair_and_operating_point_with_units_in_its_head(r
 @pytest.mark.parametrize("name", ["creepage", "lattice", "point", "measured"])
 def test_the_csv_holds_the_numbers_of_the_datasets(study: Study, results: Path, name: str) -> None:
     sweep = study.sweeps[name]
-    rows = pd.read_csv(results / CSV)
+    rows = pd.read_csv(results / CSV, float_precision="round_trip")
     rows = rows[rows["sweep"] == name].rename(columns=lambda column: column.split(" [")[0])
     axes = [str(axis) for axis in sweep.wear_rate.dims if axis != "pair"]
     for _, row in rows.iterrows():
@@ -181,7 +188,9 @@ def test_the_csv_holds_the_numbers_of_the_datasets(study: Study, results: Path, 
 
 
 def test_the_table_is_what_the_csv_holds(study: Study, results: Path) -> None:
-    pd.testing.assert_frame_equal(table(study), pd.read_csv(results / CSV), check_exact=True)
+    pd.testing.assert_frame_equal(
+        table(study), pd.read_csv(results / CSV, float_precision="round_trip"), check_exact=True
+    )
 
 
 # The folder
@@ -281,6 +290,15 @@ def test_a_folder_that_something_else_filled_meanwhile_is_an_error_and_left_alon
         out.write_text("somebody's file")
         fresh.rename(fresh.with_name("gone"))
     assert tree(tmp_path) == {"out": b"somebody's file"}
+
+
+def test_new_results_that_are_gone_before_they_are_in_place_leave_nothing(tmp_path: Path) -> None:
+    with (
+        pytest.raises(wl.OutputError, match=r"cannot write to '.*': No such file or directory"),
+        fresh_folder(tmp_path / "out", overwrite=False) as fresh,
+    ):
+        fresh.rmdir()
+    assert tree(tmp_path) == {}
 
 
 class InterruptionError(Exception):

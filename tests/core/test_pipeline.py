@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import inspect
 import pickle
 import subprocess
 import sys
@@ -15,23 +14,18 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.core.cases import following_line
 from wearlaw import Q
 
 RIG = wl.TwinDisc.suros()
 CONDITIONS: Any = {"normal_force": Q(7.4143, "kN"), "creepage": Q(1, "%"), "friction_coefficient": 0.46}
+RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+ON_RAILS: Any = {"normal_force": "80 kN", "friction_coefficient": 0.3, "longitudinal_creepage": "0.2 %"}
 EXACT, FASTSIM, GLOBAL = (wl.contact_model(name) for name in ("exact", "fastsim", "global"))
 ELLIPTIC = wl.contact_model("fastsim", bound="elliptic")
 AS_PRINTED = wl.contact_model("exact", slip="as_printed")
 FITTED = {name: wl.wear_law("usfd", fitted_for=name) for name in ("global", "exact", "fastsim")}
 KTH, BRR = wl.wear_law("kth"), wl.wear_law("brr")
-
-
-def following_line() -> int:
-    """Return the number of the line two below the call: the one inside the `with` that follows it."""
-    frame = inspect.currentframe()
-    assert frame is not None
-    assert frame.f_back is not None
-    return frame.f_back.f_lineno + 2
 
 
 def silently(first: Any, *stages: Any) -> Any:
@@ -174,6 +168,37 @@ def test_leaving_the_range_of_a_law_is_warned_of_once_a_call_at_the_users_line(s
     assert f"{size} of {size} operating points lie outside" in message
 
 
+def test_warnings_about_a_problem_of_the_rig_are_at_the_users_line_too() -> None:
+    predict = RIG | GLOBAL | FITTED["global"]
+    problem = RIG.problem(max_pressure=Q(6, "GPa"), creepage=Q(25, "%"), friction_coefficient=0.46)
+    line = following_line()
+    with pytest.warns(wl.RangeWarning) as caught:
+        predict.predict(problem)
+    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)] * 2
+    assert "elastic limit" in str(caught[0].message)
+    assert "wear law 'usfd'" in str(caught[1].message)
+
+
+@pytest.mark.parametrize("rig", [RIG, RAILS], ids=lambda rig: type(rig).__name__)
+def test_a_contact_beyond_the_elastic_limit_is_warned_of_at_the_users_line(rig: Any) -> None:
+    conditions = {**(CONDITIONS if rig is RIG else ON_RAILS), "normal_force": Q(500, "kN")}
+    contact = rig | FASTSIM
+    line = following_line()
+    with pytest.warns(wl.RangeWarning, match="elastic limit") as caught:
+        contact(**conditions)
+    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)]
+
+
+def test_a_problem_of_the_other_kind_of_rig_is_refused() -> None:
+    ellipse = RAILS.problem(**ON_RAILS)
+    on_discs: Any = RIG | FASTSIM | KTH
+    on_rails: Any = RAILS | FASTSIM | KTH
+    with pytest.raises(wl.WearlawError, match="EllipticProblem is not what a TwinDisc makes"):
+        on_discs.predict(ellipse)
+    with pytest.raises(wl.WearlawError, match="LineProblem is not what a WheelRail makes"):
+        on_rails.predict(RIG.problem(**CONDITIONS))
+
+
 def test_the_range_warning_counts_the_points_outside() -> None:
     predict = RIG | GLOBAL | FITTED["global"]
     with pytest.warns(wl.RangeWarning, match=r"2 of 4 operating points lie outside, as far as 135\.5"):
@@ -248,6 +273,12 @@ def test_wrong_json_is_an_error_of_the_package_with_the_path() -> None:
     message = str(caught.value)
     assert "contact.rig.track_width: got 10.00 kN, which is not of the dimension of 'mm'" in message
     assert "wear_law: no wear law is called 'khh'; did you mean 'kth'?" in message
+
+
+def test_what_is_no_rig_is_refused_with_what_rigs_there_are() -> None:
+    wrong: Any = 3
+    with pytest.raises(wl.ConfigurationError, match="rig: must be a TwinDisc or a WheelRail, got 3"):
+        wl.ContactPipeline(rig=wrong, contact_model=GLOBAL)
 
 
 def test_a_pickled_pipeline_predicts_the_same_in_a_fresh_process() -> None:

@@ -2,35 +2,16 @@
 
 from __future__ import annotations
 
-import importlib
 import sys
 import textwrap
 import warnings
-from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 import wearlaw as wl
-from wearlaw import plugins
-
-FIRST_PARTY_MODELS = {"exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins"}
-FIRST_PARTY_LAWS = {"brr", "kth", "usfd"}
-
-LAW = """
-    import wearlaw as wl
-
-    class Outside(wl.WearLaw):
-        name = "{name}"
-        source = "a test"
-
-        def rate(self, contact):
-            return 0.0 * contact.pressure
-
-    @wl.hookimpl
-    def wearlaw_wear_laws():
-        return [Outside]
-"""
+from tests.core.distributions import FIRST_PARTY_LAWS, FIRST_PARTY_MODELS, LAW, Install, write_distribution
+from wearlaw import hookspecs, plugins
 
 BROKEN = {
     "import_that_fails": ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named"),
@@ -88,40 +69,6 @@ BROKEN = {
 }
 
 
-def write_distribution(folder: Path, name: str, source: str, version: str = "1.0") -> None:
-    """Write an installed distribution with one plugin, a module of the distribution's name."""
-    folder.mkdir(exist_ok=True)
-    (folder / f"{name}.py").write_text(textwrap.dedent(source))
-    info = folder / f"{name}-{version}.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n")
-    (info / "entry_points.txt").write_text(f"[wearlaw]\n{name} = {name}\n")
-
-
-Install = Callable[..., None]
-
-
-@pytest.fixture
-def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
-    known = set(sys.modules)
-    monkeypatch.syspath_prepend(tmp_path)
-
-    def write(name: str, source: str, version: str = "1.0") -> None:
-        write_distribution(tmp_path, name, source, version)
-        importlib.invalidate_caches()
-        plugins.installed.cache_clear()
-
-    plugins.installed.cache_clear()
-    yield write
-    for module in set(sys.modules) - known:
-        if (
-            getattr(sys.modules[module], "__file__", None)
-            and tmp_path in Path(str(sys.modules[module].__file__)).parents
-        ):
-            del sys.modules[module]
-    plugins.installed.cache_clear()
-
-
 def test_the_first_party_plugins_are_found_by_name_in_order() -> None:
     assert list(wl.contact_models()) == sorted(FIRST_PARTY_MODELS)
     assert list(wl.wear_laws()) == sorted(FIRST_PARTY_LAWS)
@@ -141,6 +88,12 @@ def test_an_outside_law_is_found_beside_the_others(install: Install) -> None:
     assert wl.wear_law("outside").name == "outside"
     assert set(wl.wear_laws()) == FIRST_PARTY_LAWS | {"outside"}
     assert str(plugins.installed().wear_laws.origin("outside")) == "outside_plugin 3.2 (plugin 'outside_plugin')"
+
+
+def test_a_plugin_for_an_older_interface_is_loaded(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hookspecs, "INTERFACE_VERSION", 2)
+    install("older_plugin", LAW.format(name="older") + "\n    wearlaw_interface = 1\n")
+    assert "older" in wl.wear_laws()
 
 
 @pytest.mark.parametrize("case", BROKEN)

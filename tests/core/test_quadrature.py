@@ -1,7 +1,10 @@
+"""Nodes and weights over the slip zone and the patch, against integrals in closed form."""
+
 from __future__ import annotations
 
 import math
 
+import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 from hypothesis import given
@@ -56,10 +59,9 @@ def test_square_roots_at_both_ends_of_a_zone_are_integrated_to_rounding(panels: 
 def test_a_zone_mapped_over_the_patch_has_the_square_roots_of_its_edges_to_rounding(length: float) -> None:
     nodes = zone(length, over_patch=True).nodes()
     # ∫ √(y (2a - y)) dy from 0 to L, with y = 2a sin²(ψ/2): a²/2 (ψ - sin ψ cos ψ)
-    end = 2.0 * math.asin(math.sqrt(length / 2.2))
-    expected = 0.5 * 1.1**2 * (end - math.sin(end) * math.cos(end))
-    if length < 1e-6:
-        expected = 2.0 / 3.0 * math.sqrt(2.2) * length**1.5  # its series, where the difference cancels
+    with mpmath.workdps(60):  # the difference cancels in short zones
+        end = 2 * mpmath.asin(mpmath.sqrt(mpmath.mpf(length) / mpmath.mpf(2.2)))
+        expected = float(mpmath.mpf(1.1) ** 2 / 2 * (end - mpmath.sin(end) * mpmath.cos(end)))
     assert total(nodes, np.sqrt(nodes.from_leading * nodes.from_trailing)) == pytest.approx(expected, rel=64 * EPS)
 
 
@@ -135,14 +137,21 @@ def test_uniform_cells_cover_the_patch(cells: int) -> None:
     assert edges == pytest.approx(np.array([[0.5], [2.0]]) * np.linspace(-1.0, 1.0, cells + 1), abs=8 * EPS)
 
 
-def test_a_root_just_outside_a_zone_mapped_over_itself_costs_what_models_declare() -> None:
+@pytest.mark.validates(
+    "limits",
+    ("Integrals of Hertz's pressure over a slip zone that ends just short of the leading edge lose digits"),
+    source="the integral in closed form",
+    held_to="up to {most:g} of the whole",
+    most=5e-08,
+)
+def test_a_root_just_outside_a_zone_mapped_over_itself_costs_what_models_declare(most: float) -> None:
     # Hertz's pressure √(1-x²) over [-1+gap, 1]: its leading root lies just outside, √(2 gap) from the real axis.
     gap = np.geomspace(1e-12, 1.0, 2000)
     nodes = zone(2.0 - gap, np.ones_like(gap)).nodes()
     got = (np.sqrt(nodes.from_leading * nodes.from_trailing) * nodes.length).sum(axis=-1)
     before = 0.5 * (np.arccos(1.0 - gap) - (1.0 - gap) * np.sqrt(gap * (2.0 - gap)))
     error = np.abs(got + before - 0.5 * math.pi)
-    assert 1e-9 < error.max() < 5e-8
+    assert 1e-9 < error.max() < most
 
 
 # --- The error estimate ----------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ import pytest
 import wearlaw as wl
 from wearlaw import Array, Q
 from wearlaw.integrate import BLOCK, NODE_BLOCK
-from wearlaw.ranges import RangeWatch, line_mean
+from wearlaw.ranges import RangeWatch, elliptic_mean, line_mean
 
 RIG = wl.TwinDisc.suros(rolling_speed="2 m/s")
 EXACT = wl.contact_model("exact")
@@ -104,7 +104,7 @@ def test_no_range_and_no_points_are_no_matter() -> None:
     assert messages(RangeWatch(Stated())) == []
 
 
-@pytest.mark.parametrize("name", ["pressure", "slip", "slip_speed", "wear_index", "wear_index_density"])
+@pytest.mark.parametrize("name", ["pressure", "traction", "slip", "slip_speed", "wear_index", "wear_index_density"])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> None:
     creepage = sign * np.geomspace(1e-3, 0.3, 4)
@@ -112,6 +112,7 @@ def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> 
     contact = EXACT.solve(one)
     values = {
         "pressure": 0.25 * np.pi * one.max_pressure,  # the mean of an ellipse
+        "traction": contact.mean(np.abs(contact.traction)),
         "slip": np.abs(creepage),
         "slip_speed": 2.0 * np.abs(creepage),
         "wear_index": contact.sum_over_nodes(contact.wear_index_density * contact.area),
@@ -124,6 +125,37 @@ def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> 
         (message,) = messages(watch)
         assert f"a mean {name.replace('_', ' ')} from" in message
         assert f"; {outside} of 4 operating points lie outside" in message
+
+
+ON_RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+
+
+@pytest.mark.parametrize("name", ["pressure", "traction", "slip", "slip_speed", "wear_index", "wear_index_density"])
+def test_every_variable_of_an_ellipse_is_watched_by_its_patch_mean(name: str) -> None:
+    along, across = np.array([1e-3, 2e-3, -4e-3, 8e-3]), np.array([2e-3, -1e-3, 3e-3, 5e-3])
+    one = ON_RAILS.problem(
+        normal_force=Q(np.linspace(60.0, 90.0, 4), "kN"),
+        friction_coefficient=0.3,
+        longitudinal_creepage=Q(along, ""),
+        lateral_creepage=Q(across, ""),
+    )
+    forces = wl.contact_model("fastsim").creep_forces(one)
+    area, slip = np.pi * one.a * one.b, np.hypot(along, across)  # without spin it is the same everywhere
+    power = forces.longitudinal * along + forces.lateral * across
+    values = {
+        "pressure": one.normal_force / area,
+        "traction": np.hypot(forces.longitudinal, forces.lateral) / area,
+        "slip": slip,
+        "slip_speed": 30.0 * slip,
+        "wear_index": power,
+        "wear_index_density": power / area,
+    }[name]
+    assert elliptic_mean(one, forces, name) == pytest.approx(values, rel=64 * float(np.finfo(np.float64).eps))
+
+
+def test_a_range_of_what_has_no_patch_mean_is_refused() -> None:
+    with pytest.raises(wl.ModelError, match="`valid_range` names 'x'"):
+        see(RangeWatch(Stated(variable="x")), 0.05)
 
 
 def test_variables_are_warned_of_one_by_one() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 import pytest
@@ -75,6 +76,23 @@ def test_the_patch_mean_keeps_the_totals_in_one_node() -> None:
     np.testing.assert_allclose(mean.traction_bound[:, 0], [8.0, 8.0], rtol=1e-15)
 
 
+def test_a_solution_on_a_line_stands_for_the_whole_track_width() -> None:
+    problem = dataclasses.replace(
+        line_problem((1,)),
+        normal_force_per_width=np.array([7e5]),
+        creepage=np.array([0.02]),
+        track_width=np.array([0.01]),
+    )
+    node = np.array([[3.0]])
+    fields = wl.LineFields(pressure=node, traction=node, slip=node, traction_bound=node)
+    solved = wl.Contact.from_line(problem, fields, x=node, length=node * 1e-4, force_per_width=np.array([2e5]))
+    # 2e5 N/m on 10 mm are 2000 N, which dissipate 2 % of that per metre; 0.3 mm by 10 mm are 3 mm².
+    np.testing.assert_allclose(solved.tangential_force, [2000.0], rtol=1e-15)
+    np.testing.assert_allclose(solved.wear_index, [40.0], rtol=1e-15)
+    np.testing.assert_allclose(solved.normal_force, [7000.0], rtol=1e-15)
+    np.testing.assert_allclose(solved.area, [[3e-6]], rtol=1e-15)
+
+
 def test_with_batch_reshapes_the_batch_and_leaves_the_nodes() -> None:
     reshaped = contact().with_batch((2, 1))
     assert reshaped.pressure.shape == (2, 1, 3)
@@ -114,6 +132,18 @@ def test_areas_and_forces_of_a_problem_take_the_whole_width() -> None:
     )
     np.testing.assert_allclose(problem.normal_force, [7e3], rtol=1e-15)
     np.testing.assert_allclose(problem.patch_area, [6e-6], rtol=1e-15)
+
+
+def test_a_contact_is_equal_to_itself_alone_and_can_be_a_key() -> None:
+    one = contact()
+    assert one != contact()
+    assert {one: 1}[one] == 1
+
+
+def test_the_arrays_of_a_contact_are_given_by_name() -> None:
+    made: Any = wl.Contact
+    with pytest.raises(TypeError, match="positional"):
+        made(*[np.zeros((1, 1))] * len(dataclasses.fields(wl.Contact)))
 
 
 @pytest.mark.parametrize("record", [contact(), line_problem((2,))], ids=["Contact", "LineProblem"])

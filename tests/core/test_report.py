@@ -20,7 +20,8 @@ import wearlaw as wl
 from tests.core import cases
 from tests.core.report_data import CLAIMS, EVIL, ODD, ONE, SECTION, THREE, small_study
 from wearlaw.report.interactive import plotly_figure
-from wearlaw.report.page import Cell, cells, paragraphs, report
+from wearlaw.report.page import cells, paragraphs, report
+from wearlaw.report.tables import Cell
 from wearlaw.study import Study, run
 
 VOID = {"meta"}
@@ -211,10 +212,12 @@ def test_everything_can_be_named_by_a_screen_reader_and_reached_by_keyboard(page
         (0.00012345678, Cell("0.0001235", number=True)),
         (1e100, Cell("1", "100", number=True)),
         (3, Cell("3", number=True)),
+        (-3, Cell("−3", number=True)),
         (True, Cell("yes")),
         (float("nan"), Cell("")),
         (None, Cell("")),
         (pd.NaT, Cell("")),
+        (pd.NA, Cell("")),
         ("1e5", Cell("1e5")),
     ],
 )

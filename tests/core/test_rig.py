@@ -12,18 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wearlaw as wl
+from tests.core.cases import following_line
+from tests.strategies import EPS
 from wearlaw import Q
 
 RIG = wl.TwinDisc.suros()
-EPS = np.finfo(float).eps
-
-
-def following_line() -> int:
-    """Return the number of the line two below the call: the one inside the `with` that follows it."""
-    frame = inspect.currentframe()
-    assert frame is not None
-    assert frame.f_back is not None
-    return frame.f_back.f_lineno + 2
 
 
 def problem(rig: wl.TwinDisc = RIG, **conditions: Any) -> wl.LineProblem:

@@ -6,19 +6,18 @@ import ast
 import os
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 from click.testing import Result
 
 import wearlaw as wl
 from tests.core.cases import Coarse, Linear, assert_refused, case, installer, spaced_folder, wearlaw
-from tests.core.test_named import LAB
-from tests.core.test_plugins import LAW, Install, install  # noqa: F401  (a fixture)
+from tests.core.distributions import LAB, LAW, Install
 from tests.environments import ROOT, Environment, build
 from wearlaw import plugins
 from wearlaw.case import case_text
-from wearlaw.scaffold import LICENCES, Kind, write_plugin
+from wearlaw.scaffold import Kind, Licence, write_plugin
 from wearlaw.shelf import Origin
 
 KINDS: dict[Kind, str] = {"wear_law": "--wear-law", "contact_model": "--contact-model"}
@@ -102,7 +101,7 @@ def test_a_new_plugin_is_a_whole_distribution(kind: Kind) -> None:
     ],
 )
 def test_the_licence_is_that_which_was_chosen(licence: str, title: str, spdx: str | None) -> None:
-    assert licence in LICENCES
+    assert licence in get_args(Licence)
     assert new_plugin("zobory", "--wear-law", "--license", licence).exit_code == 0
     assert Path("wearlaw-zobory/LICENSE").read_text(encoding="utf-8").startswith(title)
     project: Any = tomllib.loads(Path("wearlaw-zobory/pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -163,7 +162,7 @@ def test_the_name_of_a_plugin_or_a_distribution_that_is_broken_is_taken(
     assert new_plugin("lab", "--wear-law").exit_code == 0
 
 
-def test_the_name_of_a_parameter_set_is_taken_for_a_wear_law_that_would_hide_it(install: Install) -> None:  # noqa: F811
+def test_the_name_of_a_parameter_set_is_taken_for_a_wear_law_that_would_hide_it(install: Install) -> None:
     install("lab", LAB)
     taken = "name: 'lab_2026' is taken by the parameter set of lab 1.0 (plugin 'lab'); choose another"
     assert_refused(new_plugin("lab_2026", "--wear-law"), taken)
@@ -176,7 +175,7 @@ def test_the_name_of_a_parameter_set_is_taken_for_a_wear_law_that_would_hide_it(
 @pytest.mark.parametrize("name", ["steel", "tassini2010"])
 def test_the_name_of_a_material_or_a_case_is_free_since_they_are_looked_up_apart(
     name: str,
-    install: Install,  # noqa: F811
+    install: Install,
 ) -> None:
     assert new_plugin(name, "--wear-law").exit_code == 0
     install("free", LAW.format(name=name))

@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import SWEEP, assert_refused, case, table, wearlaw, write
-from tests.core.test_plugins import FIRST_PARTY_LAWS, Install, install  # noqa: F401  (a fixture)
+from tests.core.distributions import FIRST_PARTY_LAWS, Install
 from wearlaw import plugins
 from wearlaw.case import Case, case_schema
 from wearlaw.study import provenance, run, used
@@ -58,7 +58,7 @@ def test_the_sections_of_the_study_come_from_a_plugin_like_any_other() -> None:
     assert [line.split()[1] for line in printed if line.startswith("section ")] == OURS
 
 
-def test_a_study_holds_the_sections_in_the_order_of_the_case(install: Install) -> None:  # noqa: F811
+def test_a_study_holds_the_sections_in_the_order_of_the_case(install: Install) -> None:
     install("lab", LAB)
     study = run(case(sections=["warned", "highest"]))
     assert [section.title for section in study.sections] == ["Warned", "Highest"]
@@ -69,7 +69,7 @@ def test_a_study_holds_the_sections_in_the_order_of_the_case(install: Install) -
     assert run(case()).sections == ()
 
 
-def test_a_warning_becomes_one_note_of_the_section(install: Install) -> None:  # noqa: F811
+def test_a_warning_becomes_one_note_of_the_section(install: Install) -> None:
     install("lab", LAB)
     without = run(case()).notes
     with warnings.catch_warnings():
@@ -77,7 +77,7 @@ def test_a_warning_becomes_one_note_of_the_section(install: Install) -> None:  #
         assert run(case(sections=["warned"])).notes == (*without, "section 'warned': beyond all tests")
 
 
-def test_what_a_section_cannot_do_names_it_and_its_plugin(install: Install) -> None:  # noqa: F811
+def test_what_a_section_cannot_do_names_it_and_its_plugin(install: Install) -> None:
     install("lab", LAB, version="1.2.3")
     with pytest.raises(wl.InputError) as caught:
         run(case(sections=["needs_load"], sweeps={"load": SWEEP}))
@@ -88,13 +88,13 @@ def test_what_a_section_cannot_do_names_it_and_its_plugin(install: Install) -> N
     assert "Dimensions" in run(case(sections=["needs_load"], sweeps={"lod": SWEEP})).sections[0].text
 
 
-def test_what_is_no_section_is_the_plugins_fault(install: Install) -> None:  # noqa: F811
+def test_what_is_no_section_is_the_plugins_fault(install: Install) -> None:
     install("lab", LAB)
     with pytest.raises(wl.ModelError, match=r"section 'wrong' of lab 1\.0 .* must be a Section, got 'Highest'"):
         run(case(sections=["wrong"]))
 
 
-def test_what_a_section_raises_is_the_plugins_fault_and_kept_as_the_cause(install: Install) -> None:  # noqa: F811
+def test_what_a_section_raises_is_the_plugins_fault_and_kept_as_the_cause(install: Install) -> None:
     install("lab", LAB)
     message = r"section 'raises' of lab 1\.0 .* failed with ZeroDivisionError: division by zero"
     with pytest.raises(wl.ModelError, match=message) as refused:
@@ -103,7 +103,7 @@ def test_what_a_section_raises_is_the_plugins_fault_and_kept_as_the_cause(instal
 
 
 def test_the_command_line_ends_with_one_line_and_leaves_no_folder(
-    install: Install,  # noqa: F811
+    install: Install,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -127,7 +127,7 @@ def test_the_command_line_ends_with_one_line_and_leaves_no_folder(
     ],
 )
 def test_wrong_sections_are_named_when_the_case_is_read(
-    install: Install,  # noqa: F811
+    install: Install,
     sections: Any,
     message: str,
 ) -> None:
@@ -137,7 +137,7 @@ def test_wrong_sections_are_named_when_the_case_is_read(
     assert message in str(error.value)
 
 
-def test_two_sections_of_one_name_are_refused_with_both_plugins(install: Install) -> None:  # noqa: F811
+def test_two_sections_of_one_name_are_refused_with_both_plugins(install: Install) -> None:
     install("lab", LAB)
     install("other", LAB)
     with pytest.raises(
@@ -155,7 +155,7 @@ def test_two_sections_of_one_name_are_refused_with_both_plugins(install: Install
     ],
 )
 def test_a_plugin_whose_hook_is_wrong_is_left_out_and_the_others_work(
-    install: Install,  # noqa: F811
+    install: Install,
     hook: str,
     cause: str,
 ) -> None:
@@ -168,7 +168,7 @@ def test_a_plugin_whose_hook_is_wrong_is_left_out_and_the_others_work(
     assert set(wl.wear_laws()) == FIRST_PARTY_LAWS
 
 
-def test_the_provenance_names_where_sections_come_from(install: Install) -> None:  # noqa: F811
+def test_the_provenance_names_where_sections_come_from(install: Install) -> None:
     install("lab", LAB, version="1.2.3")
     asked = case(sections=["warned", "highest"])
     assert used(asked)["section"] == {"highest": "lab 1.2.3", "warned": "lab 1.2.3"}
@@ -178,7 +178,7 @@ def test_the_provenance_names_where_sections_come_from(install: Install) -> None
     assert json.loads(sweep.attrs["provenance"])["sections"] == used(asked)["section"]
 
 
-def test_sections_survive_json_and_are_in_the_schema(install: Install) -> None:  # noqa: F811
+def test_sections_survive_json_and_are_in_the_schema(install: Install) -> None:
     install("lab", LAB)
     asked = case(sections=["warned", "highest"])
     assert Case.model_validate_json(asked.model_dump_json(by_alias=True)) == asked

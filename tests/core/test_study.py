@@ -14,24 +14,19 @@ import xarray
 
 import wearlaw as wl
 from tests.core import cases
-from tests.core.cases import Install, case
+from tests.core.cases import InstallModel, case
+from tests.strategies import EPS
 from wearlaw import Array, Q
 from wearlaw.case import Case
 from wearlaw.study import Study, along_main_axis, axes_of, evaluations, main_axis, provenance, run
 from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
 
-EPS = float(np.finfo(np.float64).eps)
 MODELS = {"global": wl.contact_model("global"), "exact": wl.contact_model("exact")}
 LAWS = {"usfd": wl.wear_law("usfd"), "kth": wl.wear_law("kth"), "brr": wl.wear_law("brr")}
 LOADS = ["1000 MPa", "1500 MPa"]
 FRICTIONS = [0.3, 0.4, 0.5]
 CREEPAGES = {"from": "-2 %", "to": "5 %", "points": 8}
 LATTICE = {"max_pressure": LOADS, "creepage": CREEPAGES, "friction_coefficient": FRICTIONS}
-
-
-@pytest.fixture
-def install(monkeypatch: pytest.MonkeyPatch) -> Install:
-    return cases.installer(monkeypatch)
 
 
 @pytest.fixture(scope="module")
@@ -171,15 +166,15 @@ class Warns(cases.Linear):
         return super().rate(contact)
 
 
-def test_warnings_of_others_are_passed_on_and_not_noted(install: Install) -> None:
-    install(Warns)
+def test_warnings_of_others_are_passed_on_and_not_noted(install_model: InstallModel) -> None:
+    install_model(Warns)
     with pytest.warns(DeprecationWarning, match="from elsewhere"):
         study = run(case(contact_models=["exact"], wear_laws=[{"model": "warns", "slope": "1 m"}], profiles={}))
     assert study.notes == ()
 
 
-def test_the_provenance_is_the_case_and_the_versions_of_all_that_was_used(install: Install) -> None:
-    install(cases.Linear)
+def test_the_provenance_is_the_case_and_the_versions_of_all_that_was_used(install_model: InstallModel) -> None:
+    install_model(cases.Linear)
     ran = case(contact_models=["global"], wear_laws=["kth", {"model": "linear", "slope": "1 m"}])
     study = run(ran)
     version = importlib.metadata.version("wearlaw")
@@ -194,14 +189,16 @@ def test_the_provenance_is_the_case_and_the_versions_of_all_that_was_used(instal
     assert study.case == ran
 
 
-def test_the_provenance_says_of_a_law_that_only_this_process_knows_that_it_is_not_installed(install: Install) -> None:
+def test_the_provenance_says_of_a_law_that_only_this_process_knows_that_it_is_not_installed(
+    install_model: InstallModel,
+) -> None:
     class Own(cases.Linear):
         name = "linear"
 
     laws = [Own(slope="1 m"), wl.wear_law("kth")]  # type: ignore[arg-type]
     ran = case(contact_models=["exact"], wear_laws=laws, profiles={})
     assert provenance(ran)["wear_laws"]["linear"] == "not installed"
-    install(cases.Linear)  # another law of that name
+    install_model(cases.Linear)  # another law of that name
     assert provenance(ran)["wear_laws"]["linear"] == "not installed"
     assert run(ran).sweeps["creepage"].sizes["pair"] == 2
 
@@ -310,8 +307,10 @@ def test_tables_and_figures_run_along_creepage_or_else_the_longest_axis_at_the_m
     xarray.testing.assert_equal(by_friction.wear_rate, study.sweeps["b"].wear_rate[:, 1, :])
 
 
-def test_a_model_with_nodes_of_its_own_has_its_profile_beside_those_on_uniform_cells(install: Install) -> None:
-    install(cases.Coarse)
+def test_a_model_with_nodes_of_its_own_has_its_profile_beside_those_on_uniform_cells(
+    install_model: InstallModel,
+) -> None:
+    install_model(cases.Coarse)
     study = run(case(contact_models=["exact", "coarse"], wear_laws=["kth"]))
     profile = study.profiles["partial_slip"]
     coarse = profile.sel(contact_model="coarse", pair="kth on coarse").dropna("x")

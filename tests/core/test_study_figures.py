@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -11,20 +10,14 @@ import numpy as np
 import pytest
 
 from tests.core import cases
-from tests.core.cases import Install, case
-from wearlaw.case import Case, case_text, load_case
-from wearlaw.figures.curves import Curve, FigureData, Panel
+from tests.core.cases import InstallModel, case
+from tests.core.panels import assert_shows, by_label, by_name, one_panel
+from wearlaw.figures.curves import Curve, FigureData
 from wearlaw.figures.drawing import draw
 from wearlaw.study import Study, run
 
 EPS = float(np.finfo(float).eps)
 LOADS = {"from": "500 MPa", "to": "1500 MPa", "points": 3}
-# The discs of the paper by hand: N/mm, mm, N/mm², as Johnson (1985) has it.
-FRICTION, LOAD, RADIUS, MODULUS = 0.46, 741.43, 47.0 / 4.0, 206477.42 / (2.0 * (1.0 - 0.28**2))
-HALF_WIDTH = math.sqrt(4.0 * LOAD * RADIUS / (math.pi * MODULUS))
-AREA, FULL_FORCE = 20.0 * HALF_WIDTH, 10.0 * FRICTION * LOAD
-SATURATION = 100.0 * FRICTION * HALF_WIDTH / RADIUS
-"""The creepage at which all of the patch slips [%]."""
 
 
 @pytest.fixture(scope="module")
@@ -33,27 +26,10 @@ def study() -> Study:
     return run(case(sweeps={"creepage": cases.SWEEP, "load": by_load}))
 
 
-def by_name(study: Study) -> dict[str, FigureData]:
-    return {figure.name: figure for figure in study.figures}
-
-
-def one_panel(figure: FigureData) -> Panel:
-    (panel,) = figure.panels
-    return panel
-
-
-def by_label(panel: Panel) -> dict[str, Curve]:
-    return {curve.label: curve for curve in panel.curves}
-
-
 def shown(spec: dict[str, Any], **changes: Any) -> FigureData:
     """Return the one figure of a small case that asks for it."""
     (figure,) = run(case(**{"figures": {"one": spec}, **changes})).figures
     return figure
-
-
-def assert_shows(curve: Curve, x: Any, y: Any) -> None:
-    np.testing.assert_array_equal((curve.x, curve.y), (x, y))
 
 
 # Figures of a case that asks for none
@@ -146,9 +122,8 @@ def test_stresses_and_slip_are_shown_along_the_patch(study: Study) -> None:
     assert not curves
 
 
-def test_a_model_with_nodes_of_its_own_is_shown_on_these(monkeypatch: pytest.MonkeyPatch) -> None:
-    install: Install = cases.installer(monkeypatch)
-    install(cases.Coarse)
+def test_a_model_with_nodes_of_its_own_is_shown_on_these(install_model: InstallModel) -> None:
+    install_model(cases.Coarse)
     figures = by_name(run(case(contact_models=["coarse", "exact"], wear_laws=["kth"])))
     nodes = {c.label: c.x.size for panel in figures["partial_slip_along_the_patch"].panels for c in panel.curves}
     assert {size for label, size in nodes.items() if "coarse" in label or label == "pressure p"} == {7}
@@ -370,7 +345,8 @@ def test_the_uncertainty_of_measured_wear_is_shown(measured: dict[str, Any]) -> 
 
 def test_the_area_and_width_of_the_patch_in_a_test_are_those_of_its_load(measured: dict[str, Any]) -> None:
     density = points(measured, "half_width", "wear_index_density")
-    half_width = math.sqrt(4.0 * 700.0 * RADIUS / (math.pi * MODULUS))
+    # 700 N/mm on discs of 47 mm: a² = 4PR/(πE*) in mm and N (Johnson 1985)
+    half_width = math.sqrt(4.0 * 700.0 * 47.0 / 4.0 / (math.pi * 206477.42 / (2.0 * (1.0 - 0.28**2))))
     np.testing.assert_allclose(density.x, half_width, rtol=64 * EPS)
     np.testing.assert_allclose(density.y, np.array([21.0, 175.0]) / (20.0 * half_width), rtol=64 * EPS)
 
@@ -380,138 +356,3 @@ def test_measured_traction_is_shown_without_being_asked_for_by_a_case_without_fi
     assert [c.label for c in one_panel(figures["creepage_traction_against_creepage"]).curves if c.points] == [
         "my tests"
     ]
-
-
-# The figures of the paper
-
-WEAR_INDICES = np.array([50.0, 150.0, 199.9, 200.0001, 700.0])
-
-
-@pytest.fixture(scope="module")
-def paper() -> dict[str, FigureData]:
-    """The shipped case, at the creepages at which there are numbers to hold its figures against."""
-    fields = tomllib.loads(case_text("tassini2010"))
-    creepages = sorted([0.001, 0.01, 0.5, 1.0, 2.0, 10.0, 20.0, *(100.0 * WEAR_INDICES / FULL_FORCE)])
-    fields["sweeps"]["creepage"]["creepage"] = [f"{float(creepage)!r} %" for creepage in creepages]
-    return by_name(run(Case(**{**fields, "sections": []})))
-
-
-def at(curve: Curve, x: float) -> float:
-    """Return the value of a curve at one of its points."""
-    (there,) = np.flatnonzero(np.isclose(curve.x, x, rtol=1e-9, atol=0.0))
-    return float(curve.y[there])
-
-
-def test_the_shipped_case_has_the_figures_of_the_paper_in_its_order() -> None:
-    shipped = load_case("tassini2010")
-    names = [f"figure_{number:02}" for number in range(3, 11)]
-    assert [*shipped.figures][:8] == names
-    windows = {name: [window.x_range for window in shipped.figures[name].panels] for name in names}
-    assert windows["figure_06"] == [None, ("0 N", "70 N"), ("50 N", "350 N")], "section 5.1.1 has them"
-    assert len(windows["figure_05"]) == len(windows["figure_08"]) == 2
-    for name in ("figure_06", "figure_07", "figure_09"):
-        assert "measured wear rates, which are not public" in shipped.figures[name].caption
-
-
-def test_the_sweep_of_the_shipped_case_reaches_beyond_where_brr_and_usfd_cross() -> None:
-    highest = float(load_case("tassini2010").sweeps["creepage"].conditions()["creepage"].max())
-    assert highest == 0.25
-    assert highest * FULL_FORCE > 797.0
-
-
-def test_figure_3_shows_the_stresses_of_both_local_models(paper: dict[str, FigureData]) -> None:
-    pressure, exact, fastsim = one_panel(paper["figure_03"]).curves
-    assert (pressure.label, exact.label, fastsim.label) == ("pressure p", "traction q, exact", "traction q, fastsim")
-    np.testing.assert_allclose(pressure.y, 1500.0 * np.sqrt(1.0 - (pressure.x / HALF_WIDTH) ** 2), rtol=1e-5)
-    # Sums over 200 cells of what begins and ends like a square root are right to the order of 200^-1.5.
-    for curve, share in ((exact, 0.6470), (fastsim, 0.6119)):
-        assert curve.y.mean() * AREA == pytest.approx(share * FULL_FORCE, rel=200**-1.5)
-
-
-def test_figure_4_shows_slip_from_where_stick_ends_and_the_global_creepage(paper: dict[str, FigureData]) -> None:
-    exact, fastsim, level = one_panel(paper["figure_04"]).curves
-    assert_shows(level, exact.x[[0, -1]], [0.5, 0.5])
-    flexibility = 4.0 * HALF_WIDTH / (math.pi * MODULUS)
-    borders = (
-        HALF_WIDTH - 2.0 * 0.005 * RADIUS / FRICTION,
-        HALF_WIDTH - 4.0 * HALF_WIDTH**3 * 0.005 / (3.0 * LOAD * FRICTION * flexibility),
-    )
-    cell = 2.0 * HALF_WIDTH / 200.0
-    for curve, border in zip((exact, fastsim), borders, strict=True):
-        assert border <= curve.x[curve.y > 0.0][0] <= border + cell
-
-
-def test_figure_5_shows_the_force_of_local_models_and_tests(paper: dict[str, FigureData]) -> None:
-    whole, low = paper["figure_05"].panels
-    curves = by_label(low)
-    assert by_label(whole).keys() == curves.keys()
-    exact, fastsim, tests = curves.values()
-    for curve, share in ((exact, 0.6470), (fastsim, 0.6119)):
-        assert at(curve, 0.5) == pytest.approx(share * FULL_FORCE, abs=5e-5 * FULL_FORCE)
-        assert at(curve, 10.0) == pytest.approx(FULL_FORCE, rel=1e-12)
-    assert tests.points
-    speed = math.pi * 0.047 * 400.0 / 60.0
-    heat = np.array([1.3, 9.2, 25.7, 102.6, 246.0, 327.8, 492.1, 728.4])
-    np.testing.assert_allclose(tests.y, heat / (0.01 * tests.x * speed), rtol=64 * EPS)
-
-
-def test_figure_6_shows_the_laws_on_the_global_model(paper: dict[str, FigureData]) -> None:
-    whole, mild, severe = paper["figure_06"].panels
-    assert (mild.x.ends, severe.x.ends) == ((0.0, 70.0), (50.0, 350.0))
-    assert by_label(whole).keys() == by_label(mild).keys() == by_label(severe).keys()
-    usfd, kth, brr = whole.curves
-    assert (usfd.label, kth.label, brr.label) == ("usfd on global", "kth on global", "brr on global")
-    published = [48.98, 97.96, 97.96, 329.16, 2660.7]
-    digits = [5e-3, 5e-3, 5e-3, 6e-3, 5e-2]  # half of the last one; BRR grows by 0.0005 from 200 to 200.0001 N
-    for wear_index, rate, digit in zip(WEAR_INDICES, published, digits, strict=True):
-        assert at(brr, wear_index) == pytest.approx(rate, abs=digit)
-    w = usfd.x / AREA
-    np.testing.assert_allclose(usfd.y, np.minimum(5.3 * w, 55.0) + 61.9 * np.maximum(w - 77.26, 0.0), rtol=1e-6)
-    assert kth.low is not None
-    assert kth.high is not None
-    i = int(np.flatnonzero(np.isclose(kth.x, 0.01 * 0.9646 * FULL_FORCE, rtol=1e-4))[0])
-    np.testing.assert_allclose((kth.low[i], kth.y[i], kth.high[i]), (3.523, 19.377, 35.231), rtol=2e-4)
-
-
-@pytest.mark.parametrize("name", ["figure_07", "figure_08"])
-def test_figures_7_and_8_show_usfd_with_its_original_parameters_on_the_cells(
-    paper: dict[str, FigureData], name: str
-) -> None:
-    for panel in paper[name].panels:
-        curves = by_label(panel)
-        for model, at_10, at_20 in (("exact", 54.78239, 2247.0774), ("fastsim", 98.85414, 2608.1243)):
-            assert at(curves[f"usfd on {model}"], 0.1 * FULL_FORCE) == pytest.approx(at_10, abs=5e-6)
-            assert at(curves[f"usfd on {model}"], 0.2 * FULL_FORCE) == pytest.approx(at_20, abs=5e-5)
-
-
-def test_figures_7_and_8_are_against_the_averaged_wear_index(paper: dict[str, FigureData]) -> None:
-    """Mean slip of the slip zone times T, where slip is k √((x+a-c)² - c²)."""
-    curve = by_label(one_panel(paper["figure_07"]))["usfd on exact"]
-    stick = HALF_WIDTH - 0.005 * RADIUS / FRICTION
-    from_stick, end = np.linspace(stick, 2.0 * HALF_WIDTH - stick, 200_001), 2.0 * HALF_WIDTH - stick
-    slip = FRICTION / RADIUS * np.sqrt(from_stick**2 - stick**2)
-    mean_slip = np.trapezoid(slip, from_stick) / (end - stick)
-    expected = mean_slip * FULL_FORCE * (1.0 - (stick / HALF_WIDTH) ** 2)
-    # The trapezoidal sum errs by the order of n^-1.5 where the root begins.
-    assert np.isclose(curve.x, expected, rtol=200_000**-1.5 + 1e-7).sum() == 1
-    (on_global, *_) = paper["figure_08"].panels[0].curves
-    assert np.isclose(on_global.x, 0.005 * 0.6470 * FULL_FORCE, rtol=1e-4).sum() == 1, "Tγ on the global model"
-
-
-def test_figure_9_shows_usfd_against_creepage(paper: dict[str, FigureData]) -> None:
-    (curve,) = one_panel(paper["figure_09"]).curves
-    assert curve.label == "usfd on global"
-    for creepage, rate, digit in ((0.5, 9.29, 5e-3), (1.0, 27.70, 5e-3), (2.0, 55.0, 5e-3), (20.0, 1981.6, 5e-2)):
-        assert at(curve, creepage) == pytest.approx(rate, abs=digit)
-
-
-def test_figure_10_shows_usfd_quadratic_and_kth_linear_in_partial_slip(paper: dict[str, FigureData]) -> None:
-    linear, logarithmic = paper["figure_10"].panels
-    assert linear.x.ends == (0.0, 1.2)
-    assert (logarithmic.x.scale, logarithmic.y.scale) == ("log", "log")
-    assert linear.x.ends[1] < SATURATION
-    usfd, kth = linear.curves
-    slopes = [math.log(at(curve, 0.01) / at(curve, 0.001)) / math.log(10.0) for curve in (usfd, kth)]
-    # T grows as ξ (1 - ξ/2ξ_sat), whose last factor turns the slope by no more than its own logarithm.
-    assert slopes[0] == pytest.approx(2.0, abs=0.01 / SATURATION)
-    assert slopes[1] == pytest.approx(1.0, rel=64 * EPS)

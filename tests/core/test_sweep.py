@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,10 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, predictor, small_blocks
+from tests.core.sweeps import CONDITIONS, OUTPUTS, predictor
 from wearlaw import Q
 from wearlaw.sweeping import space
 from wearlaw.sweeping.points import BLOCK, Points, Varying
-
-__all__ = ["small_blocks"]
 
 
 def points(*sizes: int) -> Points:
@@ -148,6 +147,27 @@ def test_a_table_keeps_the_names_of_its_rows_and_takes_conditions_for_all_of_the
 FRAME = pd.DataFrame(HEADS)
 
 
+def with_attribute(unit: str) -> xr.Dataset:
+    """Return the table with a unit of the creepage beside the one in its head."""
+    ds = xr.Dataset({head: ("test", values) for head, values in HEADS.items()})
+    ds["creepage [%]"].attrs["units"] = unit
+    return ds
+
+
+def test_what_a_dataset_holds_once_is_the_same_in_all_rows() -> None:
+    ds = of_xarray()
+    ds["friction_coefficient"] = 0.4
+    ds["max_pressure"] = ((), 1000, {"units": "MPa"})
+    due = predictor().sweep(ds[["creepage"]], max_pressure="1000 MPa", friction_coefficient=0.4)
+    found = predictor().sweep(ds)
+    assert found.max_pressure.item() == 1000
+    assert found.wear_rate.to_numpy().tolist() == due.wear_rate.to_numpy().tolist()
+
+
+def test_the_same_unit_in_the_head_and_beside_it_is_no_contradiction() -> None:
+    assert predictor().sweep(with_attribute("%")).creepage.to_numpy().tolist() == HEADS["creepage [%]"]
+
+
 @pytest.mark.parametrize(
     ("table", "conditions", "message"),
     [
@@ -157,6 +177,8 @@ FRAME = pd.DataFrame(HEADS)
         (FRAME.rename(columns={"creepage [%]": "creepage [N]"}), {}, "creepage: .*not a ratio"),
         (FRAME.assign(label=["a", "b", "c"]), {}, "column 'label': .*leave out columns that are no conditions"),
         (FRAME.assign(creepage=[1, 2, 3]), {}, "creepage is given twice"),
+        (FRAME, {"friction_coefficient": 0.4}, "friction_coefficient is given twice; keep one"),
+        (with_attribute("1"), {}, r"column 'creepage \[%\]' has the unit '1' as well; keep one of the two"),
         (FRAME[:0], {}, "table: has no rows"),
         (pd.DataFrame(), {}, "table: has no columns"),
         (FRAME, {"rolling_speed": Q([1, 2], "m/s")}, "rolling_speed: beside a table it must be one value"),
@@ -224,6 +246,19 @@ def test_the_free_memory_is_known_here() -> None:
     there = space.available_memory()
     assert there is not None
     assert 2**20 < there < 2**50
+
+
+def test_without_proc_the_memory_is_all_of_the_machine_and_unknown_where_that_is_not_told_either(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def missing(*_: Any, **__: Any) -> str:
+        raise FileNotFoundError
+
+    monkeypatch.setattr(Path, "read_text", missing)
+    monkeypatch.setattr(os, "sysconf", {"SC_PHYS_PAGES": 3 * 2**18, "SC_PAGE_SIZE": 4096}.__getitem__)
+    assert space.available_memory() == 3 * 2**30
+    monkeypatch.delattr(os, "sysconf")
+    assert space.available_memory() is None
 
 
 @pytest.mark.usefixtures("small_blocks")

@@ -11,10 +11,8 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, deadly, predictor, small_blocks
+from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, deadly, predictor
 from wearlaw.sweeping import cluster
-
-__all__ = ["small_blocks"]
 
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.usefixtures("small_blocks")
@@ -29,6 +27,12 @@ def client() -> Iterator[Any]:
         yield connected
 
 
+@pytest.mark.validates(
+    "reproducibility",
+    "A sweep on a cluster, a worker of which is killed in mid-run",
+    source="the same sweep in one process",
+    held_to="to the byte",
+)
 def test_a_cluster_whose_worker_is_killed_in_mid_run_gives_the_same_bytes(client: Any, tmp_path: Path) -> None:
     before = set(client.nthreads())
     predict = deadly(tmp_path / "marker")

@@ -16,11 +16,9 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, interrupted_after, predictor, small_blocks
+from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, interrupted_after, predictor
 from wearlaw import Q
 from wearlaw.sweeping import journal
-
-__all__ = ["small_blocks"]
 
 pytest.importorskip("zarr")
 pytestmark = pytest.mark.usefixtures("small_blocks")
@@ -64,6 +62,12 @@ def test_an_interrupt_leaves_what_was_done_marked_as_incomplete(
     assert int((left.wear_rate == whole.wear_rate).sum()) == done
 
 
+@pytest.mark.validates(
+    "reproducibility",
+    "A sweep that was interrupted and resumed",
+    source="the same sweep without interruption",
+    held_to="to the byte",
+)
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_resumed_sweep_has_the_same_bytes_as_an_uninterrupted_one(
     workers: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
+import queue
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, predictor, small_blocks
+from tests.core.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, predictor
 from wearlaw import Q, kernels
 from wearlaw.sweeping import processes
-
-__all__ = ["small_blocks"]
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 
 
+@pytest.mark.validates(
+    "reproducibility",
+    "A sweep on several processes",
+    source="the same sweep in one",
+    held_to="to the byte",
+)
 def test_several_processes_give_the_same_bytes_as_one() -> None:
     predict = predictor()
     one = predict.sweep(**CONDITIONS, outputs=OUTPUTS)
@@ -33,6 +39,28 @@ def test_the_processes_are_kept_for_the_next_sweep(monkeypatch: pytest.MonkeyPat
     predict.sweep(**CONDITIONS, workers=2)
     monkeypatch.setattr(subprocess, "Popen", None)
     predict.sweep(**CONDITIONS, workers=2)
+
+
+def test_where_no_room_for_larger_pipes_is_left_workers_have_those_of_the_system(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    sizes: list[int | None] = []
+
+    class Refused(subprocess.Popen[bytes]):
+        def __init__(self, command: list[str], *, pipesize: int | None = None, **rest: Any) -> None:
+            sizes.append(pipesize)
+            if pipesize is not None:
+                raise PermissionError(1, "Operation not permitted")
+            super().__init__(command, **rest)
+
+    monkeypatch.setattr(subprocess, "Popen", Refused)
+    monkeypatch.setattr(processes, "_idle", queue.SimpleQueue())
+    predict = predictor()
+    swept = predict.sweep(**CONDITIONS, outputs=OUTPUTS, workers=2)
+    processes._close()
+    assert None in sizes
+    assert processes.PIPE in sizes
+    assert swept.identical(predict.sweep(**CONDITIONS, outputs=OUTPUTS))
 
 
 def test_a_worker_that_dies_is_reported_and_its_block_evaluated_again(tmp_path: Path) -> None:

@@ -9,10 +9,11 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
+from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.uncertainty.specification import UncertainPoint
 
 RIG = wl.TwinDisc.suros()
-EPS = float(np.finfo(np.float64).eps)
 FULL_SLIP: Any = {"max_pressure": Q(1500, "MPa"), "creepage": Q(3, "%"), "friction_coefficient": 0.4}
 
 
@@ -42,16 +43,23 @@ def kth_global(k: float) -> float:
     return 7850.0 * k * (np.pi / 4 * 1500e6) * 0.01 / 2.625e9 * 1e3
 
 
-def test_a_uniform_parameter_of_a_linear_law_gives_a_uniform_rate() -> None:
+@pytest.mark.validates(
+    "fitting",
+    "A uniform parameter of a linear law: median and interval",
+    source="the quantiles of a uniform distribution",
+    held_to="{parts:g} of the samples' parts of the range",
+    parts=2.0,
+)
+def test_a_uniform_parameter_of_a_linear_law_gives_a_uniform_rate(parts: float) -> None:
     u = (GLOBAL | linear).uncertainty(**FULL_SLIP, law={"first": wl.uniform("2 ug/m/N", "6 ug/m/N")}, samples=1024)
     at = [float(plain((GLOBAL | linear.model_copy(update={"first": Q(f, "ug/m/N")}))(**FULL_SLIP).wear_rate))
           for f in (2.0, 6.0)]  # fmt: skip
     low, high = (plain(end) for end in u.interval(0.9))
     # Each of 1024 equal parts of the range holds one sample, so that a quantile is within two parts of its place.
     part = (at[1] - at[0]) / 1024
-    assert low == pytest.approx(at[0] + 0.05 * (at[1] - at[0]), abs=2 * part)
-    assert high == pytest.approx(at[0] + 0.95 * (at[1] - at[0]), abs=2 * part)
-    assert plain(u.median) == pytest.approx(0.5 * (at[0] + at[1]), abs=2 * part)
+    assert low == pytest.approx(at[0] + 0.05 * (at[1] - at[0]), abs=parts * part)
+    assert high == pytest.approx(at[0] + 0.95 * (at[1] - at[0]), abs=parts * part)
+    assert plain(u.median) == pytest.approx(0.5 * (at[0] + at[1]), abs=parts * part)
 
 
 def test_each_sample_is_the_prediction_with_its_values() -> None:
@@ -74,7 +82,15 @@ def test_a_lognormal_value_has_its_median_and_its_factor() -> None:
     assert values == pytest.approx(stats.lognorm(np.log(1.1), scale=0.3).ppf([0.5, 0.9]), rel=16 * EPS)
 
 
-def test_variances_of_a_linear_law_add_up() -> None:
+@pytest.mark.validates(
+    "fitting",
+    "Sobol indices of a sum of two normal parameters",
+    source="variances add up",
+    held_to="{errors:g} standard errors, these below {most:g}",
+    errors=8.0,
+    most=0.01,
+)
+def test_variances_of_a_linear_law_add_up(errors: float, most: float) -> None:
     u = (GLOBAL | linear).uncertainty(
         **FULL_SLIP,
         law={"first": wl.normal("4 ug/m/N", "0.3 ug/m/N"), "second": wl.normal("2 ug/m/N", "0.4 ug/m/N")},
@@ -85,12 +101,19 @@ def test_variances_of_a_linear_law_add_up() -> None:
         # Variances of 0.3² and 0.4² in a sum. Eight sequences: with 7 degrees of freedom, 8 errors are passed by
         # chance once in 10⁴.
         due = np.array([0.09, 0.16]) / 0.25
-        assert np.all(np.abs(table[order] - due) < 8.0 * table[f"{order}_error"])
-        assert np.all(table[f"{order}_error"] < 0.01)
+        assert np.all(np.abs(table[order] - due) < errors * table[f"{order}_error"])
+        assert np.all(table[f"{order}_error"] < most)
     assert list(table.index) == ["first", "second"]
 
 
-def test_inputs_of_a_product_share_a_part_of_the_variance() -> None:
+@pytest.mark.validates(
+    "fitting",
+    "Sobol indices of a product of two uniform factors",
+    source="variance of a product, in closed form",
+    held_to="{errors:g} standard errors",
+    errors=8.0,
+)
+def test_inputs_of_a_product_share_a_part_of_the_variance(errors: float) -> None:
     # In full slip, in the mild regime, the rate is m_m times something: of two uniform factors on 1 ± h the variance
     # is v1 + v2 + v1 v2 with v = h²/3.
     u = USFD.uncertainty(
@@ -103,8 +126,8 @@ def test_inputs_of_a_product_share_a_part_of_the_variance() -> None:
     table = u.sobol()
     v = np.full(2, (1 / 3) ** 2 / 3)
     whole = v.sum() + v.prod()
-    assert np.all(np.abs(table["first_order"] - v / whole) < 8.0 * table["first_order_error"])
-    assert np.all(np.abs(table["total_order"] - (v + v.prod()) / whole) < 8.0 * table["total_order_error"])
+    assert np.all(np.abs(table["first_order"] - v / whole) < errors * table["first_order_error"])
+    assert np.all(np.abs(table["total_order"] - (v + v.prod()) / whole) < errors * table["total_order_error"])
 
 
 def test_the_published_range_of_kth_spans_its_band() -> None:
@@ -138,6 +161,12 @@ def test_known_conditions_keep_their_shape() -> None:
     assert plain(u.wear_rate)[1, 1] == pytest.approx(plain(one.wear_rate), rel=64 * EPS)
 
 
+@pytest.mark.validates(
+    "reproducibility",
+    "An uncertain prediction, made again with the same seed",
+    source="the first one",
+    held_to="to the bit",
+)
 def test_the_same_seed_gives_the_same_samples() -> None:
     def rates(seed: int) -> Any:
         uncertain = {**FULL_SLIP, "creepage": wl.uniform("1 %", "1.5 %")}
@@ -190,6 +219,10 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"creepage": wl.uniform("2 %", "1 %")}, r"creepage: the upper end of uniform\(2.0 %, 1.0 %\)"),
     ({"creepage": wl.uniform("1 mm", "2 mm")}, "creepage: .*not a ratio"),
     ({"creepage": wl.normal("1 %", "-1 %")}, "creepage: the standard deviation"),
+    ({"creepage": wl.normal("1 %", "0 %")}, r"creepage: the standard deviation of normal\(1.0 %, 0.0 %\) must be pos"),
+    ({"friction_coefficient": wl.normal(0.3, 0.0)}, "friction_coefficient: must be a positive finite number, got 0"),
+    ({"creepage": wl.lognormal("0 %", 1.2)}, r"creepage: the median of lognormal\(0.0 %, 1.2\) must be positive"),
+    ({"law": {"m_m": wl.lognormal("-1 ug/m/N", 1.2)}}, r"m_m: the median of lognormal\(-1.0 µg/m/N, 1.2\) must be pos"),
     (
         {"creepage": wl.uniform("1 %", "200 %")},
         "creepage: must not exceed 1 in magnitude(.|\n)*samples of its distribution",
@@ -253,4 +286,46 @@ def test_the_only_input_explains_all_of_the_variance() -> None:
         "first_order_error": 0.0,
         "total_order": 1.0,
         "total_order_error": 0.0,
+    }
+
+
+def test_known_conditions_whose_shapes_do_not_fit_are_named_with_the_shapes_they_were_given_in() -> None:
+    u = USFD.uncertainty(
+        max_pressure=Q([1000.0, 1500.0], "MPa"),
+        creepage=Q([1.0, 2.0, 3.0], "%"),
+        friction_coefficient=wl.uniform(0.3, 0.5),
+        samples=4,
+    )
+    with pytest.raises(wl.ConditionsError, match=r"do not broadcast: max_pressure \(2,\), creepage \(3,\)$"):
+        u.median  # noqa: B018
+
+
+def test_a_wrong_known_condition_is_not_laid_to_the_samples() -> None:
+    uncertain: Any = {"law": {"m_m": wl.uniform("4 ug/m/N", "6 ug/m/N")}}
+    with pytest.raises(wl.UnitError, match=r"creepage: must not exceed 1 in magnitude, got 200\.0 %") as refusal:
+        USFD.uncertainty(**{**FULL_SLIP, "creepage": "200 %"}, **uncertain).median  # noqa: B018
+    assert "samples" not in str(refusal.value)
+
+
+def test_a_figure_along_two_axes_is_refused_with_their_names() -> None:
+    u = USFD.uncertainty(
+        max_pressure=Q([[1000.0], [1500.0]], "MPa"),
+        creepage=Q([1.0, 2.0, 3.0], "%"),
+        friction_coefficient=wl.uniform(0.3, 0.5),
+        samples=4,
+    )
+    with pytest.raises(wl.InputError, match=r"needs one condition with several values, .* are max_pressure, creepage"):
+        u.plot()
+
+
+def test_every_distribution_of_a_case_is_the_one_of_python() -> None:
+    table: Any = {
+        "normal_force": {"normal": ["5 kN", "0.2 kN"]},
+        "creepage": {"uniform": ["1 %", "2 %"]},
+        "friction_coefficient": {"lognormal": [0.4, 1.2]},
+    }
+    assert {name: str(given) for name, given in UncertainPoint(**table).conditions().items()} == {
+        "normal_force": "normal(5.0 kN, 0.2 kN)",
+        "creepage": "uniform(1.0 %, 2.0 %)",
+        "friction_coefficient": "lognormal(0.4, 1.2)",
     }

@@ -6,17 +6,18 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Iterator
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import pint
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import TypeAdapter
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw.units import coefficient, from_si, real_array, text_of
+from wearlaw.units import coefficient, from_si, in_unit, real_array, shortened, text_of
 
 LENGTH = wl.Unit("mm")
 CREEPAGE = wl.Unit("", positive=False, limit=1.0)
@@ -181,6 +182,7 @@ def test_wrong_length_is_refused_with_field_value_unit_and_fix(value: Any, said:
         ("0.01", "'0.01' is not a number with a unit"),
         ("150 %", "must not exceed 1 in magnitude, got 150.0 %"),
         (Q(-1.0001, ""), "must not exceed 1 in magnitude, got -1.000"),
+        (Q([100.0, 150.0], "%"), "must not exceed 1 in magnitude, got 150.0 % at index [1]"),
         (Q(1, "mm"), "got 1.000 mm, which is not a ratio"),
     ],
 )
@@ -200,6 +202,36 @@ def test_infinity_is_accepted_only_where_it_is_allowed() -> None:
     assert wl.Unit("mm", infinite=True).si("inf mm", "diameter") == np.inf
     with pytest.raises(wl.UnitError, match="must be greater than zero, got -inf mm"):
         wl.Unit("mm", infinite=True).si("-inf mm", "diameter")
+
+
+@pytest.mark.parametrize("unit", ["mm", ""])
+def test_the_example_in_the_schema_is_one_of_the_unit(unit: str) -> None:
+    (example,) = TypeAdapter(Annotated[wl.Quantity, wl.Unit(unit)]).json_schema()["examples"]
+    assert wl.Unit(unit).si(example, "x") == wl.Unit(unit).si(Q(1.0, unit), "x")
+
+
+def test_arrays_without_entries_are_taken() -> None:
+    assert LENGTH.si(Q([], "mm"), "x").shape == (0,)
+    assert coefficient([], "friction_coefficient").shape == (0,)
+
+
+def test_a_limit_is_in_the_unit_that_is_due() -> None:
+    two = wl.Unit("mm", positive=False, limit=2.0)
+    assert two.si("1999 um", "x") == pytest.approx(1.999e-3, rel=4 * np.finfo(float).eps)
+    with pytest.raises(wl.UnitError, match="must not exceed 2 mm in magnitude, got -2100 µm"):
+        two.si("-2100 um", "x")
+
+
+@pytest.mark.parametrize("text", ["inf mm", "-inf mm"])
+def test_infinity_of_either_sign_is_refused_where_the_sign_is_free(text: str) -> None:
+    with pytest.raises(wl.UnitError, match=f"must be finite, got {text}"):
+        wl.Unit("mm", positive=False).si(text, "x")
+    assert np.isinf(wl.Unit("mm", positive=False, infinite=True).si(text, "x"))
+
+
+def test_a_value_is_shown_whole_up_to_sixty_characters() -> None:
+    assert shortened("x" * 58) == f"'{'x' * 58}'"
+    assert shortened("x" * 59) == f"'{'x' * 56}..."
 
 
 @pytest.mark.parametrize(("unit", "due"), [("degC", "K"), ("degF", "K"), ("dB", ""), ("dBm", "W")])
@@ -295,6 +327,12 @@ def test_from_si_undoes_si(value: float, unit: str) -> None:
     assert isinstance(back.magnitude, float)
 
 
+def test_si_floats_are_written_in_a_unit() -> None:
+    np.testing.assert_allclose(in_unit(np.array([0.047, 2.0]), "mm"), [47.0, 2000.0], rtol=2 * np.finfo(float).eps)
+    values = np.array([0.047])
+    assert in_unit(values, "m") is values
+
+
 @pytest.mark.parametrize(
     ("value", "said"),
     [
@@ -352,3 +390,13 @@ def test_powers_that_no_unit_has_are_refused_and_not_computed(unit: str) -> None
 @pytest.mark.parametrize("unit", ["N/mm^2", "ug/m/mm**2", "m**0.3333", "(m/s)**2", "1/s", "µg·m⁻¹", "m^-1*s^-2", "mm²"])
 def test_powers_of_units_are_taken(unit: str) -> None:
     assert Q(1.0, unit).magnitude == 1.0
+
+
+def test_a_field_without_its_unit_is_refused_with_the_unit_to_give() -> None:
+    with pytest.raises(wl.ConfigurationError, match=r"diameter: .*give it in mm"):
+        wl.Disc(diameter=47, material=wl.steel())  # type: ignore[arg-type]
+
+
+def test_a_field_takes_one_value() -> None:
+    with pytest.raises(wl.ConfigurationError, match=r"diameter: must be one value, got an array of shape \(1,\)"):
+        wl.Disc(diameter=Q([47.0], "mm"), material=wl.steel())

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.errors import InputError
 from wearlaw.integrate import BLOCK, integrate_wear
@@ -16,7 +17,6 @@ from wearlaw.parameters import changed, number_in_si, number_like, numbers, per_
 from wearlaw.varying import integrate_varying
 
 RIG = wl.TwinDisc.suros()
-EPS = float(np.finfo(np.float64).eps)
 
 
 class Stepped(wl.WearLaw):

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.strategies import EPS
 from wearlaw import Q
-
-EPS = float(np.finfo(np.float64).eps)
 
 GIVEN: dict[str, Any] = {
     "wheel_radius": Q(460, "mm"),
@@ -147,6 +146,12 @@ def test_only_models_of_elliptic_contact_follow_it() -> None:
 def test_a_line_model_given_an_ellipse_says_so() -> None:
     with pytest.raises(wl.CompositionError, match="contact model 'exact' does not solve elliptic contacts, only line"):
         wl.contact_model("exact").solve(rig().problem(**CONDITIONS))
+
+
+def test_an_elliptic_model_given_a_line_says_so() -> None:
+    line = wl.TwinDisc.suros().problem(max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.3)
+    with pytest.raises(wl.CompositionError, match="contact model 'polach' does not solve line contacts, only elliptic"):
+        wl.contact_model("polach").solve(line)
 
 
 def test_what_only_knows_discs_says_so() -> None:

@@ -47,6 +47,18 @@ def of_ratio(axis_ratio: float, poisson_ratio: float, **changes: Any) -> wl.Elli
     return ellipse(a=Q(6 * root, "mm"), b=Q(6 / root, "mm"), poisson_ratio=poisson_ratio, **changes)
 
 
+def initial_slopes(model: wl.ContactModel, axis_ratio: float, poisson_ratio: float) -> Any:
+    """Return Fx, Fy and Mz, a row each for ξ, η and φ√(ab) of 1e-9, over G ab times that, Mz also over √(ab).
+
+    By Kalker's linear theory they are [[C11, 0, 0], [0, C22, -C23], [0, C23, C33]].
+    """
+    size, small = 6e-3, 1e-9
+    causes = ({"longitudinal_creepage": small}, {"lateral_creepage": small}, {"spin": small / size})
+    found = [model.creep_forces(of_ratio(axis_ratio, poisson_ratio, **cause)) for cause in causes]
+    forces = np.array([[of.longitudinal, of.lateral, of.spin_moment / size] for of in found])
+    return forces / (80e9 * size**2 * small)
+
+
 def limit(problem: wl.EllipticProblem) -> Any:
     """Return μN [N]."""
     return problem.friction_coefficient * problem.normal_force

@@ -1,3 +1,5 @@
+"""The BRR law, against Table 1 of Tassini et al. (2010)."""
+
 from __future__ import annotations
 
 import dataclasses
@@ -33,18 +35,33 @@ def section(wear_index: float) -> float:
     return 25.0 if wear_index < 200.0 else 1.19 * wear_index - 154.0
 
 
+@pytest.mark.validates(
+    "wear-laws",
+    "BRR as a rate: area of the section times πD and the density",
+    source="Tassini et al. 2010, Table 1; Pearce and Sherratt 1991",
+    held_to="{roundings} ε, relative",
+    roundings=32,
+)
 @given(st.floats(0.0, 2000.0))
-def test_the_rate_is_the_section_of_table_1_around_the_wheel(wear_index: float) -> None:
+def test_the_rate_is_the_section_of_table_1_around_the_wheel(roundings: int, wear_index: float) -> None:
     # area × πD is the volume per km rolled; mm³/km × kg/m³ is 1e-12 kg/m, on 1e-6 m²
     expected = 7850.0 * math.pi * section(wear_index) * 1e-12 / 1e-6
-    assert rate(BRR, wear_index) == pytest.approx(expected, rel=32 * EPS, abs=1e-300)
+    assert rate(BRR, wear_index) == pytest.approx(expected, rel=roundings * EPS, abs=1e-300)
 
 
-def test_the_borders_belong_to_the_upper_regimes() -> None:
+@pytest.mark.validates(
+    "wear-laws",
+    "BRR is continuous at 100 N and jumps by 84/25 at 200 N, as published",
+    source="Tassini et al. 2010, Table 1",
+    held_to="{smooth} ε and {jump} ε, relative",
+    smooth=8,
+    jump=64,
+)
+def test_the_borders_belong_to_the_upper_regimes(smooth: int, jump: int) -> None:
     below, at = (rate(BRR, float(w)) for w in around(100.0))
-    assert at == pytest.approx(below, rel=8 * EPS)
+    assert at == pytest.approx(below, rel=smooth * EPS)
     below, at = (rate(BRR, float(w)) for w in around(200.0))
-    assert at / below == pytest.approx(84.0 / 25.0, rel=64 * EPS)
+    assert at / below == pytest.approx(84.0 / 25.0, rel=jump * EPS)
 
 
 def test_only_the_published_jump_is_declared() -> None:
@@ -86,6 +103,13 @@ def test_parameters_of_your_own_move_the_law() -> None:
     assert rate(law, 10.0) == pytest.approx(7850.0 * math.pi * 2.0 * 1e-6, rel=32 * EPS)
     assert rate(law, 159.0) == pytest.approx(7850.0 * math.pi * 25.0 * 1e-6, rel=32 * EPS)
     assert rate(law, 161.0) == pytest.approx(7850.0 * math.pi * (1.19 * 161.0 - 154.0) * 1e-6, rel=64 * EPS)
+
+
+def test_the_plateau_may_have_no_width() -> None:
+    law = wl.wear_law("brr", severe_limit="100 N", severe_offset="90 mm^3/km")
+    below, at = (rate(law, float(w)) / (7850.0 * math.pi * 1e-6) for w in around(100.0))
+    assert below == pytest.approx(25.0, rel=32 * EPS)
+    assert at == pytest.approx(1.19 * 100.0 - 90.0, rel=64 * EPS)
 
 
 @pytest.mark.parametrize(

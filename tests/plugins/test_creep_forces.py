@@ -49,6 +49,12 @@ def si(quantity: wl.Quantity, unit: str) -> Array:
     return np.asarray(quantity.to(unit).magnitude)
 
 
+@pytest.mark.validates(
+    "invariants",
+    "Creep-force models: mirrored and reversed creepages",
+    source="symmetry",
+    held_to="to the bit",
+)
 @given(problem=ellipses())
 @every_model
 def test_mirrored_and_reversed_creepages_mirror_and_reverse_the_forces(

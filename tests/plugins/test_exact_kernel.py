@@ -59,11 +59,20 @@ def integrals() -> tuple[Array, Array, Array]:
     return reduced, level, np.array([each.excess(at) for each, at in zip(densities, level, strict=True)])
 
 
+@pytest.mark.validates(
+    "integration",
+    "The closed form of the energy that `exact` dissipates above a threshold",
+    source="mpmath quadrature in 50 digits (Johnson 1985, section 8.3)",
+    held_to="{share:.1e} of the whole dissipation",
+    share=ROUNDINGS,
+)
 @every_copy
-def test_the_energy_above_a_threshold_is_its_integral(copy: str, integrals: tuple[Array, Array, Array]) -> None:
+def test_the_energy_above_a_threshold_is_its_integral(
+    copy: str, integrals: tuple[Array, Array, Array], share: float
+) -> None:
     reduced, level, expected = integrals
     error = np.abs(apply(copy, reduced, level) - expected).astype(float)
-    assert (error <= ROUNDINGS * whole(reduced)).all()
+    assert (error <= share * whole(reduced)).all()
     assert np.ptp(expected.astype(float) / whole(reduced)) > 0.99  # thresholds leave all of it, and nearly nothing
 
 
@@ -75,6 +84,14 @@ def test_what_is_not_above_the_maximum_is_zero(copy: str) -> None:
     gap = 10.0 ** random.uniform(math.log10(8.0 * EPS), 3.0, reduced.size)
     level = np.array([density(d).peak for d in reduced]) * (1.0 + gap)
     assert (apply(copy, reduced, level) == 0.0).all()
+
+
+@every_copy
+def test_next_to_the_maximum_rounding_makes_nothing_negative(copy: str) -> None:
+    random = np.random.default_rng(47)
+    reduced = crowded(random, 500)
+    level = np.array([density(d).peak for d in reduced]) * (1.0 - 10.0 ** random.uniform(-14.0, -8.0, reduced.size))
+    assert (apply(copy, reduced, level) >= 0.0).all()
 
 
 @every_copy

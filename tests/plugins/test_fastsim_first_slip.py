@@ -58,15 +58,22 @@ def is_root(found: float, growth: tuple[float, float, float], elliptic: bool, to
         return beyond(here * (1 - tolerance)) and not beyond(here * (1 + tolerance))
 
 
+@pytest.mark.validates(
+    "integration",
+    "Where a strip of FASTSIM first slips, down to a creepage of 1e-7",
+    source="the sign of |q|² - g² in 60 digits",
+    held_to="{roundings} ε, relative",
+    roundings=50,
+)
 @BOUNDS
 @pytest.mark.parametrize("size", [1e-7, 1e-5, 1e-2])
-def test_little_creepage_has_its_short_slip_zone_to_rounding(elliptic: bool, size: float) -> None:
+def test_little_creepage_has_its_short_slip_zone_to_rounding(elliptic: bool, size: float, roundings: int) -> None:
     # V/U is a difference of numbers near 1 in the cubic, as V is one of D and RS in the quadratic
     random = np.random.default_rng(2)
     p, r, s = (random.uniform(-1.0, 1.0, 40) for _ in range(3))
     growth = Growth(size * p, size * r, s)
     for found, *values in zip(first_slip(growth, elliptic), *growth, strict=True):
-        assert is_root(found, tuple(values), elliptic, 50 * EPS)  # some ten operations, among them squares
+        assert is_root(found, tuple(values), elliptic, roundings * EPS)  # some ten operations, among them squares
 
 
 def test_parabola_has_no_singularity_where_spin_alone_grows_as_fast_as_the_bound() -> None:

@@ -76,8 +76,15 @@ def limit(patches: Ellipses) -> Array:
     return bound
 
 
+@pytest.mark.validates(
+    "elliptic-contact",
+    "FASTSIM on a circle, pure and combined creepages and spin, both bounds: forces, moment and Tγ",
+    source="CONTACT's FASTSIM on 200 cells across, flexibilities not blended",
+    held_to="{within:g} of μN, and of μN √(ab) for Mz (its cells)",
+    within=0.01,
+)
 @BOUNDS
-def test_forces_meet_those_of_contact(elliptic: bool) -> None:
+def test_forces_meet_those_of_contact(elliptic: bool, within: float) -> None:
     table = rows("hertz3d_reference.csv")
     method = "nb200" if elliptic else "nbpar200"  # 200 cells across, flexibilities not blended
     column = {name: np.array([float(row[name]) for row in table]) for name in table[0] if name not in ("aob", "case")}
@@ -90,16 +97,24 @@ def test_forces_meet_those_of_contact(elliptic: bool) -> None:
     patches = ellipses(xi, eta, phi, elliptic=elliptic, a=6e-3, b=6e-3, centre=centre, **flexibilities)
     found = solve(patches, 30, 3, 24).forces
     # 200 cells across leave an error of first order: less than 1 % of μN, and of μN √(ab) in the moment
-    np.testing.assert_allclose(found.longitudinal / load, -column[f"{method}_fx"], atol=0.01)
-    np.testing.assert_allclose(found.lateral / load, -column[f"{method}_fy"], atol=0.01)
+    np.testing.assert_allclose(found.longitudinal / load, -column[f"{method}_fx"], atol=within)
+    np.testing.assert_allclose(found.lateral / load, -column[f"{method}_fy"], atol=within)
     power = xi * found.longitudinal + eta * found.lateral + phi * found.spin_moment
-    np.testing.assert_allclose(power, column[f"{method}_Tgamma"], atol=0.01 * load * (xi + eta + phi * 6e-3).max())
+    np.testing.assert_allclose(power, column[f"{method}_Tgamma"], atol=within * load * (xi + eta + phi * 6e-3).max())
     moment = (column[f"{method}_Tgamma"] + load * (xi * column[f"{method}_fx"] + eta * column[f"{method}_fy"]))[phi > 0]
-    np.testing.assert_allclose(found.spin_moment[phi > 0], moment / phi[phi > 0], atol=0.01 * load * 6e-3)
+    np.testing.assert_allclose(found.spin_moment[phi > 0], moment / phi[phi > 0], atol=within * load * 6e-3)
 
 
+@pytest.mark.validates(
+    "elliptic-contact",
+    "FASTSIM with lateral creepage against spin at a/b = 2, both bounds",
+    source="CONTACT's FASTSIM, example fastsim, on 200 cells across",
+    held_to="{force:g} of μN and μN √(ab); the power {power_within:g}, relative",
+    force=0.01,
+    power_within=0.02,
+)
 @BOUNDS
-def test_lateral_creepage_against_spin_meets_contact(elliptic: bool) -> None:
+def test_lateral_creepage_against_spin_meets_contact(elliptic: bool, force: float, power_within: float) -> None:
     bound = "elliptic" if elliptic else "parabolic"
     coarse, fine = (row for row in rows("fastsim_spin_case.csv") if row["bound"] == bound)
     load = 0.3 * 82e3
@@ -117,15 +132,22 @@ def test_lateral_creepage_against_spin_meets_contact(elliptic: bool) -> None:
     found = solve(patches, 30, 3, 24)
     assert found.forces.longitudinal[0] == pytest.approx(0.0, abs=1e-9 * load)
     # 200 cells across, as above
-    assert found.forces.lateral[0] == pytest.approx(-float(fine["fy"]), abs=0.01 * load)
-    assert found.forces.spin_moment[0] == pytest.approx(-float(fine["mz"]) * 1e-3, abs=0.01 * load * 32e-6**0.5)
+    assert found.forces.lateral[0] == pytest.approx(-float(fine["fy"]), abs=force * load)
+    assert found.forces.spin_moment[0] == pytest.approx(-float(fine["mz"]) * 1e-3, abs=force * load * 32e-6**0.5)
     # the sum over cells is low in first order, by 10 % and 2 %: so its limit is known to a share of these 2 %
     power = (5.0 * float(fine["power"]) - float(coarse["power"])) / 4.0
-    assert 30.0 * found.power[0] == pytest.approx(-power, rel=0.02)
+    assert 30.0 * found.power[0] == pytest.approx(-power, rel=power_within)
 
 
+@pytest.mark.validates(
+    "elliptic-contact",
+    "FASTSIM at vanishing creepage: the slopes of Fx, Fy and Mz",
+    source="integrals of the sticking traction by hand (Kalker 1982)",
+    held_to="{within:.1e} of the largest force (the trapezoidal rule over strips)",
+    within=(np.pi / 11) ** 4 / 60,
+)
 @BOUNDS
-def test_little_creepage_gives_the_slopes_of_the_linear_theory(elliptic: bool) -> None:
+def test_little_creepage_gives_the_slopes_of_the_linear_theory(elliptic: bool, within: float) -> None:
     size = 1e-8  # the slip zone, which the slopes lack, is this short over a
     patches = ellipses([size, 0, 0, size], [0, size, 0, -size], [0, 0, size / 6e-3, size], elliptic=elliptic)
     a, b, l1, l2, l3 = (CASE[name] for name in ("a", "b", "l1", "l2", "l3"))
@@ -136,19 +158,25 @@ def test_little_creepage_gives_the_slopes_of_the_linear_theory(elliptic: bool) -
     scale = 8.0 * a**2 * b / (3.0 * min(l1, l2)) * size
     turning = 8.0 * a**2 * b**3 / (15.0 * l3) * phi - np.pi * a**3 * b / (4.0 * l2) * eta
     # sums of sin³ or less over angles that are even by h have the error h⁴/60 of the trapezoidal rule, of 4/3
-    tolerance = (np.pi / 11) ** 4 / 60
-    np.testing.assert_allclose(found.longitudinal, along, atol=tolerance * scale)
-    np.testing.assert_allclose(found.lateral, across, atol=tolerance * scale)
-    np.testing.assert_allclose(found.spin_moment, turning, atol=tolerance * scale * a)
+    np.testing.assert_allclose(found.longitudinal, along, atol=within * scale)
+    np.testing.assert_allclose(found.lateral, across, atol=within * scale)
+    np.testing.assert_allclose(found.spin_moment, turning, atol=within * scale * a)
 
 
+@pytest.mark.validates(
+    "invariants",
+    "A mirrored patch has the mirrored solution",
+    source="symmetry",
+    held_to="{roundings} ε of the largest value",
+    roundings=1000,
+)
 @BOUNDS
-def test_mirrored_patch_has_the_mirrored_solution(elliptic: bool) -> None:
+def test_mirrored_patch_has_the_mirrored_solution(elliptic: bool, roundings: int) -> None:
     patches = sample(elliptic)
     mirrored = dataclasses.replace(patches, lateral_creepage=-patches.lateral_creepage, spin=-patches.spin)
     one, other = solve(patches), solve(mirrored)
     # Rounding of some ten operations, which the march through 12 nodes, where w is small, passes on without growth.
-    tolerance = 1000 * EPS
+    tolerance = roundings * EPS
     for name, sign in (("traction_x", 1), ("traction_y", -1), ("slip_x", 1), ("slip_y", -1)):
         here, there = getattr(one.fields, name), sign * getattr(other.fields, name)[..., ::-1]
         np.testing.assert_allclose(here, there, atol=tolerance * np.abs(here).max())
@@ -177,13 +205,20 @@ def test_parabola_slips_everywhere_beyond_its_last_creepage() -> None:
     np.testing.assert_allclose(np.hypot(found.forces.longitudinal, found.forces.lateral), limit(patches), rtol=1e-12)
 
 
+@pytest.mark.validates(
+    "elliptic-contact",
+    "Without spin the cells of FASTSIM dissipate ξFx + ηFy",
+    source="identity ∫ q·dq/dx dx = 0 along a strip",
+    held_to="{within:g}, relative",
+    within=1e-12,
+)
 @BOUNDS
-def test_energy_is_that_of_the_forces_without_spin(elliptic: bool) -> None:
+def test_energy_is_that_of_the_forces_without_spin(elliptic: bool, within: float) -> None:
     patches = sample(elliptic, spin=False)
     found = solve(patches, slip=12)
     work = patches.longitudinal_creepage * found.forces.longitudinal + patches.lateral_creepage * found.forces.lateral
     # exact strip by strip, but for Gauss's quadrature of sines and cosines over at most π: (π/4)^24 / 24!
-    np.testing.assert_allclose(found.power, work, rtol=1e-12)
+    np.testing.assert_allclose(found.power, work, rtol=within)
 
 
 @BOUNDS
@@ -238,22 +273,42 @@ def differences(patches: Ellipses, shares: Array, counts: tuple[int, ...]) -> tu
     return found, slips
 
 
+@pytest.mark.validates(
+    "elliptic-contact",
+    "Traction of FASTSIM with spin, from little creepage to full slip",
+    source="the published march, written anew, on 8000 and 16000 cells, extrapolated",
+    held_to="{coarse_within:g} of the bound on eight nodes, in order {order:g} at least",
+    coarse_within=0.002,
+    order=1.6,
+)
 @BOUNDS
-def test_traction_meets_the_limit_of_the_plain_march_in_second_order(elliptic: bool) -> None:
+def test_traction_meets_the_limit_of_the_plain_march_in_second_order(
+    elliptic: bool, coarse_within: float, order: float
+) -> None:
     (coarse, fine), _ = differences(sample(elliptic, count=12), even_strips(7)[0], (8, 32))
-    assert coarse < 2e-3
-    assert fine < coarse / 4**1.6  # second order would be 16; there are strips with w near zero among them
+    assert coarse < coarse_within
+    assert fine < coarse / 4**order  # second order would be 16; there are strips with w near zero among them
 
 
+@pytest.mark.validates(
+    "elliptic-contact",
+    "Strips of FASTSIM that slip, stick and slip again",
+    source="the published march, written anew, on 8000 and 16000 cells, extrapolated",
+    held_to="{coarse_within:g} of the bound on eight nodes, in order {order:g} at least",
+    coarse_within=0.003,
+    order=1.6,
+)
 @BOUNDS
-def test_strips_that_stick_again_meet_the_limit_of_the_plain_march_in_second_order(elliptic: bool) -> None:
+def test_strips_that_stick_again_meet_the_limit_of_the_plain_march_in_second_order(
+    elliptic: bool, coarse_within: float, order: float
+) -> None:
     patches = ellipses([1e-4, -2e-4], [1e-3, 1e-4], [1.5, 2.0], elliptic=elliptic)
     (coarse, fine), slips = differences(patches, np.array([-0.01, 0.02]), (8, 32))
     changes = np.diff(slips[2:].astype(int), axis=0)  # in the first cell the parabola itself slips or not
     assert (changes == -1).any(axis=0).all()
     assert slips[-1].all()
-    assert coarse < 3e-3
-    assert fine < coarse / 4**1.6
+    assert coarse < coarse_within
+    assert fine < coarse / 4**order
 
 
 @BOUNDS
@@ -271,11 +326,11 @@ def test_strips_that_stick_again_have_slip_stick_and_slip(elliptic: bool) -> Non
 def test_a_strip_is_the_same_alone_and_among_others(elliptic: bool) -> None:
     patches = ellipses([1e-4, 3e-3, -2e-4], [1e-3, 1e-3, 1e-4], [1.5, 0.2, 2.0], elliptic=elliptic)  # two stick again
     shares = np.array([-0.7, -0.01, 0.02, 0.3])
-    together = strips(patches, shares)
+    together = strips(patches, shares, 3, 8)
     for p in range(3):
         one = dataclasses.replace(patches, **{f.name: getattr(patches, f.name)[p : p + 1] for f in FIELDS})
         for j in range(4):
-            alone = strips(one, shares[j : j + 1])
+            alone = strips(one, shares[j : j + 1], 3, 8)
             for name in ("x", "length", "traction_x", "traction_y", "slip_x", "slip_y", "bound"):
                 there = getattr(together, name)[p, :, j]
                 np.testing.assert_allclose(
@@ -283,8 +338,15 @@ def test_a_strip_is_the_same_alone_and_among_others(elliptic: bool) -> None:
                 )
 
 
+@pytest.mark.validates(
+    "elliptic-contact",
+    "A strip with the flexibility of a line is the line contact, both bounds",
+    source="closed forms of line contact (Tassini et al. 2010, section 3.2.2)",
+    held_to="{within:g}, relative",
+    within=1e-12,
+)
 @BOUNDS
-def test_centre_strip_with_the_flexibility_of_a_line_is_the_line_contact(elliptic: bool) -> None:
+def test_centre_strip_with_the_flexibility_of_a_line_is_the_line_contact(elliptic: bool, within: float) -> None:
     a, modulus, friction = CASE["a"], 1.12e11, 0.3
     p0 = CASE["centre"] / friction
     radius = modulus * a / (2.0 * p0)
@@ -297,11 +359,21 @@ def test_centre_strip_with_the_flexibility_of_a_line_is_the_line_contact(ellipti
         expected = CASE["centre"] * a * (np.arctan(reduced) + reduced / (1.0 + reduced**2))
     else:  # a parabola of the same height: μP [1 - (1-d)³], d = κ/2, where μP = 4/3 a μp0
         expected = 4.0 / 3.0 * a * CASE["centre"] * (1.0 - (1.0 - np.minimum(reduced / 2.0, 1.0)) ** 3)
-    np.testing.assert_allclose(force, expected, rtol=1e-12)
+    np.testing.assert_allclose(force, expected, rtol=within)
 
 
+@pytest.mark.validates(
+    "integration",
+    "Forces of FASTSIM on 8 strips, and how fast they converge",
+    source="400 strips",
+    held_to="rms {rms:g} of μN; {gain:g} times less on eight times as many",
+    rms=0.001,
+    gain=64.0,
+)
 @BOUNDS
-def test_error_of_the_forces_falls_in_second_order_with_the_number_of_strips(elliptic: bool) -> None:
+def test_error_of_the_forces_falls_in_second_order_with_the_number_of_strips(
+    elliptic: bool, rms: float, gain: float
+) -> None:
     patches = sample(elliptic)
     reference = solve(patches, 400).forces
     errors = []
@@ -309,8 +381,8 @@ def test_error_of_the_forces_falls_in_second_order_with_the_number_of_strips(ell
         found = solve(patches, count).forces
         off = np.hypot(found.longitudinal - reference.longitudinal, found.lateral - reference.lateral)
         errors.append(float(np.sqrt(np.mean((off / limit(patches)) ** 2))))
-    assert errors[0] < 1e-3
-    assert errors[-1] < errors[0] / 8**2
+    assert errors[0] < rms
+    assert errors[-1] < errors[0] / gain
 
 
 def check_laws(patches: Ellipses, shares: Array) -> Array:
@@ -338,6 +410,12 @@ def check_laws(patches: Ellipses, shares: Array) -> Array:
     return again
 
 
+@pytest.mark.validates(
+    "invariants",
+    "FASTSIM on strips: |q| ≤ bound, no slip below it, slip along the traction, creepages from 1e-12 to 1",
+    source="Coulomb's law",
+    held_to="a hundred roundings",
+)
 @BOUNDS
 def test_fields_keep_their_laws_at_any_creepage(elliptic: bool) -> None:
     random = np.random.default_rng(5)

@@ -1,5 +1,8 @@
+"""The one cell of patch means, against the models that its total is from."""
+
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -49,8 +52,6 @@ def test_the_total_is_that_of_the_model_it_is_taken_from(name: str, problem: wl.
 def test_a_measured_traction_coefficient_takes_the_place_of_the_theory(
     problem: wl.LineProblem, coefficient: float, sign: float
 ) -> None:
-    import dataclasses
-
     measured = dataclasses.replace(
         with_creepage(problem, sign * float(problem.creepage)), traction_coefficient=np.array(coefficient)
     )
@@ -70,6 +71,11 @@ def test_the_patch_means_of_a_local_model_are_the_global_contact() -> None:
     for field in ("pressure", "traction", "slip", "area", "tangential_force", "wear_index"):
         # the means sum the nodes of the patch
         assert getattr(means, field) == pytest.approx(getattr(one_cell, field), rel=64 * EPS), field
+
+
+def test_a_pipeline_hands_a_measured_traction_coefficient_on() -> None:
+    contact = (SUROS | wl.contact_model("global"))(creepage=Q(1, "%"), traction_coefficient=0.4, **CONDITIONS)  # type: ignore[arg-type]
+    assert contact.traction_coefficient.magnitude == pytest.approx(0.4, rel=4 * EPS)
 
 
 def test_a_local_model_refuses_a_measured_traction_coefficient() -> None:

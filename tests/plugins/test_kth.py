@@ -1,3 +1,5 @@
+"""The KTH map, against Table 2 of Tassini et al. (2010)."""
+
 from __future__ import annotations
 
 from typing import Any
@@ -32,13 +34,22 @@ def field_of(pressure: float, speed: float) -> int:
     return 1 if speed < 0.2 else 2 if speed < 0.7 else 3
 
 
+@pytest.mark.validates(
+    "wear-laws",
+    "KTH at a point: ρ k p s/H, in all fields of the map, at the ends and the middle of k",
+    source="Tassini et al. 2010, Table 2 (first row corrected) and eq. 15; Jendel 2002",
+    held_to="{roundings} ε, relative",
+    roundings=16,
+)
 @every_coefficient
 @given(pressure=st.floats(0.0, 4e9), slip=st.floats(0.0, 1.0))
-def test_the_rate_is_archards_law_with_the_k_of_the_map(coefficient: str, pressure: float, slip: float) -> None:
+def test_the_rate_is_archards_law_with_the_k_of_the_map(
+    coefficient: str, pressure: float, slip: float, roundings: int
+) -> None:
     rate = float(kth(coefficient).rate(contact_of(pressure=pressure, slip=slip))[0])
     # ρ k p s / H with H = 2.1 GPa / 0.8
     expected = 7850.0 * TABLE_2[coefficient][field_of(pressure, slip)] * pressure * slip / (2.1e9 / 0.8)
-    assert rate == pytest.approx(expected, rel=16 * EPS, abs=1e-290)  # the least floats have fewer digits
+    assert rate == pytest.approx(expected, rel=roundings * EPS, abs=1e-290)  # the least floats have fewer digits
 
 
 def test_the_density_is_that_of_the_contact_and_the_hardness_a_field() -> None:
@@ -132,3 +143,10 @@ def test_a_wrong_value_is_one_clear_error(options: dict[str, Any], message: str)
 def test_borders_of_slip_speed_in_the_wrong_order_are_refused() -> None:
     with pytest.raises(wl.ConfigurationError, match=r"upper_slip_speed must not lie below lower_slip_speed"):
         wl.wear_law("kth", lower_slip_speed="0.8 m/s")
+
+
+def test_severe_wear_may_have_no_width() -> None:
+    law = kth(lower_slip_speed="0.5 m/s", upper_slip_speed="0.5 m/s")
+    # the contact rolls at 1 m/s, and low and high speed share their k
+    below, at = law.rate(contact_of(slip=around(0.5)))
+    assert at == pytest.approx(below, rel=8 * EPS)

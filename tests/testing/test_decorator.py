@@ -92,3 +92,16 @@ def test_an_error_in_the_model_is_a_failure_that_names_it() -> None:
 
     with pytest.raises(AssertionError, match="the model raised ZeroDivisionError: by nothing"):
         Check("broken", "", broken)()
+
+
+def test_of_several_errors_of_a_model_the_first_is_the_failure() -> None:
+    def broken() -> None:
+        raise ExceptionGroup("", [ExceptionGroup("", [KeyError("a"), ValueError("b")]), TypeError("c")])
+
+    def failing() -> None:
+        raise ExceptionGroup("", [AssertionError("the rate falls"), ValueError("b")])
+
+    with pytest.raises(AssertionError, match=r"^the model raised KeyError: 'a'$"):
+        Check("broken", "", broken)()
+    with pytest.raises(AssertionError, match=r"^the rate falls$"):
+        Check("failing", "", failing)()

@@ -40,6 +40,12 @@ def made(mutant: Any) -> Any:
     return mutant(slope=wl.Q(7.0, "ug/m/N")) if issubclass(mutant, wrong_declarations.LosesField) else mutant()
 
 
+@pytest.mark.validates(
+    "invariants",
+    "The kit catches wrong models, each by the check that should",
+    source="models that break one law each",
+    held_to="every one is caught",
+)
 @pytest.mark.parametrize("mutant", WRONG, ids=lambda mutant: mutant.__name__)
 def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any) -> None:
     check = {check.name: check for check in checks(made(mutant))}[WRONG[mutant]]
@@ -48,6 +54,12 @@ def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any) -> Non
     assert len(str(failure.value)) > 10
 
 
+@pytest.mark.validates(
+    "invariants",
+    "No check of the kit passes everything",
+    source="models that break one law each",
+    held_to="every check catches one",
+)
 def test_every_check_of_an_invariant_catches_a_mutant() -> None:
     # Of the patch and of cells, with ramps, with fields at any position, and with cells and strips that can be refined:
     # between them they are given every check.

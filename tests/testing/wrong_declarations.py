@@ -159,6 +159,15 @@ class FallsWithSlip(Linear):
         return SLOPE * contact.wear_index_density / (1.0 + (10.0 * contact.slip) ** 2)
 
 
+class FallsWithSpeed(Linear):
+    """It says that it wears more where it slips faster, and wears less."""
+
+    monotone_in: ClassVar[tuple[str, ...]] = ("slip_speed",)
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return SLOPE * contact.wear_index_density / (1.0 + contact.slip_speed)
+
+
 class FallsDespiteDeclaration(Linear):
     """Less wear above 4 N/mm², continuously."""
 
@@ -168,9 +177,7 @@ class FallsDespiteDeclaration(Linear):
 
 
 class UnknownVariable(Linear):
-    """Monotone in what there is not."""
-
-    monotone_in: ClassVar[tuple[str, ...]] = ()
+    """Valid in a range of what there is not."""
 
     @property
     def valid_range(self) -> dict[str, tuple[float, float]]:
@@ -243,6 +250,7 @@ CAUGHT: dict[type[wl.WearLaw], str] = {
     RampWithoutBreakpoint: "ramps_sum_to_the_rate",
     NegativeThreshold: "ramps_sum_to_the_rate",
     FallsWithSlip: "is_monotone_as_declared",
+    FallsWithSpeed: "is_monotone_as_declared",
     FallsDespiteDeclaration: "is_monotone_as_declared",
     UnknownVariable: "declared_names_are_variables",
     Undocumented: "model_is_documented",

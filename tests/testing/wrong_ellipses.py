@@ -32,6 +32,11 @@ def times(contact: wl.EllipticContact, factor: Any) -> wl.EllipticContact:
     )
 
 
+def slipping(contact: wl.EllipticContact, factor: float) -> wl.EllipticContact:
+    """Return the contact with all slips multiplied."""
+    return contact.replaced(**{name: factor * getattr(contact, name) for name in ("slip", "slip_x", "slip_y")})
+
+
 class AxisTooMany(Spoilt):
     """The lateral force has an axis too many."""
 
@@ -128,7 +133,7 @@ class LeaksBetweenPoints(Spoilt):
 
 
 class TurnsTheProblem(Strips):
-    """Takes another spin in place."""
+    """Doubles the spin in place."""
 
     def solve_ellipse(self, problem: wl.EllipticProblem) -> wl.EllipticContact:
         contact = super().solve_ellipse(problem)
@@ -232,7 +237,7 @@ class SlipsTooFastInFullSlip(Spoilt):
     """A tenth too much slip."""
 
     def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
-        return contact.replaced(slip=1.1 * contact.slip, slip_x=1.1 * contact.slip_x, slip_y=1.1 * contact.slip_y)
+        return slipping(contact, 1.1)
 
 
 class FirstCellsStick(Spoilt):

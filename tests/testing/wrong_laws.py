@@ -217,7 +217,7 @@ class IntegerArithmetic(Linear):
 
 
 class PatchOnCells(Linear):
-    """States no scale, but reads the total of the patch."""
+    """States that it is for the whole patch, but takes cells."""
 
     scale: ClassVar[Literal["patch", "any"]] = "patch"
 

@@ -9,29 +9,29 @@ import numpy as np
 
 import wearlaw as wl
 from tests.testing.strips import Strips
-from tests.testing.wrong_ellipses import Spoilt, times
+from tests.testing.wrong_ellipses import Spoilt, slipping, times
 
 
 class LosesEnergyOfTranslation(Spoilt):
     """A tenth of the slip is missing."""
 
     def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
-        return contact.replaced(slip=0.9 * contact.slip, slip_x=0.9 * contact.slip_x, slip_y=0.9 * contact.slip_y)
+        return slipping(contact, 0.9)
 
 
 class LosesEnergyOnAnyStrips(Spoilt):
     """One per cent of the slip is missing, less than its accuracy, however fine the strips."""
 
     def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
-        return contact.replaced(slip=0.99 * contact.slip, slip_x=0.99 * contact.slip_x, slip_y=0.99 * contact.slip_y)
+        return slipping(contact, 0.99)
 
 
 class ForcesAreNoSumOnAnyStrips(Spoilt):
     """The forces are larger than the sum of the tractions by less than its accuracy, and the slip as much."""
 
     def spoilt(self, contact: wl.EllipticContact, problem: wl.EllipticProblem) -> wl.EllipticContact:
-        contact = contact.replaced(slip=1.01 * contact.slip, slip_x=1.01 * contact.slip_x, slip_y=1.01 * contact.slip_y)
-        return contact.replaced(force_x=1.01 * contact.force_x, force_y=1.01 * contact.force_y)
+        forces = {name: 1.01 * getattr(contact, name) for name in ("force_x", "force_y")}
+        return slipping(contact, 1.01).replaced(**forces)
 
 
 class RefinedHasAsManyStrips(Strips):
@@ -55,7 +55,7 @@ class StripsOfHalfTheWear(Strips):
     def on_strips(self, problem: wl.EllipticProblem, shares: Any) -> wl.EllipticContact | None:
         contact = super().on_strips(problem, shares)
         assert contact is not None
-        return contact.replaced(slip=0.5 * contact.slip, slip_x=0.5 * contact.slip_x, slip_y=0.5 * contact.slip_y)
+        return slipping(contact, 0.5)
 
 
 class StripsSomewhereElse(Strips):

@@ -1,0 +1,60 @@
+"""Fixtures that several test files share."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from matplotlib.figure import Figure
+
+import wearlaw as wl
+from tests.core.cases import InstallModel, installer
+from tests.core.distributions import Install, write_distribution
+from wearlaw import plugins
+from wearlaw.sweeping import points
+
+
+@pytest.fixture
+def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
+    """Give what installs a distribution of one plugin until the test ends."""
+    known = set(sys.modules)
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def write(name: str, source: str, version: str = "1.0") -> None:
+        write_distribution(tmp_path, name, source, version)
+        importlib.invalidate_caches()
+        plugins.installed.cache_clear()
+
+    plugins.installed.cache_clear()
+    yield write
+    for module in set(sys.modules) - known:
+        if (
+            getattr(sys.modules[module], "__file__", None)
+            and tmp_path in Path(str(sys.modules[module].__file__)).parents
+        ):
+            del sys.modules[module]
+    plugins.installed.cache_clear()
+
+
+@pytest.fixture
+def install_model(monkeypatch: pytest.MonkeyPatch) -> InstallModel:
+    """Give what puts a model among the installed ones until the test ends."""
+    return installer(monkeypatch)
+
+
+@pytest.fixture
+def blank_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave figures empty, whose drawing takes most of the time of a small run."""
+    monkeypatch.setattr("wearlaw.figures.drawing.draw", lambda _: Figure())
+
+
+@pytest.fixture
+def small_blocks(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Blocks of 24 points: 10 of them; without numba, which would be loaded in each worker."""
+    monkeypatch.setattr(points, "BLOCK", 30)
+    wl.accelerate(False)
+    yield
+    wl.accelerate(None)

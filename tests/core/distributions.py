@@ -1,0 +1,69 @@
+"""Distributions that are real folders, and what some of them hold."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+
+FIRST_PARTY_MODELS = {"exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins"}
+FIRST_PARTY_LAWS = {"brr", "kth", "usfd"}
+
+LAW = """
+    import wearlaw as wl
+
+    class Outside(wl.WearLaw):
+        name = "{name}"
+        source = "a test"
+
+        def rate(self, contact):
+            return 0.0 * contact.pressure
+
+    @wl.hookimpl
+    def wearlaw_wear_laws():
+        return [Outside]
+"""
+
+LAB = """
+    import wearlaw as wl
+
+    @wl.hookimpl
+    def wearlaw_parameter_sets():
+        fitted_for = wl.Calibration(
+            contact_model="exact",
+            scale="cells",
+            materials="two steels of a test",
+            stated_range=(("wear_index_density", "0 N/mm^2", "40 N/mm^2"),),
+            source="made up for a test",
+        )
+        return {
+            "lab_2026": wl.wear_law(
+                "usfd", m_m="6 ug/m/N", q_s="60 ug/m/mm^2", m_c="70 ug/m/N", tr_sc="80 N/mm^2", fitted_for=fitted_for
+            )
+        }
+
+    @wl.hookimpl
+    def wearlaw_materials():
+        soft = wl.steel(youngs_modulus="190 GPa", density="7800 kg/m^3")
+        return {"soft_steel": soft, "steel_of_rail_b": soft}
+
+    @wl.hookimpl
+    def wearlaw_cases():
+        return {"lab_study": "title = 'A study of the lab'"}
+
+    @wl.hookimpl
+    def wearlaw_tests():
+        return {"lab_tests": "creepage [%],max_pressure [MPa],wear_rate [ug/m/mm^2]\\n1,1500,30\\n"}
+"""
+
+Install = Callable[..., None]
+
+
+def write_distribution(folder: Path, name: str, source: str, version: str = "1.0") -> None:
+    """Write an installed distribution with one plugin, a module of the distribution's name."""
+    folder.mkdir(exist_ok=True)
+    (folder / f"{name}.py").write_text(textwrap.dedent(source))
+    info = folder / f"{name}-{version}.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n")
+    (info / "entry_points.txt").write_text(f"[wearlaw]\n{name} = {name}\n")

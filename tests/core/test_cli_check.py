@@ -1,0 +1,134 @@
+"""`wearlaw check`, as a user meets it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from types import SimpleNamespace
+
+import pytest
+
+import wearlaw as wl
+from tests.core import cases
+from tests.core.cases import InstallModel, assert_refused, wearlaw
+from wearlaw.testing import checks
+
+
+class SaidCheck:
+    """A check that fails with a message, or passes where there is none."""
+
+    doc = "The rate is fine.\n\nAt every node."
+
+    def __init__(self, name: str, message: str | None = None) -> None:
+        self.name = name
+        self.message = message
+
+    def __call__(self) -> None:
+        if self.message is not None:
+            raise AssertionError(self.message)
+
+
+Checked = list[wl.ContactModel | wl.WearLaw]
+
+
+@pytest.fixture
+def said(monkeypatch: pytest.MonkeyPatch) -> tuple[list[SaidCheck], Checked]:
+    """Put given checks in the place of the kit's, and return them with the models that were checked."""
+    given: list[SaidCheck] = []
+    checked: Checked = []
+
+    def checks(model: wl.ContactModel | wl.WearLaw) -> Iterator[SaidCheck]:
+        checked.append(model)
+        yield from given
+
+    monkeypatch.setitem(sys.modules, "wearlaw.testing", SimpleNamespace(checks=checks))
+    return given, checked
+
+
+def test_each_check_has_a_line_and_they_are_counted(said: tuple[list[SaidCheck], Checked]) -> None:
+    said[0][:] = [SaidCheck("shape"), SaidCheck("finite"), SaidCheck("batch")]
+    result = wearlaw("check", "usfd")
+    assert result.exit_code == 0
+    assert result.stdout == "ok shape\nok finite\nok batch\n3 ok, 0 failed, 0 not claimed\n"
+    assert said[1] == [wl.wear_law("usfd")]
+
+
+def test_a_failed_check_says_the_first_line_of_why_and_the_others_go_on(
+    said: tuple[list[SaidCheck], Checked],
+) -> None:
+    said[0][:] = [SaidCheck("shape", "it has 3 axes\nnot 2"), SaidCheck("finite", ""), SaidCheck("batch")]
+    result = wearlaw("check", "usfd")
+    assert result.exit_code == 1
+    assert result.stdout == (
+        "FAILED shape: it has 3 axes\nFAILED finite: The rate is fine.\nok batch\n1 ok, 2 failed, 0 not claimed\n"
+    )
+    assert "Traceback" not in result.stderr
+
+
+def test_what_a_contact_model_does_not_claim_is_said(said: tuple[list[SaidCheck], Checked]) -> None:
+    said[0][:] = [SaidCheck("shape")]
+    result = wearlaw("check", "exact", "--option", "slip=as_printed")
+    assert result.stdout == (
+        "ok shape\nnot claimed energy_balance: the printed slip lacks a term in partial slip\n"
+        "1 ok, 0 failed, 1 not claimed\n"
+    )
+    assert result.exit_code == 0
+    assert said[1] == [wl.contact_model("exact", slip="as_printed")]
+
+
+def test_options_may_be_repeated_and_hold_an_equals_sign(said: tuple[list[SaidCheck], Checked]) -> None:
+    result = wearlaw("check", "usfd", "--option", "fitted_for=exact", "--option", "q_s=56 ug/m/mm^2")
+    assert result.exit_code == 0
+    assert said[1] == [wl.wear_law("usfd", fitted_for="exact", q_s="56 ug/m/mm^2")]
+    assert_refused(wearlaw("check", "usfd", "--option", "q_s=a=b"), "usfd: q_s: 'a=b' is not a number with a unit")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message", "exit_code"),
+    [
+        (["usdf"], "no model is called 'usdf'; did you mean 'usfd'?", 1),
+        (["usfd", "--option", "fited_for=exact"], "usfd: fited_for: unknown field; did you mean 'fitted_for'?", 1),
+        (["usfd", "--option", "exact"], "--option: write it as FIELD=VALUE, got 'exact'", 2),
+    ],
+)
+def test_a_model_that_cannot_be_checked_is_one_clear_error(
+    said: tuple[list[SaidCheck], Checked], arguments: list[str], message: str, exit_code: int
+) -> None:
+    assert_refused(wearlaw("check", *arguments), message, exit_code)
+    assert not said[1]
+
+
+def test_without_hypothesis_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in sys.modules if name.startswith("wearlaw.testing")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "hypothesis", None)
+    assert_refused(wearlaw("check", "usfd"), 'pip install "wearlaw[test]"')
+
+
+def test_another_module_that_is_missing_is_not_laid_to_hypothesis(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in sys.modules if name.startswith("wearlaw.testing")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "wearlaw.testing.kit", None)
+    result = wearlaw("check", "usfd")
+    assert isinstance(result.exception, ModuleNotFoundError)
+    assert result.exception.name == "wearlaw.testing.kit"
+
+
+def test_a_law_that_breaks_its_contract_fails_the_checks(
+    monkeypatch: pytest.MonkeyPatch, install_model: InstallModel
+) -> None:
+    class Negative(cases.Linear):
+        name = "negative"
+
+        def rate(self, contact: wl.Contact) -> wl.Array:
+            return -super().rate(contact)
+
+    install_model(Negative)
+    # Two checks of the kit: hypothesis takes seconds to find the smallest example of each failure.
+    chosen = ("rate_is_never_negative", "no_slip_no_wear")
+    monkeypatch.setattr("wearlaw.testing.checks", lambda law: [one for one in checks(law) if one.name in chosen])
+    result = wearlaw("check", "negative", "--option", "slope=1 m")
+    assert result.exit_code == 1
+    assert "FAILED rate_is_never_negative: " in result.stdout
+    assert "ok no_slip_no_wear\n" in result.stdout
+    assert "1 ok, 1 failed" in result.stdout

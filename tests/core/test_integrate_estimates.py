@@ -1,0 +1,234 @@
+"""What is said of the error of a mean where a law or a contact model declares nothing, and what is refused."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests import reference
+from tests.core.integrals import MEANS, REFERENCE, Points, integrate_wear
+from tests.strategies import EPS, LINE_MODELS
+from wearlaw import Array
+from wearlaw.integrate import integrate_contact
+from wearlaw.quadrature import uniform_cells
+
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
+
+# --- Laws that declare nothing ---------------------------------------------------------------------------------
+
+
+class Smooth(wl.WearLaw):
+    """Rises with the square of q·s."""
+
+    name: ClassVar[str] = "smooth"
+    source: ClassVar[str] = "the tests"
+
+    def rate(self, contact: wl.Contact) -> Array:
+        return (contact.wear_index_density / 1e6) ** 2
+
+
+class Kinked(Smooth):
+    """Rises from a threshold on."""
+
+    name: ClassVar[str] = "kinked"
+    threshold: float = 10.0
+
+    def rate(self, contact: wl.Contact) -> Array:
+        return np.maximum(contact.wear_index_density / 1e6 - self.threshold, 0.0)
+
+
+class Jumping(Kinked):
+    """Ten times as much from a threshold on."""
+
+    name: ClassVar[str] = "jumping"
+
+    def rate(self, contact: wl.Contact) -> Array:
+        w = contact.wear_index_density / 1e6
+        return np.where(w < self.threshold, 0.1 * w, w)
+
+
+class Sticking(Kinked):
+    """Wears by traction, also where nothing slips."""
+
+    name: ClassVar[str] = "sticking"
+
+    def rate(self, contact: wl.Contact) -> Array:
+        return np.abs(contact.traction)
+
+
+RATES: dict[type[Smooth], Callable[[Array, float], Array]] = {
+    Smooth: lambda w, _: w**2,
+    Kinked: lambda w, threshold: np.maximum(w - threshold, 0.0),
+    Jumping: lambda w, threshold: np.where(w < threshold, 0.1 * w, w),
+}
+
+
+def rate_of_density(law: type[Smooth], solution: reference.Solution, v: Array) -> Array:
+    return RATES[law](solution.density(v) / 1e6, 10.0)
+
+
+@pytest.mark.validates(
+    "integration",
+    "`wear_rate_error` bounds the error of a law that declares no breakpoints",
+    source="tanh-sinh quadrature of the literature's formulas, written anew for the tests",
+    held_to="in {honest:.0%} of the points; its median is below {useful:.0%} of the rate",
+    honest=0.95,
+    useful=0.05,
+)
+@pytest.mark.parametrize("law_type", RATES, ids=lambda law: law.name)
+@pytest.mark.parametrize("name", ["exact", "fastsim-parabolic-line", "fastsim-elliptic-line"])
+def test_the_error_estimate_of_a_law_that_declares_nothing_is_honest(
+    name: str, law_type: type[Smooth], honest: float, useful: float
+) -> None:
+    points = Points(seed=6, size=100)
+    points.creepage = 10.0 ** points.random.uniform(-4.0, 0.0, points.size)
+    law: Any = law_type() if law_type is Smooth else law_type(threshold=10.0)  # type: ignore[call-arg]
+    assert law.breakpoints is None
+    wear = integrate_wear(LINE_MODELS[name], law, points.problem, "cells")
+    want = []
+    for point in points.references():
+        solution = REFERENCE[name](point)
+        breaks = [] if law_type is Smooth else solution.density_crossings(10e6)
+        want.append(solution.mean(functools.partial(rate_of_density, law_type, solution), breaks))
+    error = np.abs(wear.wear_rate - want)
+    held = error <= wear.wear_rate_error + 1e-12 * np.array(want)
+    assert held.mean() >= honest
+    # and it is not honest by being useless: in most cases it is below 5 % of the rate
+    assert np.median(wear.wear_rate_error / np.maximum(want, 1e-30)) < useful
+    if law_type is Smooth:
+        assert (error <= 1e-6 * np.array(want)).all()
+
+
+@pytest.mark.parametrize("name", ["exact", "fastsim-elliptic-line"])
+def test_a_law_that_wears_where_the_bodies_stick_is_refused(name: str) -> None:
+    points = Points(seed=7, size=5)
+    points.creepage = 0.5 * points.saturation
+    with pytest.raises(wl.ModelError, match="wear law 'sticking' gives wear where the bodies stick"):
+        integrate_wear(LINE_MODELS[name], Sticking(), points.problem, "cells")
+
+
+def test_breakpoints_that_are_declared_bring_the_error_down() -> None:
+    class Declared(Kinked):
+        @property
+        def breakpoints(self) -> wl.BreakpointMap:
+            return {"wear_index_density": (self.threshold * 1e6,)}
+
+    points = Points(seed=8, size=100)
+    blind, split = (
+        integrate_wear(LINE_MODELS["exact"], law(threshold=10.0), points.problem, "cells") for law in (Kinked, Declared)
+    )
+    worn = split.wear_rate > 0.0
+    assert np.median(split.wear_rate_error[worn] / split.wear_rate[worn]) < 1e-12
+    assert np.median(blind.wear_rate_error[worn] / blind.wear_rate[worn]) > 1e-6
+    assert (
+        np.abs(blind.wear_rate - split.wear_rate) <= 2.0 * blind.wear_rate_error + split.wear_rate_error
+    ).mean() > 0.95
+
+
+# --- Contact models that only solve ----------------------------------------------------------------------------
+
+
+class Celled(wl.ContactModel):
+    """Carter's solution on uniform cells, as a model that knows no closed form would give it."""
+
+    name: ClassVar[str] = "celled"
+    source: ClassVar[str] = "the tests"
+    cells: int = 100
+
+    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+        return LINE_MODELS["exact"].at(problem, uniform_cells(problem.half_width, self.cells))
+
+
+@pytest.mark.validates(
+    "integration",
+    "`wear_rate_error` bounds the error of a contact model on cells of its own",
+    source="tanh-sinh quadrature of the literature's formulas, written anew for the tests",
+    held_to="in {honest:.0%} of the points with two slipping cells or more",
+    honest=0.95,
+)
+def test_a_model_that_only_solves_works_and_says_how_good_it_is(honest: float) -> None:
+    points = Points(seed=9, size=200)
+    wear = integrate_wear(Celled(), wl.wear_law("usfd"), points.problem, "cells")
+    want = np.array([MEANS["usfd"](reference.exact(point)) for point in points.references()]) / 1e3
+    # A zone of less than two cells cannot be seen at all.
+    seen = points.creepage / points.saturation > 0.02
+    error = np.abs(wear.wear_rate - want)[seen]
+    assert (error <= wear.wear_rate_error[seen]).mean() >= honest
+    assert np.median(wear.wear_rate_error[seen] / want[seen]) < 0.1
+    force = integrate_contact(LINE_MODELS["exact"], points.problem)
+    assert wear.tangential_force == pytest.approx(force, rel=4 * EPS)
+
+
+def test_finer_cells_have_a_smaller_error_estimate() -> None:
+    points = Points(seed=10, size=50)
+    points.creepage = points.saturation * points.random.uniform(0.2, 3.0, points.size)
+    coarse, fine = (
+        np.median(integrate_wear(Celled(cells=n), wl.wear_law("usfd"), points.problem, "cells").wear_rate_error)
+        for n in (50, 800)
+    )
+    assert fine < 0.2 * coarse
+
+
+def test_one_cell_alone_says_nothing_of_its_error() -> None:
+    points = Points(seed=11, size=5)
+    wear = integrate_wear(Celled(cells=1), wl.wear_law("usfd"), points.problem, "cells")
+    assert (wear.wear_rate_error == np.abs(wear.wear_rate)).all()
+
+
+def test_patch_means_have_no_integration_error() -> None:
+    points = Points(seed=12, size=20)
+    for model, scale in ((wl.contact_model("global"), "patch"), (LINE_MODELS["exact"], "patch"), (Celled(), "patch")):
+        wear = integrate_wear(model, wl.wear_law("usfd"), points.problem, scale)  # type: ignore[arg-type]
+        assert (wear.wear_rate_error <= 2.0 * EPS * wear.wear_rate).all()
+
+
+# --- Broken models ---------------------------------------------------------------------------------------------
+
+
+class Broken(Smooth):
+    """Returns what it is told to."""
+
+    name: ClassVar[str] = "broken"
+    fault: str
+
+    def rate(self, contact: wl.Contact) -> Array:
+        rate = np.abs(contact.slip)
+        if self.fault == "shape":
+            return np.zeros(rate.shape[:-1])
+        rate[..., -1] = {"nan": np.nan, "infinite": np.inf}[self.fault]
+        return rate
+
+
+@pytest.mark.parametrize(
+    ("fault", "message"),
+    [
+        ("shape", r"wear law 'broken' returned rates of shape \(5,\) for nodes of shape \(5, \d+\)"),
+        ("nan", r"wear law 'broken' returned a rate that is not finite"),
+        ("infinite", r"wear law 'broken' returned a rate that is not finite"),
+    ],
+)
+def test_a_law_that_breaks_its_contract_is_named(fault: str, message: str) -> None:
+    with pytest.raises(wl.ModelError, match=message):
+        integrate_wear(LINE_MODELS["exact"], Broken(fault=fault), Points(seed=13, size=5).problem, "cells")
+
+
+class Nan(Celled):
+    name: ClassVar[str] = "nan"
+    field: str
+
+    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+        contact = super().solve_line(problem)
+        getattr(contact, self.field)[...] *= np.nan
+        return contact
+
+
+@pytest.mark.parametrize("field", ["pressure", "traction", "slip", "area", "tangential_force"])
+def test_a_contact_model_that_is_not_finite_is_named(field: str) -> None:
+    problem = Points(seed=14, size=5).problem
+    with pytest.raises(wl.ModelError, match=f"'nan' gave a {field.replace('_', ' ')} that is not finite for creepages"):
+        integrate_wear(Nan(field=field), wl.wear_law("usfd"), problem, "cells")

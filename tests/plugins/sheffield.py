@@ -1,0 +1,131 @@
+"""The paper of Tassini et al. (2010) by formulas and integrals of tests/reference.py, and what a claim says of it.
+
+A number in a claim is right if it is the expected one in the digits that it shows.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import optimize
+
+import wearlaw as wl
+from tests import reference
+
+LOAD, FRICTION, RADIUS = 741.43e3, 0.46, 0.047 / 4.0
+MODULUS = 206.47742e9 / (2.0 * (1.0 - 0.28**2))
+SPEED = math.pi * 0.047 * 400.0 / 60.0
+HALF_WIDTH = math.sqrt(4.0 * LOAD * RADIUS / (math.pi * MODULUS))
+AREA = 2.0 * HALF_WIDTH * 10.0 * 1e3
+"""Patch area on a track of 10 mm [mm²]."""
+FULL_SLIP = 100.0 * FRICTION * HALF_WIDTH / RADIUS
+"""Creepage of full slip [%]."""
+FORCE = FRICTION * LOAD * 0.01
+"""T in full slip on a track of 10 mm [N]."""
+GLOBAL = (5.3, 55.0, 61.9, 77.26)
+CORRECTED = {"exact": (5.3, 55.0, 83.7, 95.0), "fastsim": (5.3, 56.5, 83.7, 107.0)}
+KTH_MID = (350e-4, 5.5e-4, 35e-4, 5.5e-4)
+STEP = 0.02
+"""Greatest distance of the creepages at which the claims are computed [%]."""
+HEAT = {0.2: 1.3, 0.5: 9.2, 1.0: 25.7, 3.0: 102.6, 7.5: 246.0, 10.0: 327.8, 15.0: 492.1, 20.0: 728.4}
+"""Frictional heat [W] by creepage [%], Lewis and Dwyer-Joyce (2004), Table 3."""
+CONDITIONS: dict[str, Any] = {"normal_force": wl.Q(7.4143, "kN"), "friction_coefficient": FRICTION}
+
+
+def point(percent_creepage: float, load: float = LOAD) -> reference.Point:
+    return reference.Point(load, RADIUS, MODULUS, FRICTION, percent_creepage / 100.0, SPEED)
+
+
+SOLUTIONS: dict[str, Callable[[reference.Point], reference.Solution]] = {
+    "exact": reference.exact,
+    "fastsim": reference.parabolic,
+}
+
+
+def usfd(model: str, creepage: float, parameters: tuple[float, ...] = GLOBAL) -> float:
+    """Return the mean rate of USFD [µg/m/mm²] on cells, or on the patch means."""
+    if model != "global":
+        m_m, q_s, m_c, transition = parameters
+        return reference.usfd_mean(SOLUTIONS[model](point(creepage)), m_m, q_s, m_c, transition)
+    return usfd_of(index(creepage) / AREA)
+
+
+def usfd_of(w: float) -> float:
+    m_m, q_s, m_c, transition = GLOBAL
+    return m_m * w if w < q_s / m_m else q_s if w < transition else q_s + m_c * (w - transition)
+
+
+def index(creepage: float) -> float:
+    """Return Tγ [N] of the exact theory."""
+    d = min(creepage / FULL_SLIP, 1.0)
+    return FORCE * d * (2.0 - d) * creepage / 100.0
+
+
+def creepage_at(wear_index: float) -> float:
+    return float(optimize.brentq(lambda x: index(x) - wear_index, 1e-6, 30.0))
+
+
+def brr_of(wear_index: float) -> float:
+    """Return the rate of BRR [µg/m/mm²]: section × D [mm³/km] × π × 7.85 mg/mm³ × 1e-3 µg/mg km/m × 1e3 / A."""
+    section = min(0.25 * wear_index, 25.0) if wear_index < 200.0 else 1.19 * wear_index - 154.0
+    return section * math.pi * 7.85 / AREA
+
+
+def kth_of(creepage: float, k: tuple[float, ...] = KTH_MID) -> float:
+    """Return the rate of KTH on the patch means below 2.1 GPa [µg/m/mm²]."""
+    slip = creepage / 100.0
+    coefficient = k[1] if slip * SPEED < 0.2 else k[2]
+    return 7850.0 * coefficient * LOAD / (2.0 * HALF_WIDTH) * slip / 2.625e9 * 1e3
+
+
+K = {"low": (300e-4, 1e-4, 30e-4, 1e-4), "mid": KTH_MID, "high": (400e-4, 10e-4, 40e-4, 10e-4)}
+
+
+def numbers(text: str, before: str) -> list[str]:
+    """Return the number that follows each occurrence of some words."""
+    return re.findall(re.escape(before) + r"\s*([+-]?\d+(?:\.\d+)?)", text)
+
+
+def assert_says(claim: wl.CheckedClaim, before: str, *expected: float, slack: float = 0.0) -> None:
+    """The numbers after these words are the expected ones, to half of their last digit."""
+    found = numbers(claim.found, before)
+    assert len(found) == len(expected), (before, claim.found)
+    for text, value in zip(found, expected, strict=True):
+        last_digit = 10.0 ** -len(text.partition(".")[2])
+        assert abs(float(text) - value) <= 0.5001 * last_digit + slack, (text, value, claim.found)
+
+
+def assert_shares_at(claim: wl.CheckedClaim, share: Callable[[float], float], *creepages: float) -> None:
+    """Each "SHARE % at CREEPAGE %" is the expected one."""
+    for creepage in creepages:
+        (text,) = re.findall(rf"([+-]?\d+(?:\.\d+)?) %\)? at {creepage:g} %", claim.found)[:1]
+        last_digit = 10.0 ** -len(text.partition(".")[2])
+        assert abs(float(text) - 100.0 * share(creepage)) <= 0.5001 * last_digit, (creepage, claim.found)
+
+
+def assert_extreme(claim: wl.CheckedClaim, share: Callable[[float], float], pattern: str) -> float:
+    """The greatest share in a claim, and where it is, are met by the reference within a step of the creepages."""
+    ((text, where),) = re.findall(pattern, claim.found)
+    last_digit = 10.0 ** -len(text.partition(".")[2])
+    around = [100.0 * share(float(where) + step) for step in np.linspace(-STEP, STEP, 9)]
+    assert min(around) - 0.5 * last_digit <= float(text) <= max(around) + 0.5 * last_digit, (text, around)
+    return float(where)
+
+
+def exact_force(creepage: float) -> float:
+    return reference.exact(point(creepage)).force
+
+
+def kth(model: str, creepage: float, load: float = LOAD) -> float:
+    return reference.kth_mean(SOLUTIONS[model](point(creepage, load)), KTH_MID)
+
+
+def printed(text: str) -> Any:
+    """Return what a number that was rounded to its printed digits may have been."""
+    decimals = len(text.partition(".")[2])
+    return pytest.approx(float(text), abs=0.5 * 10.0**-decimals if decimals else 1e-14)

@@ -1,0 +1,198 @@
+"""The figures of the shipped study, against the numbers of the paper of Tassini et al. (2010)."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+
+import numpy as np
+import pytest
+
+from tests.core.panels import assert_shows, by_label, by_name, one_panel
+from tests.plugins.sheffield import AREA, FORCE, FRICTION, FULL_SLIP, HALF_WIDTH, HEAT, LOAD, MODULUS, RADIUS, SPEED
+from tests.strategies import EPS
+from wearlaw.case import Case, case_text, load_case
+from wearlaw.figures.curves import Curve, FigureData
+from wearlaw.study import run
+
+WEAR_INDICES = np.array([50.0, 150.0, 199.9, 200.0001, 700.0])
+
+
+@pytest.fixture(scope="module")
+def paper() -> dict[str, FigureData]:
+    """The shipped case, at the creepages at which there are numbers to hold its figures against."""
+    fields = tomllib.loads(case_text("tassini2010"))
+    creepages = sorted([0.001, 0.01, 0.5, 1.0, 2.0, 10.0, 20.0, *(100.0 * WEAR_INDICES / FORCE)])
+    fields["sweeps"]["creepage"]["creepage"] = [f"{float(creepage)!r} %" for creepage in creepages]
+    return by_name(run(Case(**{**fields, "sections": []})))
+
+
+def at(curve: Curve, x: float) -> float:
+    """Return the value of a curve at one of its points."""
+    (there,) = np.flatnonzero(np.isclose(curve.x, x, rtol=1e-9, atol=0.0))
+    return float(curve.y[there])
+
+
+def test_the_shipped_case_has_the_figures_of_the_paper_in_its_order() -> None:
+    shipped = load_case("tassini2010")
+    names = [f"figure_{number:02}" for number in range(3, 11)]
+    assert [*shipped.figures][:8] == names
+    windows = {name: [window.x_range for window in shipped.figures[name].panels] for name in names}
+    assert windows["figure_06"] == [None, ("0 N", "70 N"), ("50 N", "350 N")], "section 5.1.1 has them"
+    assert len(windows["figure_05"]) == len(windows["figure_08"]) == 2
+    for name in ("figure_06", "figure_07", "figure_09"):
+        assert "measured wear rates, which are not public" in shipped.figures[name].caption
+
+
+def test_the_sweep_of_the_shipped_case_reaches_beyond_where_brr_and_usfd_cross() -> None:
+    highest = float(load_case("tassini2010").sweeps["creepage"].conditions()["creepage"].max())
+    assert highest == 0.25
+    assert highest * FORCE > 797.0
+
+
+@pytest.mark.validates(
+    "paper",
+    "Figure 3: stresses along the patch at 0.5 % creepage",
+    source="Hertz's ellipse; T/μN of the creepage table",
+    held_to="pressure to {pressure_within:g}, area under the traction to {area:.1e}, relative",
+    area=200**-1.5,
+    pressure_within=1e-5,
+)
+def test_figure_3_shows_the_stresses_of_both_local_models(
+    paper: dict[str, FigureData], area: float, pressure_within: float
+) -> None:
+    pressure, exact, fastsim = one_panel(paper["figure_03"]).curves
+    assert (pressure.label, exact.label, fastsim.label) == ("pressure p", "traction q, exact", "traction q, fastsim")
+    np.testing.assert_allclose(
+        pressure.y, 1500.0 * np.sqrt(1.0 - (1e-3 * pressure.x / HALF_WIDTH) ** 2), rtol=pressure_within
+    )
+    # Sums over 200 cells of what begins and ends like a square root are right to the order of 200^-1.5.
+    for curve, share in ((exact, 0.6470), (fastsim, 0.6119)):
+        assert curve.y.mean() * AREA == pytest.approx(share * FORCE, rel=area)
+
+
+def test_figure_4_shows_slip_from_where_stick_ends_and_the_global_creepage(paper: dict[str, FigureData]) -> None:
+    exact, fastsim, level = one_panel(paper["figure_04"]).curves
+    assert_shows(level, exact.x[[0, -1]], [0.5, 0.5])
+    flexibility = 4.0 * HALF_WIDTH / (math.pi * MODULUS)
+    borders = (
+        HALF_WIDTH - 2.0 * 0.005 * RADIUS / FRICTION,
+        HALF_WIDTH - 4.0 * HALF_WIDTH**3 * 0.005 / (3.0 * LOAD * FRICTION * flexibility),
+    )
+    cell = 2.0 * HALF_WIDTH / 200.0
+    for curve, border in zip((exact, fastsim), borders, strict=True):
+        assert border <= 1e-3 * curve.x[curve.y > 0.0][0] <= border + cell
+
+
+@pytest.mark.validates(
+    "paper",
+    "Figure 5: T against creepage, with the points of the tests",
+    source="T/μN of the creepage table; heat over slip speed of Lewis and Dwyer-Joyce 2004, Table 3",
+    held_to="{share_within:g} of μN; tests to {roundings} ε",
+    roundings=64,
+    share_within=5e-5,
+)
+def test_figure_5_shows_the_force_of_local_models_and_tests(
+    paper: dict[str, FigureData], roundings: int, share_within: float
+) -> None:
+    whole, low = paper["figure_05"].panels
+    curves = by_label(low)
+    assert by_label(whole).keys() == curves.keys()
+    exact, fastsim, tests = curves.values()
+    for curve, share in ((exact, 0.6470), (fastsim, 0.6119)):
+        assert at(curve, 0.5) == pytest.approx(share * FORCE, abs=share_within * FORCE)
+        assert at(curve, 10.0) == pytest.approx(FORCE, rel=1e-12)
+    assert tests.points
+    np.testing.assert_allclose(tests.y, np.array([*HEAT.values()]) / (0.01 * tests.x * SPEED), rtol=roundings * EPS)
+
+
+@pytest.mark.validates(
+    "paper",
+    "Figure 6: the three laws on the global model, and KTH's band",
+    source="Tassini et al. 2010, Tables 1 to 3, by hand",
+    held_to="BRR and KTH to the digits of the tables, USFD to {within:g}",
+    within=1e-06,
+)
+def test_figure_6_shows_the_laws_on_the_global_model(paper: dict[str, FigureData], within: float) -> None:
+    whole, mild, severe = paper["figure_06"].panels
+    assert (mild.x.ends, severe.x.ends) == ((0.0, 70.0), (50.0, 350.0))
+    assert by_label(whole).keys() == by_label(mild).keys() == by_label(severe).keys()
+    usfd, kth, brr = whole.curves
+    assert (usfd.label, kth.label, brr.label) == ("usfd on global", "kth on global", "brr on global")
+    published = [48.98, 97.96, 97.96, 329.16, 2660.7]
+    digits = [5e-3, 5e-3, 5e-3, 6e-3, 5e-2]  # half of the last one; BRR grows by 0.0005 from 200 to 200.0001 N
+    for wear_index, rate, digit in zip(WEAR_INDICES, published, digits, strict=True):
+        assert at(brr, wear_index) == pytest.approx(rate, abs=digit)
+    w = usfd.x / AREA
+    np.testing.assert_allclose(usfd.y, np.minimum(5.3 * w, 55.0) + 61.9 * np.maximum(w - 77.26, 0.0), rtol=within)
+    assert kth.low is not None
+    assert kth.high is not None
+    i = int(np.flatnonzero(np.isclose(kth.x, 0.01 * 0.9646 * FORCE, rtol=1e-4))[0])
+    np.testing.assert_allclose((kth.low[i], kth.y[i], kth.high[i]), (3.523, 19.377, 35.231), rtol=2e-4)
+
+
+@pytest.mark.validates(
+    "paper",
+    "Figures 7 and 8: USFD on cells, on the averaged wear index",
+    source="the integrals of the creepage table",
+    held_to="all digits of the creepage table",
+)
+@pytest.mark.parametrize("name", ["figure_07", "figure_08"])
+def test_figures_7_and_8_show_usfd_with_its_original_parameters_on_the_cells(
+    paper: dict[str, FigureData], name: str
+) -> None:
+    for panel in paper[name].panels:
+        curves = by_label(panel)
+        for model, at_10, at_20 in (("exact", 54.78239, 2247.0774), ("fastsim", 98.85414, 2608.1243)):
+            assert at(curves[f"usfd on {model}"], 0.1 * FORCE) == pytest.approx(at_10, abs=5e-6)
+            assert at(curves[f"usfd on {model}"], 0.2 * FORCE) == pytest.approx(at_20, abs=5e-5)
+
+
+def test_figures_7_and_8_are_against_the_averaged_wear_index(paper: dict[str, FigureData]) -> None:
+    """Mean slip of the slip zone times T, where slip is k √((x+a-c)² - c²)."""
+    curve = by_label(one_panel(paper["figure_07"]))["usfd on exact"]
+    stick = HALF_WIDTH - 0.005 * RADIUS / FRICTION
+    from_stick, end = np.linspace(stick, 2.0 * HALF_WIDTH - stick, 200_001), 2.0 * HALF_WIDTH - stick
+    slip = FRICTION / RADIUS * np.sqrt(from_stick**2 - stick**2)
+    mean_slip = np.trapezoid(slip, from_stick) / (end - stick)
+    expected = mean_slip * FORCE * (1.0 - (stick / HALF_WIDTH) ** 2)
+    # The trapezoidal sum errs by the order of n^-1.5 where the root begins.
+    assert np.isclose(curve.x, expected, rtol=200_000**-1.5 + 1e-7).sum() == 1
+    (on_global, *_) = paper["figure_08"].panels[0].curves
+    assert np.isclose(on_global.x, 0.005 * 0.6470 * FORCE, rtol=1e-4).sum() == 1, "Tγ on the global model"
+
+
+@pytest.mark.validates(
+    "paper",
+    "Figure 9: USFD against creepage",
+    source="Tassini et al. 2010, Table 3, by the integrals of the creepage table",
+    held_to="all digits of the creepage table",
+)
+def test_figure_9_shows_usfd_against_creepage(paper: dict[str, FigureData]) -> None:
+    (curve,) = one_panel(paper["figure_09"]).curves
+    assert curve.label == "usfd on global"
+    for creepage, rate, digit in ((0.5, 9.29, 5e-3), (1.0, 27.70, 5e-3), (2.0, 55.0, 5e-3), (20.0, 1981.6, 5e-2)):
+        assert at(curve, creepage) == pytest.approx(rate, abs=digit)
+
+
+@pytest.mark.validates(
+    "paper",
+    "Figure 10: in partial slip USFD is quadratic and KTH linear in the creepage",
+    source="Tassini et al. 2010, section 5.3; T's series in the creepage",
+    held_to="slopes {usfd_slope:g} within T's own bend, {kth_slope:g} to {roundings} ε",
+    usfd_slope=2.0,
+    kth_slope=1.0,
+    roundings=64,
+)
+def test_figure_10_shows_usfd_quadratic_and_kth_linear_in_partial_slip(
+    paper: dict[str, FigureData], usfd_slope: float, kth_slope: float, roundings: int
+) -> None:
+    linear, logarithmic = paper["figure_10"].panels
+    assert linear.x.ends == (0.0, 1.2)
+    assert (logarithmic.x.scale, logarithmic.y.scale) == ("log", "log")
+    assert linear.x.ends[1] < FULL_SLIP
+    usfd, kth = linear.curves
+    slopes = [math.log(at(curve, 0.01) / at(curve, 0.001)) / math.log(10.0) for curve in (usfd, kth)]
+    # T grows as ξ (1 - ξ/2ξ_sat), whose last factor turns the slope by no more than its own logarithm.
+    assert slopes[0] == pytest.approx(usfd_slope, abs=0.01 / FULL_SLIP)
+    assert slopes[1] == pytest.approx(kth_slope, rel=roundings * EPS)
