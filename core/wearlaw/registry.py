@@ -71,16 +71,19 @@ def _coherent(registry: pint.UnitRegistry[Any], unit: str) -> float:
 
 
 def symbol(unit: Any, style: str) -> str:
-    """Return a unit's symbol in one of pint's styles, with the micro sign in all of pint's versions.
+    """Return a unit's symbol in one of pint's styles, with the same micro sign and dot in all of pint's versions.
 
-    Since version 0.26 pint writes the Greek letter mu, which looks the same and is another character.
+    Since version 0.26 pint writes the Greek letter mu and the dot operator, other characters that look the same.
     """
     return _symbol(unit._REGISTRY, unit._units, style)
 
 
+_ONE_CHARACTER = str.maketrans("\u03bc\u22c5", "\u00b5\u00b7")
+
+
 @functools.lru_cache(maxsize=512)
 def _symbol(registry: pint.UnitRegistry[Any], container: Any, style: str) -> str:
-    text = format(registry.Unit(container), style).replace("\u03bc", "\u00b5")
+    text = format(registry.Unit(container), style).translate(_ONE_CHARACTER)
     return "N·m" if text == "m·N" else text  # pint sorts by letter, the field writes moments the other way round
 
 
