@@ -50,7 +50,8 @@ class Rig(Configuration, ABC):
 
     def warn_of_plasticity(self, max_pressure: Array, stacklevel: int) -> None:
         """Warn once if the maximum pressure [Pa] is beyond the elastic limit of a body's material."""
-        limit, highest = self._elastic_limit, float(max_pressure.max(initial=0.0))
+        limit = self._elastic_limit
+        highest = extremes(max_pressure)[1] if max_pressure.size else 0.0
         if highest > limit:
             warnings.warn(
                 f"the maximum pressure reaches {from_si(highest, 'MPa')!r}, beyond the material's elastic limit of"
@@ -71,8 +72,9 @@ def check_sizes(sizes: dict[str, Array], friction_coefficient: Array) -> None:
     for name, value in sizes.items():
         low, high = extremes(value)
         if not (low > TINY and high < 1.0 / TINY):
+            spread = f"{low:g}" if low == high else f"{low:g} to {high:g}"
             raise ConditionsError(
-                f"the load gives a {name} of {low:g} to {high:g} in SI units,"
+                f"the load gives a {name} of {spread} in SI units,"
                 " which no contact has; check the units of the load and of the rig"
             )
     if extremes(friction_coefficient)[0] < LEAST_FRICTION:

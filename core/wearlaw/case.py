@@ -206,7 +206,7 @@ def case_text(name_or_path: str) -> str:
         return Path(name_or_path).read_text(encoding="utf-8")
     except FileNotFoundError:
         hint = did_you_mean(name_or_path, known)
-        raise CaseError(f"there is no case file '{name_or_path}';{hint} Shipped cases: {', '.join(known)}") from None
+        raise CaseError(f"there is no case file '{name_or_path}'{hint} Shipped cases: {', '.join(known)}") from None
     except (OSError, UnicodeDecodeError) as error:
         raise CaseError(f"cannot read the case file '{name_or_path}': {error}") from None
 

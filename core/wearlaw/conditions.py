@@ -138,7 +138,7 @@ class ConditionTable:
         """Return what to raise for a condition that the rig does not take."""
         names = self.names
         return ConditionsError(
-            f"{name}: unknown condition;{did_you_mean(name, names)} The conditions are: {', '.join(names)}"
+            f"{name}: unknown condition{did_you_mean(name, names)} The conditions are: {', '.join(names)}"
         )
 
 

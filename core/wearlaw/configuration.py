@@ -100,7 +100,7 @@ class Configuration(BaseModel):
         fields = type(self).model_fields
         if name not in fields:
             hint = did_you_mean(name, fields)
-            return FrozenError(f"{self.subject()}: {name}: unknown field;{hint} The fields are: {', '.join(fields)}")
+            return FrozenError(f"{self.subject()}: {name}: unknown field{hint} The fields are: {', '.join(fields)}")
         return FrozenError(
             f"{self.subject()}: {name}: cannot be changed, since it is frozen; make a changed copy with"
             f" .model_copy(update={{'{name}': ...}})"
@@ -191,7 +191,7 @@ def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
     if details["type"] == "extra_forbidden":
         known = [field.alias or name for name, field in model.model_fields.items()]
         hint = did_you_mean(str(details["loc"][-1]), known)
-        return f"unknown field;{hint} The fields are: {', '.join(known) or 'none'}"
+        return f"unknown field{hint} The fields are: {', '.join(known) or 'none'}"
     if details["type"] == "missing":
         return "is missing"
     message = details["msg"]

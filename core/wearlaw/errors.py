@@ -144,6 +144,6 @@ class PluginWarning(WearlawWarning):
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return " did you mean 'x'?" for the nearest known word, or nothing when none is near."""
+    """Return "; did you mean 'x'?" for the nearest known word, or a full stop when none is near."""
     near = get_close_matches(word, list(known), n=1)
-    return f" did you mean '{near[0]}'?" if near else ""
+    return f"; did you mean '{near[0]}'?" if near else "."

@@ -167,7 +167,7 @@ def _check(subject: str, function: Function, inputs: Mapping[str, str], units: M
     for name, unit in inputs.items():
         if name not in VARIABLES:
             hint = did_you_mean(name, VARIABLES)
-            raise _error(subject, f"inputs.{name}", f"unknown variable;{hint} There are: {', '.join(VARIABLES)}")
+            raise _error(subject, f"inputs.{name}", f"unknown variable{hint} There are: {', '.join(VARIABLES)}")
         _check_unit(subject, f"inputs.{name}", unit, UNITS[name])
     _check_unit(subject, "returns", returns, WEAR_RATE)
     signature = inspect.signature(function).parameters

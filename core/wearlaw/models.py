@@ -51,7 +51,7 @@ class Calibration(Configuration):
         found = {}
         for variable, low, high in self.stated_range:
             if variable not in UNITS:
-                raise InputError(f"stated_range: unknown variable '{variable}';{did_you_mean(variable, UNITS)}")
+                raise InputError(f"stated_range: unknown variable '{variable}'{did_you_mean(variable, UNITS)}")
             unit = Unit(UNITS[variable], positive=False)
             found[variable] = float(unit.si(low, variable)), float(unit.si(high, variable))
         return found

@@ -80,7 +80,7 @@ def _by_field(record: Configuration, values: Mapping[str, Any], change: Any) -> 
         if name not in known:
             hint = did_you_mean(name, known)
             raise InputError(
-                f"{record.subject()}: '{name}' is no number among its fields;{hint} There are: {', '.join(known)}"
+                f"{record.subject()}: '{name}' is no number among its fields{hint} There are: {', '.join(known)}"
             )
         outer, _, inner = name.partition(".")
         if inner:

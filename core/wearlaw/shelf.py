@@ -98,5 +98,5 @@ def add_model(shelf: Shelf[type[ModelT]], base: type[Model], model: object, orig
 def unknown(kind: str, name: str, known: Iterable[str], broken: Iterable[Broken]) -> str:
     """Return the message that there is no model of a name, with what there is and what was left out."""
     names = list(known)
-    message = f"no {kind} is called {name!r};{did_you_mean(str(name), names)} Installed: {', '.join(names) or 'none'}"
+    message = f"no {kind} is called {name!r}{did_you_mean(str(name), names)} Installed: {', '.join(names) or 'none'}"
     return message + "".join(f"\n  left out: {plugin}" for plugin in broken)

@@ -83,7 +83,7 @@ class Study:
             If the case has none of that name.
         """
         if name not in self.sweeps:
-            raise InputError(f"the case has no sweep '{name}';{did_you_mean(name, self.sweeps)} add [sweeps.{name}]")
+            raise InputError(f"the case has no sweep '{name}'{did_you_mean(name, self.sweeps)} Add [sweeps.{name}]")
         return self.sweeps[name]
 
 

@@ -302,7 +302,7 @@ def test_tests_that_are_missing_or_wrong_are_refused_with_the_case(tmp_path: Pat
     path = tmp_path / "own.csv"
     content = table(measured={"label": "m", "tests": "own.csv"})
     with pytest.raises(
-        wl.CaseError, match=r"is wrong in:\n  measured: there is no file '.*own.csv'; Shipped tests: lew"
+        wl.CaseError, match=r"is wrong in:\n  measured: there is no file '.*own.csv'. Shipped tests: lew"
     ):
         load(tmp_path, content)
     path.write_text(OWN_TESTS.replace("7.4,NA", "-1,NA"), encoding="utf-8")
@@ -333,7 +333,7 @@ def test_a_file_that_is_no_case_is_refused(tmp_path: Path, content: bytes, messa
 def test_a_missing_file_is_refused_with_the_shipped_case_that_may_be_meant(tmp_path: Path) -> None:
     with pytest.raises(wl.CaseError, match=r"there is no case file 'tasini2010'; did you mean 'tassini2010'\?"):
         load_case("tasini2010")
-    with pytest.raises(wl.CaseError, match=r"there is no case file '.*x.toml'; Shipped cases: tassini2010"):
+    with pytest.raises(wl.CaseError, match=r"there is no case file '.*x.toml'. Shipped cases: tassini2010"):
         load_case(str(tmp_path / "x.toml"))
 
 

@@ -220,7 +220,14 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"creepage": wl.uniform("1 mm", "2 mm")}, "creepage: .*not a ratio"),
     ({"creepage": wl.normal("1 %", "-1 %")}, "creepage: the standard deviation"),
     ({"creepage": wl.normal("1 %", "0 %")}, r"creepage: the standard deviation of normal\(1.0 %, 0.0 %\) must be pos"),
-    ({"friction_coefficient": wl.normal(0.3, 0.0)}, "friction_coefficient: must be a positive finite number, got 0"),
+    (
+        {"friction_coefficient": wl.normal(0.3, 0.0)},
+        r"friction_coefficient: the standard deviation of normal\(0.3, 0\)",
+    ),
+    ({"friction_coefficient": wl.normal(0.3, np.nan)}, "friction_coefficient: the standard deviation"),
+    ({"friction_coefficient": wl.normal(0.0, 0.1)}, "friction_coefficient: must be a positive finite number, got 0"),
+    ({"friction_coefficient": wl.uniform(0.3, 0.1)}, r"friction_coefficient: the upper end of uniform\(0.3, 0.1\)"),
+    ({"friction_coefficient": wl.normal(0.3, Q(1, "mm"))}, "friction_coefficient: .*not a ratio"),
     ({"creepage": wl.lognormal("0 %", 1.2)}, r"creepage: the median of lognormal\(0.0 %, 1.2\) must be positive"),
     ({"law": {"m_m": wl.lognormal("-1 ug/m/N", 1.2)}}, r"m_m: the median of lognormal\(-1.0 µg/m/N, 1.2\) must be pos"),
     (
@@ -228,6 +235,11 @@ WRONG: list[tuple[dict[str, Any], str]] = [
         "creepage: must not exceed 1 in magnitude(.|\n)*samples of its distribution",
     ),
     ({"friction_coefficient": wl.normal(0.3, 0.2)}, "samples of its distribution; choose one without"),
+    (
+        {"law": {"m_m": wl.uniform("-1 ug/m/N", "3 ug/m/N")}},
+        r"m_m: must be greater than zero, got -0\.[0-9]+ µg/m/N;(.|\n)*samples of its distribution",
+    ),
+    ({"law": {"m_m": wl.normal("5 ug/m/N", "3 ug/m/N")}}, "samples of its distribution; choose one without"),
     ({"creep": wl.normal("1 %", "0.1 %")}, "creep: unknown condition; did you mean 'creepage'"),
     ({"law": {"qs": wl.normal("55 ug/m/mm^2", "1 ug/m/mm^2")}}, "no number 'qs'; did you mean 'q_s'"),
     ({"law": {"q_s": 55.0}}, "q_s: must be a distribution"),

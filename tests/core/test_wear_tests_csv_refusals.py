@@ -19,7 +19,7 @@ HEAD_FAULTS = [
     (
         "creepage [%]",
         "creepage (%)",
-        "line 1, column 'creepage (%)': unknown column; write the unit in square brackets;",
+        "line 1, column 'creepage (%)': unknown column; write the unit in square brackets",
     ),
     ("creepage [%]", "creepage [%", "line 1, column 'creepage [%': unknown column; did you mean 'creepage'?"),
     (
@@ -27,7 +27,7 @@ HEAD_FAULTS = [
         "crepage [%]",
         "line 1, column 'crepage [%]': unknown column; did you mean 'creepage'? The columns",
     ),
-    ("creepage [%]", "zzz [%]", "line 1, column 'zzz [%]': unknown column; The columns are: creepage, normal_force"),
+    ("creepage [%]", "zzz [%]", "line 1, column 'zzz [%]': unknown column. The columns are: creepage, normal_force"),
     ("creepage [%]", "zzz [%]", "line 1: creepage: is missing; add a column 'creepage [%]'"),
     ("creepage [%]", "", "line 1: the head of column 2 is empty"),
     (
@@ -243,7 +243,7 @@ def test_a_missing_file_is_refused_with_the_one_that_may_be_meant(tmp_path: Path
         wl.read_tests(tmp_path / "my-test.csv")
     with pytest.raises(wl.DataError, match=r"no file 'lewis2005'; did you mean 'lewis2004'\? Shipped tests: lewis2004"):
         wl.read_tests("lewis2005")
-    with pytest.raises(wl.DataError, match=r"there is no file '.*zzz'; Shipped tests: lewis2004"):
+    with pytest.raises(wl.DataError, match=r"there is no file '.*zzz'. Shipped tests: lewis2004"):
         wl.read_tests(tmp_path / "nowhere" / "zzz")
 
 

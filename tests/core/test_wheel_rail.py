@@ -112,7 +112,10 @@ WRONG_CONDITIONS: list[tuple[dict[str, Any], str]] = [
     ({"spin": Q(0.3, "1/s")}, "spin: got 0.3000 1/s, which is not of the dimension of '1/m'"),
     ({"longitudinal_creepage": Q(1.1, "")}, "longitudinal_creepage: must not exceed 1 in magnitude"),
     ({"longitudinal_creepage": None}, "longitudinal_creepage: is missing; give longitudinal_creepage=Q(0.2"),
-    ({"creepage": Q(1, "%")}, "creepage: unknown condition;"),
+    (
+        {"creepage": Q(1, "%")},
+        "creepage: unknown condition; did you mean 'lateral_creepage'? The conditions are: normal_force, ",
+    ),
     (
         {"max_pressure": Q(1, "GPa")},
         "give exactly one of normal_force, max_pressure; got normal_force and max_pressure",

@@ -169,7 +169,7 @@ def test_once_uninstalled_it_is_gone(wheels: Wheels, tmp_path: Path) -> None:
     assert not {"made_up", "rigid"} & set(listed(environment))
     shown = environment.wearlaw("show", "made_up")
     assert shown.returncode == 1
-    assert shown.stderr.startswith("Error: no model is called 'made_up';")
+    assert shown.stderr.startswith("Error: no model is called 'made_up'.")
 
 
 def test_broken_distributions_are_named_each_with_its_cause(troubled: Environment) -> None:

@@ -106,4 +106,4 @@ def _constant(x: str, grid: Grid) -> Iterator[tuple[str, str]]:
 
 
 def _choice(asked: str, known: Collection[str]) -> str:
-    return f"'{asked}';{did_you_mean(asked, known)} There are: {', '.join(known) or 'none'}"
+    return f"'{asked}'{did_you_mean(asked, known)} There are: {', '.join(known) or 'none'}"

@@ -141,7 +141,7 @@ def _unknown(
 ) -> Iterator[tuple[tuple[str, ...], str]]:
     for name in given:
         if name not in known:
-            yield path, f"'{name}' cannot be shown;{did_you_mean(name, known)} It can be: {', '.join(known)}"
+            yield path, f"'{name}' cannot be shown{did_you_mean(name, known)} It can be: {', '.join(known)}"
 
 
 def _wrong_range(variable: str, given: Range | None, scale: Scale | None) -> Iterator[str]:

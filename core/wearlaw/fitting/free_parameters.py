@@ -73,7 +73,7 @@ class FreeParameters:
             like[FRICTION], positive[FRICTION] = float(friction), True
         for name in bounds:
             if name not in free:
-                raise FitError(f"bounds: '{name}' is not free;{did_you_mean(name, free)} free are: {', '.join(free)}")
+                raise FitError(f"bounds: '{name}' is not free{did_you_mean(name, free)} Free are: {', '.join(free)}")
         first = np.array([number_in_si(like[name]) for name in free])
         ends = [_ends(name, like[name], positive[name], bounds.get(name)) for name in free]
         flags = np.array([positive[name] for name in free])
@@ -128,7 +128,7 @@ def _check_names(law: WearLaw | None, free: tuple[str, ...], like: Mapping[str, 
             if law is None:
                 raise FitError(f"free: without a wear law there is only '{FRICTION}', not '{name}'; add a law with |")
             hint = did_you_mean(name, known)
-            raise FitError(f"free: wear law '{law.name}' has no number '{name}';{hint} There are: {', '.join(known)}")
+            raise FitError(f"free: wear law '{law.name}' has no number '{name}'{hint} There are: {', '.join(known)}")
         if free.count(name) > 1:
             raise FitError(f"free: '{name}' is given twice")
 

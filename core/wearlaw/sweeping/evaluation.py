@@ -107,7 +107,7 @@ def output_units(pipeline: Pipeline[Any], points: Points, outputs: list[str]) ->
         if not isinstance(value, pint.Quantity) or np.shape(value.magnitude) != (1,):
             known = [one for one in _properties(prediction) if one in UNITS and one not in points.varying]
             raise InputError(
-                f"outputs: there is no '{name}' at an operating point;{did_you_mean(name, known)}"
+                f"outputs: there is no '{name}' at an operating point{did_you_mean(name, known)}"
                 f" There are: {', '.join(known)}"
             )
         if name in points.varying or name in points.fixed:

@@ -39,7 +39,7 @@ def conformance(
     for name in expected:
         if name not in names:
             hint = did_you_mean(name, names)
-            raise InputError(f"expected_failures: no check of '{model.name}' is called '{name}';{hint}")
+            raise InputError(f"expected_failures: no check of '{model.name}' is called '{name}'{hint}")
 
     def parameter(check: Check) -> object:
         marks = [pytest.mark.xfail(strict=True, reason=expected[check.name])] if check.name in expected else []

@@ -12,7 +12,7 @@ from wearlaw.arrays import Array
 from wearlaw.conditions import TWIN_DISC
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.models import WearLaw
-from wearlaw.parameters import number_in_si, numbers
+from wearlaw.parameters import changed, number_in_si, number_like, numbers
 from wearlaw.uncertainty.distributions import Distribution, PublishedRange, uniform
 from wearlaw.units import Unit, coefficient, shortened
 
@@ -42,6 +42,22 @@ class Uncertain:
     def values(self, probability: Array) -> dict[str, Array]:
         """Return the values in SI, by name, at probabilities."""
         return {name: self.distribution.quantiles(probability, *ends) for name, ends in self.ends.items()}
+
+    def check_law(self, law: WearLaw, probability: Array) -> None:
+        """Refuse samples that a law does not take as its parameters; the least and the greatest tell."""
+        units = numbers(law)
+        for end in (probability.min(), probability.max()):
+            sample = {name: number_like(units[name], float(si)) for name, si in self.values(end).items()}
+            try:
+                changed(law, sample)
+            except InputError as error:
+                raise InputError(f"{error}{OTHERS}") from None
+
+
+OTHERS = (
+    "\nThe values are samples of its distribution; choose one without such values, such as wl.lognormal or wl.uniform"
+)
+"""What is said of samples that are not possible."""
 
 
 def condition(name: str, given: Distribution) -> Uncertain:
@@ -79,7 +95,7 @@ def parameter(name: str, given: object, law: WearLaw) -> Uncertain:
     known = numbers(law.explicit())
     if name not in known:
         hint = did_you_mean(name, known)
-        raise InputError(f"wear law '{law.name}' has no number '{name}';{hint} There are: {', '.join(known)}")
+        raise InputError(f"wear law '{law.name}' has no number '{name}'{hint} There are: {', '.join(known)}")
     number = known[name]
     unit = Unit(str(number.units), positive=False) if isinstance(number, pint.Quantity) else None
     return _uncertain(name, given, unit, of_law=True)
@@ -88,7 +104,9 @@ def parameter(name: str, given: object, law: WearLaw) -> Uncertain:
 def _uncertain(name: str, given: Distribution, unit: Unit | None, of_law: bool) -> Uncertain:
     """Return an input of one number; where no unit is due, it is a coefficient."""
     if unit is None:
-        first, second = (float(coefficient(value, name)) for value in (given.first, given.second))
+        first = float(coefficient(given.first, name))
+        plain = isinstance(given.second, float)  # `_check` says which of the two numbers is wrong
+        second = float(given.second if plain else coefficient(given.second, name))
     else:
         first = float(unit.si(given.first, name))
         is_factor = given.kind == "lognormal"

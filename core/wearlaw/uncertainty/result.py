@@ -17,7 +17,7 @@ from wearlaw.integrate import integrate_contact
 from wearlaw.ranges import RangeWatch, line_mean
 from wearlaw.uncertainty.distributions import Distribution, PublishedRange
 from wearlaw.uncertainty.figure import CONFIDENCE, figure_data
-from wearlaw.uncertainty.inputs import Uncertain, parameter, split
+from wearlaw.uncertainty.inputs import OTHERS, Uncertain, parameter, split
 from wearlaw.units import WEAR_RATE, Q, Quantity, from_si
 from wearlaw.varying import integrate_varying
 
@@ -176,10 +176,7 @@ class Uncertainty:
         try:
             return self._predict.contact.rig.problem(**given)
         except UnitError as error:
-            raise InputError(
-                f"{error}\nThe values are samples of its distribution; choose one without such values, such as"
-                " wl.lognormal or wl.uniform"
-            ) from None
+            raise InputError(f"{error}{OTHERS}") from None
 
     def _rates(self, probability: Array, stacklevel: int | None = None) -> Array:
         """Return the wear rates [kg/m/m²] at probabilities (inputs, samples) of the inputs, of the shape of all.
@@ -190,6 +187,8 @@ class Uncertainty:
         conditions: dict[str, Array] = {}
         of_law: dict[str, Array] = {}
         for one, row in zip(self.inputs, inside, strict=True):
+            if one.of_law:
+                one.check_law(self._law, row)
             (of_law if one.of_law else conditions).update(one.values(row))
         shape = (*self.shape, probability.shape[-1])
         problem = self._problem(conditions)

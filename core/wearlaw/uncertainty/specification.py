@@ -112,7 +112,7 @@ class UncertainPoint(Configuration):
         for law in self.laws:
             if law not in known:
                 hint = did_you_mean(law, known)
-                raise InputError(f"laws.{law}: the case has no such law;{hint} There are: {', '.join(known)}")
+                raise InputError(f"laws.{law}: the case has no such law{hint} There are: {', '.join(known)}")
             for name, given in self.parameters(law).items():
                 try:
                     parameter(name, given, known[law])

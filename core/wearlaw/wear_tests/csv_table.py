@@ -147,10 +147,10 @@ def _meaning(line: int, text: str, place: int, wrong: Problems) -> tuple[str, fl
     if not text:
         wrong.add(line, "", f"the head of column {place + 1} is empty")
     elif name not in (*COLUMNS, *TEXTS):
-        bracket = " write the unit in square brackets;" if "(" in name else ""
+        bracket = "; write the unit in square brackets" if "(" in name else ""
         known = [*COLUMNS, *TEXTS]
         hint = did_you_mean(_bare(text), known)
-        wrong.add(line, text, f"unknown column;{bracket}{hint} The columns are: {', '.join(known)}")
+        wrong.add(line, text, f"unknown column{bracket}{hint} The columns are: {', '.join(known)}")
     elif name in TEXTS:
         if unit is not None:
             wrong.add(line, text, "is text and takes no unit")

@@ -68,7 +68,7 @@ def text_of_tests(path_or_name: str | Path) -> str:
 def _refuse_missing(path: Path, shipped: list[str]) -> NoReturn:
     beside = sorted(one.name for one in path.parent.glob("*.csv")) if path.parent.is_dir() else []
     hint = did_you_mean(path.name, [*beside, *shipped])
-    raise DataError(f"there is no file '{path}';{hint} Shipped tests: {', '.join(shipped) or 'none'}")
+    raise DataError(f"there is no file '{path}'{hint} Shipped tests: {', '.join(shipped) or 'none'}")
 
 
 def _decoded(content: bytes, path: Path) -> str:
