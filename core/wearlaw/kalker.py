@@ -12,11 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
+from wearlaw.errors import InputError
 
 # Kalker (1990), Table E.3. Columns: C11, C22, C23, C33, each at ν = 0, 1/4 and 1/2.
 # Rows: a/b = 0.1, 0.2 ... 1.0, then b/a = 0.9, 0.8 ... 0.1.
@@ -56,12 +58,19 @@ def _scaled_table() -> Array:
     place = np.arange(1, 20) * _EDGE  # a/b, beyond the circle 2 - b/a
     powers = np.where(place[:, None] < 1.05, _SHORT_POWERS, _LONG_POWERS)
     factors = np.minimum(place, 2.0 - place)[:, None] ** powers
-    scaled: Array = np.moveaxis(_TABLE.reshape(19, 4, 3) * factors[..., None], 0, -1).copy()
-    return scaled
+    return _rows_last(_TABLE.reshape(19, 4, 3) * factors[..., None])
 
 
-_SCALED = _scaled_table()
-_STEPS = np.diff(_SCALED)
+def _rows_last(rows: Array) -> Array:
+    """Return a table of shape (row, coefficient, Poisson's ratio) in the shape (coefficient, Poisson's ratio, row)."""
+    moved: Array = np.moveaxis(rows, 0, -1).copy()
+    return moved
+
+
+_BARE, _SCALED = _rows_last(_TABLE.reshape(19, 4, 3)), _scaled_table()
+
+Interpolation = Literal["scaled", "contact"]
+"""How coefficients are interpolated: after division by their growth, or as the program CONTACT does."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -85,7 +94,9 @@ class CreepageCoefficients:
     c33: Array
 
 
-def coefficients(axis_ratio: Array, poisson_ratio: Array | float) -> CreepageCoefficients:
+def coefficients(
+    axis_ratio: Array, poisson_ratio: Array | float, interpolation: Interpolation = "scaled"
+) -> CreepageCoefficients:
     """Return the creepage coefficients of elliptic patches.
 
     Parameters
@@ -94,20 +105,27 @@ def coefficients(axis_ratio: Array, poisson_ratio: Array | float) -> CreepageCoe
         a/b [-], positive, with a along the rolling direction.
     poisson_ratio : ndarray or float
         ν [-], from 0 to 1/2.
+    interpolation : {"scaled", "contact"}
+        How to read the table, see the notes. "contact" is for comparisons with the program CONTACT; the contact models
+        use the other.
 
     Returns
     -------
     CreepageCoefficients
         In the shape to which the arguments broadcast.
 
+    Raises
+    ------
+    InputError
+        If there is no such interpolation.
+
     Notes
     -----
     From a/b = 0.1 to 10 the values are those of Kalker's table, which has three digits. Between its rows, each
     coefficient is linear in g = min(a/b, b/a) after division by the power of g with which it grows towards slender
     patches: C33 by 1/g where a < b, and C11 and C22 by 1/g and C23 by 1/g^(3/2) where a > b. A row left out is met
-    within 2.6 % by its neighbours; by linear interpolation of the bare coefficients, as in the program CONTACT
-    (E. A. H. Vollebregt, Vtech CMCC), it is missed by up to 46 %. At ν = 0.28 the two ways differ by 0.8 % at most for
-    a/b from 1/2 to 2.
+    within 2.6 % by its neighbours; by linear interpolation of the bare coefficients, it is missed by up to 46 %. At
+    ν = 0.28 the two ways differ by 0.8 % at most for a/b from 1/2 to 2.
 
     Between the three Poisson's ratios, 1/C11, 1/C22 and 1/C23 are quadratic in ν, as in CONTACT, and so is (1-ν) C33:
     so the asymptotes at g = 0.1 are met within 0.02 %, and 1.3 % for C33, where 1/C33 would miss by 18 %.
@@ -118,29 +136,59 @@ def coefficients(axis_ratio: Array, poisson_ratio: Array | float) -> CreepageCoe
     neglects: with g where a < b, with 1/ln²(16/g²) where a > b. The coefficients are continuous and keep Kalker's
     limits. Numerical solutions for two half-spaces agree within 2.5 % from a/b = 0.05 to 20, but C33 is uncertain for
     long patches: at a/b = 20 they give 9 % less for ν = 0.28, and 18 % less for ν = 0.45.
+
+    The program CONTACT (E. A. H. Vollebregt, Vtech CMCC; subroutine linrol) interpolates the bare coefficients linearly
+    in g, takes all of 1/C as quadratic in ν, and the bare asymptotes outside, where the coefficients jump. It has no
+    C33, to which "contact" does the same. The two ways differ in C33, in the other coefficients where a > b, and
+    outside the table.
     """
+    if interpolation not in get_args(Interpolation):
+        raise InputError(f"interpolation: must be 'scaled' or 'contact', got {interpolation!r}")
     ratio, nu = np.broadcast_arrays(axis_ratio, poisson_ratio)
     inside = np.clip(ratio, _EDGE, 1.0 / _EDGE)
-    values = _from_table(inside, nu)
+    values = _from_table(inside, nu) if interpolation == "scaled" else _as_contact(inside, nu)
     if (inside != ratio).any():
         values = [np.array(value) for value in values]
-        _continue(values, ratio < _EDGE, ratio, nu, _short_asymptotes)
-        _continue(values, ratio > 1.0 / _EDGE, 1.0 / ratio, nu, _long_asymptotes)
+        fades = interpolation == "scaled"
+        _continue(values, ratio < _EDGE, ratio, nu, _short_asymptotes, fades)
+        _continue(values, ratio > 1.0 / _EDGE, 1.0 / ratio, nu, _long_asymptotes, fades)
     return CreepageCoefficients(c11=values[0], c22=values[1], c23=values[2], c33=values[3])
 
 
 def _from_table(ratio: Array, nu: Array) -> list[Array]:
     """Return C11, C22, C23 and C33 for axis ratios within the table."""
     long = ratio > 1.0
-    inverse = 1.0 / ratio
-    place = np.where(long, 2.0 - inverse, ratio) / _EDGE - 1.0
-    row = np.minimum(place.astype(np.intp), len(_TABLE) - 2)
-    scaled = _SCALED.take(row, axis=-1) + _STEPS.take(row, axis=-1) * (place - row)
-    at_0, at_1, at_2 = 8.0 * (nu - 0.25) * (nu - 0.5), 16.0 * nu * (0.5 - nu), 8.0 * nu * (nu - 0.25)
-    c11, c22, c23 = 1.0 / (at_0 / scaled[:3, 0] + at_1 / scaled[:3, 1] + at_2 / scaled[:3, 2])
+    scaled = _between_rows(_SCALED, ratio)
+    c11, c22, c23 = _of_reciprocals(scaled[:3], nu)
+    at_0, at_1, at_2 = _parabolas(nu)
     c33 = (at_0 * scaled[3, 0] + 0.75 * at_1 * scaled[3, 1] + 0.5 * at_2 * scaled[3, 2]) / (1.0 - nu)
     growth = np.where(long, ratio, 1.0)
-    return [c11 * growth, c22 * growth, c23 * growth * np.sqrt(growth), c33 * np.where(long, 1.0, inverse)]
+    return [c11 * growth, c22 * growth, c23 * growth * np.sqrt(growth), c33 * np.where(long, 1.0, 1.0 / ratio)]
+
+
+def _as_contact(ratio: Array, nu: Array) -> list[Array]:
+    """Return C11, C22, C23 and C33 for axis ratios within the table, as the program CONTACT interpolates."""
+    return list(_of_reciprocals(_between_rows(_BARE, ratio), nu))
+
+
+def _between_rows(table: Array, ratio: Array) -> Array:
+    """Return a table of shape (coefficient, Poisson's ratio, row), linear in g between its rows."""
+    place = np.where(ratio > 1.0, 2.0 - 1.0 / ratio, ratio) / _EDGE - 1.0
+    row = np.minimum(place.astype(np.intp), len(_TABLE) - 2)
+    below = table.take(row, axis=-1)
+    return below + (table.take(row + 1, axis=-1) - below) * (place - row)
+
+
+def _of_reciprocals(values: Array, nu: Array) -> Array:
+    """Return coefficients whose reciprocals are parabolas of ν, from their values at the three Poisson's ratios."""
+    at_0, at_1, at_2 = _parabolas(nu)
+    found: Array = 1.0 / (at_0 / values[:, 0] + at_1 / values[:, 1] + at_2 / values[:, 2])
+    return found
+
+
+def _parabolas(nu: Array) -> tuple[Array, Array, Array]:
+    """Return the parabolas of ν that are one at one of the three Poisson's ratios and zero at the others."""
+    return 8.0 * (nu - 0.25) * (nu - 0.5), 16.0 * nu * (0.5 - nu), 8.0 * nu * (nu - 0.25)
 
 
 def _continue(
@@ -149,12 +197,17 @@ def _continue(
     g: Array,
     nu: Array,
     asymptotes: Callable[[Array, Array], tuple[tuple[Array, ...], Array]],
+    fades: bool,
 ) -> None:
-    """Replace the values of the table's end, where they lie beyond it, by the asymptotes that lead there."""
+    """Replace the values of the table's end, where they lie beyond it, by the asymptotes.
+
+    With `fades`, by those that lead there: the quotient at the table's end fades to one.
+    """
     g, nu = g[beyond], nu[beyond]
     (limits, neglected), (ends, neglected_at_end) = asymptotes(g, nu), asymptotes(np.full_like(g, _EDGE), nu)
+    share = neglected / neglected_at_end if fades else 0.0
     for value, limit, end in zip(values, limits, ends, strict=True):
-        value[beyond] = limit * (1.0 + (value[beyond] / end - 1.0) * neglected / neglected_at_end)
+        value[beyond] = limit * (1.0 + (value[beyond] / end - 1.0) * share)
 
 
 def _short_asymptotes(g: Array, nu: Array) -> tuple[tuple[Array, ...], Array]:

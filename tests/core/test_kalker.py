@@ -1,4 +1,4 @@
-"""Kalker's creepage coefficients, against his table, his limits and two half-spaces."""
+"""Kalker's creepage coefficients, against his table and his limits."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import kalker
-from wearlaw.arrays import Array
 
 NAMES = "c11", "c22", "c23", "c33"
 POISSON_RATIOS = 0.0, 0.25, 0.5
@@ -40,8 +40,8 @@ def table() -> dict[float, list[list[float]]]:
     }
 
 
-def values(axis_ratio: float, poisson_ratio: float) -> list[float]:
-    found = kalker.coefficients(np.array(axis_ratio), poisson_ratio)
+def values(axis_ratio: float, poisson_ratio: float, interpolation: kalker.Interpolation = "scaled") -> list[float]:
+    found = kalker.coefficients(np.array(axis_ratio), poisson_ratio, interpolation)
     return [float(getattr(found, name)) for name in NAMES]
 
 
@@ -134,83 +134,29 @@ def test_flexibilities_are_those_that_the_program_contact_prints(
     assert factor * millimetres / (value * 82e3) == pytest.approx(flexibility, abs=0.5 * digit)
 
 
-def influence(x: Array, y: Array, dx: float, dy: float, nu: float) -> tuple[Array, Array, Array]:
-    """πG times the relative displacement by unit traction on a rectangle: along x by x, along y by y, and mixed.
-
-    Cerruti's solution for two like half-spaces (K. L. Johnson, Contact Mechanics, 1985, section 3.6). The mixed one
-    has the sign of tractions along the rolling direction at positions against it.
-    """
-    along, across, mixed = (np.zeros_like(x) for _ in range(3))
-    for i, sign_i in ((x + dx / 2, 1), (x - dx / 2, -1)):
-        for j, sign_j in ((y + dy / 2, 1), (y - dy / 2, -1)):
-            sign, first, second = sign_i * sign_j, i * np.arcsinh(j / abs(i)), j * np.arcsinh(i / abs(j))
-            along += sign * ((1.0 - nu) * first + second)
-            across += sign * (first + (1.0 - nu) * second)
-            mixed += sign * nu * np.hypot(i, j)
-    return along, across, mixed
-
-
-def half_spaces(ratio: float, nu: float, cells: int) -> Array:
-    """C11, C22, C23 from spin, C23 from lateral creepage, and C33, with square-topped elements in an ellipse ab = 1.
-
-    Every element sticks: what a point is displaced on its way from one element to the next is the rigid slip there.
-    """
-    a, b = math.sqrt(ratio), 1.0 / math.sqrt(ratio)
-    dx, dy = 2.0 * a / cells, 2.0 * b / cells
-    middles = (2.0 * np.arange(cells) + 1.0) / cells - 1.0
-    x, y = (v.ravel() for v in np.meshgrid(a * middles, b * middles))
-    inside = (x / a) ** 2 + (y / b) ** 2 < 1.0
-    x, y = x[inside], y[inside]
-    here, one_before = (influence(x[:, None] - x - back, y[:, None] - y, dx, dy, nu) for back in (0.0, dx))
-    along, across, mixed = (first - second for first, second in zip(here, one_before, strict=True))
-    zero, one = np.zeros_like(x), np.ones_like(x)
-    slip = np.array([[one, zero], [zero, one], [-y, dx / 2.0 - x]]).reshape(3, -1).T * dx * math.pi
-    qx, qy = np.split(np.linalg.solve(np.block([[along, mixed], [mixed, across]]), slip), 2)
-    moment = -(x @ qy + y @ qx)
-    area = len(x) * dx * dy  # of the staircase; the ellipse of that area is what was solved
-    found = np.array([qx[:, 0].sum(), qy[:, 1].sum(), qy[:, 2].sum(), -moment[1], moment[2]]) * dx * dy
-    return found / (area / math.pi) ** np.array([1.0, 1.0, 1.5, 1.5, 2.0])
-
-
 @pytest.mark.validates(
     "elliptic-contact",
-    "C11, C22, C23 and C33 between the rows, a/b from 0.15 to 6.7, ν from 0 to 0.45",
-    source="a half-space solver written for the tests (Cerruti's solution; Johnson 1985, section 3.6)",
-    held_to="{others:g}, and {moment:g} for C33, relative (its grids)",
-    others=0.025,
-    moment=0.045,
+    "Where it is asked for, the table is interpolated as in CONTACT: linear in min(a/b, b/a), 1/C quadratic in ν",
+    source="CONTACT (Vollebregt), subroutine linrol; the asymptotes of Kalker 1990 outside the table",
+    held_to="{within:.1e}, relative",
+    within=20 * ROUNDING,
 )
-@pytest.mark.parametrize("nu", [0.0, 0.28, 0.45])
-@pytest.mark.parametrize("ratio", [0.15, 0.35, 1.0, 1.5, 6.7])
-def test_the_coefficients_are_those_of_two_half_spaces(ratio: float, nu: float, others: float, moment: float) -> None:
-    coarse, fine = half_spaces(ratio, nu, 10), half_spaces(ratio, nu, 20)
-    c11, c22, c23, c33 = values(ratio, nu)
-    # The error of the elements is of first order, and is extrapolated away. Grids of twice as many cells change the
-    # result by up to 1 %, and 4 % in the moment; the table has three digits. Between the rows of the slenderest patches
-    # linear interpolation would be off by 8 to 17 %.
-    assert 2.0 * fine[:4] - coarse[:4] == pytest.approx([c11, c22, c23, c23], rel=others)
-    assert 2.0 * fine[4] - coarse[4] == pytest.approx(c33, rel=moment)
+@given(st.floats(0.1, 1.0), st.sampled_from([1.0, -1.0]), st.floats(0.0, 0.5))
+def test_the_table_can_be_read_as_the_program_contact_does(within: float, g: float, turn: float, nu: float) -> None:
+    side = [(min(ratio, 1.0 / ratio), row) for ratio, row in table().items() if ratio**turn <= 1.0]
+    places, rows = zip(*sorted(side, key=lambda one: one[0]), strict=True)
+    nodes = np.array([[np.interp(g, places, [row[c][i] for row in rows]) for i in range(3)] for c in range(4)])
+    expected = [1.0 / through_three_points(nu, list(1.0 / node)) for node in nodes]
+    # g is inverted where a > b, and a difference of two places loses a digit
+    assert values(g**turn, nu, "contact") == pytest.approx(expected, rel=within)
+    beyond = 0.0999 * g
+    limits = [float(value) for value in (short if turn > 0.0 else long)(beyond, nu)]
+    assert values(beyond**turn, nu, "contact") == pytest.approx(limits, rel=within)
 
 
-@pytest.mark.validates(
-    "limits",
-    "C33 of a long patch is uncertain: at a/b = 20 half-spaces give {low:.0%} less at ν = 0.28, {lower:.0%} at 0.45",
-    source="a half-space solver written for the tests (Cerruti's solution; Johnson 1985, section 3.6)",
-    held_to="{moment:g}; C11, C22 and C23 to {others:g}, and at a/b = {wide:g} all, relative (its grids)",
-    low=0.09,
-    lower=0.18,
-    wide=0.05,
-    moment=0.045,
-    others=0.025,
-)
-def test_beyond_the_table_half_spaces_agree_but_for_the_moment_of_long_patches(
-    low: float, lower: float, wide: float, moment: float, others: float
-) -> None:
-    for ratio, nu, less in ((20.0, 0.28, low), (20.0, 0.45, lower), (wide, 0.28, 0.0)):
-        found = 2.0 * half_spaces(ratio, nu, 20) - half_spaces(ratio, nu, 10)
-        c11, c22, c23, c33 = values(ratio, nu)
-        assert found[:4] == pytest.approx([c11, c22, c23, c23], rel=others)
-        assert found[4] / c33 == pytest.approx(1.0 - less, abs=moment)
+def test_an_unknown_interpolation_is_refused() -> None:
+    with pytest.raises(wl.InputError, match="interpolation: must be 'scaled' or 'contact', got 'linear'"):
+        kalker.coefficients(np.array(1.0), 0.28, "linear")  # type: ignore[arg-type]
 
 
 @pytest.mark.validates(
