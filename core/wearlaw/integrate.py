@@ -175,12 +175,12 @@ def closed_form(
     forward = problem.forward()
     force = model.tangential_force_per_width(forward)
     total: Array | float = 0.0
-    for threshold, slope in (map(_of_points, ramp) for ramp in ramps):
+    for threshold, slope in ramps:
         above = _any_positive(threshold)
-        excess = model.excess_dissipation(forward, threshold) if above else force * forward.creepage
+        excess = model.excess_dissipation(forward, _of_points(threshold)) if above else force * forward.creepage
         if excess is None:
             return None
-        total += 0.5 * slope * excess
+        total += 0.5 * _of_points(slope) * excess
     force = force * problem.track_width
     rate = total / problem.half_width
     if extremes(rate)[0] < 0.0:  # ramps that cancel leave their rounding

@@ -110,10 +110,10 @@ class Pipeline(Configuration, Generic[RigT]):
         rig, model, scale, law = self.contact.rig, self.contact.contact_model, self.contact.scale, self.wear_law
 
         def see(part: LineProblem | EllipticProblem, columns: Columns) -> None:
-            if isinstance(part, EllipticProblem):
-                watch.see(part.size, partial(elliptic_mean, part, CreepForces.of(columns)))
-            else:
+            if isinstance(part, LineProblem):
                 watch.see(part.size, partial(line_mean, part, columns["tangential_force"]))
+            else:
+                watch.see(part.size, partial(elliptic_mean, part, CreepForces.of(columns)))
             if on_block is not None:
                 on_block(part.size)
 

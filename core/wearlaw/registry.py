@@ -97,7 +97,7 @@ def quantity_from_si(value: Any, unit: str) -> Any:
     """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
     cls, container, factor = _shown_in(application_registry(), unit)
     scaled = value / factor
-    return cls.of(scaled if np.ndim(scaled) else float(scaled), container)
+    return cls.of(scaled if isinstance(scaled, np.ndarray) and scaled.ndim else float(scaled), container)
 
 
 @functools.lru_cache(maxsize=512)
