@@ -15,7 +15,7 @@ from click.testing import CliRunner, Result
 
 import wearlaw as wl
 from wearlaw import Array, plugins
-from wearlaw.case import Case
+from wearlaw.case import Case, load_case
 from wearlaw.cli import main
 from wearlaw.shelf import Origin
 
@@ -27,6 +27,16 @@ SWEEP = {**POINT, "creepage": {"from": "0.1 %", "to": "10 %", "points": 5, "spac
 TESTS_HEAD = "label,creepage [%],normal_force [kN],wear_rate [ug/m/mm^2]"
 TESTS_CSV = f"{TESTS_HEAD}\na,1,7.4,30\nb,2,7.4,40\n"
 """Two tests as a file holds them."""
+
+
+OWN_TESTS = """\
+creepage [%],normal_force [kN],traction_coefficient,wear_rate [ug/m/mm^2]
+1,7.4,0.35,10
+3,7.4,NA,40
+"""
+"""Tests of a lab, of which the second has no traction."""
+
+STEEL = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "density": "7.8 g/cm^3"}
 
 
 def table(**changes: Any) -> Table:
@@ -148,3 +158,8 @@ def following_line() -> int:
     assert frame is not None
     assert frame.f_back is not None
     return frame.f_back.f_lineno + 2
+
+
+def load(tmp_path: Path, content: Table) -> Case:
+    """Write a case into a folder and read it."""
+    return load_case(str(write(tmp_path / "my.toml", content)))

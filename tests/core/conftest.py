@@ -6,7 +6,9 @@ import importlib
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
+import jsonschema  # type: ignore[import-untyped]
 import pytest
 from matplotlib.figure import Figure
 
@@ -14,6 +16,7 @@ import wearlaw as wl
 from tests.core.cases import InstallModel, installer
 from tests.core.distributions import Install, write_distribution
 from wearlaw import plugins
+from wearlaw.case import case_schema
 from wearlaw.sweeping import points
 
 
@@ -58,3 +61,11 @@ def small_blocks(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     wl.accelerate(False)
     yield
     wl.accelerate(None)
+
+
+@pytest.fixture(scope="session")
+def validator() -> Any:
+    """Give what checks a case against the schema."""
+    schema = case_schema()
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)

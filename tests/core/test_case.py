@@ -1,4 +1,4 @@
-"""Case files: what is read, what is refused and how that is said, and the schema that says the same."""
+"""Case files: what is read, and the schema that says the same."""
 
 from __future__ import annotations
 
@@ -13,33 +13,16 @@ import tomli_w
 
 import wearlaw as wl
 from tests.core import cases
-from tests.core.cases import InstallModel, case, changed, table
+from tests.core.cases import OWN_TESTS, STEEL, InstallModel, case, changed, load, table
 from wearlaw import plugins
 from wearlaw.case import Case, case_schema, case_text, labels, load_case, written
-
-
-def load(tmp_path: Path, content: cases.Table) -> Case:
-    return load_case(str(cases.write(tmp_path / "my.toml", content)))
 
 
 def rewritten(read: Case) -> str:
     return tomli_w.dumps(read.model_dump(mode="json", by_alias=True, exclude_none=True))
 
 
-@pytest.fixture(scope="module")
-def validator() -> Any:
-    schema = case_schema()
-    jsonschema.Draft202012Validator.check_schema(schema)
-    return jsonschema.Draft202012Validator(schema)
-
-
 # Measured tests
-
-OWN_TESTS = """\
-creepage [%],normal_force [kN],traction_coefficient,wear_rate [ug/m/mm^2]
-1,7.4,0.35,10
-3,7.4,NA,40
-"""
 
 
 def test_tests_of_a_lab_are_found_from_the_folder_of_the_case_file(
@@ -85,7 +68,6 @@ def test_a_case_with_shipped_tests_is_written_without_them() -> None:
 
 # What is read is written and read again
 
-STEEL = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "density": "7.8 g/cm^3"}
 RAIL = {**STEEL, "elastic_limit": "1 GPa"}
 OWN_K = {"high_pressure": 0.03, "low_speed": 1e-4, "mid_speed": 1e-3, "high_speed": 2e-4}
 OWN_RIG = {
@@ -210,136 +192,6 @@ def test_models_that_share_a_name_are_labelled_by_what_they_differ_in(laws: Any,
 def test_a_model_listed_twice_is_refused_however_it_is_written(models: Any) -> None:
     with pytest.raises(wl.ConfigurationError, match="is listed twice; leave one out, or give it other options"):
         case(contact_models=models)
-
-
-# What is refused
-
-WRONG: list[tuple[str, Any, str]] = [
-    ("title", None, "title: is missing"),
-    ("title", 1, "title: input should be a valid string, got 1"),
-    ("titel", "x", "titel: unknown field; did you mean 'title'?"),
-    ("rig", None, "rig: is missing"),
-    ("rig", "suros", "rig: must be a table, such as {preset = \"suros\"}; got 'suros'"),
-    ("rig", {}, "rig.disc_1: is missing"),
-    ("rig.preset", "sros", "rig.preset: input should be 'suros', got 'sros'"),
-    ("rig.diametre", "47 mm", "rig.diametre: unknown field; did you mean 'diameter'?"),
-    ("rig.diameter", 47, "rig.diameter: got the bare number 47, which has no unit; give it in mm"),
-    ("rig.material", {**STEEL, "poisson_ratio": 0.6}, "rig.material.poisson_ratio: input should be less than or equal"),
-    ("rig.material", {"youngs_modulus": "1 GPa", "poisson_ratio": 0.3}, "rig.material.density: is missing"),
-    ("rig.disc_1", {"diameter": "47 mm", "material": {**STEEL, "E": 1}}, "rig.disc_1.material.E: unknown field"),
-    ("contact_models", None, "contact_models: is missing"),
-    ("contact_models", [], "contact_models: must be a list of names, or of tables with a name and options; got []"),
-    ("contact_models", "exact", "contact_models: must be a list of names, or of tables"),
-    ("contact_models", ["exat"], "contact_models.0: no contact model is called 'exat'; did you mean 'exact'?"),
-    ("contact_models", ["exact", "usfd"], "contact_models.1: no contact model is called 'usfd'"),
-    ("contact_models", [{"slip": "consistent"}], 'contact_models.0: a model needs its name, as in {model = "exact"}'),
-    ("contact_models", [{"model": "exact", "slp": "x"}], "contact_models.0.slp: unknown field; did you mean 'slip'?"),
-    ("contact_models", [{"model": "exact", "slip": "x"}], "contact_models.0.slip: input should be 'consistent' or"),
-    ("contact_models", [3], "contact_models.0: input should be a valid dictionary or instance of ContactModel, got 3"),
-    ("wear_laws", [], "wear_laws: must be a list of names"),
-    ("wear_laws", ["brr", "usdf"], "wear_laws.1: no wear law is called 'usdf'; did you mean 'usfd'?"),
-    ("wear_laws", [{"model": "kth", "coefficient": {"low_speed": 1.0}}], "wear_laws.0.coefficient.mid_speed: is miss"),
-    ("wear_laws", [{"model": "usfd", "m_m": 5.3}], "wear_laws.0.m_m: got the bare number 5.3, which has no unit"),
-    ("sweeps", None, "sweeps: is missing"),
-    ("sweeps", {}, "sweeps: dictionary should have at least 1 item"),
-    ("sweeps.creepage", 1, "sweeps.creepage: input should be a valid dictionary"),
-    ("sweeps.creepage.creepage.points", 1, "sweeps.creepage.creepage.points: input should be greater than or equal"),
-    ("sweeps.creepage.creepage.step", 1, "sweeps.creepage.creepage.step: unknown field"),
-    (
-        "sweeps.creepage.frictioncoefficient",
-        0.4,
-        "sweeps.creepage.frictioncoefficient: unknown field; did you mean 'friction_coefficient'?",
-    ),
-    ("sweeps.creepage.friction_coefficient", True, "sweeps.creepage.friction_coefficient: must be a value"),
-    ("profiles.partial_slip.creepage", None, "profiles.partial_slip.creepage: is missing"),
-    ("measured", {"label": "m"}, "measured.tests: is missing"),
-    ("measured", {"tests": "lewis2004"}, "measured.label: is missing"),
-    ("measured", {"label": "m", "tests": 1}, "measured.tests: input should be a valid string, got 1"),
-    ("measured", {"label": "m", "tests": "lewis2004", "source": "s"}, "measured.source: unknown field"),
-]
-"""What both the loader and the schema refuse."""
-
-WRONG_TO_THE_LOADER: list[tuple[str, Any, str]] = [
-    ("rig.diameter", "47 kN", "rig.diameter: got 47.00 kN, which is not of the dimension of 'mm'"),
-    ("rig.diameter", "-1 mm", "rig.diameter: must be greater than zero, got -1.000 mm"),
-    ("rig.diameter", "47 foo", "rig.diameter: 'foo' is not a known unit"),
-    ("sweeps.creepage.max_pressure", "1 kN", "sweeps.creepage: max_pressure: got 1.000 kN, which is not of the dim"),
-    ("sweeps.creepage.creepage", 1, "sweeps.creepage: creepage: got the bare number 1.0, which has no unit"),
-    ("sweeps.creepage.normal_force", "1 N", "sweeps.creepage: give exactly one of normal_force, normal_force_per"),
-    ("sweeps.a b", cases.POINT, "sweeps: the name 'a b' must be made of letters, digits and underscores"),
-    ("profiles.a/b", cases.POINT, "profiles: the name 'a/b' must be made of letters, digits and underscores"),
-    (
-        "profiles.partial_slip.creepage",
-        ["1 %"],
-        "profiles.partial_slip: a profile is at one operating point; give each condition one value",
-    ),
-]
-"""What takes more than a schema to see."""
-
-
-@pytest.mark.parametrize(("path", "value", "message"), WRONG + WRONG_TO_THE_LOADER)
-def test_a_wrong_field_is_named_by_its_path(tmp_path: Path, path: str, value: Any, message: str) -> None:
-    with pytest.raises(wl.CaseError) as refusal:
-        load(tmp_path, changed(path, value))
-    assert str(refusal.value).startswith(f"case '{tmp_path / 'my.toml'}' is wrong in:\n  ")
-    assert f"\n  {message}" in str(refusal.value)
-
-
-@pytest.mark.parametrize(("path", "value", "message"), WRONG)
-def test_the_schema_refuses_what_the_loader_refuses(validator: Any, path: str, value: Any, message: str) -> None:
-    assert not validator.is_valid(changed(path, value)), message
-
-
-def test_every_wrong_field_is_named_once(tmp_path: Path) -> None:
-    content = changed("rig.diameter", 47, changed("contact_models", ["exat"], changed("wear_laws", ["usfd", "kht"])))
-    with pytest.raises(wl.CaseError) as refusal:
-        load(tmp_path, content)
-    where = [line.strip().split(":")[0] for line in str(refusal.value).splitlines()[1:]]
-    assert sorted(where) == ["contact_models.0", "rig.diameter", "wear_laws.1"]
-
-
-def test_tests_that_are_missing_or_wrong_are_refused_with_the_case(tmp_path: Path) -> None:
-    path = tmp_path / "own.csv"
-    content = table(measured={"label": "m", "tests": "own.csv"})
-    with pytest.raises(
-        wl.CaseError, match=r"is wrong in:\n  measured: there is no file '.*own.csv'. Shipped tests: lew"
-    ):
-        load(tmp_path, content)
-    path.write_text(OWN_TESTS.replace("7.4,NA", "-1,NA"), encoding="utf-8")
-    with pytest.raises(wl.CaseError) as refusal:
-        load(tmp_path, content)
-    message = str(refusal.value)
-    assert f"  measured: the tests '{path}' are wrong in:" in message
-    assert "line 3, column 'normal_force [kN]': got -1, which must be greater than zero" in message
-
-
-@pytest.mark.parametrize(
-    ("content", "message"),
-    [
-        (b'title = "no end', "is not valid TOML: "),
-        (b"\xff\xfe\x00\x01", "cannot read the case file"),
-        (b"title,rig\n1,2\n", "is not valid TOML: "),
-        (b"", "is wrong in:\n  title: is missing"),
-    ],
-)
-def test_a_file_that_is_no_case_is_refused(tmp_path: Path, content: bytes, message: str) -> None:
-    path = tmp_path / "wrong.toml"
-    path.write_bytes(content)
-    with pytest.raises(wl.CaseError, match=message) as refusal:
-        load_case(str(path))
-    assert str(path) in str(refusal.value)
-
-
-def test_a_missing_file_is_refused_with_the_shipped_case_that_may_be_meant(tmp_path: Path) -> None:
-    with pytest.raises(wl.CaseError, match=r"there is no case file 'tasini2010'; did you mean 'tassini2010'\?"):
-        load_case("tasini2010")
-    with pytest.raises(wl.CaseError, match=r"there is no case file '.*x.toml'. Shipped cases: tassini2010"):
-        load_case(str(tmp_path / "x.toml"))
-
-
-def test_a_folder_is_no_case_file(tmp_path: Path) -> None:
-    with pytest.raises(wl.CaseError, match=f"cannot read the case file '{tmp_path}'"):
-        load_case(str(tmp_path))
 
 
 # The schema and other people's models
