@@ -28,6 +28,7 @@ CONTACT_MODELS: list[wl.ContactModel] = [
         for bound in ("parabolic", "elliptic")
         for march, slip in (("uniform", "local"), ("adaptive", "scaled"))
     ),
+    wl.contact_model("fastsim", interpolation="contact"),
     *(
         wl.contact_model("global", total_from=model)
         for model in (
@@ -38,6 +39,7 @@ CONTACT_MODELS: list[wl.ContactModel] = [
         )
     ),
     wl.contact_model("linear"),
+    wl.contact_model("linear", interpolation="contact"),
     wl.contact_model("shen_hedrick_elkins"),
     *(
         wl.contact_model("polach", adhesion_reduction=adhesion, slip_reduction=slip)

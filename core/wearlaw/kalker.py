@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
+from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.errors import InputError
 
 # Kalker (1990), Table E.3. Columns: C11, C22, C23, C33, each at ν = 0, 1/4 and 1/2.
@@ -106,8 +107,7 @@ def coefficients(
     poisson_ratio : ndarray or float
         ν [-], from 0 to 1/2.
     interpolation : {"scaled", "contact"}
-        How to read the table, see the notes. "contact" is for comparisons with the program CONTACT; the contact models
-        use the other.
+        How to read the table, see the notes; "contact" is for comparisons with the program CONTACT.
 
     Returns
     -------
@@ -153,6 +153,27 @@ def coefficients(
         _continue(values, ratio < _EDGE, ratio, nu, _short_asymptotes, fades)
         _continue(values, ratio > 1.0 / _EDGE, 1.0 / ratio, nu, _long_asymptotes, fades)
     return CreepageCoefficients(c11=values[0], c22=values[1], c23=values[2], c33=values[3])
+
+
+def linear_forces(problem: EllipticProblem, interpolation: Interpolation = "scaled") -> CreepForces:
+    """Return the forces and the moment of the linear theory, as if the creepages of a problem were vanishing.
+
+    Parameters
+    ----------
+    problem : EllipticProblem
+        The contact; friction and load have no part in the result.
+    interpolation : {"scaled", "contact"}
+        As in `coefficients`.
+    """
+    c = coefficients(problem.a / problem.b, problem.poisson_ratio, interpolation)
+    ab = problem.a * problem.b
+    stiffness, size = problem.shear_modulus * ab, np.sqrt(ab)
+    lateral, spin = problem.lateral_creepage, size * problem.spin
+    return CreepForces(
+        longitudinal=stiffness * c.c11 * problem.longitudinal_creepage,
+        lateral=stiffness * (c.c22 * lateral + c.c23 * spin),
+        spin_moment=stiffness * size * (c.c33 * spin - c.c23 * lateral),
+    )
 
 
 def _from_table(ratio: Array, nu: Array) -> list[Array]:

@@ -12,7 +12,7 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw_fastsim._kernel import elliptic_excess, parabolic_excess
 
-ON_ELLIPSE = ("march", "strips", "slip")
+ON_ELLIPSE = ("march", "strips", "slip", "interpolation")
 """Settings that do not matter on a line."""
 
 
@@ -57,14 +57,20 @@ class Fastsim(wl.LineContactModel):
     it dissipates is Tγ also with spin; the factor helps with the elliptic bound, while the cells of the parabolic one
     are nearer to the full theory as they are."""
 
+    interpolation: wl.kalker.Interpolation = "scaled"
+    """How the table of Kalker's coefficients is read on an ellipse, as in `wl.kalker.coefficients`. "contact": as the
+    program CONTACT does, for comparisons with it."""
+
     @property
     def exemptions(self) -> Mapping[wl.Claim, str]:
-        """The elliptic bound never saturates; Kalker's flexibility has another initial slope."""
+        """The elliptic bound never saturates; other flexibilities have another initial slope."""
         exempt: dict[wl.Claim, str] = {}
         if self.bound == "elliptic":
             exempt["saturation"] = "the bound rises infinitely steeply at the leading edge, which always sticks"
         if self.flexibility == "kalker":
             exempt["initial_slope"] = "the flexibility is that of a long ellipse"
+        if self.interpolation == "contact":
+            exempt["initial_slope"] = "between the rows of Kalker's table long patches differ"
         return exempt
 
     @property
@@ -95,7 +101,8 @@ class Fastsim(wl.LineContactModel):
         from wearlaw_fastsim import _solution  # most of what there is to import, and not needed on a line
 
         solve = _solution.adaptive if self.march == "adaptive" else _solution.uniform
-        contact = solve(problem, self.bound == "elliptic", self.strips)
+        patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
+        contact = solve(problem, patches, self.strips)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 
     def on_strips(self, problem: wl.EllipticProblem, shares: Array) -> wl.EllipticContact | None:
@@ -104,7 +111,8 @@ class Fastsim(wl.LineContactModel):
             return None
         from wearlaw_fastsim import _solution
 
-        contact = _solution.on_strips(problem, self.bound == "elliptic", self.strips, shares)
+        patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
+        contact = _solution.on_strips(problem, patches, self.strips, shares)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 
     def slip_length(self, problem: wl.LineProblem) -> Array:

@@ -16,14 +16,16 @@ CELLS = 16
 """Cells that take about as long as an operating point does that `accelerated` counts."""
 
 
-def ellipses(problem: wl.EllipticProblem, elliptic: bool) -> Ellipses:
+def ellipses(
+    problem: wl.EllipticProblem, elliptic: bool, interpolation: wl.kalker.Interpolation = "scaled"
+) -> Ellipses:
     """Return what the simplified theory needs of a problem with one batch axis; with Kalker's three flexibilities.
 
     L1 = 8a/(3 C11 G), L2 = 8a/(3 C22 G), L3 = π a √(a/b)/(4 C23 G) (Kalker 1982).
     """
     a, modulus = problem.a, problem.shear_modulus
     ratio = a / problem.b
-    c = wl.kalker.coefficients(ratio, problem.poisson_ratio)
+    c = wl.kalker.coefficients(ratio, problem.poisson_ratio, interpolation)
     share = 1.5 if elliptic else 2.0
     return Ellipses(
         a=a,
@@ -39,24 +41,23 @@ def ellipses(problem: wl.EllipticProblem, elliptic: bool) -> Ellipses:
     )
 
 
-def adaptive(problem: wl.EllipticProblem, elliptic: bool, count: int) -> wl.EllipticContact:
+def adaptive(problem: wl.EllipticProblem, patches: Ellipses, count: int) -> wl.EllipticContact:
     """Return the contact on `count` strips with nodes where they are needed."""
     shares, widths = _strips.even_strips(count)
-    return _on_strips(problem, elliptic, count, shares, widths)
+    return _on_strips(problem, patches, count, shares, widths)
 
 
-def on_strips(problem: wl.EllipticProblem, elliptic: bool, count: int, shares: Array) -> wl.EllipticContact:
+def on_strips(problem: wl.EllipticProblem, patches: Ellipses, count: int, shares: Array) -> wl.EllipticContact:
     """Return the contact on strips at y = `shares` × b, with as many nodes on each as among `count` strips."""
     between = 0.5 * (shares[1:] + shares[:-1])
-    return _on_strips(problem, elliptic, count, shares, np.diff(np.concatenate([[-1.0], between, [1.0]])))
+    return _on_strips(problem, patches, count, shares, np.diff(np.concatenate([[-1.0], between, [1.0]])))
 
 
 def _on_strips(
-    problem: wl.EllipticProblem, elliptic: bool, count: int, shares: Array, widths: Array
+    problem: wl.EllipticProblem, patches: Ellipses, count: int, shares: Array, widths: Array
 ) -> wl.EllipticContact:
     flat = problem.flatten()
     along = max(round(STICK_NODES_PER_STRIP * count), 4), max(round(SLIP_NODES_PER_STRIP * count), 8)
-    patches = ellipses(flat, elliptic)
     found = _strips.strips(patches, shares, *along)
     b = flat.b[:, None]
     rolls_freely = (flat.longitudinal_creepage == 0.0) & (flat.lateral_creepage == 0.0) & (flat.spin == 0.0)
@@ -77,10 +78,9 @@ def _on_strips(
     return contact.with_batch(problem.batch_shape)
 
 
-def uniform(problem: wl.EllipticProblem, elliptic: bool, count: int) -> wl.EllipticContact:
+def uniform(problem: wl.EllipticProblem, patches: Ellipses, count: int) -> wl.EllipticContact:
     """Return the contact on `count` × `count` cells, by Kalker's march."""
     flat = problem.flatten()
-    patches = ellipses(flat, elliptic)
     compiled = wl.accelerated(flat.size * count**2 // CELLS)
     cells = Cells.empty(flat.size, count, count, compiled=compiled)
     march(patches, cells, compiled=compiled)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
-import numpy as np
-
 import wearlaw as wl
 
 
@@ -30,26 +28,25 @@ class Linear(wl.CreepForceModel):
         " Delft University of Technology, 1967"
     )
 
+    interpolation: wl.kalker.Interpolation = "scaled"
+    """How the table of the coefficients is read, as in `wl.kalker.coefficients`. "contact": as the program CONTACT
+    does, for comparisons with it."""
+
     @property
     def exemptions(self) -> Mapping[wl.Claim, str]:
         """Linear forces know no friction."""
-        return {
+        exempt: dict[wl.Claim, str] = {
             "traction_bound": "the force is linear in the creepage and passes μN",
             "saturation": "the force is linear in the creepage and passes μN",
             "stick": "the one node slips by what dissipates the energy of the creepages, at any traction",
         }
+        if self.interpolation == "contact":
+            exempt["initial_slope"] = "between the rows of Kalker's table long patches differ"
+        return exempt
 
     def creep_forces(self, problem: wl.EllipticProblem) -> wl.CreepForces:
         """Return the forces and the moment, of the batch shape."""
-        c = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
-        ab = problem.a * problem.b
-        stiffness, size = problem.shear_modulus * ab, np.sqrt(ab)
-        lateral, spin = problem.lateral_creepage, size * problem.spin
-        return wl.CreepForces(
-            longitudinal=stiffness * c.c11 * problem.longitudinal_creepage,
-            lateral=stiffness * (c.c22 * lateral + c.c23 * spin),
-            spin_moment=stiffness * size * (c.c33 * spin - c.c23 * lateral),
-        )
+        return wl.kalker.linear_forces(problem, self.interpolation)
 
 
 @wl.hookimpl

@@ -43,17 +43,15 @@ class ShenHedrickElkins(wl.CreepForceModel):
 
     def creep_forces(self, problem: wl.EllipticProblem) -> wl.CreepForces:
         """Return the forces and the moment, of the batch shape."""
-        c = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
-        ab = problem.a * problem.b
-        stiffness, size = problem.shear_modulus * ab, np.sqrt(ab)
-        lateral, spin = problem.lateral_creepage, size * problem.spin
-        force_x = stiffness * c.c11 * problem.longitudinal_creepage
-        force_y = stiffness * (c.c22 * lateral + c.c23 * spin)
-        moment = stiffness * size * (c.c33 * spin - c.c23 * lateral)
-        share = np.hypot(force_x, force_y) / (problem.friction_coefficient * problem.normal_force)
+        linear = wl.kalker.linear_forces(problem)
+        share = linear.tangential / (problem.friction_coefficient * problem.normal_force)
         partial = np.minimum(share, 3.0) / 3.0
         factor = (1.0 - partial + partial**2 / 3.0) * (3.0 / np.maximum(share, 3.0))
-        return wl.CreepForces(longitudinal=factor * force_x, lateral=factor * force_y, spin_moment=factor * moment)
+        return wl.CreepForces(
+            longitudinal=factor * linear.longitudinal,
+            lateral=factor * linear.lateral,
+            spin_moment=factor * linear.spin_moment,
+        )
 
 
 @wl.hookimpl
