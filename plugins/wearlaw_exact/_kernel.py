@@ -32,9 +32,6 @@ STEPS = 60
 
 Number = TypeVar("Number", float, Array)
 
-TINY = 1e-30
-"""The least v, so that no power of it is zero."""
-
 
 def _change(base: Number, growth: Number, square: Number, v: Number) -> Number:
     """Return Halley's step towards v (2-v) (base + growth v)² = square."""
@@ -82,7 +79,7 @@ def _excess_arrays(
     if not there.all():
         near, zone, mean, height = near[there], zone[there], mean[there], height[there]
         crest, square, left = crest[there], square[there], left[there]
-    guess = np.maximum(left / (1.0 + np.sqrt(1.0 - left)), TINY)  # on the ellipse through the maximum
+    guess = left / (1.0 + np.sqrt(1.0 - left))  # on the ellipse through the maximum
     growth = np.concatenate([-zone, zone])  # the trailing end, then the other
     both, top = np.concatenate([mean, mean]), 1.0 + np.concatenate([-crest, crest])
     v = _roots(both - growth, growth, top, np.concatenate([square, square]), top * np.concatenate([guess, guess]))
@@ -111,7 +108,7 @@ def excess_dissipation(
     left = square / (peak * peak * ((1.0 - crest) * (1.0 + crest)))
     if left >= 1.0:
         return 0.0
-    guess = max(left / (1.0 + math.sqrt(1.0 - left)), TINY)
+    guess = left / (1.0 + math.sqrt(1.0 - left))
     v, top, u, summit = guess * (1.0 - crest), 1.0 - crest, guess * (1.0 + crest), 1.0 + crest
     for _ in range(STEPS):  # both roots at once, which processors overlap
         next_v = v - _change(mean + zone, -zone, square, v)

@@ -27,9 +27,6 @@ The next error is of the order of its cube, 1e-8; and since P is at its level in
 only feels the square of that.
 """
 
-TINY = 1e-30
-"""The least share of its range that a root is sought at, so that no power of it is zero."""
-
 STEPS = 60
 """Steps at most; two to four are needed, next to d = 1 more."""
 
@@ -67,7 +64,7 @@ def _parabolic_arrays(
     end, more, level, top, crest = end[reached], more[reached], level[reached], top[reached], crest[reached]
     zero, other = np.minimum(2.0, more), np.maximum(2.0, more)
     left = level / (top * (zero - top) * (other - top))
-    share = np.maximum(left / (1.0 + np.sqrt(np.maximum(1.0 - left, 0.0))), TINY)  # on the parabola through the maximum
+    share = left / (1.0 + np.sqrt(np.maximum(1.0 - left, 0.0)))  # on the parabola through the maximum
     trailing = np.minimum(_root(other, -1.0, zero, level, top, share), crest)
     leading = zero - _root(other - zero, 1.0, zero, level, zero - top, share)
     leading = np.where(level > end * (2.0 - end) * (more - end), np.clip(leading, crest, end), end)
@@ -89,7 +86,7 @@ def parabolic_excess(creepage: float, slope: float, centre: float, half_width: f
         return 0.0
     zero, other = min(2.0, more), max(2.0, more)
     left = level / (top * (zero - top) * (other - top))
-    share = max(left / (1.0 + math.sqrt(max(1.0 - left, 0.0))), TINY)
+    share = left / (1.0 + math.sqrt(max(1.0 - left, 0.0)))
     v, summit = top * share, zero - top
     u = summit * share
     for _ in range(STEPS):  # both roots at once, which processors overlap

@@ -97,7 +97,7 @@ def test_next_to_the_maximum_rounding_makes_nothing_negative(copy: str) -> None:
 @every_copy
 def test_a_threshold_next_to_nothing_leaves_the_whole_dissipation(copy: str) -> None:
     reduced = crowded(np.random.default_rng(43), 1_000)
-    for level in (1e-40, 1e-300):
+    for level in (0.0, 1e-40, 1e-300):
         error = np.abs(apply(copy, reduced, np.full_like(reduced, level)) - whole(reduced))
         assert (error <= (ROUNDINGS + 2 * EPS) * whole(reduced)).all()  # that of the test has four roundings
 

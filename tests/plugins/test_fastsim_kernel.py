@@ -127,7 +127,7 @@ def test_next_to_the_maximum_rounding_makes_nothing_negative(bound: str, copy: s
 @every_copy
 def test_a_threshold_next_to_nothing_leaves_the_whole_dissipation(bound: str, copy: str) -> None:
     reduced = crowded(np.random.default_rng(53), 1_000)
-    for level in (1e-40, 1e-300):
+    for level in (0.0, 1e-40, 1e-300):
         error = np.abs(apply(bound, copy, reduced, np.full_like(reduced, level)) - whole(bound, reduced))
         assert (error <= (ROUNDINGS[bound] + 4 * EPS) * whole(bound, reduced)).all()  # eight are of the test
 
