@@ -66,8 +66,7 @@ def _parabolic_arrays(
     left = level / (top * (zero - top) * (other - top))
     share = left / (1.0 + np.sqrt(np.maximum(1.0 - left, 0.0)))  # on the parabola through the maximum
     trailing = np.minimum(_root(other, -1.0, zero, level, top, share), crest)
-    leading = zero - _root(other - zero, 1.0, zero, level, zero - top, share)
-    leading = np.where(level > end * (2.0 - end) * (more - end), np.clip(leading, crest, end), end)
+    leading = np.clip(zero - _root(other - zero, 1.0, zero, level, zero - top, share), crest, end)
     third = (2.0 + more) / 3.0
     energy = leading**2 * (more - leading * (third - 0.25 * leading))
     energy -= trailing**2 * (more - trailing * (third - 0.25 * trailing))
@@ -99,9 +98,7 @@ def parabolic_excess(creepage: float, slope: float, centre: float, half_width: f
         v, u = next_v, next_u
         if far <= 0.0:
             break
-    trailing, leading = min(v, crest), end
-    if level > end * (2.0 - end) * (more - end):
-        leading = min(max(zero - u, crest), end)
+    trailing, leading = min(v, crest), min(max(zero - u, crest), end)
     third = (2.0 + more) / 3.0
     energy = leading * leading * (more - leading * (third - 0.25 * leading))
     energy -= trailing * trailing * (more - trailing * (third - 0.25 * trailing))

@@ -122,3 +122,17 @@ def test_a_march_is_compiled_by_its_number_of_cells(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(wl, "accelerated", accelerated)
     wl.contact_model("fastsim", march="uniform", strips=21).solve_ellipse(two_loads())
     assert asked[0] == 55  # 2 × 21 × 21 / 16, rounded down
+
+
+def test_no_cell_of_a_uniform_march_gains_energy(monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(91)
+    creepages = 10.0 ** random.uniform(-4.0, -1.5, (2, 200)) * random.choice([-1.0, 1.0], (2, 200))
+    problem = ellipse().broadcast_to((200,)).with_creepages(*creepages, np.full(200, 3.0))
+
+    def least_power() -> float:
+        contact = wl.contact_model("fastsim", march="uniform", strips=20).solve_ellipse(problem)
+        return float((contact.traction_x * contact.slip_x + contact.traction_y * contact.slip_y).min())
+
+    assert least_power() >= 0.0
+    monkeypatch.setattr("wearlaw_fastsim._solution.drop_gains", lambda cells: None)
+    assert least_power() < 0.0
