@@ -177,6 +177,31 @@ def test_the_slip_is_the_creepage_less_the_slope_of_the_bound(
     assert fields_at(model, problem, x).slip == pytest.approx(expected, abs=roundings * EPS * scale)
 
 
+@every_configuration
+@pytest.mark.parametrize("percent", [0.5, 5.0, 25.0])
+def test_where_a_field_crosses_a_value_it_has_that_value(
+    bound: Bound, flexibility: Flexibility, percent: float
+) -> None:
+    problem, model = problem_at(percent).broadcast_to((12,)), fastsim(bound, flexibility)
+    a, start = problem.half_width, slip_zone(model, problem)[0]
+    x = start + (a - start) * np.linspace(0.05, 0.9, 12)
+    known = fields_at(model, problem, x[:, None])
+    names: list[wl.FieldVariable] = ["slip", "pressure"]
+    for name in names:
+        found = model.crossings(problem, name, getattr(known, name)[:, 0])
+        assert found is not None
+        # Some eight roundings of the value are as much of a over how fast it changes: at the least the creepage is
+        # 14 times the slope of the bound, and the pressure changes by 1/25 next to the middle.
+        off = np.abs(a[:, None] - found - x[:, None]).min(axis=-1)
+        assert (off <= 8 * 25 * EPS * a).all(), name
+    assert model.crossings(problem, "traction", known.traction[:, 0]) is None
+
+
+def test_a_refined_model_is_the_same_with_twice_the_strips() -> None:
+    model = wl.contact_model("fastsim", bound="elliptic", strips=12)
+    assert model.refined() == wl.contact_model("fastsim", bound="elliptic", strips=24)
+
+
 @pytest.mark.validates(
     "line-contact",
     "With the parabolic bound, `fastsim` saturates at 1.5 times Carter's creepage",

@@ -127,7 +127,7 @@ def test_a_march_is_compiled_by_its_number_of_cells(monkeypatch: pytest.MonkeyPa
 def test_no_cell_of_a_uniform_march_gains_energy(monkeypatch: pytest.MonkeyPatch) -> None:
     random = np.random.default_rng(91)
     creepages = 10.0 ** random.uniform(-4.0, -1.5, (2, 200)) * random.choice([-1.0, 1.0], (2, 200))
-    problem = ellipse().broadcast_to((200,)).with_creepages(*creepages, np.full(200, 3.0))
+    problem = ellipse().broadcast_to((200,)).with_creepages(creepages[0], creepages[1], np.full(200, 3.0))
 
     def least_power() -> float:
         contact = wl.contact_model("fastsim", march="uniform", strips=20).solve_ellipse(problem)
