@@ -129,7 +129,7 @@ def march(ellipses: Ellipses, cells: Cells, *, compiled: bool) -> None:
         compiled_march(np.stack(ellipses.arrays, axis=1), ellipses.elliptic, *cells.arrays)
         return
     points, _, strips = cells.x.shape
-    rows = max(BLOCK // strips, 1)
+    rows = BLOCK // strips
     buffers = np.empty((8, min(rows, points), strips))
     for first in range(0, points, rows):
         part = slice(first, min(first + rows, points))
