@@ -2,7 +2,8 @@
 
 Blocks of ``python`` run in one namespace a page, blocks of ``console`` in a shell, both in an empty folder. A
 block with a caption is a file of that name, which the blocks after it find there. What a page installs is there for
-its own shells only. Of blocks of ``matlab`` the names are looked up in the files that they read.
+its own shells only. Blocks of ``toml`` are tables of a case file. Of blocks of ``matlab`` the names are looked up in
+the files that they read. `tests/test_blocks.py` holds that no block is left out.
 """
 
 from __future__ import annotations
@@ -54,7 +55,9 @@ def check_matlab(example: Example) -> None:
     import h5py  # type: ignore[import-untyped]
     import pandas as pd
 
-    for function, file, variable, attribute in MATLAB_READS.findall(example.parsed):
+    found = MATLAB_READS.findall(example.parsed)
+    assert found
+    for function, file, variable, attribute in found:
         if function == "readtable":
             columns = re.findall(r'\.\("([^"]+)"\)', example.parsed)
             assert columns
@@ -62,6 +65,14 @@ def check_matlab(example: Example) -> None:
         else:
             with h5py.File(file) as opened:
                 assert opened[variable].attrs[attribute] if attribute else opened[variable][()].size
+
+
+def read_tables(example: Example) -> None:
+    """Read tables of a case file below those of the shipped case."""
+    from wearlaw.case import case_text, load_case
+
+    Path("_tables.toml").write_text(f"{case_text('tassini2010')}\n{example.parsed}", encoding="utf-8")
+    load_case("_tables.toml")
 
 
 def captioned_files(document: Any) -> Any:
@@ -95,14 +106,16 @@ def leave_folder(namespace: dict[str, Any]) -> None:
     namespace["_installed"].cleanup()
 
 
-pytest_collect_file = Sybil(
+PAGES = Sybil(
     parsers=[
         captioned_files,
         PythonCodeBlockParser(doctest_optionflags=OPTIONS),
         CodeBlockParser(language="console", evaluator=run_console),
+        CodeBlockParser(language="toml", evaluator=read_tables),
         CodeBlockParser(language="matlab", evaluator=check_matlab),
     ],
     patterns=["README.md", "docs/*.md"],
     setup=enter_folder,
     teardown=leave_folder,
-).pytest()
+)
+pytest_collect_file = PAGES.pytest()

@@ -79,7 +79,7 @@ def test_every_axis_says_what_it_shows_in_which_unit(script: Path) -> None:
     for axes in run(script.stem)["figure"].axes:
         labels = [label for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
         assert labels
-        assert all(label.endswith("]") or label == "probability of less wear" for label in labels)
+        assert all(label.endswith("]") for label in labels)
 
 
 def test_the_page_shows_every_script_with_its_picture_and_no_other() -> None:

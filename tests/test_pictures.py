@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import re
+import tomllib
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.quiver import Quiver
+from PIL import Image
 
 import wearlaw as wl
 from docs import pictures
 from tests.environments import ROOT
+from wearlaw.case import Case, case_text
+from wearlaw.figures.drawing import draw as drawing_of
+from wearlaw.study import run
 
 
 @pytest.mark.parametrize(
@@ -51,6 +58,29 @@ def test_arrows_of_the_drawing_are_the_rigid_slip_seen_with_x_to_the_right_and_r
     found = np.stack([np.asarray(arrows.U), np.asarray(arrows.V)])
     scale = np.abs(found).max() / np.abs(expected).max()
     assert found == pytest.approx(scale * expected, abs=1e-12)
+
+
+def test_pages_show_the_pictures_that_are_there_and_no_other() -> None:
+    pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    shown = {name for page in pages for name in re.findall(r"pictures/(\w+)\.png\)", page.read_text(encoding="utf-8"))}
+    assert shown == {path.stem for path in pictures.FOLDER.iterdir()}
+    assert {name for name in shown if re.match(r"figure_|wear_against", name)} == {*pictures.OF_STUDY}
+
+
+def test_the_picture_of_the_readme_is_what_is_drawn_now(tmp_path: Path) -> None:
+    committed, drawn = pictures.FOLDER / "figure_06.png", tmp_path / "figure_06.png"
+    fields = tomllib.loads(case_text("tassini2010"))
+    needed = {"sections": [], "profiles": {}, "contact_models": fields["contact_models"][:1]}
+    needed |= {kind: {name: fields[kind][name]} for kind, name in (("sweeps", "creepage"), ("figures", "figure_06"))}
+    (figure,) = run(Case(**{**fields, **needed})).figures
+    pictures.save(drawing_of(figure), drawn)
+    with Image.open(committed) as old, Image.open(drawn) as new:
+        if old.info["Software"] != new.info["Software"]:
+            pytest.skip(f"it was drawn by {old.info['Software']}, which places texts elsewhere")
+        difference = np.abs(np.asarray(old, dtype=int) - np.asarray(new, dtype=int))
+        ink = np.asarray(new.convert("L")) < 255
+    # By rounding, which may differ from processor to processor, a pixel on an edge is lighter or darker by one of 256.
+    assert difference[..., :3].mean() <= ink.mean()
 
 
 def test_every_axis_of_the_theory_and_of_the_benchmarks_has_its_unit() -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+import io
+from typing import Any, Literal
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -12,10 +14,11 @@ from matplotlib.figure import Figure
 from tests.core import cases
 from tests.core.cases import case
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.figures.drawing import LINES, PALETTE, draw
+from wearlaw.figures.drawing import LINES, MARKERS, PALETTE, draw, marked_points
 from wearlaw.study import run
 
 X = np.array([1.0, 2.0, 4.0])
+SVG = "{http://www.w3.org/2000/svg}"
 
 
 def curve(label: str = "a", **changes: Any) -> Curve:
@@ -56,14 +59,97 @@ def test_a_curve_is_drawn_as_it_is_in_the_colour_and_line_style_of_its_numbers()
     assert first.get_marker() in ("", "None")
 
 
-def test_no_two_colours_and_no_two_line_styles_are_alike() -> None:
-    assert len(set(PALETTE)) == len(PALETTE)
+def test_no_two_colours_with_their_markers_and_no_two_line_styles_are_alike() -> None:
+    assert len(set(PALETTE)) == len(set(MARKERS)) == len(PALETTE) == len(MARKERS)
     assert len(set(LINES)) == len(LINES)
 
 
 def test_a_curve_of_one_point_has_a_marker() -> None:
     (line,) = axes_of(curve(x=X[:1], y=X[:1])).lines
-    assert line.get_marker() == "o"
+    assert line.get_marker() == MARKERS[0]
+
+
+def places(*curves: Curve) -> list[np.ndarray[Any, Any]]:
+    """Return where the markers of each curve are drawn, shape (markers, 2), in points."""
+    figure = drawn(panel(*curves))
+    (axes,) = figure.axes
+    for number, line in enumerate(axes.lines):
+        line.set_gid(f"line {number}")
+    file = io.StringIO()
+    figure.savefig(file, format="svg")
+    groups = {group.get("id"): group for group in ElementTree.fromstring(file.getvalue()).iter(f"{SVG}g")}
+    lines = [groups[f"line {number}"] for number in range(len(curves))]
+    return [np.array([(float(m.attrib["x"]), float(m.attrib["y"])) for m in line.iter(f"{SVG}use")]) for line in lines]
+
+
+def test_lines_that_only_colour_would_tell_apart_have_markers_which_are_few_and_do_not_meet() -> None:
+    x = np.linspace(0.0, 1.0, 1001)
+    alike = [curve(str(number), x=x, y=x, colour=number) for number in range(len(PALETTE))]
+    lines = axes_of(*alike).lines
+    assert [line.get_marker() for line in lines] == [*MARKERS]
+    assert {line.get_markerfacecolor() for line in lines} == {"white"}
+    found = places(*alike)
+    assert all(len(one) == 7 for one in found)
+    together = np.concatenate(found)
+    apart = np.hypot(*(together[:, None] - together).transpose(2, 0, 1))
+    assert (apart + np.diag(np.full(len(together), np.inf))).min() > lines[0].get_markersize()
+
+
+def test_markers_stand_at_equal_distances_along_a_line_on_logarithmic_axes_where_the_axes_show_it() -> None:
+    x = np.geomspace(1.0, 1e6, 6001)
+    axis = PlotAxis("x [-]", "log", (10.0, 1e5))
+    level = PlotAxis("y [-]", "linear", (0.0, 1.0))
+    line = curve(x=x, y=np.full(x.size, 0.5), colour=2)
+    marked = np.log10(x[marked_points(line, Panel(axis, level, (line,)))])
+    # A fifth of four decades, with points of a thousandth of a decade; each marker stands at most one of them later.
+    assert np.diff(marked) == pytest.approx(np.full(marked.size - 1, 0.8), abs=2e-3)
+    assert 1.0 < marked[0] < 1.8
+    assert 4.2 < marked[-1] < 5.0
+
+
+@pytest.mark.parametrize("height", [0.0, 1.0])
+def test_a_level_line_has_markers_and_a_jump_does_not_crowd_them(height: float) -> None:
+    line = curve(x=np.linspace(0.0, 1.0, 1000), y=np.where(np.arange(1000) < 500, 0.0, height))
+    marked = marked_points(line, panel(line))
+    # The first stands at a fourteenth of a spacing, 14.3 steps, the next 199.8 steps later, or right after the jump.
+    assert marked == [15, 215, 415, 615, 815] if height == 0.0 else [15, 215, 415, 500, 700, 900]
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+@pytest.mark.parametrize(
+    ("x", "y", "marked"),
+    [
+        ([1.0, 2.0], [np.nan, 1.0], [1]),
+        ([1.0, 1.02, 2.0], [1.0, 1.0, np.inf], [1]),
+        ([1.0, 2.0], [np.nan, np.nan], []),
+        ([], [], []),
+    ],
+    ids=["one point", "a short line", "none", "nothing"],
+)
+def test_the_shortest_line_has_a_marker_and_what_cannot_be_seen_has_none(
+    scale: Literal["linear", "log"], x: list[float], y: list[float], marked: list[int]
+) -> None:
+    line = curve(x=np.array(x), y=np.array(y))
+    assert marked_points(line, panel(line, curve(), y=PlotAxis("y", scale))) == marked
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_where_one_panel_needs_markers_all_panels_have_them(axis: int) -> None:
+    panels = [panel(curve("a")), panel(curve("a"), curve("b", colour=1))]
+    figure = drawn(*panels[:: 1 - 2 * axis])
+    assert [line.get_marker() for axes in figure.axes for line in axes.lines] == [["s", "s", "^"], ["s", "^", "s"]][
+        axis
+    ]
+
+
+def test_lines_that_their_style_tells_apart_have_no_markers() -> None:
+    points = curve("tests", colour=6, points=True)
+    assert [len(one) for one in places(curve("a"), curve("b", colour=1, dash=1), points)] == [0, 0, 3]
+
+
+def test_points_of_each_colour_have_a_marker_of_their_own() -> None:
+    lines = axes_of(*(curve(str(number), colour=number, points=True) for number in range(len(PALETTE)))).lines
+    assert [line.get_marker() for line in lines] == [*MARKERS]
 
 
 def test_measured_points_are_not_joined() -> None:

@@ -63,8 +63,23 @@ def test_what_is_not_a_number_is_left_out(one: dict[str, Any]) -> None:
 def test_points_are_not_joined_and_a_single_point_of_a_line_is_seen(one: dict[str, Any]) -> None:
     modes = {name: trace["mode"] for name, trace in one.items()}
     assert modes.pop("tests") == modes.pop("uncertain tests") == "markers"
-    assert modes.pop("lone") == "lines+markers"
-    assert set(modes.values()) == {"lines"}
+    assert set(modes.values()) == {"lines+markers"}  # of which "rising" and "gaps" have one line style
+    told_by_style = Panel(PlotAxis("x [-]"), PlotAxis("y [-]"), (data.RISING, data.FALLING, data.LONE))
+    modes = {name: trace["mode"] for name, trace in traces(FigureData("f", "", (told_by_style,))).items()}
+    assert modes == {"rising": "lines", "falling": "lines", "lone": "lines+markers"}
+
+
+def test_markers_are_those_of_the_printed_figure_on_lines_hollow_and_sparse(one: dict[str, Any]) -> None:
+    symbols = {"s": "square", "^": "triangle-up", "D": "diamond", "v": "triangle-down", "X": "x", "o": "circle"}
+    (axes,) = draw(ONE).axes
+    printed = {str(line.get_label()): line for line in axes.get_lines()}
+    for name, trace in one.items():
+        points = trace["mode"] == "markers"
+        assert trace["marker"]["symbol"] == symbols[str(printed[name].get_marker())] + ("" if points else "-open")
+        if not points and name != "lone":
+            assert trace["selectedpoints"] == printed[name].get_markevery()
+            assert trace["unselected"] == {"marker": {"opacity": 0}}
+    assert one["lone"]["selectedpoints"] == [0]
 
 
 def test_colours_and_line_styles_are_those_of_the_printed_figure(one: dict[str, Any]) -> None:

@@ -22,7 +22,7 @@ class Curve:
     x, y : ndarray, (points,)
         In the units that the labels of the axes give.
     colour, dash : int
-        Numbers of its colour and its line style; the same number is the same style in all figures of a report.
+        Numbers of its colour, with its marker, and its line style; the same number is the same in all of a report.
     low, high : ndarray, (points,), or None
         The ends of a band about it.
     points : bool

@@ -1,7 +1,7 @@
 """Figures drawn with matplotlib in one style, for print.
 
-The palette can be told apart by colour-blind people (Okabe and Ito, 2008). The legend stands below the panels, where
-it covers no curve.
+The palette can be told apart by colour-blind people (Okabe and Ito, 2008). Where only colour would tell lines apart,
+they have sparse markers too, for prints in grey. The legend stands below the panels, where it covers no curve.
 """
 
 from __future__ import annotations
@@ -9,8 +9,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.figure import Figure
 
+from wearlaw.arrays import Array
 from wearlaw.figures.curves import has_band
 
 if TYPE_CHECKING:
@@ -20,6 +22,10 @@ if TYPE_CHECKING:
 
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 LINES = ("-", "--", ":", "-.")
+MARKERS = ("s", "^", "D", "v", "P", "X", "o")
+"""One for each colour."""
+SPACING = 0.2
+"""Of the markers along a line, as a share of its axes."""
 STYLE: Any = {
     "axes.grid": True,
     "grid.alpha": 0.3,
@@ -49,15 +55,51 @@ def draw(figure: FigureData) -> Figure:
         drawn = Figure(figsize=(WIDTH, 1.2 + ROW_HEIGHT * len(rows)), layout="constrained")
         axes: dict[int, Axes] = drawn.subplot_mosaic(rows)
         for number, panel in enumerate(figure.panels):
-            _fill(axes[number], panel)
+            _fill(axes[number], panel, has_markers(figure))
         drawn.suptitle(_literal(figure.title))
         _legend(drawn, figure, list(axes.values()))
     return drawn
 
 
-def _fill(axes: Axes, panel: Panel) -> None:
+def has_markers(figure: FigureData) -> bool:
+    """Return whether the lines of a figure have markers: if a panel has two of different colours in one line style."""
+    for panel in figure.panels:
+        lines = {(c.colour % len(PALETTE), c.dash % len(LINES)) for c in panel.curves if not c.points}
+        if len(lines) > len({dash for _, dash in lines}):
+            return True
+    return False
+
+
+def marked_points(curve: Curve, panel: Panel) -> list[int]:
+    """Return the points of a line that have its marker: of those that the axes show, one for each spacing."""
+    across = _shares(curve.x, panel.x, [one.x for one in panel.curves])
+    up = _shares(curve.y, panel.y, [one.y for one in panel.curves])
+    seen = np.flatnonzero((across >= 0.0) & (across <= 1.0) & (up >= 0.0) & (up <= 1.0))
+    way = np.append(0.0, np.cumsum(np.hypot(np.diff(across[seen]), np.diff(up[seen]))))
+    # Where lines coincide their markers do not, since each colour has its first one elsewhere.
+    place = min(SPACING * (0.5 + 3 * curve.colour % len(PALETTE)) / len(PALETTE), 0.5 * way[-1])
+    marked = []
+    for point, length in zip(seen.tolist(), way.tolist(), strict=False):
+        if length >= place:
+            marked.append(point)
+            place = length + SPACING
+    return marked
+
+
+def _shares(values: Array, axis: PlotAxis, shown: list[Array]) -> Array:
+    """Return how far along an axis values lie, from 0 to 1; NaN where it cannot show them."""
+    scaled = np.log10 if axis.scale == "log" else np.asarray
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = scaled(axis.ends or np.concatenate(shown))
+        ends = ends[np.isfinite(ends)]
+        low, high = (ends.min(), ends.max()) if ends.size else (0.0, 0.0)
+        shares: Array = (scaled(values) - low) / (high - low or 1.0)
+    return shares
+
+
+def _fill(axes: Axes, panel: Panel, markers: bool) -> None:
     for curve in panel.curves:
-        _plot(axes, curve)
+        _plot(axes, curve, marked_points(curve, panel) if markers else None)
     axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label), title=_literal(panel.title))
     axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
     axes.set(xlim=_ends(panel.x), ylim=_ends(panel.y))
@@ -67,22 +109,27 @@ def _ends(axis: PlotAxis) -> Any:
     return axis.ends or (None, None)
 
 
-def _plot(axes: Axes, curve: Curve) -> None:
-    colour = PALETTE[curve.colour % len(PALETTE)]
-    label = _literal(curve.label)
-    if curve.points:
-        axes.plot(curve.x, curve.y, "o", label=label, color=colour, markersize=4, zorder=3)
-    else:
-        # A line of one point would not be seen without a marker.
-        marker = "o" if curve.x.size == 1 else ""
-        axes.plot(curve.x, curve.y, LINES[curve.dash % len(LINES)], label=label, color=colour, marker=marker)
+def _plot(axes: Axes, curve: Curve, marked: list[int] | None) -> None:
+    looks = _looks(curve, marked)
+    axes.plot(curve.x, curve.y, label=_literal(curve.label), **looks)
     if curve.low is None or curve.high is None:
         return
     if curve.points:
         spread = (curve.y - curve.low, curve.high - curve.y)
-        axes.errorbar(curve.x, curve.y, spread, fmt="none", ecolor=colour, elinewidth=1.0, capsize=2.0)
+        axes.errorbar(curve.x, curve.y, spread, fmt="none", ecolor=looks["color"], elinewidth=1.0, capsize=2.0)
     else:
-        axes.fill_between(curve.x, curve.low, curve.high, color=colour, alpha=0.12, lw=0)
+        axes.fill_between(curve.x, curve.low, curve.high, color=looks["color"], alpha=0.12, lw=0)
+
+
+def _looks(curve: Curve, marked: list[int] | None) -> dict[str, Any]:
+    number = curve.colour % len(PALETTE)
+    looks: dict[str, Any] = {"color": PALETTE[number], "marker": MARKERS[number]}
+    if curve.points:
+        return {**looks, "linestyle": "", "markersize": 4, "zorder": 3}
+    looks |= {"linestyle": LINES[curve.dash % len(LINES)], "markerfacecolor": "white", "markersize": 5}
+    if curve.x.size == 1:
+        return looks  # it would not be seen without a marker
+    return {**looks, "marker": ""} if marked is None else {**looks, "markevery": marked}
 
 
 def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:

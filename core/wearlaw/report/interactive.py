@@ -1,6 +1,6 @@
 """Figures to hover over and zoom into: what plotly.js draws of a `FigureData`.
 
-Colours and line styles are those of the figures that matplotlib draws.
+Colours, line styles and markers are those of the figures that matplotlib draws.
 """
 
 from __future__ import annotations
@@ -12,9 +12,12 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis, has_band
-from wearlaw.figures.drawing import LINES, PALETTE
+from wearlaw.figures.drawing import LINES, MARKERS, PALETTE, has_markers, marked_points
 
 DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
+SYMBOLS = dict(
+    zip("s^DvPXo", ("square", "triangle-up", "diamond", "triangle-down", "cross", "x", "circle"), strict=True)
+)
 GAP = 0.14
 """Between two panels, as a share of the figure."""
 ROW_HEIGHT = 380
@@ -35,7 +38,13 @@ def plotly_figure(figure: FigureData) -> Json:
     """
     # plotly.js numbers axes from the second one on: x, x2, x3.
     numbered = list(zip(["", *map(str, range(2, len(figure.panels) + 1))], figure.panels, strict=True))
-    data = [trace for number, panel in numbered for curve in panel.curves for trace in _traces(curve, panel, number)]
+    markers = has_markers(figure)
+    data = [
+        trace
+        for number, panel in numbered
+        for curve in panel.curves
+        for trace in _traces(curve, panel, number, markers)
+    ]
     listed: set[str] = set()
     for trace in data:
         if trace["showlegend"]:
@@ -71,7 +80,7 @@ def literal(text: str) -> str:
     return html.escape(text, quote=False).replace("%", "&#37;")
 
 
-def _traces(curve: Curve, panel: Panel, number: str) -> list[Json]:
+def _traces(curve: Curve, panel: Panel, number: str, markers: bool) -> list[Json]:
     """Return the band of a curve, if it has one, and the curve."""
     colour = PALETTE[curve.colour % len(PALETTE)]
     common: Json = {
@@ -81,15 +90,16 @@ def _traces(curve: Curve, panel: Panel, number: str) -> list[Json]:
         "xaxis": f"x{number}",
         "yaxis": f"y{number}",
     }
-    lone = np.isfinite(curve.y).sum() == 1
+    marked = markers or np.isfinite(curve.y).sum() == 1
     style: Json = {"color": colour, "dash": DASHES[LINES[curve.dash % len(LINES)]], "width": 2}
     line = {
         **common,
+        **(_sparse(curve, panel) if markers and not curve.points else {}),
         "x": _numbers(curve.x),
         "y": _numbers(curve.y),
-        "mode": "markers" if curve.points else "lines+markers" if lone else "lines",
+        "mode": "markers" if curve.points else "lines+markers" if marked else "lines",
         "line": style,
-        "marker": {"color": colour, "size": 7},
+        "marker": _marker(curve, colour),
         "hovertemplate": _hover(curve, panel),
         "showlegend": True,
     }
@@ -99,6 +109,18 @@ def _traces(curve: Curve, panel: Panel, number: str) -> list[Json]:
     if curve.points:
         return [{**line, "error_y": _bars(curve.y, curve.low, curve.high, colour)}]
     return [{**common, **_band(curve, panel, colour), "showlegend": False}, line]
+
+
+def _marker(curve: Curve, colour: str) -> Json:
+    symbol = SYMBOLS[MARKERS[curve.colour % len(MARKERS)]]
+    if curve.points:
+        return {"color": colour, "symbol": symbol, "size": 7}
+    return {"color": colour, "symbol": f"{symbol}-open", "size": 9, "line": {"width": 2}}
+
+
+def _sparse(curve: Curve, panel: Panel) -> Json:
+    """Show the markers of some points of a line alone: plotly.js would choose them without regard to where they are."""
+    return {"selectedpoints": marked_points(curve, panel), "unselected": {"marker": {"opacity": 0}}}
 
 
 def _hover(curve: Curve, panel: Panel) -> str:

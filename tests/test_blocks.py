@@ -1,0 +1,244 @@
+"""Every code block of the README and the documentation runs in the tests, or stands here with the reason why not.
+
+`conftest.py` in the folder above runs the blocks of pages and compares what they print. Here run blocks of ``sh``, in
+what looks like a clone with its environment, and the job scripts, with stand-ins for the scheduler of a cluster.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+import tomli_w
+import xarray as xr
+
+from conftest import PAGES
+from tests.core.cases import table
+from tests.environments import ROOT
+from wearlaw.cli import main
+
+FENCE = re.compile(r"^( *)(`{3,}|~{3,}|:{3,})([^\n`]*)\n(.*?)^\1\2 *$", re.MULTILINE | re.DOTALL)
+CAPTION = re.compile(r":caption: (\S+)\n")
+ELSEWHERE = {
+    r"\{literalinclude\} gallery/\w+\.py": "tests/test_gallery.py runs it",
+    r"\{literalinclude\} examples/wear_map\.py": "tests/core/test_sweep_store.py runs it",
+    r"\{literalinclude\} \.\./CITATION\.cff": "tests/test_release.py reads it",
+    r"\{(csv-table|toctree|eval-rst|command-line)\}.*": "no code: the build of the documentation makes something of it",
+}
+"""Blocks by what stands behind their fence, and who sees to them."""
+
+WHOLE = "the whole suite, of which this is a part; .ci/run runs this very line of the README"
+INDEX = "installs from an index; that the extras and groups exist is tested below"
+NOX = "makes environments from an index; that there is such a session is tested below"
+MATLAB = "there is no MATLAB to run; the variables that are read are looked up in the files"
+TESTS = 'python3 -m venv .venv && .venv/bin/python -m pip install --quiet --editable ".[test]" '
+TESTS += "&& .venv/bin/python -m pytest -n auto"
+STUDY = "python3 -m venv .venv && .venv/bin/python -m pip install --quiet . "
+STUDY += "&& .venv/bin/wearlaw run tassini2010 -o out"
+NOT_RUN = {
+    ("README.md", STUDY): "installs from an index; .ci/run runs it",
+    ("README.md", TESTS): WHOLE,
+    ("CONTRIBUTING.md", TESTS): WHOLE,
+    ("CONTRIBUTING.md", ".venv/bin/python -m pytest tests/plugins/test_kth.py"): "runs with the suite as it is",
+    ("CONTRIBUTING.md", ".venv/bin/python -m pip install --upgrade pip"): INDEX,
+    ("CONTRIBUTING.md", "python -m pip install pre-commit"): "installs from an index, and into the clone's git",
+    ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,
+    ("docs/accuracy.md", "nox -s bench"): NOX,
+    ("docs/results.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
+    ("docs/results.md", 'creepage = ncread("out/results.nc", "/sweeps/creepage/creepage");'): MATLAB,
+    (
+        "docs/results.md",
+        'provenance = jsondecode(ncreadatt("out/results.nc", "/sweeps/creepage", "provenance"));',
+    ): MATLAB,
+}
+"""Blocks that no test runs, by page and first line, with the reason."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: its page, where its text begins and ends there, what stands behind the fence, and the text."""
+
+    page: str
+    start: int
+    end: int
+    kind: str
+    text: str
+
+    @property
+    def key(self) -> tuple[str, str]:
+        return self.page, self.text.strip().partition("\n")[0]
+
+    @property
+    def file(self) -> str:
+        """The file that the block is to be written to, if it has a caption."""
+        found = CAPTION.match(self.text)
+        return found[1] if found else ""
+
+    @property
+    def code(self) -> str:
+        """The text without what it prints in a shell."""
+        return "\n".join(re.findall(r"^\$ .*$", self.text, re.MULTILINE)) if self.kind == "console" else self.text
+
+
+def blocks_of(path: Path) -> list[Block]:
+    text, page = path.read_text(encoding="utf-8"), path.relative_to(ROOT).as_posix()
+    return [Block(page, m.start(), m.end(), m[3].strip(), m[4]) for m in FENCE.finditer(text)]
+
+
+FILES = [*sorted(ROOT.glob("*.md")), *sorted(path for path in ROOT.glob("docs/**/*.md") if "_build" not in path.parts)]
+BLOCKS = {path: blocks_of(path) for path in FILES}
+EVERY = [block for blocks in BLOCKS.values() for block in blocks]
+COMMANDS = [block for block in EVERY if block.kind == "sh" and block.key not in NOT_RUN]
+SUBMITTED = ("case.sh", "map.sh")
+JOBS = {block.file: block.text.partition("\n\n")[2] for block in EVERY if block.file in SUBMITTED}
+
+posix = pytest.mark.skipif(os.name == "nt", reason="needs bash")
+
+
+def runs(block: Block, starts: list[int]) -> bool:
+    """Return whether a block is run here, elsewhere, or by `conftest.py`, which finds examples where these start."""
+    if block.kind == "{code-block} bash":
+        return block.file in JOBS
+    elsewhere = any(re.fullmatch(pattern, block.kind) for pattern in ELSEWHERE)
+    return elsewhere or block in COMMANDS or any(block.start <= start < block.end for start in starts)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_every_block_of_a_page_runs_in_the_tests_or_is_listed_with_the_reason_why_not(path: Path) -> None:
+    starts = [start for start, _ in PAGES.parse(path).regions] if PAGES.should_parse(path) else []
+    assert [block.key for block in BLOCKS[path] if not runs(block, starts) and block.key not in NOT_RUN] == []
+    assert "doctest: +SKIP" not in path.read_text(encoding="utf-8")
+
+
+def test_every_block_that_is_listed_is_there() -> None:
+    assert NOT_RUN.keys() <= {block.key for block in EVERY}
+
+
+def uses(block: Block, file: Path) -> bool:
+    """Return whether a block names a file, its module or its folder; pip reads pyproject.toml without naming it."""
+    names = {"install --quiet ."} if file.name == "pyproject.toml" else {*file.parts, file.stem}
+    return any(re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", block.code) for name in names)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_every_file_of_a_page_is_used_by_a_block_after_it(path: Path) -> None:
+    files = [block for block in BLOCKS[path] if block.file and block.file not in JOBS]
+    later = {one.file: [block for block in BLOCKS[path] if block.start > one.start] for one in files}
+    assert [name for name, blocks in later.items() if not any(uses(block, Path(name)) for block in blocks)] == []
+
+
+def environment(**variables: str) -> dict[str, str]:
+    """Return the variables of a shell in which `python` is this one."""
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    return {**os.environ, "PATH": path, **variables}
+
+
+@posix
+@pytest.mark.parametrize("block", COMMANDS, ids=lambda block: block.text.strip())
+def test_a_command_runs_in_a_clone_with_its_environment(block: Block, tmp_path: Path) -> None:
+    for entry in ROOT.iterdir():
+        if not entry.name.startswith("."):
+            (tmp_path / entry.name).symlink_to(entry)
+    (tmp_path / ".venv").symlink_to(sys.prefix)
+    command = ("bash", "-euo", "pipefail", "-c", block.text)
+    done = subprocess.run(command, cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def submit(job: str, folder: Path) -> None:
+    """Run a job script as SLURM does, with its variables, but at most two processors, and one task for all of srun."""
+    asked = dict(re.findall(r"^#SBATCH --([\w-]+)=(\d+)$", JOBS[job], re.MULTILINE))
+    variables = {"SLURM_CPUS_PER_TASK": "2"} if "cpus-per-task" in asked else {}
+    (folder / job).write_text(JOBS[job], encoding="utf-8")
+    srun = folder / "bin" / "srun"
+    srun.parent.mkdir()
+    srun.write_text('#!/bin/sh\nexec "$@"\n', encoding="utf-8")
+    srun.chmod(0o755)
+    path = f"{srun.parent}{os.pathsep}{environment()['PATH']}"
+    command = ("bash", "-u", job)
+    with subprocess.Popen(command, cwd=folder, env=environment(**variables, PATH=path), start_new_session=True) as run:
+        try:
+            assert run.wait(timeout=120) == 0
+        finally:  # as SLURM does with what is left of a job
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(run.pid, signal.SIGKILL)
+
+
+@posix
+def test_the_job_script_of_a_case_runs_it_on_the_processors_of_the_job(tmp_path: Path) -> None:
+    study = table(contact_models=["exact"], wear_laws=["kth"], profiles={})
+    (tmp_path / "big.toml").write_text(tomli_w.dumps(study), encoding="utf-8")
+    submit("case.sh", tmp_path)
+    assert len((tmp_path / "results" / "results.csv").read_text(encoding="utf-8").splitlines()) == 6
+    assert (tmp_path / "results" / "report.html").is_file()
+    assert not (tmp_path / "results.partial").exists()
+
+
+@posix
+def test_the_job_script_of_a_sweep_runs_it_on_the_workers_of_the_job(tmp_path: Path) -> None:
+    (lines,) = (block.text for block in EVERY if block.key[0] == "docs/cluster.md" and block.kind == "python")
+    code = "\n".join(re.findall(r"^(?:>>>|\.\.\.) (.*)$", lines.partition(">>> dict(")[0], re.MULTILINE))
+    here, there = "Client(processes=False, dashboard_address=None)", 'Client(scheduler_file="scheduler.json")'
+    assert here in code
+    (tmp_path / "map.py").write_text(f"{code.replace(here, there)}\n    client.shutdown()\n", encoding="utf-8")
+    submit("map.sh", tmp_path)
+    with xr.open_zarr(tmp_path / "map.zarr", chunks=None, consolidated=False) as stored:
+        assert repr((dict(stored.sizes), stored.attrs["status"])) in lines
+        assert bool((stored.wear_rate > 0.0).all())
+
+
+TEXTS = {path: path.read_text(encoding="utf-8") for path in FILES}
+TEXT = "\n".join(TEXTS.values())
+
+
+def test_the_lines_that_ci_takes_from_the_readme_are_the_ones_that_are_not_run_here() -> None:
+    taken = re.findall(r"grep -m 1 -- '([^']+)' README\.md", (ROOT / ".ci" / "run").read_text(encoding="utf-8"))
+    lines = TEXTS[ROOT / "README.md"].splitlines()
+    assert [next(line for line in lines if re.search(pattern, line)) for pattern in taken] == [STUDY, TESTS]
+
+
+def test_extras_and_groups_that_pages_install_are_there() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    extras = re.findall(r'pip install [^`\n]*"(?:wearlaw|\.)\[(\w+)\]"', TEXT)
+    groups = re.findall(r"--group (\w+)", TEXT)
+    assert {*extras} == project["project"]["optional-dependencies"].keys()
+    assert {*groups} == project["dependency-groups"].keys()
+
+
+def test_sessions_modules_and_scripts_that_pages_start_are_there() -> None:
+    noxfile = (ROOT / "noxfile.py").read_text(encoding="utf-8")
+    sessions = {*re.findall(r"nox -s (\w+)", TEXT)}
+    assert {"bench", "pictures"} <= sessions
+    assert [name for name in sessions if f"\ndef {name}(session: nox.Session)" not in noxfile] == []
+    modules = {*re.findall(r"python -m\s+(tests\.[\w.]+)", TEXT)}
+    assert {"tests.benchmarks.coverage", "tests.benchmarks.sweep"} <= modules
+    assert [name for name in modules if not (ROOT / f"{name.replace('.', '/')}.py").is_file()] == []
+    scripts = {*re.findall(r"\.venv/bin/python (\S+\.py)", TEXT)}
+    assert "docs/validation.py" in scripts
+    assert [name for name in scripts if not (ROOT / name).is_file()] == []
+    benchmark = (ROOT / "tests" / "benchmarks" / "speed.py").read_text(encoding="utf-8")
+    assert all(f'add_argument("{option}"' in benchmark for option in re.findall(r"nox -s bench -- (--\w+)", TEXT))
+
+
+def inline_commands() -> Iterator[tuple[str, list[str]]]:
+    """Give each command line of wearlaw within a sentence, as its command and options."""
+    for command in re.findall(r"(?<!`)`wearlaw\s+([a-z-]+(?:\s[^`]*)?)`", FENCE.sub("", TEXT)):
+        name, *words = shlex.split(command)
+        yield name, [word.partition("=")[0] for word in words if word.startswith("-")]
+
+
+def test_commands_and_options_of_wearlaw_within_sentences_are_there() -> None:
+    found = [*inline_commands()]
+    assert {"run", "case", "show", "check", "compare", "new-plugin"} <= {name for name, _ in found}
+    known = {name: {opt for param in command.params for opt in param.opts} for name, command in main.commands.items()}
+    assert [(name, options) for name, options in found if not {*options} <= known.get(name, {None})] == []
