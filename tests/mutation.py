@@ -41,9 +41,9 @@ TESTS = {
     "wearlaw_kth": "plugins/test_kth.py",
     "wearlaw_linear": "plugins/test_linear.py",
     "wearlaw_polach": "plugins/test_polach.py",
-    "wearlaw_sheffield": "plugins/test_sheffield_tables.py plugins/test_sheffield_claims.py"
-    " plugins/test_sheffield_contact_claims.py plugins/test_sheffield_law_claims.py"
-    " plugins/test_sheffield_local_claims.py",
+    "wearlaw_sheffield": "plugins/test_sheffield_claims.py plugins/test_sheffield_law_claims.py"
+    " plugins/test_sheffield_local_claims.py plugins/test_sheffield_contact_claims.py"
+    " plugins/test_sheffield_verdicts.py plugins/test_sheffield_tables.py plugins/test_sheffield_report.py",
     "wearlaw_shen_hedrick_elkins": "plugins/test_shen_hedrick_elkins.py",
     "wearlaw_usfd": "plugins/test_usfd.py",
     "wearlaw.composition": "core/test_pipeline.py core/test_wheel_rail_result.py",

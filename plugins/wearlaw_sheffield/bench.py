@@ -61,10 +61,10 @@ class Bench:
 
     @cached_property
     def creepage(self) -> Array:
-        """Creepages [%], at most 0.02 % apart; those where the patch means have a kink in full slip are among them."""
-        regular = np.append(np.geomspace(1e-3, 1.0, 400, endpoint=False), np.linspace(1.0, HIGHEST, 1201))
+        """Creepages [%], at most 0.02 % apart; the kinks of the patch means in full slip are among them."""
+        regular = np.append(np.geomspace(1e-3, 1.0, 401), np.linspace(1.0, HIGHEST, 1201))
         kinks = np.array([self.full_slip, *(100.0 * border / self.full_force for border in self.usfd_borders)])
-        return np.union1d(regular, kinks[kinks < HIGHEST])
+        return np.union1d(regular, [TESTED[0], *kinks[kinks < HIGHEST]])
 
     def predict(
         self,
@@ -108,15 +108,20 @@ class Bench:
     @cached_property
     def patch_area(self) -> float:
         """Area of the patch [mm²]."""
-        return float(1e6 * self._problem.patch_area)
+        return float(1e6 * self.problem.patch_area)
 
     @cached_property
     def rolling_speed(self) -> float:
         """Rolling speed [m/s]."""
         return wl.scalar_si(self.rig.rolling_speed, "m/s")
 
+    def creepage_at(self, slip_speed: float) -> float:
+        """Return the creepage [%] at which the mean slip has a speed [m/s]."""
+        return 100.0 * slip_speed / self.rolling_speed
+
     @cached_property
-    def _problem(self) -> wl.LineProblem:
+    def problem(self) -> wl.LineProblem:
+        """The contact under the load of the bench, at 1 % creepage."""
         return self.rig.problem(
             normal_force_per_width=self.normal_force_per_width,
             creepage=Q(1, "%"),
@@ -126,12 +131,12 @@ class Bench:
     @cached_property
     def full_slip(self) -> float:
         """The creepage of full slip in the exact theory, ξ_sat = μa/R [%]."""
-        return float(100.0 * self.friction_coefficient * self._problem.half_width / self._problem.relative_radius)
+        return float(100.0 * self.friction_coefficient * self.problem.half_width / self.problem.relative_radius)
 
     @cached_property
     def full_force(self) -> float:
         """The tangential force in full slip, μN [N]."""
-        return float(self.friction_coefficient * self._problem.normal_force)
+        return float(self.friction_coefficient * self.problem.normal_force)
 
     @cached_property
     def usfd_borders(self) -> tuple[float, float]:

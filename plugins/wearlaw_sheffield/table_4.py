@@ -102,7 +102,7 @@ def fitted(bench: Bench, model: str, highest: float, norm: Norm) -> Fitted:
         source="USFD on the patch means",
     )
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)  # of a fit to noise, which there is none of
+        warnings.simplefilter("ignore", wl.WearlawWarning)  # the study itself has warned
         predict = bench.rig | wl.contact_model(model) | published
         found = wl.fit(predict, tests, free=FREE, scatter=norm, bootstrap=0, starts=STARTS)
     values = {name: number(found.parameters[name], USFD_UNITS[name]) for name in FREE}

@@ -16,8 +16,8 @@ CLOSE = 2.0
 """Laws that are called close to each other are less than this factor apart."""
 
 WORDS = f"""\
-The paper states no tolerances. Here, results are the same if they differ by less than {100 * SAME:.0f} %, similar, \
-overlapping or a good approximation if by less than {100 * SIMILAR:.0f} %, and laws are close if they are less than \
+The paper states no tolerances. Here, results are the same if they differ by less than {100 * SAME:g} %, similar, \
+overlapping or a good approximation if by less than {100 * SIMILAR:g} %, and laws are close if they are less than \
 a factor of {CLOSE:g} apart, at every creepage of the range that is named. A difference is that of the first result \
 from the second, in percent of the second. KTH states its coefficient k as ranges; where its place in the range \
 matters, a claim is put to the test at both ends and in the middle, else in the middle."""
@@ -37,11 +37,11 @@ def largest(relative: Array, x: Array) -> tuple[float, float]:
 
 
 def first_crossing(x: Array, one: Array, other: Array) -> float | None:
-    """Return the first x at which `one - other` changes its sign, by linear interpolation; None if nowhere."""
+    """Return where `one - other` first loses the sign that it begins with, by linear interpolation; None if nowhere."""
     difference = one - other
-    changes = np.flatnonzero(difference[:-1] * difference[1:] < 0)
-    if changes.size == 0:
+    beyond = np.flatnonzero(difference * difference[0] < 0)
+    if beyond.size == 0:
         return None
-    i = int(changes[0])
-    share = difference[i] / (difference[i] - difference[i + 1])
-    return float(x[i] + share * (x[i + 1] - x[i]))
+    i = int(beyond[0])
+    share = difference[i] / (difference[i] - difference[i - 1])
+    return float(x[i] + share * (x[i - 1] - x[i]))

@@ -134,5 +134,5 @@ def test_no_cell_of_a_uniform_march_gains_energy(monkeypatch: pytest.MonkeyPatch
         return float((contact.traction_x * contact.slip_x + contact.traction_y * contact.slip_y).min())
 
     assert least_power() >= 0.0
-    monkeypatch.setattr("wearlaw_fastsim._solution.drop_gains", lambda cells: None)
+    monkeypatch.setattr("wearlaw_fastsim._solution.drop_gains", lambda _: None)
     assert least_power() < 0.0

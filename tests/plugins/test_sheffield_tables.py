@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from types import SimpleNamespace
 from typing import Any
 
@@ -100,6 +101,8 @@ def test_the_text_says_how_much_the_printed_slip_dissipates() -> None:
     solution = reference.exact(point(0.1), as_printed=True)
     ratio = 2.0 * solution.point.half_width * solution.mean(solution.density) / (solution.force * 0.001)
     assert f"dissipates {ratio:.1f} times Tγ" in tables.section(SUROS).text
+    # The load of 741.43 kN/m is the pressure of 1500 MPa in five digits.
+    assert tables.printed_slip(wl.TwinDisc.suros()) == pytest.approx(ratio, rel=1e-5)
     assert round(ratio, 1) == 3.0
 
 
@@ -191,8 +194,27 @@ def test_the_root_mean_squares_are_those_of_the_residuals(bench: Bench) -> None:
         assert rms == pytest.approx(float(np.sqrt(np.mean((local - target) ** 2))), rel=1.0 / 4000)
 
 
+def test_a_fit_beyond_the_elastic_limit_does_not_repeat_the_warning_of_the_study(bench: Bench) -> None:
+    heavy = dataclasses.replace(bench, normal_force_per_width=wl.Q(2.0 * LOAD, "N/m"))
+    conditions: dict[str, Any] = {
+        "normal_force_per_width": heavy.normal_force_per_width,
+        "friction_coefficient": FRICTION,
+    }
+    with pytest.warns(wl.RangeWarning, match="elastic limit"):
+        (heavy.rig | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact"))(creepage="1 %", **conditions)
+    one = table_4.fitted(heavy, "exact", 20.5, "absolute")
+    assert one.rms < one.rms_published
+
+
 def made(model: str, highest: float, norm: Any, **parameters: float) -> table_4.Fitted:
     return table_4.Fitted(model, highest, norm, parameters, 1.0, 2.0)
+
+
+def test_the_fits_are_listed_by_their_measure_to_two_digits_of_parameters_and_four_of_residuals() -> None:
+    parameters = {"q_s": 53.2468, "m_c": 84.9753, "tr_sc": 92.1357}
+    one = table_4.Fitted("exact", 22.0, "absolute", parameters, 1.23456, 2.34567)
+    table = table_4.sensitivity([one, made("exact", 18.0, "relative", **parameters)], "absolute")
+    assert rows(table) == [("exact", 22.0, 53.25, 84.98, 92.14, 1.2346, 2.3457)]
 
 
 def test_the_claim_takes_the_nearest_fit_and_may_fail() -> None:
