@@ -180,7 +180,7 @@ def _split_zone(growth: Growth, elliptic: bool, start: Point, count: int) -> Zon
     edge = np.zeros_like(start.angle)
     held = _where_it_sticks(_slip_zone(growth, elliptic, start, edge, 2 * count), elliptic)
     again = _where_it_slips(growth, elliptic, held, 2 * count)
-    stuck = max(count // 4, 1)
+    stuck = count // 4
     first = (count - stuck) // 2
     zones = (
         _slip_zone(growth, elliptic, start, held.angle, first),

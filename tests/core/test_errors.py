@@ -51,6 +51,6 @@ def test_a_configuration_error_survives_pickling() -> None:
     assert (loaded.subject, loaded.problems, str(loaded)) == (error.subject, error.problems, str(error))
 
 
-def test_did_you_mean_names_the_nearest_word_or_nothing() -> None:
-    assert did_you_mean("exakt", ["fastsim", "exact"]) == " did you mean 'exact'?"
-    assert did_you_mean("zzz", ["fastsim", "exact"]) == ""
+def test_did_you_mean_names_the_nearest_word_or_ends_the_sentence() -> None:
+    assert did_you_mean("exakt", ["fastsim", "exact"]) == "; did you mean 'exact'?"
+    assert did_you_mean("zzz", ["fastsim", "exact"]) == "."

@@ -83,7 +83,7 @@ def test_what_a_section_cannot_do_names_it_and_its_plugin(install: Install) -> N
         run(case(sections=["needs_load"], sweeps={"load": SWEEP}))
     assert str(caught.value) == (
         "section 'needs_load' of lab 1.2.3 (plugin 'lab'): the case has no sweep 'lod';"
-        " did you mean 'load'? add [sweeps.lod]"
+        " did you mean 'load'? Add [sweeps.lod]"
     )
     assert "Dimensions" in run(case(sections=["needs_load"], sweeps={"lod": SWEEP})).sections[0].text
 

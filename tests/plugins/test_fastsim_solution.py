@@ -79,6 +79,18 @@ def test_forces_are_those_of_the_nodes(march: Literal["adaptive", "uniform"]) ->
     assert (np.abs(contact.moment_z - moment) <= 256 * EPS * largest).all()
 
 
+@pytest.mark.parametrize("bound", ["elliptic", "parabolic"])
+def test_the_bound_of_each_node_is_that_of_the_theory(bound: Literal["elliptic", "parabolic"]) -> None:
+    problem = two_loads()
+    contact = wl.contact_model("fastsim", bound=bound, strips=8).solve_ellipse(problem)
+    a, area = problem.a[:, None, None], np.pi * problem.a[:, None, None] * 6e-3
+    inside = 1.0 - (contact.x / a) ** 2 - (contact.y / 6e-3) ** 2
+    # Hertz's ellipse, 3N/(2πab) √…, or a paraboloid, 2N/(πab) (…); the difference from one loses digits at the edge
+    shape = 1.5 * np.sqrt(np.maximum(inside, 0.0)) if bound == "elliptic" else 2.0 * inside
+    off = np.abs(contact.traction_bound - 0.3 * 80e3 / area * shape)
+    assert (off * np.maximum(shape, 1e-3) <= 64 * EPS * 0.3 * 80e3 / area).all()
+
+
 def test_strips_can_lie_where_they_are_asked_for() -> None:
     problem = two_loads()
     contact = wl.contact_model("fastsim", strips=10).on_strips(problem, np.array([-0.5, 0.1, 0.8]))
