@@ -197,6 +197,17 @@ def test_where_a_field_crosses_a_value_it_has_that_value(
     assert model.crossings(problem, "traction", known.traction[:, 0]) is None
 
 
+@every_configuration
+@pytest.mark.parametrize("percent", PERCENT)
+def test_a_threshold_next_to_nothing_leaves_what_the_force_dissipates(
+    bound: Bound, flexibility: Flexibility, percent: float
+) -> None:
+    problem, model = problem_at(percent), fastsim(bound, flexibility)
+    whole = float(model.tangential_force_per_width(problem) * problem.creepage)
+    # the roundings of the kernel, of its arguments, and of the closed form of the force
+    assert model.excess_dissipation(problem, 1e-300) == pytest.approx(whole, rel=64 * EPS)
+
+
 def test_a_refined_model_is_the_same_with_twice_the_strips() -> None:
     model = wl.contact_model("fastsim", bound="elliptic", strips=12)
     assert model.refined() == wl.contact_model("fastsim", bound="elliptic", strips=24)

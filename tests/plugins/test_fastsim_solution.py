@@ -12,6 +12,8 @@ from tests.plugins.ellipses import EPS, TABLE_E3, ellipse, of_ratio
 from wearlaw import Array, Q
 from wearlaw_fastsim._solution import ellipses
 
+Bound = Literal["elliptic", "parabolic"]
+BOUNDS: tuple[Bound, ...] = ("elliptic", "parabolic")
 MARCHES: tuple[Literal["adaptive", "uniform"], ...] = ("adaptive", "uniform")
 
 
@@ -79,16 +81,17 @@ def test_forces_are_those_of_the_nodes(march: Literal["adaptive", "uniform"]) ->
     assert (np.abs(contact.moment_z - moment) <= 256 * EPS * largest).all()
 
 
-@pytest.mark.parametrize("bound", ["elliptic", "parabolic"])
-def test_the_bound_of_each_node_is_that_of_the_theory(bound: Literal["elliptic", "parabolic"]) -> None:
-    problem = two_loads()
-    contact = wl.contact_model("fastsim", bound=bound, strips=8).solve_ellipse(problem)
+@pytest.mark.parametrize("bound", BOUNDS)
+def test_the_bound_of_each_node_is_that_of_the_theory(bound: Bound) -> None:
+    problem, model = two_loads(), wl.contact_model("fastsim", bound=bound, strips=8)
     a, area = problem.a[:, None, None], np.pi * problem.a[:, None, None] * 6e-3
-    inside = 1.0 - (contact.x / a) ** 2 - (contact.y / 6e-3) ** 2
-    # Hertz's ellipse, 3N/(2πab) √…, or a paraboloid, 2N/(πab) (…); the difference from one loses digits at the edge
-    shape = 1.5 * np.sqrt(np.maximum(inside, 0.0)) if bound == "elliptic" else 2.0 * inside
-    off = np.abs(contact.traction_bound - 0.3 * 80e3 / area * shape)
-    assert (off * np.maximum(shape, 1e-3) <= 64 * EPS * 0.3 * 80e3 / area).all()
+    for contact in (model.solve_ellipse(problem), model.on_strips(problem, np.array([-0.5, 0.1, 0.8]))):
+        assert contact is not None
+        inside = 1.0 - (contact.x / a) ** 2 - (contact.y / 6e-3) ** 2
+        # Hertz's ellipse, 3N/(2πab) √…, or a paraboloid, 2N/(πab) (…); the difference from one loses digits at the edge
+        shape = 1.5 * np.sqrt(np.maximum(inside, 0.0)) if bound == "elliptic" else 2.0 * inside
+        off = np.abs(contact.traction_bound - 0.3 * 80e3 / area * shape)
+        assert (off * np.maximum(shape, 1e-3) <= 64 * EPS * 0.3 * 80e3 / area).all()
 
 
 def test_strips_can_lie_where_they_are_asked_for() -> None:
@@ -148,3 +151,43 @@ def test_no_cell_of_a_uniform_march_gains_energy(monkeypatch: pytest.MonkeyPatch
     assert least_power() >= 0.0
     monkeypatch.setattr("wearlaw_fastsim._solution.drop_gains", lambda _: None)
     assert least_power() < 0.0
+
+
+@pytest.mark.parametrize("bound", BOUNDS)
+def test_scaled_slip_dissipates_what_the_creepages_do_and_local_slip_does_not(bound: Bound) -> None:
+    problem = two_loads()
+    local, scaled = (wl.contact_model("fastsim", bound=bound, slip=slip) for slip in ("local", "scaled"))
+    found = scaled.solve_ellipse(problem)
+    # sums of some 200 terms
+    assert found.cell_wear_index == pytest.approx(found.wear_index, rel=256 * EPS)
+    assert (np.abs(local.solve_ellipse(problem).cell_wear_index / found.wear_index - 1.0) > 1e-3).all()
+    shares = np.array([-0.5, 0.1, 0.8])
+    some, as_found = scaled.on_strips(problem, shares), local.on_strips(problem, shares)
+    assert some is not None
+    assert as_found is not None
+    assert some.cell_wear_index == pytest.approx(some.wear_index, rel=256 * EPS)
+    assert (np.abs(as_found.cell_wear_index / some.wear_index - 1.0) > 1e-3).all()
+
+
+def test_the_declared_accuracy_is_of_first_order_in_the_strips() -> None:
+    for march, share in (("adaptive", 0.5), ("uniform", 1.0)):
+        for strips in (10, 25):
+            assert wl.contact_model("fastsim", march=march, strips=strips).elliptic_accuracy == share / strips
+
+
+def test_exemptions_are_those_of_the_settings() -> None:
+    exempt = {
+        (): set(),
+        (("bound", "elliptic"),): {"saturation"},
+        (("flexibility", "kalker"),): {"initial_slope"},
+        (("interpolation", "contact"),): {"initial_slope"},
+        (("bound", "elliptic"), ("flexibility", "kalker")): {"saturation", "initial_slope"},
+    }
+    for settings, claims in exempt.items():
+        assert set(wl.contact_model("fastsim", **dict(settings)).exemptions) == claims
+
+
+def test_settings_of_ellipses_are_shown_where_they_are_not_the_default() -> None:
+    shown = "Fastsim(bound='parabolic', flexibility='line'"
+    assert repr(wl.contact_model("fastsim")) == f"{shown})"
+    assert repr(wl.contact_model("fastsim", strips=12)) == f"{shown}, strips=12)"
