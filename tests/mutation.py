@@ -36,7 +36,7 @@ TESTS = {
     "wearlaw_brr": "plugins/test_brr.py",
     "wearlaw_exact": "plugins/test_exact_kernel.py plugins/test_exact.py test_numbers.py",
     "wearlaw_fastsim": "plugins/test_fastsim_kernel.py plugins/test_fastsim_first_slip.py plugins/test_fastsim.py"
-    " plugins/test_fastsim_strips.py plugins/test_fastsim_march.py",
+    " plugins/test_fastsim_solution.py plugins/test_fastsim_strips.py plugins/test_fastsim_march.py",
     "wearlaw_global": "plugins/test_global.py",
     "wearlaw_kth": "plugins/test_kth.py",
     "wearlaw_linear": "plugins/test_linear.py",

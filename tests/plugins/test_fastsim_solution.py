@@ -191,3 +191,12 @@ def test_settings_of_ellipses_are_shown_where_they_are_not_the_default() -> None
     shown = "Fastsim(bound='parabolic', flexibility='line'"
     assert repr(wl.contact_model("fastsim")) == f"{shown})"
     assert repr(wl.contact_model("fastsim", strips=12)) == f"{shown}, strips=12)"
+
+
+def test_strips_are_ten_or_a_whole_number_from_two_to_a_thousand() -> None:
+    assert wl.contact_model("fastsim") == wl.contact_model("fastsim", strips=10)
+    for strips in (2, 1000):
+        assert f"strips={strips}" in repr(wl.contact_model("fastsim", strips=strips))
+    for wrong in (1, 1001, 12.0, "12"):
+        with pytest.raises(wl.ConfigurationError, match="fastsim: strips: input should be"):
+            wl.contact_model("fastsim", strips=wrong)
