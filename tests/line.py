@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import wearlaw as wl
+from tests.strategies import EPS
 from wearlaw import Array
 
 
@@ -18,3 +19,20 @@ def fields_at(model: wl.ContactModel, problem: wl.LineProblem, x: Array) -> wl.L
     """Return the fields at positions x of shape (batch, points)."""
     assert isinstance(model, wl.LineContactModel)
     return model.fields(problem[..., None], wl.Nodes.at(np.asarray(x), np.asarray(problem.half_width)))
+
+
+def crossings_meet(model: wl.LineContactModel, problem: wl.LineProblem) -> None:
+    """Hold that slip and pressure cross the values that they have in the slip zone where they have them."""
+    problem = problem.broadcast_to((12,))
+    a, start = problem.half_width, slip_zone(model, problem)[0]
+    x = start + (a - start) * np.linspace(0.05, 0.9, 12)
+    known = fields_at(model, problem, x[:, None])
+    names: list[wl.FieldVariable] = ["slip", "pressure"]
+    for name in names:
+        found = model.crossings(problem, name, getattr(known, name)[:, 0])
+        assert found is not None
+        # Some eight roundings of the value are as much of a over how fast it changes: at the least the creepage is
+        # 14 times the slope of the bound or μa/R, and the pressure changes by 1/25 next to the middle.
+        off = np.abs(a[:, None] - found - x[:, None]).min(axis=-1)
+        assert (off <= 8 * 25 * EPS * a).all(), name
+    assert model.crossings(problem, "traction", known.traction[:, 0]) is None

@@ -10,7 +10,7 @@ from hypothesis import given
 from scipy import integrate
 
 import wearlaw as wl
-from tests.line import fields_at, slip_zone
+from tests.line import crossings_meet, fields_at, slip_zone
 from tests.strategies import EPS, line_problems, saturation_creepage
 from wearlaw import Array, Q
 from wearlaw.quadrature import uniform_cells
@@ -182,19 +182,7 @@ def test_the_slip_is_the_creepage_less_the_slope_of_the_bound(
 def test_where_a_field_crosses_a_value_it_has_that_value(
     bound: Bound, flexibility: Flexibility, percent: float
 ) -> None:
-    problem, model = problem_at(percent).broadcast_to((12,)), fastsim(bound, flexibility)
-    a, start = problem.half_width, slip_zone(model, problem)[0]
-    x = start + (a - start) * np.linspace(0.05, 0.9, 12)
-    known = fields_at(model, problem, x[:, None])
-    names: list[wl.FieldVariable] = ["slip", "pressure"]
-    for name in names:
-        found = model.crossings(problem, name, getattr(known, name)[:, 0])
-        assert found is not None
-        # Some eight roundings of the value are as much of a over how fast it changes: at the least the creepage is
-        # 14 times the slope of the bound, and the pressure changes by 1/25 next to the middle.
-        off = np.abs(a[:, None] - found - x[:, None]).min(axis=-1)
-        assert (off <= 8 * 25 * EPS * a).all(), name
-    assert model.crossings(problem, "traction", known.traction[:, 0]) is None
+    crossings_meet(fastsim(bound, flexibility), problem_at(percent))
 
 
 @every_configuration
