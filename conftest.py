@@ -46,8 +46,10 @@ def run_console(example: Example) -> None:
 def environment(installed: str) -> dict[str, str]:
     """Return the variables of a shell in which pip installs into a folder of its own, without a network."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    pip = {"PIP_TARGET": installed, "PIP_NO_DEPS": "1", "PIP_NO_INDEX": "1", "PIP_NO_BUILD_ISOLATION": "0"}  # 0 is "no"
-    return {**os.environ, "PATH": path, "PYTHONUNBUFFERED": "1", "PYTHONPATH": installed, **pip}
+    # Of switches that are called "no", 0 is "no". What pip compiles, it would not replace at the next install.
+    pip = {"PIP_NO_DEPS": "1", "PIP_NO_INDEX": "1", "PIP_NO_BUILD_ISOLATION": "0", "PIP_COMPILE": "0"}
+    python = {"PATH": path, "PYTHONUNBUFFERED": "1", "PYTHONPATH": installed}
+    return {**os.environ, **python, **pip, "PIP_TARGET": installed}
 
 
 def check_matlab(example: Example) -> None:
