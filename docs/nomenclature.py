@@ -6,8 +6,9 @@ import io
 import re
 from collections.abc import Iterator
 from functools import cached_property, reduce
+from itertools import takewhile
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import wearlaw as wl
 from wearlaw.conditions import TwinDiscConditions, WheelRailConditions
@@ -85,9 +86,15 @@ def attributes(cls: type) -> Iterator[tuple[str, str]]:
         yield found["name"], found["text"]
 
 
+def own(cls: type) -> dict[str, Any]:
+    """Return what a class defines, with what it inherits from classes that are not documented themselves."""
+    bases = takewhile(lambda base: base is cls or base not in CLASSES, cls.__mro__)
+    return {name: member for base in reversed([*bases]) for name, member in vars(base).items()}
+
+
 def properties(cls: type) -> Iterator[tuple[str, str]]:
     """Give name and docstring of public properties that are numbers, and of methods that return a quantity."""
-    for name, member in vars(cls).items():
+    for name, member in own(cls).items():
         function = member.fget if isinstance(member, property) else getattr(member, "func", member)
         returned = getattr(function, "__annotations__", {}).get("return")
         read_as_attribute = isinstance(member, (property, cached_property))

@@ -42,7 +42,7 @@ def one_of(text: str) -> wl.Quantity:
 
 def quantities(result: object, cls: type) -> dict[tuple[str, str], wl.Quantity]:
     """Return the properties of a class that are quantities, by its name and theirs."""
-    values = {name: getattr(result, name) for name in vars(cls) if not name.startswith("_")}
+    values = {name: getattr(result, name) for name in nomenclature.own(cls) if not name.startswith("_")}
     return {(cls.__name__, name): value for name, value in values.items() if isinstance(value, wl.Quantity)}
 
 

@@ -16,7 +16,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from wearlaw import plugins
 from wearlaw.configuration import Configuration, known_as
-from wearlaw.errors import CaseError, ConfigurationError, InputError, did_you_mean
+from wearlaw.errors import CaseError, ConfigurationError, InputError, did_you_mean, with_problems
 from wearlaw.figures.check import Contents
 from wearlaw.figures.measured_points import known_variables
 from wearlaw.figures.spec import FigureSpec
@@ -265,7 +265,7 @@ def load_case(name_or_path: str) -> Case:
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"case '{name_or_path}' is not valid TOML: {error}") from None
     except ConfigurationError as error:
-        raise CaseError(f"case '{name_or_path}' is wrong in:" + "".join(f"\n  {p}" for p in error.problems)) from None
+        raise CaseError(with_problems(f"case '{name_or_path}' is wrong in:", error.problems)) from None
     return known_as(name_or_path, case) if name_or_path in plugins.installed().cases.providers else case
 
 

@@ -57,8 +57,8 @@ class DataError(InputError):
 
     def __str__(self) -> str:
         more = len(self.problems) - self.MOST
-        listed = [*self.problems[: self.MOST], *([f"... and {more} more"] if more > 0 else [])]
-        return self.subject + "".join(f"\n  {problem}" for problem in listed)
+        rest = [f"... and {more} more"] if more > 0 else []
+        return with_problems(self.subject, [*self.problems[: self.MOST], *rest])
 
 
 class FitError(InputError):
@@ -116,7 +116,7 @@ class ConfigurationError(InputError):
     def __str__(self) -> str:
         if len(self.problems) == 1:
             return f"{self.subject}: {self.problems[0]}"
-        return f"{self.subject}:" + "".join(f"\n  {problem}" for problem in self.problems)
+        return with_problems(f"{self.subject}:", self.problems)
 
 
 class WearlawWarning(UserWarning):
@@ -147,3 +147,8 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return "; did you mean 'x'?" for the nearest known word, or a full stop when none is near."""
     near = get_close_matches(word, list(known), n=1)
     return f"; did you mean '{near[0]}'?" if near else "."
+
+
+def with_problems(head: str, problems: Iterable[object]) -> str:
+    """Return a message of problems, each on a line below the head."""
+    return head + "".join(f"\n  {problem}" for problem in problems)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -18,6 +17,7 @@ from wearlaw.models import WearLaw
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import UNITS, Contact
 from wearlaw.rig import Disc, TwinDisc
+from wearlaw.solution import Solution
 from wearlaw.tangential import ContactModel, Scale
 from wearlaw.units import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
 
@@ -28,22 +28,7 @@ PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
 
 
-class Summary(ABC):
-    """What shows itself by some of its properties."""
-
-    _summary: ClassVar[tuple[str, ...]]
-
-    @abstractmethod
-    def _points(self) -> int:
-        """Return the number of operating points."""
-
-    def __repr__(self) -> str:
-        rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in self._summary)
-        points = "1 operating point" if self._points() == 1 else f"{self._points()} operating points"
-        return f"{type(self).__name__} of {points}{rows}"
-
-
-class ContactSolution(Summary):
+class ContactSolution(Solution[LineProblem]):
     """The contact at one or many operating points.
 
     Every property has the shape of the broadcast conditions; for one operating point it is a scalar.
@@ -68,19 +53,9 @@ class ContactSolution(Summary):
         return from_si(self._force, "N")
 
     @property
-    def traction_coefficient(self) -> Quantity:
-        """Tangential over normal force, T/N [-]."""
-        return from_si(self._force / self.problem.normal_force, "")
-
-    @property
     def wear_index(self) -> Quantity:
         """Wear index, Tγ [N], the energy dissipated per metre rolled (Tassini et al. 2010, eq. 5)."""
         return from_si(self._wear_index, "N")
-
-    @property
-    def wear_index_density(self) -> Quantity:
-        """Wear index over the area of the patch, Tγ/A [N/m²]."""
-        return from_si(self._wear_index / self.problem.patch_area, "N/mm^2")
 
     @property
     def averaged_wear_index(self) -> Quantity:
@@ -114,34 +89,9 @@ class ContactSolution(Summary):
         return from_si(self.problem.creepage, "%")
 
     @property
-    def friction_coefficient(self) -> Quantity:
-        """Friction coefficient, μ [-]."""
-        return from_si(self.problem.friction_coefficient, "")
-
-    @property
     def half_width(self) -> Quantity:
         """Half the length of the patch in the rolling direction, a [m]."""
         return from_si(self.problem.half_width, "mm")
-
-    @property
-    def max_pressure(self) -> Quantity:
-        """Hertz's maximum pressure, p0 [Pa]."""
-        return from_si(self.problem.max_pressure, "MPa")
-
-    @property
-    def patch_area(self) -> Quantity:
-        """Area of the patch, 2a × track width, A [m²]."""
-        return from_si(self.problem.patch_area, "mm^2")
-
-    @property
-    def stick_ratio(self) -> Quantity:
-        """Share of the patch that sticks [-]."""
-        return from_si(1.0 - self._slip.slip_area / self.problem.patch_area, "")
-
-    @property
-    def mean_slip(self) -> Quantity:
-        """Mean magnitude of the relative slip over the whole patch [-]."""
-        return from_si(self._slip.mean_slip, "%")
 
     @cached_property
     def _force(self) -> Array:
@@ -186,9 +136,6 @@ class ContactSolution(Summary):
             x = data.pop("x")
             return xarray.Dataset({k: v.rename(cell="x") for k, v in data.items()}, coords={"x": x.rename(cell="x")})
         return xarray.Dataset(data).set_coords("x")
-
-    def _points(self) -> int:
-        return self.problem.size
 
 
 class Prediction(ContactSolution):
@@ -287,10 +234,3 @@ class Prediction(ContactSolution):
         if np.isinf(diameter):
             raise InputError(f"body: {body} is flat and makes no revolutions; name the other body")
         return np.pi * diameter
-
-
-def _brief(quantity: Quantity) -> str:
-    """Return a scalar as it is, an array as its range."""
-    if np.ndim(quantity.magnitude) == 0:
-        return repr(quantity)
-    return f"{quantity.min()!r} to {quantity.max()!r}"

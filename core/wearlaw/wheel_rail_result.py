@@ -14,7 +14,7 @@ from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.elliptic_wear import EllipticSlip, EllipticWear
 from wearlaw.errors import CompositionError
 from wearlaw.models import WearLaw
-from wearlaw.result import Summary
+from wearlaw.solution import Solution
 from wearlaw.tangential import ContactModel, Scale
 from wearlaw.units import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit
 from wearlaw.wheel_rail import WheelRail
@@ -26,7 +26,7 @@ PROFILE_STRIPS = 101
 """Strips of a profile across the patch, where the contact model can choose them."""
 
 
-class WheelRailContact(Summary):
+class WheelRailContact(Solution[EllipticProblem]):
     """The contact of a wheel and a rail at one or many operating points.
 
     Every property has the shape of the broadcast conditions; for one operating point it is a scalar. Forces have the
@@ -65,12 +65,7 @@ class WheelRailContact(Summary):
     @property
     def tangential_force(self) -> Quantity:
         """Magnitude of the tangential force, T [N], √(Fx² + Fy²)."""
-        return from_si(self._forces.tangential, "N")
-
-    @property
-    def traction_coefficient(self) -> Quantity:
-        """Tangential over normal force, T/N [-]."""
-        return from_si(self._forces.tangential / self.problem.normal_force, "")
+        return from_si(self._force, "N")
 
     @property
     def wear_index(self) -> Quantity:
@@ -79,11 +74,6 @@ class WheelRailContact(Summary):
         It is what the creepages feed in. What the nodes of the patch dissipate is `cell_wear_index`.
         """
         return from_si(self._wear_index, "N")
-
-    @property
-    def wear_index_density(self) -> Quantity:
-        """Wear index over the area of the patch, Tγ/A [N/m²]."""
-        return from_si(self._wear_index / self.problem.patch_area, "N/mm^2")
 
     @property
     def cell_wear_index(self) -> Quantity:
@@ -108,35 +98,14 @@ class WheelRailContact(Summary):
         """Semi-axis of the patch across the rolling direction, b [m]."""
         return from_si(self.problem.b, "mm")
 
-    @property
-    def max_pressure(self) -> Quantity:
-        """Hertz's maximum pressure, p0 [Pa]."""
-        return from_si(self.problem.max_pressure, "MPa")
-
-    @property
-    def patch_area(self) -> Quantity:
-        """Area of the patch, A [m²], πab."""
-        return from_si(self.problem.patch_area, "mm^2")
-
-    @property
-    def friction_coefficient(self) -> Quantity:
-        """Friction coefficient, μ [-]."""
-        return from_si(self.problem.friction_coefficient, "")
-
-    @property
-    def stick_ratio(self) -> Quantity:
-        """Share of the patch that sticks [-]."""
-        return from_si(1.0 - self._slip.slip_area / self.problem.patch_area, "")
-
-    @property
-    def mean_slip(self) -> Quantity:
-        """Mean magnitude of the relative slip over the whole patch [-]."""
-        return from_si(self._slip.mean_slip, "%")
-
     @cached_property
     def contact(self) -> EllipticContact:
         """The solved contact as SI arrays, on the nodes that the contact model chose."""
         return self.contact_model.solve(self.problem)
+
+    @cached_property
+    def _force(self) -> Array:
+        return self._forces.tangential
 
     @cached_property
     def _wear_index(self) -> Array:
@@ -145,9 +114,6 @@ class WheelRailContact(Summary):
     @cached_property
     def _slip(self) -> EllipticSlip:
         return elliptic_wear.elliptic_slip(self.contact_model, self.problem, self.scale)
-
-    def _points(self) -> int:
-        return self.problem.size
 
 
 class WheelRailPrediction(WheelRailContact):

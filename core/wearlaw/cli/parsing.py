@@ -9,7 +9,7 @@ import click
 from wearlaw import plugins
 from wearlaw.case import RigField
 from wearlaw.configuration import Configuration
-from wearlaw.errors import ConfigurationError, InputError
+from wearlaw.errors import ConfigurationError, InputError, with_problems
 from wearlaw.fitting.law_files import read_toml, read_wear_law
 from wearlaw.models import WearLaw
 from wearlaw.rig import TwinDisc
@@ -36,7 +36,7 @@ def read_rig(path: Path | None) -> TwinDisc:
     try:
         return _WithRig(**read_toml("the rig", path)).rig
     except ConfigurationError as error:
-        raise InputError(f"the rig '{path}' is wrong in:" + "".join(f"\n  {p}" for p in error.problems)) from None
+        raise InputError(with_problems(f"the rig '{path}' is wrong in:", error.problems)) from None
 
 
 def listed(option: str, text: str) -> list[str]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from wearlaw import plugins
-from wearlaw.errors import ConfigurationError, InputError, OutputError
+from wearlaw.errors import ConfigurationError, InputError, OutputError, with_problems
 from wearlaw.models import WearLaw
 from wearlaw.specification import specification
 
@@ -73,4 +73,4 @@ def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
     try:
         return plugins.wear_law(name, **fields)
     except ConfigurationError as error:
-        raise InputError(f"wear law '{path}' is wrong in:" + "".join(f"\n  {p}" for p in error.problems)) from None
+        raise InputError(with_problems(f"wear law '{path}' is wrong in:", error.problems)) from None
