@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
+import numpy as np
 import pint
 
 from wearlaw.arrays import Array
@@ -43,21 +45,34 @@ class Uncertain:
         """Return the values in SI, by name, at probabilities."""
         return {name: self.distribution.quantiles(probability, *ends) for name, ends in self.ends.items()}
 
-    def check_law(self, law: WearLaw, probability: Array) -> None:
-        """Refuse samples that a law does not take as its parameters; the least and the greatest tell."""
-        units = numbers(law)
-        for end in (probability.min(), probability.max()):
-            sample = {name: number_like(units[name], float(si)) for name, si in self.values(end).items()}
-            try:
-                changed(law, sample)
-            except InputError as error:
-                raise InputError(f"{error}{OTHERS}") from None
-
 
 OTHERS = (
     "\nThe values are samples of its distribution; choose one without such values, such as wl.lognormal or wl.uniform"
 )
 """What is said of samples that are not possible."""
+
+
+def check_samples(law: WearLaw, samples: Mapping[str, Array]) -> None:
+    """Refuse samples of parameters, in SI by name, that the law does not take together.
+
+    Where it takes their extremes in every combination, these tell; else each sample is tried, the extreme ones first.
+    """
+    units = numbers(law)
+
+    def check(sample: Iterable[float]) -> None:
+        changed(law, {name: number_like(units[name], float(si)) for name, si in zip(samples, sample, strict=True)})
+
+    try:
+        for extremes in product(*((values.min(), values.max()) for values in samples.values())):
+            check(extremes)
+    except InputError:
+        table = np.stack(list(samples.values()), axis=-1)
+        first = np.concatenate([table.argmin(axis=0), table.argmax(axis=0)])
+        try:
+            for sample in (*table[first], *table):
+                check(sample)
+        except InputError as error:
+            raise InputError(f"{error}{OTHERS}") from None
 
 
 def condition(name: str, given: Distribution) -> Uncertain:

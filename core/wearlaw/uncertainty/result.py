@@ -17,7 +17,7 @@ from wearlaw.integrate import integrate_contact
 from wearlaw.ranges import RangeWatch, line_mean
 from wearlaw.uncertainty.distributions import Distribution, PublishedRange
 from wearlaw.uncertainty.figure import CONFIDENCE, figure_data
-from wearlaw.uncertainty.inputs import OTHERS, Uncertain, parameter, split
+from wearlaw.uncertainty.inputs import OTHERS, Uncertain, check_samples, parameter, split
 from wearlaw.units import WEAR_RATE, Q, Quantity, from_si
 from wearlaw.varying import integrate_varying
 
@@ -187,9 +187,8 @@ class Uncertainty:
         conditions: dict[str, Array] = {}
         of_law: dict[str, Array] = {}
         for one, row in zip(self.inputs, inside, strict=True):
-            if one.of_law:
-                one.check_law(self._law, row)
             (of_law if one.of_law else conditions).update(one.values(row))
+        check_samples(self._law, of_law)
         shape = (*self.shape, probability.shape[-1])
         problem = self._problem(conditions)
         flat = problem.broadcast_to(shape).flatten()
