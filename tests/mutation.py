@@ -36,7 +36,8 @@ TESTS = {
     "wearlaw_brr": "plugins/test_brr.py",
     "wearlaw_exact": "plugins/test_exact_kernel.py plugins/test_exact.py test_numbers.py",
     "wearlaw_fastsim": "plugins/test_fastsim_kernel.py plugins/test_fastsim_first_slip.py plugins/test_fastsim.py"
-    " plugins/test_fastsim_solution.py plugins/test_fastsim_strips.py plugins/test_fastsim_march.py",
+    " plugins/test_fastsim_solution.py plugins/test_fastsim_strip_forces.py plugins/test_fastsim_strip_fields.py"
+    " plugins/test_fastsim_march.py plugins/test_fastsim_march_convergence.py",
     "wearlaw_global": "plugins/test_global.py",
     "wearlaw_kth": "plugins/test_kth.py",
     "wearlaw_linear": "plugins/test_linear.py",
@@ -46,15 +47,16 @@ TESTS = {
     " plugins/test_sheffield_verdicts.py plugins/test_sheffield_tables.py plugins/test_sheffield_report.py",
     "wearlaw_shen_hedrick_elkins": "plugins/test_shen_hedrick_elkins.py",
     "wearlaw_usfd": "plugins/test_usfd.py",
-    "wearlaw.composition": "core/test_pipeline.py core/test_wheel_rail_result.py",
-    "wearlaw.contact_pipeline": "core/test_pipeline.py core/test_inverse.py core/test_wheel_rail.py test_interface.py",
+    "wearlaw.composition": "core/test_composition.py core/test_pipeline.py core/test_wheel_rail_result.py",
+    "wearlaw.contact_pipeline": "core/test_composition.py core/test_pipeline.py core/test_inverse.py"
+    " core/test_wheel_rail.py test_interface.py",
     "wearlaw.hertz": "core/test_hertz.py",
     "wearlaw.hertz_ellipse": "core/test_hertz_ellipse.py",
     "wearlaw.parameters": "core/test_varying.py",
-    "wearlaw.pipeline": "core/test_pipeline.py core/test_uncertainty.py core/test_wheel_rail.py"
-    " core/test_wheel_rail_result.py test_interface.py",
+    "wearlaw.pipeline": "core/test_composition.py core/test_pipeline.py core/test_uncertainty.py"
+    " core/test_uncertainty_refusals.py core/test_wheel_rail.py core/test_wheel_rail_result.py test_interface.py",
     "wearlaw.records": "core/test_records.py core/test_contact_from_arrays.py",
-    "wearlaw.units": "core/test_units.py",
+    "wearlaw.units": "core/test_units.py core/test_quantities.py core/test_unit_registries.py",
 }
 """The test files of each package or module; a plugin must pass the conformance kit too."""
 

@@ -139,17 +139,19 @@ def assert_refused(result: Result, message: str, exit_code: int = 1) -> None:
     assert sum(line.startswith("Error: ") for line in result.stderr.splitlines()) == 1
 
 
-def spaced_folder(parent: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Work in a new folder with a space in its name, and return it."""
-    here = parent / "my work"
-    here.mkdir()
-    monkeypatch.chdir(here)
-    return here
-
-
 def files(folder: Path) -> set[str]:
     """Return the files below a folder."""
     return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+def tree(folder: Path) -> dict[str, bytes]:
+    """Return all files below a folder, hidden ones too, with what they hold; folders hold nothing."""
+    return {str(path.relative_to(folder)): path.read_bytes() if path.is_file() else b"" for path in folder.rglob("*")}
+
+
+def full_disk(*_: Any, **__: Any) -> None:
+    """Fail as what writes to a full disk does."""
+    raise OSError(28, "No space left on device")
 
 
 def following_line() -> int:

@@ -13,10 +13,12 @@ import pytest
 from matplotlib.figure import Figure
 
 import wearlaw as wl
-from tests.core.cases import InstallModel, installer
+from tests.core import cli_data
+from tests.core.cases import POINT, InstallModel, case, installer
 from tests.core.distributions import Install, write_distribution
-from wearlaw import plugins
+from wearlaw import kernels, plugins
 from wearlaw.case import case_schema
+from wearlaw.study import Study, run
 from wearlaw.sweeping import points
 
 
@@ -49,6 +51,27 @@ def install_model(monkeypatch: pytest.MonkeyPatch) -> InstallModel:
 
 
 @pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Work in a new folder with a space in its name."""
+    here = tmp_path / "my work"
+    here.mkdir()
+    monkeypatch.chdir(here)
+    return here
+
+
+@pytest.fixture
+def folder_with_tests(folder: Path) -> None:  # noqa: ARG001
+    """Work in a folder with a file of tests."""
+    cli_data.write_tests(cli_data.rows(cli_data.rates() * cli_data.SCATTER))
+
+
+@pytest.fixture(scope="module")
+def point() -> Study:
+    """Run a case of one operating point, one law and one contact model."""
+    return run(case(contact_models=["exact"], wear_laws=["kth"], sweeps={"point": POINT}, profiles={}))
+
+
+@pytest.fixture
 def blank_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave figures empty, whose drawing takes most of the time of a small run."""
     monkeypatch.setattr("wearlaw.figures.drawing.draw", lambda _: Figure())
@@ -59,6 +82,15 @@ def small_blocks(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Blocks of 24 points: 10 of them; without numba, which would be loaded in each worker."""
     monkeypatch.setattr(points, "BLOCK", 30)
     wl.accelerate(False)
+    yield
+    wl.accelerate(None)
+
+
+@pytest.fixture
+def by_size_again(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Begin and end with the choice of kernels by size, whatever the environment says."""
+    monkeypatch.delenv(kernels.SETTING, raising=False)
+    wl.accelerate(None)
     yield
     wl.accelerate(None)
 

@@ -1,4 +1,4 @@
-"""Figures, panels and curves by their names, for the tests of what figures show."""
+"""Figures, panels and curves by their names, and figures of small cases, for the tests of what figures show."""
 
 from __future__ import annotations
 
@@ -6,8 +6,18 @@ from typing import Any
 
 import numpy as np
 
+from tests.core.cases import case
 from wearlaw.figures.curves import Curve, FigureData, Panel
-from wearlaw.study import Study
+from wearlaw.study import Study, run
+
+LOADS = {"from": "500 MPa", "to": "1500 MPa", "points": 3}
+"""A range of maximum pressures."""
+
+
+def shown(spec: dict[str, Any], **changes: Any) -> FigureData:
+    """Return the one figure of a small case that asks for it."""
+    (figure,) = run(case(**{"figures": {"one": spec}, **changes})).figures
+    return figure
 
 
 def by_name(study: Study) -> dict[str, FigureData]:

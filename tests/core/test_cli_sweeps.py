@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import POINT, assert_refused, changed, spaced_folder, table, wearlaw, write
+from tests.core.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
 from tests.core.sweeps import contents, interrupted_after
 from wearlaw import output
 from wearlaw.sweeping import checkpoint, space
@@ -22,11 +22,6 @@ LONG = {**POINT, "creepage": {"from": "0.1 %", "to": "10 %", "points": 100, "spa
 def long_case(path: Path, **changes: Any) -> str:
     fields = {"contact_models": ["exact"], "wear_laws": ["kth"], "profiles": {}, "sweeps": {"long": LONG}, **changes}
     return str(write(path, table(**fields)))
-
-
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    return spaced_folder(tmp_path, monkeypatch)
 
 
 def interrupted(case: str, monkeypatch: pytest.MonkeyPatch, blocks: int = 6) -> None:
@@ -216,10 +211,7 @@ def test_a_wear_rate_that_does_not_vary_has_no_indices(folder: Path) -> None:
 def test_a_full_disk_is_one_clear_error_and_leaves_nothing_of_the_uncertainty(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def full(*_: Any, **__: Any) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("wearlaw.uncertainty.written.save_figure", full)  # after tables were written
+    monkeypatch.setattr("wearlaw.uncertainty.written.save_figure", full_disk)  # after tables were written
     result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--samples", "64", "-o", "out")
     assert_refused(result, "output: cannot write the results: No space left on device")
     assert [path.name for path in folder.iterdir()] == ["case.toml"]

@@ -1,4 +1,4 @@
-"""Fitting laws and friction to tests, against closed forms, known parameters and the literature."""
+"""Fitting laws to tests, against closed forms, known parameters and the literature."""
 
 from __future__ import annotations
 
@@ -10,20 +10,17 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
-from tests.core.fits import (
-    ALL,
-    CREEPAGE,
-    EXACT,
-    FRICTION,
-    GLOBAL,
-    PRESSURE,
-    in_microgram,
-    made_up,
-    sloping,
-    traction_tests,
-    usfd,
-)
+from tests.core.fits import ALL, EXACT, FRICTION, GLOBAL, PRESSURE, in_microgram, made_up, sloping, traction_tests, usfd
 from wearlaw import Q
+
+KTH = GLOBAL | wl.wear_law("kth")
+
+
+def slow_tests(**more: Any) -> tuple[wl.WearTests, Any, Any]:
+    """Return tests slower than 0.2 m/s, where KTH has one field, the rates that they measured and those predicted."""
+    tests = made_up(KTH, 0.3, seed=1, creepage=np.linspace(1.0, 15.0, 9), **more)
+    predicted = KTH(**tests.conditions(KTH.contact.contact_model)).wear_rate
+    return tests, in_microgram(tests.wear_rate), in_microgram(predicted)
 
 
 @pytest.mark.validates(
@@ -89,14 +86,9 @@ def test_the_refits_of_table_4_are_reproduced(
     interval=1e-06,
 )
 def test_one_factor_is_fitted_as_a_mean_of_logarithms(value: float, interval: float) -> None:
-    predict = GLOBAL | wl.wear_law("kth")
-    creepage = np.linspace(1.0, 15.0, 9)  # slower than 0.2 m/s, where the map has one field
-    tests = made_up(predict, 0.3, seed=1, creepage=creepage)
-    fit = wl.fit(predict, tests, free=["coefficient.low_speed"], bootstrap=0)
-    ratio = np.log(
-        in_microgram(tests.wear_rate)
-        / in_microgram(predict(**tests.conditions(predict.contact.contact_model)).wear_rate)
-    )
+    tests, measured, predicted = slow_tests()
+    fit = wl.fit(KTH, tests, free=["coefficient.low_speed"], bootstrap=0)
+    ratio = np.log(measured / predicted)
     exact = 5.5e-4 * np.exp(ratio.mean())
     assert fit.parameters["coefficient.low_speed"].magnitude == pytest.approx(exact, rel=value)
     reach = stats.t.ppf(0.975, 8) * ratio.std(ddof=1) / 3.0
@@ -118,15 +110,10 @@ def test_one_factor_is_fitted_as_a_mean_of_logarithms(value: float, interval: fl
 )
 @pytest.mark.parametrize("stated", [False, True], ids=["absolute", "uncertainty"])
 def test_one_factor_is_fitted_as_a_weighted_mean(stated: bool, within: float) -> None:
-    predict = GLOBAL | wl.wear_law("kth")
-    creepage = np.linspace(1.0, 15.0, 9)
-    plain = made_up(predict, 0.3, seed=1, creepage=creepage)
     uncertainty = np.linspace(1.0, 20.0, 9) if stated else np.ones(9)
     more: Any = {"wear_rate_uncertainty": Q(uncertainty, "ug/m/mm^2")} if stated else {}
-    tests = made_up(predict, 0.3, seed=1, creepage=creepage, **more)
-    fit = wl.fit(predict, tests, free=["coefficient.low_speed"], scatter="relative" if stated else "absolute")
-    measured = in_microgram(plain.wear_rate)
-    predicted = in_microgram(predict(**plain.conditions(predict.contact.contact_model)).wear_rate)
+    tests, measured, predicted = slow_tests(**more)
+    fit = wl.fit(KTH, tests, free=["coefficient.low_speed"], scatter="relative" if stated else "absolute")
     factor = np.sum(predicted * measured / uncertainty**2) / np.sum(predicted**2 / uncertainty**2)
     assert fit.parameters["coefficient.low_speed"].magnitude == pytest.approx(5.5e-4 * factor, rel=within)
     residual = (factor * predicted - measured) / uncertainty
@@ -137,101 +124,6 @@ def test_one_factor_is_fitted_as_a_weighted_mean(stated: bool, within: float) ->
     if stated:
         assert fit.chi2 == pytest.approx(np.sum(residual**2), rel=1e-6)
         assert fit.aic == pytest.approx(fit.chi2 + 2.0)
-
-
-@pytest.mark.validates(
-    "fitting",
-    "The friction coefficient fitted to tractions in full slip, with its interval",
-    source="mean and Student's t, by hand",
-    held_to="{value:g} (value), {interval:g} (interval), relative",
-    value=1e-07,
-    interval=1e-06,
-)
-def test_friction_in_full_slip_is_the_mean_of_the_traction(value: float, interval: float) -> None:
-    traction = np.array([0.469, 0.449, 0.449, 0.450, 0.499])
-    tests = traction_tests(traction, [3.0, 7.5, 10.0, 15.0, 20.0])
-    fit = wl.fit(EXACT, tests, free=["friction_coefficient"], scatter="absolute", bootstrap=0)
-    assert fit.parameters["friction_coefficient"].magnitude == pytest.approx(traction.mean(), rel=value)
-    # By the delta method about the logarithm: μ exp(±t s/(μ √n)).
-    reach = stats.t.ppf(0.975, 4) * traction.std(ddof=1) / np.sqrt(5.0) / traction.mean()
-    ends = [end.magnitude for end in fit.intervals["friction_coefficient"]]
-    assert ends == pytest.approx([traction.mean() * np.exp(-reach), traction.mean() * np.exp(reach)], rel=interval)
-    relative = wl.fit(EXACT, tests, free="friction_coefficient", bootstrap=0)
-    assert relative.parameters["friction_coefficient"].magnitude == pytest.approx(stats.gmean(traction), rel=value)
-    assert relative.law is None
-    assert relative.predict == EXACT
-    with pytest.raises(wl.FitError, match="no law to write"):
-        relative.to_toml("nowhere.toml")
-
-
-def test_where_a_fit_of_friction_starts_and_how_its_bounds_are_written_does_not_matter() -> None:
-    traction = np.array([0.469, 0.449, 0.449, 0.450, 0.499])
-    tests = traction_tests(traction, [3.0, 7.5, 10.0, 15.0, 20.0])
-    settings: list[dict[str, Any]] = [
-        {"friction_coefficient": 0.2},
-        {"bounds": {"friction_coefficient": (0.1, 1)}},
-        {"bounds": {"friction_coefficient": (Q(0.1, ""), "100 %")}},
-    ]
-    for given in settings:
-        fit = wl.fit(EXACT, tests, free=["friction_coefficient"], scatter="absolute", bootstrap=0, **given)
-        assert fit.parameters["friction_coefficient"].magnitude == pytest.approx(traction.mean(), rel=1e-7)
-
-
-def test_friction_alone_can_be_fitted_to_wear_and_traction() -> None:
-    predict = usfd("exact")
-    conditions: Any = {"creepage": Q(np.geomspace(0.1, 1.0, 8), "%"), "max_pressure": PRESSURE}
-    r = predict(**conditions, friction_coefficient=0.4)
-    factor = 1.0 + 0.01 * np.array([1, -1, 1, -1, -1, 1, -1, 1])
-    tests = traction_tests(
-        r.traction_coefficient.magnitude * factor, np.geomspace(0.1, 1.0, 8), wear_rate=r.wear_rate * factor[::-1]
-    )
-    fit = wl.fit(predict, tests, free=["friction_coefficient"], bootstrap=0)
-    found = fit.parameters["friction_coefficient"].magnitude
-    low, high = (end.magnitude for end in fit.intervals["friction_coefficient"])
-    assert low < 0.4 < high
-    again: Any = predict(**conditions, friction_coefficient=found)
-    due = [*again.wear_rate.to("ug/m/mm^2").magnitude, *again.traction_coefficient.magnitude]
-    assert fit.residuals["predicted"].tolist() == pytest.approx(due, rel=1e-9)
-
-
-def test_friction_and_law_are_fitted_together_each_by_its_own_scatter() -> None:
-    predict = usfd("exact")
-    conditions: Any = {"creepage": Q(CREEPAGE, "%"), "max_pressure": PRESSURE, "friction_coefficient": 0.4}
-    r = predict(**conditions)
-    generator = np.random.default_rng(8)
-    tests = traction_tests(
-        r.traction_coefficient.magnitude * np.exp(0.002 * generator.standard_normal(20)),
-        CREEPAGE,
-        wear_rate=r.wear_rate * np.exp(0.2 * generator.standard_normal(20)),
-    )
-    fit = wl.fit(predict, tests, free=["q_s", "friction_coefficient"], bootstrap=200)
-    alone = wl.fit(EXACT, tests, free=["friction_coefficient"], bootstrap=200)
-    # The wear scatters a hundred times as much as the traction, and says as good as nothing of the friction.
-    both, one = (found.parameters["friction_coefficient"].magnitude for found in (fit, alone))
-    error = alone.standard_errors["friction_coefficient"].magnitude
-    assert abs(both - one) < 0.2 * error
-    assert error < 0.4 * 0.002
-    assert fit.intervals["q_s"][0] < Q(55, "ug/m/mm^2") < fit.intervals["q_s"][1]
-    assert list(fit.residuals["observable"].unique()) == ["wear_rate [ug/m/mm^2]", "traction_coefficient"]
-    drawn = fit.figure_data().panels[0].curves[1].x
-    again: Any = fit.predict(**{**conditions, "friction_coefficient": both})
-    np.testing.assert_allclose(drawn, again.wear_index_density.magnitude, rtol=1e-9)
-    assert [panel.y.label for panel in fit.figure_data().panels] == [
-        "wear rate [µg/m/mm²]",
-        "traction coefficient T/N [-]",
-    ]
-
-
-def test_a_measured_traction_does_not_stand_in_for_a_friction_that_is_free() -> None:
-    traction = np.array([0.2, 0.35, 0.44, 0.45, 0.45])
-    tests = traction_tests(traction, [0.5, 1.0, 3.0, 10.0, 20.0])
-    of_global, of_exact = (
-        wl.fit(contact, tests, free=["friction_coefficient"], bootstrap=0).parameters for contact in (GLOBAL, EXACT)
-    )
-    # The global model takes its total from the exact one, unless the traction is given.
-    assert of_global["friction_coefficient"].magnitude == pytest.approx(
-        of_exact["friction_coefficient"].magnitude, rel=1e-9
-    )
 
 
 def test_a_traction_that_was_measured_is_used_by_the_contact_that_can() -> None:
@@ -293,7 +185,7 @@ def test_a_law_of_your_own_may_have_negative_parameters() -> None:
 def test_the_law_that_made_the_tests_has_the_better_information_criterion() -> None:
     tests = made_up(usfd("global"), 0.1)
     true = wl.fit(usfd("global"), tests, free=ALL, bootstrap=0)
-    other = wl.fit(GLOBAL | wl.wear_law("kth"), tests, free=["coefficient.low_speed"], bootstrap=0)
+    other = wl.fit(KTH, tests, free=["coefficient.low_speed"], bootstrap=0)
     assert true.aic < other.aic - 10.0
 
 

@@ -1,4 +1,4 @@
-"""Composition of stages, and the checks that only the whole pipeline allows."""
+"""What a pipeline predicts and warns of, and its copies."""
 
 from __future__ import annotations
 
@@ -15,17 +15,21 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import following_line
+from tests.core.stages import (
+    AS_PRINTED,
+    BRR,
+    CONDITIONS,
+    ELLIPTIC,
+    EXACT,
+    FASTSIM,
+    FITTED,
+    GLOBAL,
+    KTH,
+    ON_RAILS,
+    RAILS,
+    RIG,
+)
 from wearlaw import Q
-
-RIG = wl.TwinDisc.suros()
-CONDITIONS: Any = {"normal_force": Q(7.4143, "kN"), "creepage": Q(1, "%"), "friction_coefficient": 0.46}
-RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
-ON_RAILS: Any = {"normal_force": "80 kN", "friction_coefficient": 0.3, "longitudinal_creepage": "0.2 %"}
-EXACT, FASTSIM, GLOBAL = (wl.contact_model(name) for name in ("exact", "fastsim", "global"))
-ELLIPTIC = wl.contact_model("fastsim", bound="elliptic")
-AS_PRINTED = wl.contact_model("exact", slip="as_printed")
-FITTED = {name: wl.wear_law("usfd", fitted_for=name) for name in ("global", "exact", "fastsim")}
-KTH, BRR = wl.wear_law("kth"), wl.wear_law("brr")
 
 
 def silently(first: Any, *stages: Any) -> Any:
@@ -53,36 +57,6 @@ PIPELINES = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("left", "right", "said"),
-    [
-        (RIG, FITTED["global"], "a rig is followed by a contact model, not by USFD"),
-        (RIG, wl.patch_mean(), "a rig is followed by a contact model, not by PatchMean()"),
-        (RIG, 3, "a rig is followed by a contact model, not by 3"),
-        (RIG | EXACT, GLOBAL, "a contact model is followed by wl.patch_mean() or a wear law, not by Global"),
-        (RIG | EXACT, "usfd", "a contact model is followed by wl.patch_mean() or a wear law, not by 'usfd'"),
-        (EXACT, KTH, "'exact' cannot start a pipeline; begin with a rig"),
-        (KTH, EXACT, "'kth' cannot start a pipeline; begin with a rig"),
-        (wl.patch_mean(), KTH, "wl.patch_mean() cannot start a pipeline; the order is rig | "),
-        (RIG | EXACT | KTH, KTH, "a pipeline ends with its wear law, nothing follows it, not KTH"),
-        (RIG | EXACT | KTH, wl.patch_mean(), "a pipeline ends with its wear law, nothing follows it, not PatchMean()"),
-    ],
-)
-def test_stages_in_the_wrong_order_are_refused(left: Any, right: Any, said: str) -> None:
-    with pytest.raises(wl.CompositionError) as caught:
-        left | right
-    assert said in str(caught.value)
-
-
-@pytest.mark.parametrize("model", [EXACT, FASTSIM, ELLIPTIC, AS_PRINTED], ids=repr)
-def test_brr_on_cells_is_refused_with_what_to_add(model: wl.ContactModel) -> None:
-    with pytest.raises(wl.CompositionError) as caught:
-        RIG | model | BRR
-    message = str(caught.value)
-    assert f"wear law 'brr' is stated for the means of the whole patch, but contact model '{model.name}'" in message
-    assert 'put wl.patch_mean() between them, or use wl.contact_model("global")' in message
-
-
 def test_brr_is_accepted_on_patch_means_and_agrees_with_the_global_model() -> None:
     on_means = (RIG | EXACT | wl.patch_mean() | BRR)(**CONDITIONS).wear_rate
     on_global = (RIG | GLOBAL | BRR)(**CONDITIONS).wear_rate
@@ -91,68 +65,6 @@ def test_brr_is_accepted_on_patch_means_and_agrees_with_the_global_model() -> No
     area = 2 * 0.31467e-3 * 0.01
     assert on_means.to("kg/m^3").magnitude == pytest.approx(mass / area, rel=1e-4)  # a printed to 5 digits
     assert on_means.magnitude == pytest.approx(on_global.magnitude, rel=1e-14)
-
-
-SILENT = [
-    (GLOBAL, None, FITTED["global"]),
-    (wl.contact_model("global", total_from="fastsim"), None, FITTED["global"]),
-    (EXACT, wl.patch_mean(), FITTED["global"]),
-    (FASTSIM, wl.patch_mean(), FITTED["global"]),
-    (EXACT, None, FITTED["exact"]),
-    (FASTSIM, None, FITTED["fastsim"]),
-    (wl.contact_model("fastsim", flexibility="kalker"), None, FITTED["fastsim"]),
-    *[(model, None, KTH) for model in (EXACT, FASTSIM, ELLIPTIC, GLOBAL)],
-    (GLOBAL, None, BRR),
-]
-WARNED = [
-    (EXACT, None, FITTED["global"], "patch means (the global model)", "its cells"),
-    (FASTSIM, None, FITTED["global"], "patch means (the global model)", "its cells"),
-    (GLOBAL, None, FITTED["exact"], "the cells of contact_model('exact')", "its patch means"),
-    (FASTSIM, None, FITTED["exact"], "the cells of contact_model('exact')", "its cells"),
-    (EXACT, wl.patch_mean(), FITTED["exact"], "the cells of contact_model('exact')", "its patch means"),
-    (EXACT, None, FITTED["fastsim"], "the cells of contact_model('fastsim', bound='parabolic')", "its cells"),
-    (ELLIPTIC, None, FITTED["fastsim"], "the cells of contact_model('fastsim', bound='parabolic')", "its cells"),
-    (GLOBAL, None, FITTED["fastsim"], "the cells of contact_model('fastsim', bound='parabolic')", "its patch means"),
-]
-
-
-def contact_pipeline(model: wl.ContactModel, mean: wl.PatchMean | None) -> wl.ContactPipeline[wl.TwinDisc]:
-    return RIG | model if mean is None else RIG | model | mean
-
-
-@pytest.mark.parametrize(("model", "mean", "law"), SILENT)
-def test_parameters_on_the_contact_they_were_fitted_for_give_no_warning(
-    model: wl.ContactModel, mean: wl.PatchMean | None, law: wl.WearLaw
-) -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        contact_pipeline(model, mean) | law
-
-
-@pytest.mark.parametrize(("model", "mean", "law", "fitted_for", "used"), WARNED)
-def test_parameters_on_another_contact_give_one_warning_that_names_both(
-    model: wl.ContactModel, mean: wl.PatchMean | None, law: wl.WearLaw, fitted_for: str, used: str
-) -> None:
-    contact = contact_pipeline(model, mean)
-    line = following_line()
-    with pytest.warns(wl.CalibrationWarning) as caught:
-        predict = contact | law
-    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)]
-    assert str(caught[0].message) == (
-        f"the parameters of wear law 'usfd' were fitted for {fitted_for}, but are used with {model!r} and {used};"
-        " check them against data, or choose parameters fitted for that contact"
-    )
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        predict(**CONDITIONS)
-        pickle.loads(pickle.dumps(predict))
-        copy.copy(predict)
-        copy.deepcopy(predict)
-        predict.model_copy()
-        wl.Pipeline.model_validate_json(predict.model_dump_json())
-    with pytest.warns(wl.CalibrationWarning) as again:
-        contact | law
-    assert len(again) == 1
 
 
 @pytest.mark.parametrize("size", [1, 7])
@@ -275,12 +187,6 @@ def test_wrong_json_is_an_error_of_the_package_with_the_path() -> None:
     assert "wear_law: no wear law is called 'khh'; did you mean 'kth'?" in message
 
 
-def test_what_is_no_rig_is_refused_with_what_rigs_there_are() -> None:
-    wrong: Any = 3
-    with pytest.raises(wl.ConfigurationError, match="rig: must be a TwinDisc or a WheelRail, got 3"):
-        wl.ContactPipeline(rig=wrong, contact_model=GLOBAL)
-
-
 def test_a_pickled_pipeline_predicts_the_same_in_a_fresh_process() -> None:
     predict = RIG | GLOBAL | FITTED["global"]
     code = (
@@ -315,11 +221,3 @@ def test_progress_counts_every_operating_point_once() -> None:
     (RIG | GLOBAL | KTH).predict(problem, on_block=done.append)
     assert sum(done) == 2500
     assert len(done) > 1
-
-
-def test_a_pipeline_read_from_json_is_checked_like_one_composed_in_python() -> None:
-    text = (RIG | wl.contact_model("global") | wl.wear_law("brr")).model_dump_json()
-    on_cells = text.replace('"model":"global","total_from":{"model":"exact","slip":"consistent"}', '"model":"exact"')
-    assert on_cells != text
-    with pytest.raises(wl.CompositionError, match="stated for the means of the whole patch"):
-        wl.Pipeline.model_validate_json(on_cells)

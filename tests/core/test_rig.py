@@ -13,10 +13,9 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 from tests.core.cases import following_line
+from tests.core.stages import RIG
 from tests.strategies import EPS
 from wearlaw import Q
-
-RIG = wl.TwinDisc.suros()
 
 
 def problem(rig: wl.TwinDisc = RIG, **conditions: Any) -> wl.LineProblem:
@@ -139,115 +138,10 @@ def test_a_flat_disc_has_the_radius_of_the_other() -> None:
     assert problem(rig).relative_radius == pytest.approx(0.0235, rel=4 * EPS)
 
 
-def test_a_flat_disc_1_needs_its_rolling_speed() -> None:
-    with pytest.raises(wl.InputError, match=r"rolling_speed: a flat disc_1 .* give rolling_speed instead"):
-        wl.TwinDisc.suros(disc_1=wl.Disc(diameter="inf mm", material=wl.steel()))
-
-
-def test_two_flat_discs_are_refused() -> None:
-    with pytest.raises(wl.ConfigurationError, match="disc_1 and disc_2 are both flat; give at least one of them"):
-        wl.TwinDisc.suros(diameter="inf mm", rolling_speed="1 m/s")
-
-
-@pytest.mark.parametrize("value", [400, "400", "0 rpm", "-400 rpm", "nan rpm", "400 mm", True])
-def test_a_wrong_rotational_speed_is_refused(value: Any) -> None:
-    with pytest.raises(wl.UnitError, match=r'^rotational_speed: .* such as Q\(1\.0, "rpm"\) or "1.0 rpm"$'):
-        wl.TwinDisc.suros(rotational_speed=value)
-
-
-@pytest.mark.parametrize("value", ["10 Hz", Q(7, "1/s")])
-def test_a_rotational_speed_must_say_what_it_counts(value: Any) -> None:
-    with pytest.raises(wl.UnitError, match=r"rotational_speed: .* revolutions or radians; give it in rpm or rad/s"):
-        wl.TwinDisc.suros(rotational_speed=value)
-
-
 @pytest.mark.parametrize("value", ["41.887902047863905 rad/s", "400 rpm", "2400 deg/s", "6.666666666666667 turn/s"])
 def test_a_rotational_speed_may_count_any_angle(value: str) -> None:
     speed = problem(wl.TwinDisc.suros(rotational_speed=value)).rolling_speed
     assert speed == pytest.approx(np.pi * 0.047 * 400 / 60, rel=8 * EPS)
-
-
-def test_rolling_and_rotational_speed_together_are_refused() -> None:
-    with pytest.raises(wl.InputError, match="rolling_speed: follows from rotational_speed; give one of the two"):
-        wl.TwinDisc.suros(rotational_speed="400 rpm", rolling_speed="1 m/s")
-
-
-@pytest.mark.parametrize("field", ["track_width", "rolling_speed"])
-@pytest.mark.parametrize("value", [10, "0 {}", "-1 {}", "inf {}", "nan {}", "3 kg"])
-def test_a_wrong_width_or_speed_is_refused(field: str, value: Any) -> None:
-    unit = {"track_width": "mm", "rolling_speed": "m/s"}[field]
-    wrong = value.format(unit) if isinstance(value, str) else value
-    values: dict[str, Any] = {field: wrong}
-    with pytest.raises(
-        wl.ConfigurationError, match=rf'^TwinDisc: {field}: .* such as Q\(1\.0, "{unit}"\) or "1.0 {unit}"$'
-    ):
-        wl.TwinDisc.suros(**values)
-
-
-WRONG_CONDITIONS: list[tuple[dict[str, Any], type[Exception], list[str]]] = [
-    (
-        {"normal_force": None},
-        wl.ConditionsError,
-        ["normal_force, normal_force_per_width, max_pressure", "none of them"],
-    ),
-    (
-        {"max_pressure": "1 GPa", "normal_force": "1 kN"},
-        wl.ConditionsError,
-        ["exactly one", "normal_force and max_pressure"],
-    ),
-    (
-        {"max_pressure": "1 GPa", "normal_force": "1 kN", "normal_force_per_width": "1 kN/m"},
-        wl.ConditionsError,
-        ["normal_force and normal_force_per_width and max_pressure"],
-    ),
-    ({"creepage": None}, wl.ConditionsError, ["creepage: is missing", 'creepage=Q(1, "%")']),
-    ({"friction_coefficient": None}, wl.ConditionsError, ["friction_coefficient: is missing", "=0.46"]),
-    ({"creepge": "1 %"}, wl.ConditionsError, ["creepge: unknown condition", "did you mean 'creepage'?"]),
-    ({"speed": "1 m/s"}, wl.ConditionsError, ["speed: unknown condition", "The conditions are: normal_force,"]),
-    ({"normal_force": 7000}, wl.UnitError, ["normal_force: got the bare number 7000", 'Q(1.0, "N")']),
-    ({"normal_force": "0 N"}, wl.UnitError, ["normal_force: must be greater than zero, got 0.000 N"]),
-    ({"normal_force": "-5 N"}, wl.UnitError, ["normal_force: must be greater than zero, got -5.000 N"]),
-    ({"normal_force": "inf N"}, wl.UnitError, ["normal_force: must be finite, got inf N"]),
-    ({"normal_force": "5 mm"}, wl.UnitError, ["normal_force: got 5.000 mm, which is not of the dimension of 'N'"]),
-    ({"normal_force_per_width": "5 kN"}, wl.UnitError, ["normal_force_per_width: got 5.000 kN", 'Q(1.0, "kN/m")']),
-    ({"max_pressure": "0 MPa"}, wl.UnitError, ["max_pressure: must be greater than zero", 'Q(1.0, "MPa")']),
-    ({"max_pressure": "5 N"}, wl.UnitError, ["max_pressure: got 5.000 N"]),
-    ({"creepage": 1}, wl.UnitError, ["creepage: got the bare number 1", 'Q(1, "%") or "1 %"']),
-    ({"creepage": "1"}, wl.UnitError, ["creepage: '1' is not a number with a unit", 'Q(1, "%") or "1 %"']),
-    ({"creepage": "101 %"}, wl.UnitError, ["creepage: must not exceed 1 in magnitude, got 101.0 %"]),
-    ({"creepage": Q([0.5, -1.5], "")}, wl.UnitError, ["creepage: must not exceed 1", "got -1.500 at index [1]"]),
-    ({"creepage": Q(np.nan, "%")}, wl.UnitError, ["creepage: must be a number, got nan %"]),
-    ({"creepage": True}, wl.UnitError, ["creepage: got True"]),
-    ({"creepage": "much"}, wl.UnitError, ["creepage: 'much' is not a number with a unit"]),
-    ({"creepage": 1j}, wl.UnitError, ["creepage: got 1j"]),
-    ({"creepage": Q([], "%")}, wl.ConditionsError, ["creepage: is empty; give at least one value"]),
-    ({"friction_coefficient": 0}, wl.UnitError, ["friction_coefficient: must be a positive finite number, got 0"]),
-    ({"friction_coefficient": -0.3}, wl.UnitError, ["friction_coefficient: ", "got -0.3", "such as 0.46"]),
-    ({"friction_coefficient": Q(0.4, "m")}, wl.UnitError, ["friction_coefficient: got 0.4000 m", "such as 0.46"]),
-    ({"friction_coefficient": []}, wl.ConditionsError, ["friction_coefficient: is empty"]),
-    ({"traction_coefficient": -0.3}, wl.UnitError, ["traction_coefficient: ", "got -0.3"]),
-    (
-        {"creepage": Q([0.1, 0.2], ""), "friction_coefficient": [0.1, 0.2, 0.3]},
-        wl.ConditionsError,
-        ["do not broadcast: ", "creepage (2,)", "friction_coefficient (3,)"],
-    ),
-    ({"normal_force": "1e-320 N"}, wl.ConditionsError, ["half width", "which no contact has", "check the units"]),
-    ({"max_pressure": "1e200 Pa"}, wl.ConditionsError, ["which no contact has", "check the units"]),
-]
-
-
-@pytest.mark.parametrize(("conditions", "error", "said"), WRONG_CONDITIONS, ids=lambda value: str(value)[:40])
-def test_wrong_conditions_are_refused_with_name_value_and_fix(
-    conditions: dict[str, Any], error: type[Exception], said: list[str]
-) -> None:
-    given_conditions = {"creepage": "1 %", "friction_coefficient": 0.46, **conditions}
-    if not any(name in conditions for name in ("normal_force", "normal_force_per_width", "max_pressure")):
-        given_conditions["normal_force"] = "7.4143 kN"
-    with pytest.raises(error) as caught:
-        RIG.problem(**given_conditions)
-    assert type(caught.value) is error
-    for words in said:
-        assert words in str(caught.value)
 
 
 def test_conditions_broadcast_against_each_other() -> None:
@@ -298,9 +192,3 @@ def test_the_softer_disc_limits_the_pressure() -> None:
         (wl.TwinDisc.suros(disc_2=soft) | wl.contact_model("exact"))(max_pressure="1.2 GPa", **conditions)
     (RIG | wl.contact_model("exact"))(max_pressure="1.68 GPa", **conditions)
     (wl.TwinDisc.suros(disc_1=unknown, disc_2=unknown) | wl.contact_model("exact"))(max_pressure="9 GPa", **conditions)
-
-
-def test_a_body_that_the_rig_has_not_is_refused() -> None:
-    assert RIG.body("disc_2") is RIG.disc_2
-    with pytest.raises(wl.InputError, match="no 'wheel'; its bodies are 'disc_1' and 'disc_2'"):
-        RIG.body("wheel")

@@ -12,7 +12,7 @@ import pytest
 from click.testing import Result
 
 import wearlaw as wl
-from tests.core.cases import Coarse, Linear, assert_refused, case, installer, spaced_folder, wearlaw
+from tests.core.cases import Coarse, Linear, assert_refused, case, installer, wearlaw
 from tests.core.distributions import LAB, LAW, Install
 from tests.environments import ROOT, Environment, build
 from wearlaw import plugins
@@ -20,12 +20,9 @@ from wearlaw.case import case_text
 from wearlaw.scaffold import Kind, Licence, write_plugin
 from wearlaw.shelf import Origin
 
+pytestmark = pytest.mark.usefixtures("folder")
+
 KINDS: dict[Kind, str] = {"wear_law": "--wear-law", "contact_model": "--contact-model"}
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    return spaced_folder(tmp_path, monkeypatch)
 
 
 def new_plugin(*arguments: str) -> Result:

@@ -1,10 +1,8 @@
-"""Running a case: what the datasets hold, and what is noted, against predictions made one by one."""
+"""Running a case: what the datasets hold, against predictions made one by one."""
 
 from __future__ import annotations
 
-import importlib.metadata
 import itertools
-import json
 import warnings
 from typing import Any
 
@@ -15,23 +13,19 @@ import xarray
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import InstallModel, case
+from tests.core.studies import FRICTIONS, LOADS, MEASURED, lattice_study
 from tests.strategies import EPS
-from wearlaw import Array, Q
-from wearlaw.case import Case
-from wearlaw.study import Study, along_main_axis, axes_of, evaluations, main_axis, provenance, run
+from wearlaw import Q
+from wearlaw.study import Study, along_main_axis, axes_of, main_axis, run
 from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
 
 MODELS = {"global": wl.contact_model("global"), "exact": wl.contact_model("exact")}
 LAWS = {"usfd": wl.wear_law("usfd"), "kth": wl.wear_law("kth"), "brr": wl.wear_law("brr")}
-LOADS = ["1000 MPa", "1500 MPa"]
-FRICTIONS = [0.3, 0.4, 0.5]
-CREEPAGES = {"from": "-2 %", "to": "5 %", "points": 8}
-LATTICE = {"max_pressure": LOADS, "creepage": CREEPAGES, "friction_coefficient": FRICTIONS}
 
 
 @pytest.fixture(scope="module")
 def study() -> Study:
-    return run(case(sweeps={"creepage": cases.SWEEP, "lattice": LATTICE}))
+    return lattice_study()
 
 
 def direct(model: str, law: wl.WearLaw, **conditions: Any) -> wl.Prediction:
@@ -142,70 +136,7 @@ def test_a_profile_is_that_of_a_direct_prediction(study: Study) -> None:
     assert profile.x.attrs["units"] == "mm"
 
 
-def test_what_is_left_out_and_every_warning_is_noted_once(study: Study) -> None:
-    left_out = [note for note in study.notes if "is left out" in note]
-    assert [note.split(":")[0] for note in left_out] == ["brr on exact is left out"]
-    fitted = [note for note in study.notes if "were fitted for" in note]
-    assert [note.split(":")[0] for note in fitted] == ["usfd on exact"]
-    assert len(study.notes) == len(set(study.notes)) == 2
-
-
-def test_a_warning_that_all_pairs_give_is_noted_once_for_each_sweep_or_profile() -> None:
-    hard = {**cases.POINT, "max_pressure": "1700 MPa"}  # beyond 1.68 GPa, the elastic limit
-    sweeps = {"a": hard, "b": hard, "c": cases.POINT}
-    study = run(case(contact_models=["exact", "fastsim"], wear_laws=["kth"], sweeps=sweeps, profiles={"p": hard}))
-    assert [note.split(":")[0] for note in study.notes] == ["sweep 'a'", "sweep 'b'", "profile 'p'"]
-    assert all("elastic limit of 1680 MPa" in note for note in study.notes)
-
-
-class Warns(cases.Linear):
-    name = "warns"
-
-    def rate(self, contact: wl.Contact) -> Array:
-        warnings.warn("from elsewhere", DeprecationWarning, stacklevel=1)
-        return super().rate(contact)
-
-
-def test_warnings_of_others_are_passed_on_and_not_noted(install_model: InstallModel) -> None:
-    install_model(Warns)
-    with pytest.warns(DeprecationWarning, match="from elsewhere"):
-        study = run(case(contact_models=["exact"], wear_laws=[{"model": "warns", "slope": "1 m"}], profiles={}))
-    assert study.notes == ()
-
-
-def test_the_provenance_is_the_case_and_the_versions_of_all_that_was_used(install_model: InstallModel) -> None:
-    install_model(cases.Linear)
-    ran = case(contact_models=["global"], wear_laws=["kth", {"model": "linear", "slope": "1 m"}])
-    study = run(ran)
-    version = importlib.metadata.version("wearlaw")
-    for dataset in (*study.sweeps.values(), *study.profiles.values()):
-        assert dataset.attrs["title"] == "A small study"
-        said = json.loads(dataset.attrs["provenance"])
-        assert said["wearlaw"] == version
-        assert said["contact_models"] == {"exact": f"wearlaw {version}", "global": f"wearlaw {version}"}
-        assert said["wear_laws"] == {"kth": f"wearlaw {version}", "linear": "wearlaw-testing 9.8.7"}
-        assert said["parameter_sets"] == said["materials"] == said["cases"] == {}
-        assert Case(**said["case"]) == ran
-    assert study.case == ran
-
-
-def test_the_provenance_says_of_a_law_that_only_this_process_knows_that_it_is_not_installed(
-    install_model: InstallModel,
-) -> None:
-    class Own(cases.Linear):
-        name = "linear"
-
-    laws = [Own(slope="1 m"), wl.wear_law("kth")]  # type: ignore[arg-type]
-    ran = case(contact_models=["exact"], wear_laws=laws, profiles={})
-    assert provenance(ran)["wear_laws"]["linear"] == "not installed"
-    install_model(cases.Linear)  # another law of that name
-    assert provenance(ran)["wear_laws"]["linear"] == "not installed"
-    assert run(ran).sweeps["creepage"].sizes["pair"] == 2
-
-
 # Measured traction
-
-MEASURED = {**cases.SWEEP, "traction_coefficient": 0.2}
 
 
 def test_a_sweep_with_measured_traction_is_for_the_models_that_can_use_it() -> None:
@@ -227,55 +158,6 @@ def test_measured_traction_may_be_an_axis() -> None:
         one = {**cases.POINT, "creepage": creepage, "traction_coefficient": traction}
         found = sweep.wear_rate.sel(pair="usfd on global")[i, j].item()
         assert_same_rate(found, direct("global", LAWS["usfd"], **one))
-
-
-@pytest.mark.parametrize("kind", ["sweep", "profile"])
-def test_measured_traction_that_no_model_can_use_is_refused(kind: str) -> None:
-    wrong = {f"{kind}s": {"x": {**cases.POINT, "traction_coefficient": 0.2}}}
-    with pytest.raises(wl.InputError, match=f"^{kind} 'x': no contact model of the case can use a traction_coeff"):
-        run(case(contact_models=["exact"], **wrong))
-
-
-def test_a_profile_that_no_model_resolves_is_left_out_and_noted() -> None:
-    study = run(case(contact_models=["global"]))
-    assert study.notes == ("profile 'partial_slip' is left out: no contact model of the case resolves the patch",)
-    assert not study.profiles["partial_slip"]
-
-
-def test_a_case_of_which_no_pair_can_be_is_refused_and_says_why() -> None:
-    impossible = case(contact_models=["exact"], wear_laws=["brr"])
-    for what in (run, evaluations):
-        with pytest.raises(wl.InputError, match="no contact model can be used with any of the wear laws") as no:
-            what(impossible)
-        assert "brr on exact is left out" in str(no.value)
-
-
-# Progress
-
-
-@pytest.mark.parametrize(
-    ("changes", "expected"),
-    [
-        # global: usfd 1, kth 3 for its band, brr 1; exact: usfd 1, kth 3.
-        ({}, 5 * 9),
-        ({"sweeps": {"a": LATTICE, "b": cases.POINT}}, (48 + 1) * 9),
-        ({"sweeps": {"a": LATTICE, "b": MEASURED}}, 48 * 9 + 5 * 5),
-        ({"wear_laws": ["usfd"], "contact_models": ["exact"]}, 5),
-        ({"sweeps": {"long": {**cases.POINT, "creepage": {"from": "0 %", "to": "9 %", "points": 2500}}}}, 2500 * 9),
-    ],
-)
-def test_progress_sums_to_the_announced_evaluations(changes: dict[str, Any], expected: int) -> None:
-    ran = case(**changes)
-    blocks: list[int] = []
-    run(ran, blocks.append)
-    assert sum(blocks) == evaluations(ran) == expected
-
-
-def test_long_work_reports_progress_in_several_blocks() -> None:
-    sweep = {**cases.POINT, "creepage": {"from": "0 %", "to": "9 %", "points": 5000}}
-    blocks: list[int] = []
-    run(case(contact_models=["exact"], wear_laws=["kth"], sweeps={"long": sweep}, profiles={}), blocks.append)
-    assert max(blocks) < 5000 / 2
 
 
 # Shapes

@@ -9,12 +9,11 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
+from tests.core.fits import GLOBAL, in_microgram
+from tests.core.uncertain import FULL_SLIP, USFD
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.uncertainty.specification import UncertainPoint
-
-RIG = wl.TwinDisc.suros()
-FULL_SLIP: Any = {"max_pressure": Q(1500, "MPa"), "creepage": Q(3, "%"), "friction_coefficient": 0.4}
 
 
 @wl.as_wear_law(
@@ -28,14 +27,6 @@ FULL_SLIP: Any = {"max_pressure": Q(1500, "MPa"), "creepage": Q(3, "%"), "fricti
 def linear(wear_index_density: Any, *, first: float = 4.0, second: float = 2.0) -> Any:
     """Wear in proportion to the sum of two slopes."""
     return (first + second) * wear_index_density
-
-
-GLOBAL = RIG | wl.contact_model("global")
-USFD = GLOBAL | wl.wear_law("usfd")
-
-
-def plain(quantity: Any) -> Any:
-    return quantity.to("ug/m/mm^2").magnitude
 
 
 def kth_global(k: float) -> float:
@@ -52,14 +43,14 @@ def kth_global(k: float) -> float:
 )
 def test_a_uniform_parameter_of_a_linear_law_gives_a_uniform_rate(parts: float) -> None:
     u = (GLOBAL | linear).uncertainty(**FULL_SLIP, law={"first": wl.uniform("2 ug/m/N", "6 ug/m/N")}, samples=1024)
-    at = [float(plain((GLOBAL | linear.model_copy(update={"first": Q(f, "ug/m/N")}))(**FULL_SLIP).wear_rate))
+    at = [float(in_microgram((GLOBAL | linear.model_copy(update={"first": Q(f, "ug/m/N")}))(**FULL_SLIP).wear_rate))
           for f in (2.0, 6.0)]  # fmt: skip
-    low, high = (plain(end) for end in u.interval(0.9))
+    low, high = (in_microgram(end) for end in u.interval(0.9))
     # Each of 1024 equal parts of the range holds one sample, so that a quantile is within two parts of its place.
     part = (at[1] - at[0]) / 1024
     assert low == pytest.approx(at[0] + 0.05 * (at[1] - at[0]), abs=parts * part)
     assert high == pytest.approx(at[0] + 0.95 * (at[1] - at[0]), abs=parts * part)
-    assert plain(u.median) == pytest.approx(0.5 * (at[0] + at[1]), abs=parts * part)
+    assert in_microgram(u.median) == pytest.approx(0.5 * (at[0] + at[1]), abs=parts * part)
 
 
 def test_each_sample_is_the_prediction_with_its_values() -> None:
@@ -68,12 +59,12 @@ def test_each_sample_is_the_prediction_with_its_values() -> None:
     )
     force = u.inputs[0].values(np.array([0.25]))["normal_force"][0]
     assert force == pytest.approx(stats.norm(7000.0, 200.0).ppf(0.25), rel=8 * EPS)
-    rates = np.sort(plain(u.wear_rate))
+    rates = np.sort(in_microgram(u.wear_rate))
     probability = np.sort(stats.qmc.Sobol(1, rng=np.random.default_rng(0)).random_base2(3)[:, 0])
     each = USFD(
         normal_force=Q(stats.norm(7000.0, 200.0).ppf(probability), "N"), creepage=Q(4, "%"), friction_coefficient=0.4
     )
-    assert rates == pytest.approx(np.sort(plain(each.wear_rate)), rel=64 * EPS)
+    assert rates == pytest.approx(np.sort(in_microgram(each.wear_rate)), rel=64 * EPS)
 
 
 def test_a_lognormal_value_has_its_median_and_its_factor() -> None:
@@ -141,7 +132,7 @@ def test_the_published_range_of_kth_spans_its_band() -> None:
     )
     ends = kth_global(1e-4), kth_global(10e-4)
     part = (ends[1] - ends[0]) / 1024
-    low, high = (plain(end) for end in u.interval(0.5))
+    low, high = (in_microgram(end) for end in u.interval(0.5))
     assert low == pytest.approx(ends[0] + 0.25 * (ends[1] - ends[0]), abs=2 * part)
     assert high == pytest.approx(ends[0] + 0.75 * (ends[1] - ends[0]), abs=2 * part)
 
@@ -158,7 +149,7 @@ def test_known_conditions_keep_their_shape() -> None:
     one = USFD.uncertainty(
         max_pressure=Q(1500, "MPa"), creepage=Q(2, "%"), friction_coefficient=wl.uniform(0.3, 0.5), samples=16
     )
-    assert plain(u.wear_rate)[1, 1] == pytest.approx(plain(one.wear_rate), rel=64 * EPS)
+    assert in_microgram(u.wear_rate)[1, 1] == pytest.approx(in_microgram(one.wear_rate), rel=64 * EPS)
 
 
 @pytest.mark.validates(
@@ -170,7 +161,7 @@ def test_known_conditions_keep_their_shape() -> None:
 def test_the_same_seed_gives_the_same_samples() -> None:
     def rates(seed: int) -> Any:
         uncertain = {**FULL_SLIP, "creepage": wl.uniform("1 %", "1.5 %")}
-        return plain(USFD.uncertainty(**uncertain, samples=64, seed=seed).wear_rate)
+        return in_microgram(USFD.uncertainty(**uncertain, samples=64, seed=seed).wear_rate)
 
     assert np.array_equal(rates(1), rates(1))
     assert not np.array_equal(rates(1), rates(2))
@@ -183,20 +174,14 @@ def test_samples_are_rounded_up_to_a_power_of_two(asked: int, taken: int) -> Non
     assert f"{taken} samples" in repr(u)
 
 
-def test_samples_outside_the_range_of_the_law_are_warned_of() -> None:
-    u = USFD.uncertainty(
-        max_pressure=Q(1500, "MPa"), creepage=wl.uniform("15 %", "25 %"), friction_coefficient=0.46, samples=64
-    )
-    with pytest.warns(wl.RangeWarning, match="usfd"):
-        u.median  # noqa: B018
-
-
 def test_the_figure_shows_median_and_interval() -> None:
     u = USFD.uncertainty(**{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=64)
     (panel,) = u.figure_data().panels
     distribution, marks = panel.curves
     assert np.all(np.diff(distribution.x) >= 0)
-    assert marks.x == pytest.approx([plain(u.interval()[0]), plain(u.median), plain(u.interval()[1])])
+    assert marks.x == pytest.approx(
+        [in_microgram(u.interval()[0]), in_microgram(u.median), in_microgram(u.interval()[1])]
+    )
     assert panel.x.label == "wear rate [µg/m/mm²]"
     assert u.plot().axes[0].get_xlabel() == panel.x.label
 
@@ -214,81 +199,6 @@ def test_the_figure_of_several_points_is_a_band_in_their_order() -> None:
     assert np.all(band.low < band.y)
 
 
-WRONG: list[tuple[dict[str, Any], str]] = [
-    ({}, "nothing is uncertain"),
-    ({"creepage": wl.uniform("2 %", "1 %")}, r"creepage: the upper end of uniform\(2.0 %, 1.0 %\)"),
-    ({"creepage": wl.uniform("1 mm", "2 mm")}, "creepage: .*not a ratio"),
-    ({"creepage": wl.normal("1 %", "-1 %")}, "creepage: the standard deviation"),
-    ({"creepage": wl.normal("1 %", "0 %")}, r"creepage: the standard deviation of normal\(1.0 %, 0.0 %\) must be pos"),
-    (
-        {"friction_coefficient": wl.normal(0.3, 0.0)},
-        r"friction_coefficient: the standard deviation of normal\(0.3, 0\)",
-    ),
-    ({"friction_coefficient": wl.normal(0.3, np.nan)}, "friction_coefficient: the standard deviation"),
-    ({"friction_coefficient": wl.normal(0.0, 0.1)}, "friction_coefficient: must be a positive finite number, got 0"),
-    ({"friction_coefficient": wl.uniform(0.3, 0.1)}, r"friction_coefficient: the upper end of uniform\(0.3, 0.1\)"),
-    ({"friction_coefficient": wl.normal(0.3, Q(1, "mm"))}, "friction_coefficient: .*not a ratio"),
-    ({"creepage": wl.lognormal("0 %", 1.2)}, r"creepage: the median of lognormal\(0.0 %, 1.2\) must be positive"),
-    ({"law": {"m_m": wl.lognormal("-1 ug/m/N", 1.2)}}, r"m_m: the median of lognormal\(-1.0 µg/m/N, 1.2\) must be pos"),
-    (
-        {"creepage": wl.uniform("1 %", "200 %")},
-        "creepage: must not exceed 1 in magnitude(.|\n)*samples of its distribution",
-    ),
-    ({"friction_coefficient": wl.normal(0.3, 0.2)}, "samples of its distribution; choose one without"),
-    (
-        {"law": {"m_m": wl.uniform("-1 ug/m/N", "3 ug/m/N")}},
-        r"m_m: must be greater than zero, got -0\.[0-9]+ µg/m/N;(.|\n)*samples of its distribution",
-    ),
-    ({"law": {"m_m": wl.normal("5 ug/m/N", "3 ug/m/N")}}, "samples of its distribution; choose one without"),
-    ({"creep": wl.normal("1 %", "0.1 %")}, "creep: unknown condition; did you mean 'creepage'"),
-    ({"law": {"qs": wl.normal("55 ug/m/mm^2", "1 ug/m/mm^2")}}, "no number 'qs'; did you mean 'q_s'"),
-    ({"law": {"q_s": 55.0}}, "q_s: must be a distribution"),
-    ({"law": {"q_s": wl.normal("55 mm", "1 mm")}}, "q_s: "),
-    ({"law": {"q_s": wl.published_range()}}, "q_s: the source of wear law 'usfd' publishes no ranges"),
-    ({"law": {"m_m": wl.normal("5 ug/m/N", "1 ug/m/N")}, "samples": 0}, "samples: must be a whole number"),
-    ({"law": {"m_m": wl.normal("5 ug/m/N", "1 ug/m/N")}, "samples": 1e3}, "samples: must be a whole number"),
-]
-
-
-@pytest.mark.parametrize(("given", "message"), WRONG)
-def test_what_cannot_be_is_refused(given: dict[str, Any], message: str) -> None:
-    with pytest.raises(wl.WearlawError, match=message):
-        USFD.uncertainty(**{**FULL_SLIP, **given}).median  # noqa: B018
-
-
-def test_a_range_that_is_not_published_is_named() -> None:
-    predict = GLOBAL | wl.wear_law("kth")
-    with pytest.raises(wl.InputError, match=r"hardness: .* no published range of it; there are: coefficient"):
-        predict.uncertainty(**FULL_SLIP, law={"hardness": wl.published_range()})
-
-
-@pytest.mark.parametrize("factor", [1.0, 0.5, np.inf, np.nan])
-def test_a_factor_that_is_none_is_refused(factor: float) -> None:
-    with pytest.raises(wl.InputError, match="geometric_standard_deviation"):
-        wl.lognormal(0.3, factor)
-
-
-@pytest.mark.parametrize("confidence", [0.0, 1.0, 95])
-def test_a_confidence_that_is_none_is_refused(confidence: float) -> None:
-    u = USFD.uncertainty(**{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=4)
-    with pytest.raises(wl.InputError, match="confidence"):
-        u.interval(confidence)
-
-
-def test_sobol_needs_one_operating_point() -> None:
-    u = USFD.uncertainty(
-        max_pressure=Q(1500, "MPa"), creepage=Q([1.0, 2.0], "%"), friction_coefficient=wl.uniform(0.3, 0.5), samples=4
-    )
-    with pytest.raises(wl.InputError, match="one operating point"):
-        u.sobol()
-
-
-def test_sobol_needs_a_rate_that_varies() -> None:
-    u = USFD.uncertainty(**{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=4)  # all severe
-    with pytest.raises(wl.InputError, match="the same in all samples"):
-        u.sobol()
-
-
 def test_the_only_input_explains_all_of_the_variance() -> None:
     u = USFD.uncertainty(
         **{**FULL_SLIP, "creepage": Q(0.5, "%"), "friction_coefficient": wl.uniform(0.3, 0.4)}, samples=64
@@ -299,35 +209,6 @@ def test_the_only_input_explains_all_of_the_variance() -> None:
         "total_order": 1.0,
         "total_order_error": 0.0,
     }
-
-
-def test_known_conditions_whose_shapes_do_not_fit_are_named_with_the_shapes_they_were_given_in() -> None:
-    u = USFD.uncertainty(
-        max_pressure=Q([1000.0, 1500.0], "MPa"),
-        creepage=Q([1.0, 2.0, 3.0], "%"),
-        friction_coefficient=wl.uniform(0.3, 0.5),
-        samples=4,
-    )
-    with pytest.raises(wl.ConditionsError, match=r"do not broadcast: max_pressure \(2,\), creepage \(3,\)$"):
-        u.median  # noqa: B018
-
-
-def test_a_wrong_known_condition_is_not_laid_to_the_samples() -> None:
-    uncertain: Any = {"law": {"m_m": wl.uniform("4 ug/m/N", "6 ug/m/N")}}
-    with pytest.raises(wl.UnitError, match=r"creepage: must not exceed 1 in magnitude, got 200\.0 %") as refusal:
-        USFD.uncertainty(**{**FULL_SLIP, "creepage": "200 %"}, **uncertain).median  # noqa: B018
-    assert "samples" not in str(refusal.value)
-
-
-def test_a_figure_along_two_axes_is_refused_with_their_names() -> None:
-    u = USFD.uncertainty(
-        max_pressure=Q([[1000.0], [1500.0]], "MPa"),
-        creepage=Q([1.0, 2.0, 3.0], "%"),
-        friction_coefficient=wl.uniform(0.3, 0.5),
-        samples=4,
-    )
-    with pytest.raises(wl.InputError, match=r"needs one condition with several values, .* are max_pressure, creepage"):
-        u.plot()
 
 
 def test_every_distribution_of_a_case_is_the_one_of_python() -> None:

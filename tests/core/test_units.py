@@ -1,11 +1,7 @@
-"""Units at the rim: what is accepted, what is refused and how the refusal reads."""
+"""Units at the rim: how a value becomes SI and back, what is refused and how the refusal reads."""
 
 from __future__ import annotations
 
-import pickle
-import subprocess
-import sys
-from collections.abc import Iterator
 from typing import Annotated, Any
 
 import numpy as np
@@ -16,124 +12,17 @@ from hypothesis import strategies as st
 from pydantic import TypeAdapter
 
 import wearlaw as wl
+from tests.core.units import LENGTH, TO_SI
 from wearlaw import Q
-from wearlaw.units import coefficient, from_si, in_unit, real_array, shortened, text_of
+from wearlaw.units import coefficient, from_si, in_unit, real_array, shortened
 
-LENGTH = wl.Unit("mm")
 CREEPAGE = wl.Unit("", positive=False, limit=1.0)
-
-# The factor to SI of each unit, from the definitions of the prefixes and of the inch, foot and pound (exact by
-# the agreement of 1959) and of the standard gravity (CGPM 1901).
-TO_SI = {
-    "mm": 1e-3,
-    "m": 1.0,
-    "um": 1e-6,
-    "inch": 0.0254,
-    "kN": 1e3,
-    "lbf": 0.45359237 * 9.80665,
-    "MPa": 1e6,
-    "GPa": 1e9,
-    "kN/m": 1e3,
-    "N/mm^2": 1e6,
-    "ug/m/mm^2": 1e-3,
-    "ug/m/N": 1e-9,
-    "mm^2/km": 1e-9,
-    "kg/m^3": 1.0,
-    "g/cm^3": 1e3,
-    "rpm": 2.0 * np.pi / 60.0,
-    "%": 1e-2,
-    "": 1.0,
-}
-
-finite = st.floats(allow_nan=False, allow_infinity=False)
-
-
-@pytest.fixture
-def original_registry() -> Iterator[None]:
-    registry = pint.application_registry.get()  # type: ignore[no-untyped-call]
-    yield
-    pint.set_application_registry(registry)  # type: ignore[no-untyped-call]
 
 
 @pytest.mark.parametrize(("unit", "factor"), TO_SI.items())
 def test_every_unit_becomes_coherent_si(unit: str, factor: float) -> None:
     # Two roundings of the factor and one of the product.
     assert wl.Unit(unit).si(Q(3.0, unit), "value") == pytest.approx(3.0 * factor, rel=4 * np.finfo(float).eps)
-
-
-@pytest.mark.parametrize(
-    ("value", "unit", "shown"),
-    [
-        (27.70413, "ug/m/mm^2", "27.70 µg/m/mm²"),
-        (7850, "kg/m^3", "7850 kg/m³"),
-        (0.314674, "mm", "0.3147 mm"),
-        (1234567.0, "N", "1.235e+06 N"),
-        (0.01, "", "0.01000"),
-        ([1.0, 22.777777], "kN", "[1.000 22.78] kN"),
-        (np.float32(2.0), "mm", "2.000 mm"),
-        (np.array(2.0), "mm", "2.000 mm"),
-    ],
-)
-def test_repr_shows_four_significant_digits(value: Any, unit: str, shown: str) -> None:
-    assert repr(Q(value, unit)) == shown
-
-
-def test_magnitude_keeps_all_digits() -> None:
-    assert Q(27.704131234567, "ug").magnitude == 27.704131234567
-
-
-@pytest.mark.parametrize("value", ["3", True, 1j, None, [[1], [2, 3]], ["a"], np.array([True]), [object()]])
-def test_q_refuses_what_is_no_real_number(value: Any) -> None:
-    with pytest.raises(wl.UnitError, match=r"is not a real number|is not an array of numbers"):
-        Q(value, "mm")
-
-
-@pytest.mark.parametrize("value", [Q(1, "m"), [Q(1, "m"), Q(2, "m")]])
-def test_q_refuses_a_quantity_in_place_of_a_number(value: Any) -> None:
-    with pytest.raises(wl.UnitError, match=r"has a unit of its own"):
-        Q(value, "mm")
-
-
-def test_q_refuses_masked_entries() -> None:
-    with pytest.raises(wl.UnitError, match="masked"):
-        Q(np.ma.masked_array([1.0, 2.0], mask=[False, True]), "mm")
-
-
-@pytest.mark.parametrize("unit", ["foo", "2 mm", "m**", "mm; import os", "__import__('os')"])
-def test_q_refuses_an_unknown_unit_by_its_text(unit: str) -> None:
-    with pytest.raises(wl.UnitError) as caught:
-        Q(1, unit)
-    assert f"'{unit}'" in str(caught.value)
-
-
-@given(value=finite, unit=st.sampled_from(sorted(TO_SI)))
-def test_text_reads_back_to_the_same_quantity(value: float, unit: str) -> None:
-    read = wl.parse(text_of(Q(value, unit)))
-    assert read.magnitude == value
-    assert read.units == Q(value, unit).units
-
-
-@given(value=finite, unit=st.sampled_from(sorted(set(TO_SI) - {""})), gap=st.sampled_from(["", " ", "   "]))
-def test_parse_reads_number_and_unit(value: float, unit: str, gap: str) -> None:
-    read = wl.parse(f"{gap}{value!r}{gap}{unit}{gap}")
-    assert read.magnitude == value
-    assert read.units == Q(1, unit).units
-
-
-@pytest.mark.parametrize("text", ["0.3 1/m", "0.3 1 / m", "0.3 m^-1"])
-def test_a_unit_may_begin_with_one_over(text: str) -> None:
-    read = wl.parse(text)
-    assert (read.magnitude, read.units) == (0.3, Q(1, "1/m").units)
-    assert wl.parse(text_of(read)) == read
-
-
-@pytest.mark.parametrize(
-    "text", ["", "abc", "47", "0.01", "1e3", "3 2 mm", "mm", "--3 mm", "1,5 mm", "5 e3 mm", "31/m", "3 2/m", "3 1m"]
-)
-def test_parse_refuses_text_that_is_no_quantity(text: str) -> None:
-    with pytest.raises(wl.UnitError) as caught:
-        wl.parse(text)
-    assert "is not a" in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -264,61 +153,6 @@ def test_other_real_types_become_float64(dtype: type) -> None:
     np.testing.assert_allclose(wl.Unit("mm").si(pint.Quantity(np.array([100], dtype=np.int8), "hm"), "x"), 1e4)
 
 
-def test_quantities_of_another_registry_are_brought_home() -> None:
-    foreign: pint.UnitRegistry[Any] = pint.UnitRegistry()
-    assert LENGTH.si(foreign.Quantity(47.0, "mm"), "x") == pytest.approx(0.047, rel=1e-15)
-    disc = wl.Disc(diameter=foreign.Quantity(47.0, "mm"), material=wl.steel())
-    assert disc == wl.Disc(diameter=Q(47.0, "mm"), material=wl.steel())
-    with pytest.raises(wl.UnitError, match=r"x: got 1\.000 kN, which is not of the dimension of 'mm'"):
-        LENGTH.si(foreign.Quantity(1.0, "kN"), "x")
-
-
-def test_a_foreign_unit_that_is_not_known_at_home_is_refused() -> None:
-    foreign: pint.UnitRegistry[Any] = pint.UnitRegistry()
-    foreign.define("railgauge = 1435 mm")
-    with pytest.raises(wl.UnitError, match="'railgauge' is not a known unit"):
-        LENGTH.si(foreign.Quantity(1.0, "railgauge"), "x")
-
-
-@pytest.mark.usefixtures("original_registry")
-def test_the_application_registry_may_be_changed_at_any_time() -> None:
-    before = Q(47.0, "mm")
-    registry: pint.UnitRegistry[Any] = pint.UnitRegistry()
-    registry.define("railgauge = 1435 mm")
-    pint.set_application_registry(registry)  # type: ignore[no-untyped-call]
-    assert wl.Unit("mm").si(Q(2.0, "railgauge"), "x") == pytest.approx(2.87, rel=1e-15)
-    assert wl.Unit("mm").si(before, "x") == pytest.approx(0.047, rel=1e-15)
-    assert from_si(2.87, "railgauge").magnitude == pytest.approx(2.0, rel=1e-15)
-
-
-@pytest.mark.usefixtures("original_registry")
-@pytest.mark.parametrize("system", ["cgs", "imperial", "US"])
-def test_a_registry_with_another_default_system_still_gives_si(system: str) -> None:
-    pint.set_application_registry(pint.UnitRegistry(system=system))  # type: ignore[no-untyped-call]
-    assert wl.Unit("kN").si("1 kN", "x") == pytest.approx(1e3, rel=1e-15)
-    assert wl.Unit("kg/m^3").si("7850 kg/m^3", "x") == pytest.approx(7850.0, rel=1e-15)
-    assert wl.scalar_si(Q(206.0, "GPa"), "Pa") == pytest.approx(206e9, rel=1e-15)
-    predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
-    result = predict(normal_force="7.4143 kN", creepage="1 %", friction_coefficient=0.46)
-    assert repr(result.wear_rate) == "27.70 µg/m/mm²"
-
-
-@pytest.mark.parametrize("quantity", [Q(27.70413, "ug/m/mm^2"), Q([[1.0, 2.5]], "kN"), Q(1, "%")])
-def test_quantities_survive_pickling(quantity: wl.Quantity) -> None:
-    loaded = pickle.loads(pickle.dumps(quantity))
-    np.testing.assert_array_equal(loaded.magnitude, quantity.magnitude)
-    assert loaded.units == quantity.units
-    assert repr(loaded) == repr(quantity)
-
-
-def test_a_pickled_quantity_opens_in_a_fresh_process() -> None:
-    pickled = pickle.dumps([Q(27.70413, "ug/m/mm^2"), Q([1.0, 2.5], "kN")])
-    code = "import pickle, sys; print(pickle.load(sys.stdin.buffer))"
-    run = subprocess.run([sys.executable, "-W", "error", "-c", code], input=pickled, capture_output=True, check=False)
-    assert run.returncode == 0, run.stderr.decode()
-    assert run.stdout.decode("utf-8").strip() == "[27.70 µg/m/mm², [1.000 2.500] kN]"
-
-
 @given(value=st.floats(1e-200, 1e200), unit=st.sampled_from(sorted(set(TO_SI))))
 def test_from_si_undoes_si(value: float, unit: str) -> None:
     back = from_si(float(wl.Unit(unit).si(Q(value, unit), "value")), unit)
@@ -364,32 +198,6 @@ def test_a_coefficient_may_be_given_in_percent() -> None:
 def test_real_array_keeps_the_memory_of_float64() -> None:
     values = np.arange(3.0)
     assert real_array(values) is values
-
-
-@pytest.mark.parametrize("value", [3.5, np.float64(3.5), np.array(3.5), np.array([1.0, 2.0])])
-def test_a_result_is_a_quantity_like_any_other(value: Any) -> None:
-    made, usual = from_si(value, "ug/m/mm^2"), Q(value * 1e3, "ug/m/mm^2")
-    assert type(made) is type(usual)
-    assert vars(made).keys() >= vars(usual).keys() - {"_dimensionality"}
-    assert np.all(made == usual)
-    assert made.units == usual.units
-    assert repr(made) == repr(usual)
-    assert np.all((2 * made).to("kg/m/m^2").m == 2.0 * np.asarray(value))
-    assert np.all(pickle.loads(pickle.dumps(made)) == made)
-    assert made.check("[mass]/[length]**3")
-
-
-@pytest.mark.parametrize(
-    "unit", ["m**9**9**9", "m^9^9", "m**(9**9)", "m**999999999", "(9**9)**(9**9)", "10**1000 m", "((m**9)**9)**9 "]
-)
-def test_powers_that_no_unit_has_are_refused_and_not_computed(unit: str) -> None:
-    with pytest.raises(wl.UnitError, match="not a"):
-        Q(1.0, unit)
-
-
-@pytest.mark.parametrize("unit", ["N/mm^2", "ug/m/mm**2", "m**0.3333", "(m/s)**2", "1/s", "µg·m⁻¹", "m^-1*s^-2", "mm²"])
-def test_powers_of_units_are_taken(unit: str) -> None:
-    assert Q(1.0, unit).magnitude == 1.0
 
 
 def test_a_field_without_its_unit_is_refused_with_the_unit_to_give() -> None:

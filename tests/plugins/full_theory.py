@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import wearlaw as wl
 from wearlaw import Array, Q
@@ -95,3 +96,24 @@ def spheres(method: str) -> Reference:
     )
     force_x, force_y = -3e4 * column(f"{method}_fx"), -3e4 * column(f"{method}_fy")
     return Reference([row["case"] for row in table], problem, force_x, force_y, column(f"{method}_Tgamma"))
+
+
+def assert_forces_miss_by(model: wl.ContactModel, curve_most: float, *, at: float, circle: float) -> None:
+    """Forces over μN are at most so much too low on the creep curve, where they are `at`, and so far off on a circle.
+
+    All are held to the digits that are given.
+    """
+    curve = creep_curve()
+    deviation = curve.force_deviation(model)
+    largest = int(np.abs(deviation).argmax())
+    assert deviation[largest] == pytest.approx(-curve_most, abs=0.0005)
+    assert curve.force_x[largest] / curve.bound[largest] == pytest.approx(at, abs=0.005)
+    assert spheres("fullX").distance(model).max() == pytest.approx(circle, abs=0.0005)
+
+
+def assert_energy_misses_by(model: wl.ContactModel, low: float, high: float, *, highest: str) -> None:
+    """On a circle Tγ is off by `low`, with lateral creepage and spin of one sign, to `high`, in the case named."""
+    circles = spheres("fullX")
+    energy = circles.energy_deviation(model)
+    assert energy.min() == energy[circles.at("comb_B_eta1e-3_spin+1e-3")] == pytest.approx(low, abs=0.005)
+    assert energy.max() == energy[circles.at(highest)] == pytest.approx(high, abs=0.005)

@@ -6,11 +6,11 @@ import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 
+from tests.plugins.fastsim_marks import each_bound
 from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_fastsim._first_slip import Growth, first_slip
 
-BOUNDS = pytest.mark.parametrize("elliptic", [False, True], ids=["parabolic", "elliptic"])
 ANGLES = np.linspace(np.pi, 0.0, 4001)[:, None]
 
 
@@ -31,7 +31,7 @@ def room(growth: Growth, angle: Array, elliptic: bool) -> Array:
         return (np.sqrt(v / u) if elliptic else v) - grown
 
 
-@BOUNDS
+@each_bound
 def test_strip_sticks_up_to_the_first_point_of_a_scan_where_it_can_grow_no_more(elliptic: bool) -> None:
     growth = growths()
     found = 2.0 * np.arctan(np.sqrt(first_slip(growth, elliptic)))
@@ -65,7 +65,7 @@ def is_root(found: float, growth: tuple[float, float, float], elliptic: bool, to
     held_to="{roundings} ε, relative",
     roundings=50,
 )
-@BOUNDS
+@each_bound
 @pytest.mark.parametrize("size", [1e-7, 1e-5, 1e-2])
 def test_little_creepage_has_its_short_slip_zone_to_rounding(elliptic: bool, size: float, roundings: int) -> None:
     # V/U is a difference of numbers near 1 in the cubic, as V is one of D and RS in the quadratic
@@ -102,7 +102,7 @@ def test_strip_under_the_ellipse_that_nearly_touches_its_bound_first_is_told_fro
             assert is_root(ratio, tuple(values), True, 100 * EPS / root)
 
 
-@BOUNDS
+@each_bound
 def test_spin_that_vanishes_moves_no_slip_zone(elliptic: bool) -> None:
     p, r = np.array([0.3, -1.5, 0.0]), np.array([0.2, 0.4, 0.7])
     without, hardly = (first_slip(Growth(p, r, np.full(3, s)), elliptic) for s in (0.0, 1e-14))
@@ -128,7 +128,7 @@ def test_strip_at_the_brink_of_slipping_from_its_leading_edge_has_a_first_slip_t
     assert np.median(1.0 / (1.0 + found)) < 10 * EPS
 
 
-@BOUNDS
+@each_bound
 def test_strip_without_creepage_sticks_to_its_trailing_edge(elliptic: bool) -> None:
     s = np.linspace(-0.99, 0.99, 500)
     found = first_slip(Growth(np.zeros(500), np.zeros(500), s), elliptic)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 from tests.plugins.ellipses import EPS, TABLE_E3, ellipse, ellipses, initial_slopes, limit, of_ratio
-from tests.plugins.full_theory import creep_curve, spheres
+from tests.plugins.full_theory import assert_energy_misses_by, assert_forces_miss_by, spheres
 
 POLACH = wl.contact_model("polach")
 WET = wl.contact_model("polach", adhesion_reduction=0.3, slip_reduction=0.1)
@@ -243,16 +243,8 @@ def test_reduced_it_can_pass_friction_on_a_long_patch_and_declares_it(times: flo
 def test_the_full_theory_leaves_it_as_the_docstring_says(
     curve_most: float, circle: float, low: float, high: float
 ) -> None:
-    curve = creep_curve()
-    deviation = curve.force_deviation(POLACH)
-    largest = int(np.abs(deviation).argmax())
-    assert deviation[largest] == pytest.approx(-curve_most, abs=0.0005)
-    assert curve.force_x[largest] / curve.bound[largest] == pytest.approx(0.98, abs=0.005)
-    circles = spheres("fullX")
-    assert circles.distance(POLACH).max() == pytest.approx(circle, abs=0.0005)
-    energy = circles.energy_deviation(POLACH)
-    assert energy.min() == energy[circles.at("comb_B_eta1e-3_spin+1e-3")] == pytest.approx(low, abs=0.005)
-    assert energy.max() == energy[circles.at("spin_0.001")] == pytest.approx(high, abs=0.005)
+    assert_forces_miss_by(POLACH, curve_most, at=0.98, circle=circle)
+    assert_energy_misses_by(POLACH, low, high, highest="spin_0.001")
 
 
 WRONG: list[tuple[dict[str, Any], str]] = [

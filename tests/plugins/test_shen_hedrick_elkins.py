@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 from tests.plugins.ellipses import EPS, TABLE_E3, ellipse, ellipses, initial_slopes, limit
-from tests.plugins.full_theory import creep_curve, spheres
+from tests.plugins.full_theory import assert_energy_misses_by, assert_forces_miss_by
 
 SHE = wl.contact_model("shen_hedrick_elkins")
 LINEAR = wl.contact_model("linear")
@@ -99,16 +99,8 @@ def test_the_energy_is_a_sum_of_squares(problem: wl.EllipticProblem) -> None:
 def test_the_full_theory_leaves_it_as_the_docstring_says(
     curve_most: float, circle: float, low: float, high: float
 ) -> None:
-    curve = creep_curve()
-    deviation = curve.force_deviation(SHE)
-    largest = int(np.abs(deviation).argmax())
-    assert deviation[largest] == pytest.approx(-curve_most, abs=0.0005)
-    assert curve.force_x[largest] / curve.bound[largest] == pytest.approx(0.88, abs=0.005)
-    circles = spheres("fullX")
-    assert circles.distance(SHE).max() == pytest.approx(circle, abs=0.0005)
-    energy = circles.energy_deviation(SHE)
-    assert energy.min() == energy[circles.at("comb_B_eta1e-3_spin+1e-3")] == pytest.approx(low, abs=0.005)
-    assert energy.max() == energy[circles.at("spin_0.003")] == pytest.approx(high, abs=0.005)
+    assert_forces_miss_by(SHE, curve_most, at=0.88, circle=circle)
+    assert_energy_misses_by(SHE, low, high, highest="spin_0.003")
 
 
 def test_it_is_exempt_from_sticking_alone() -> None:

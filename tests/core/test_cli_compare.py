@@ -1,0 +1,112 @@
+"""`wearlaw compare`, as a user meets it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import wearlaw as wl
+from tests.core.cases import files, wearlaw
+from tests.core.cli_data import COMPARE, RIG_NOTE, listed, rates, rows, write_tests
+
+pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")
+
+
+def test_predictors_are_ranked_and_the_files_are_listed_as_they_are(folder: Path) -> None:
+    result = wearlaw(*COMPARE, "-o", "cmp", "--latex")
+    assert result.exit_code == 0
+    assert result.stdout.startswith("5 predictors on 9 tests, best first; rms_error in µg/m/mm²\n")
+    ranking = pd.read_csv("cmp/ranking.csv")
+    printed = [line.split()[:3] for line in result.stdout.splitlines()[2:7]]
+    assert [" ".join(words) for words in printed] == ranking.predictor.tolist()
+    assert ranking.rms_factor.is_monotonic_increasing
+    assert set(ranking.predictor) == {
+        "usfd on global",
+        "usfd on exact",
+        "kth on global",
+        "kth on exact",
+        "brr on global",
+    }
+    assert listed(result, "cmp") == files(folder) - {"tests.csv"}
+    assert {Path(name).name for name in files(folder / "cmp")} == {
+        "ranking.csv", "ranking.tex", "predictions.csv", "predictions.tex", "measured_against_predicted.png",
+        "comparison.json",
+    }  # fmt: skip
+
+
+def test_the_ranking_is_that_of_the_same_comparison_in_python() -> None:
+    assert wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", "usfd:fitted_for=exact,kth").exit_code == 0
+    contact = wl.TwinDisc.suros() | wl.contact_model("exact")
+    laws = [wl.wear_law("usfd", fitted_for="exact"), wl.wear_law("kth")]
+    direct = wl.compare([contact | law for law in laws], wl.read_tests("tests.csv"))
+    written = pd.read_csv("tests-comparison/ranking.csv")
+    assert written.predictor.tolist() == ["usfd:fitted_for=exact on exact", "kth on exact"]
+    expected = direct.table().drop(columns="predictor").astype(float)
+    pd.testing.assert_frame_equal(written.drop(columns="predictor").astype(float), expected, rtol=1e-15)
+    predictions = pd.read_csv("tests-comparison/predictions.csv")
+    np.testing.assert_allclose(predictions["usfd:fitted_for=exact on exact [ug/m/mm^2]"], rates(), rtol=1e-15)
+
+
+def test_what_is_left_out_or_fitted_for_another_contact_is_noted_and_recorded() -> None:
+    result = wearlaw(*COMPARE, "-o", "cmp")
+    rig, calibration, left_out = result.stderr.splitlines()
+    assert rig + "\n" == RIG_NOTE
+    assert calibration.startswith("note: usfd on exact: the parameters of wear law 'usfd' were fitted for patch means")
+    assert left_out.startswith("note: brr on exact is left out: ")
+    record = json.loads(Path("cmp/comparison.json").read_text(encoding="utf-8"))
+    assert [f"note: {note}" for note in record["notes"]] == result.stderr.splitlines()
+    assert wl.Pipeline.model_validate(record["predictors"]["kth on exact"]).wear_law == wl.wear_law("kth")
+
+
+def test_what_the_comparison_notes_is_printed_and_recorded() -> None:
+    write_tests([*rows(rates()), "3,1500,0.46,NA"])
+    result = wearlaw(*COMPARE, "-o", "cmp")
+    note = "1 of 10 tests have no wear rate and are left out"
+    assert f"note: {note}\n" in result.stderr
+    assert note in json.loads(Path("cmp/comparison.json").read_text(encoding="utf-8"))["notes"]
+
+
+@pytest.mark.parametrize("scatter", ["relative", "absolute"])
+def test_a_law_can_be_fitted_on_every_contact_before_it_is_compared(scatter: Literal["relative", "absolute"]) -> None:
+    result = wearlaw(*COMPARE, "--free", "usfd=q_s,m_c", "--scatter", scatter, "-o", "cmp")
+    assert result.exit_code == 0
+    ranking = pd.read_csv("cmp/ranking.csv").set_index("predictor")
+    fitted = ranking.loc[["usfd fitted on global", "usfd fitted on exact"]]
+    assert (fitted.fitted == 2).all()
+    assert fitted.aic.notna().all()
+    assert ranking.drop(index=fitted.index).aic.isna().all()
+    contact = wl.TwinDisc.suros() | wl.contact_model("global")
+    tests = wl.read_tests("tests.csv")
+    direct = wl.fit(contact | wl.wear_law("usfd"), tests, ["q_s", "m_c"], scatter=scatter, bootstrap=0)
+    assert fitted.aic["usfd fitted on global"] == pytest.approx(direct.aic, rel=1e-12)
+
+
+def test_options_follow_the_name_of_a_model() -> None:
+    result = wearlaw("compare", "tests.csv", "--contacts", "fastsim:bound=elliptic:flexibility=kalker", "--laws", "kth")
+    assert result.exit_code == 0
+    record = json.loads(Path("tests-comparison/comparison.json").read_text(encoding="utf-8"))
+    (pipeline,) = record["predictors"].values()
+    assert (
+        pipeline["contact"]["contact_model"] | {"bound": "elliptic", "flexibility": "kalker"}
+        == (pipeline["contact"]["contact_model"])
+    )
+
+
+def test_a_fit_that_the_tests_do_not_determine_on_one_contact_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    fit = wl.fit
+
+    def refuse_global(predict: Any, *arguments: Any, **options: Any) -> wl.Fit:
+        if predict.contact.contact_model.name == "global":
+            raise wl.FitError("no test determines it")
+        return fit(predict, *arguments, **options)
+
+    monkeypatch.setattr("wearlaw.fitting.fit.fit", refuse_global)
+    result = wearlaw(*COMPARE, "--free", "usfd=q_s")
+    assert result.exit_code == 0
+    assert "note: usfd fitted on global is left out: no test determines it\n" in result.stderr
+    assert "usfd fitted on exact" in result.stdout

@@ -1,0 +1,122 @@
+"""`wearlaw fit`, as a user meets it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import wearlaw as wl
+from tests.core.cases import files, wearlaw
+from tests.core.cli_data import CREEPAGE, FIT, HEAD, RIG_NOTE, listed, rates, rows, write_tests
+from wearlaw import Q
+
+pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")
+
+
+def test_a_fit_is_printed_and_its_files_are_listed_as_they_are(folder: Path) -> None:
+    result = wearlaw(*FIT, "-o", "my fit")
+    assert result.exit_code == 0
+    direct = wl.fit(
+        wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact"),
+        wl.read_tests("tests.csv"),
+        ["m_m", "q_s"],
+        bootstrap=0,
+    )
+    assert result.stdout.startswith("Fit to 9 wear rates, 7 degrees of freedom, relative scatter\n")
+    for name, value in direct.parameters.items():
+        assert f"  {name} " in result.stdout
+        assert f"{value.magnitude:.4g}" in result.stdout
+    assert listed(result, "my fit") == files(folder) - {"tests.csv"}
+    assert files(folder / "my fit") == {"law.toml", "parameters.csv", "residuals.csv", "fit.png", "fit.json"}
+    assert (folder / "my fit" / "fit.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_what_is_not_fitted_and_the_rig_that_is_taken_are_noted() -> None:
+    notes = wearlaw(*FIT).stderr
+    assert notes.startswith(RIG_NOTE)
+    assert "note: fit: not fitted, m_c = 83.70 µg/m/N, tr_sc = 95.00 N/mm²\n" in notes
+
+
+def test_the_files_of_a_fit_hold_what_it_found() -> None:
+    assert wearlaw(*FIT, "--fixed", "tr_sc=94 N/mm^2", "--confidence", "0.8").exit_code == 0
+    law: Any = wl.read_wear_law("tests-fit/law.toml")
+    table = pd.read_csv("tests-fit/parameters.csv").set_index("parameter")
+    record = json.loads(Path("tests-fit/fit.json").read_text(encoding="utf-8"))
+    assert list(table.index) == ["m_m", "q_s"]
+    for name in table.index:
+        value = getattr(law, name)
+        assert wl.parse(record["parameters"][name]) == value
+        assert table.value[name] == value.magnitude
+        assert table.low[name] < value.magnitude < table.high[name]
+    assert law.tr_sc == Q(94.0, "N/mm^2")
+    assert law.calibration is not None
+    assert law.calibration.contact_model == "exact"
+    assert record["provenance"]["confidence"] == 0.8
+    assert wl.Pipeline.model_validate(record["predict"]).wear_law == law
+    residuals = pd.read_csv("tests-fit/residuals.csv")
+    np.testing.assert_allclose(residuals["creepage [%]"], CREEPAGE, rtol=1e-15)
+
+
+def test_a_fitted_law_is_taken_where_a_law_is_asked_for() -> None:
+    assert wearlaw(*FIT).exit_code == 0
+    compared = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", "tests-fit/law.toml", "-o", "cmp")
+    assert compared.exit_code == 0
+    assert "\n  tests-fit/law.toml on exact " in compared.stdout
+    again = wearlaw("fit", "tests.csv", "--contact", "exact", "--law", "tests-fit/law.toml", "--free", "q_s",
+                    "--fixed", "m_m=6 ug/m/N", "--bootstrap", "0", "-o", "again")  # fmt: skip
+    assert again.exit_code == 0
+    refitted: Any = wl.read_wear_law("again/law.toml")
+    assert refitted.m_m == Q(6.0, "ug/m/N")
+
+
+def test_the_settings_of_a_fit_are_those_of_the_options() -> None:
+    options = ("--bootstrap", "30", "--seed", "7", "--scatter", "absolute", "--latex", "--figure-format", "pdf")
+    assert wearlaw(*FIT[:-2], *options).exit_code == 0
+    found = json.loads(Path("tests-fit/fit.json").read_text(encoding="utf-8"))["provenance"]
+    assert (found["bootstrap"], found["seed"], found["scatter"]) == (30, 7, "absolute")
+    assert Path("tests-fit/parameters.tex").read_text().startswith("% \\usepackage{booktabs}")
+    assert Path("tests-fit/residuals.tex").exists()
+    assert Path("tests-fit/fit.pdf").read_bytes().startswith(b"%PDF")
+    assert not Path("tests-fit/fit.png").exists()
+
+
+def test_the_friction_coefficient_is_fitted_to_traction_without_a_law() -> None:
+    result = wearlaw("fit", "lewis2004", "--contact", "exact", "--free", "friction_coefficient", "--bootstrap", "0")
+    assert result.exit_code == 0
+    assert "friction_coefficient" in result.stdout
+    assert files(Path("lewis2004-fit")) == {"parameters.csv", "residuals.csv", "fit.png", "fit.json"}
+    record = json.loads(Path("lewis2004-fit/fit.json").read_text(encoding="utf-8"))
+    assert "rig" in record["predict"]
+
+
+def test_friction_and_rig_can_be_given() -> None:
+    write_tests([row.replace(",0.46", "") for row in rows(rates())], HEAD.replace(",friction_coefficient", ""))
+    Path("rig.toml").write_text('title = "whatever"\n[rig]\npreset = "suros"\ntrack_width = "8 mm"\n')
+    result = wearlaw(*FIT, "--friction", "0.45", "--rig", "rig.toml")
+    assert result.exit_code == 0, result.stderr
+    assert "SUROS" not in result.stderr
+    record = json.loads(Path("tests-fit/fit.json").read_text(encoding="utf-8"))
+    assert record["predict"]["contact"]["rig"]["track_width"] == "8.0 mm"
+    assert wearlaw(*FIT, "--friction", "0.46", "-o", "other").exit_code == 0
+    assert wl.read_wear_law("other/law.toml") != wl.read_wear_law("tests-fit/law.toml")
+
+
+def test_a_friction_coefficient_that_the_tests_hold_too_is_noted_and_not_used() -> None:
+    assert (
+        "note: --friction 0.3 is not used, since the tests have a column" in wearlaw(*FIT, "--friction", "0.3").stderr
+    )
+    assert wearlaw(*FIT, "-o", "without").exit_code == 0
+    assert wl.read_wear_law("without/law.toml") == wl.read_wear_law("tests-fit/law.toml")
+
+
+def test_progress_of_the_bootstrap_is_shown_on_a_terminal_and_not_elsewhere() -> None:
+    arguments = [*FIT[:-2], "--bootstrap", "20"]
+    assert "fitting" not in wearlaw(*arguments).stderr
+    on_terminal = wearlaw(*arguments, "--overwrite", FORCE_COLOR="1", TERM="xterm")
+    assert "fitting" in on_terminal.stderr
+    assert "20/20" in on_terminal.stderr

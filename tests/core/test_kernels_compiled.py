@@ -1,0 +1,187 @@
+"""Kernels that numba compiles: a third party's, kept on disk or not, and that predictions are the same without."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.strategies import EPS
+from wearlaw import Array, Q
+
+pytestmark = pytest.mark.usefixtures("by_size_again")
+
+needs_numba = pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="numba is not installed")
+
+# --- A kernel of a third party ---------------------------------------------------------------------------------
+
+LAW = """
+    import math
+    from typing import ClassVar
+
+    import numpy as np
+    import wearlaw as wl
+
+    SLOPE = 6e-9
+
+
+    def _root(x):
+        return math.sqrt(x) if x > 0.0 else 0.0
+
+
+    def _bent(x, threshold):
+        return _root(x - threshold)
+
+
+    def _arrays(density, threshold):
+        return SLOPE * np.sqrt(np.maximum(density - threshold, 0.0))
+
+
+    @wl.kernel(_arrays)
+    def bent(density, threshold):
+        return SLOPE * _bent(density, threshold)
+
+
+    class Bent(wl.WearLaw):
+        name: ClassVar[str] = "bent"
+        source: ClassVar[str] = "the tests"
+
+        @property
+        def breakpoints(self):
+            return {"wear_index_density": (1e6,)}
+
+        def rate(self, contact):
+            return bent(contact.wear_index_density, 1e6)
+    """
+
+RUN = """
+    import numpy as np
+    import wearlaw as wl
+    from their_law import Bent
+    from wearlaw import Q
+
+    predict = wl.TwinDisc.suros() | wl.contact_model("exact") | Bent()
+    creepage = Q(np.geomspace(1e-4, 0.3, 50), "")
+    for on in (False, True):
+        wl.accelerate(on)
+        found = predict(max_pressure="1500 MPa", creepage=creepage, friction_coefficient=0.46)
+        print(*map(float.hex, found.wear_rate.m_as("kg/m/m^2").tolist()))
+    """
+
+
+@pytest.fixture
+def theirs(tmp_path: Path) -> Path:
+    """Return a folder with a law that brings a kernel, whose function calls another of its module, and that one too."""
+    (tmp_path / "their_law.py").write_text(textwrap.dedent(LAW), encoding="utf-8")
+    (tmp_path / "run.py").write_text(textwrap.dedent(RUN), encoding="utf-8")
+    return tmp_path
+
+
+def run(folder: Path, *before: str, **environment: str) -> tuple[Array, Array]:
+    """Return the rates with NumPy and with numba, of a process of its own."""
+    command = [sys.executable, *(before or ("run.py",))]
+    clean = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA")}
+    done = subprocess.run(command, cwd=folder, env=clean | environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-1500:]
+    assert done.stderr == ""
+    without, compiled = ([float.fromhex(value) for value in line.split()] for line in done.stdout.splitlines())
+    return np.array(without), np.array(compiled)
+
+
+def assert_agree(found: tuple[Array, Array]) -> None:
+    """A rate of four operations, summed over nodes of one sign: every term carries four roundings."""
+    without, compiled = found
+    assert without.size == 50
+    assert np.count_nonzero(without) > 25
+    np.testing.assert_allclose(compiled, without, rtol=4 * EPS)
+
+
+@needs_numba
+def test_a_kernel_of_a_third_party_is_compiled_with_what_it_calls_and_kept_on_disk(theirs: Path) -> None:
+    cache = theirs / "kept"
+    assert_agree(run(theirs, NUMBA_CACHE_DIR=str(cache)))
+    kept = {path: path.stat().st_mtime_ns for path in cache.rglob("*") if path.is_file()}
+    assert {path.suffix for path in kept if path.name.startswith("their_law")} == {".nbi", ".nbc"}
+    assert_agree(run(theirs, NUMBA_CACHE_DIR=str(cache)))
+    # What is compiled again is written again.
+    assert {path: path.stat().st_mtime_ns for path in cache.rglob("*") if path.is_file()} == kept
+
+
+@needs_numba
+def test_kernels_work_where_nothing_can_be_kept(theirs: Path) -> None:
+    (theirs / "a_file").touch()
+    (theirs / "__pycache__").touch()  # where numba keeps code next to the module
+    nowhere = str(theirs / "a_file" / "folder")
+    homes = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "LOCALAPPDATA", "NUMBA_CACHE_DIR"), nowhere)
+    assert_agree(run(theirs, **homes))
+
+
+@needs_numba
+def test_kernels_work_on_a_full_disk(theirs: Path) -> None:
+    pytest.importorskip("resource", reason="a system without limits for files")
+    limit = "import resource, runpy; resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)); runpy.run_path('run.py')"
+    assert_agree(run(theirs, "-B", "-c", limit, NUMBA_CACHE_DIR=str(theirs / "kept")))
+
+
+# --- Pipelines -------------------------------------------------------------------------------------------------
+
+MODELS = {
+    "exact": wl.contact_model("exact"),
+    "fastsim, parabolic": wl.contact_model("fastsim"),
+    "fastsim, elliptic": wl.contact_model("fastsim", bound="elliptic"),
+}
+
+
+def conditions(points: int) -> dict[str, Any]:
+    random = np.random.default_rng(61)
+    creepage = 10.0 ** random.uniform(-6.0, 0.0, points) * random.choice([-1.0, 1.0], points)
+    creepage[::10] = 0.0
+    return {
+        "max_pressure": Q(random.uniform(0.5, 3.0, points), "GPa"),
+        "creepage": Q(creepage, ""),
+        "friction_coefficient": random.uniform(0.1, 0.8, points),
+    }
+
+
+@pytest.mark.validates(
+    "reproducibility",
+    "Compiled by numba, in NumPy or one point at a time: the same prediction",
+    source="one way of computing it against the others",
+    held_to="{ramps} ε of the terms (USFD), {nodes} ε (KTH)",
+    ramps=32.0,
+    nodes=64.0,
+)
+@needs_numba
+@pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
+@pytest.mark.parametrize("law", ["usfd", "kth"])
+@pytest.mark.parametrize("model", MODELS)
+def test_predictions_are_the_same_compiled_or_not_and_alone(model: str, law: str, ramps: float, nodes: float) -> None:
+    predict = wl.TwinDisc.suros() | MODELS[model] | wl.wear_law(law)
+    points = 60
+    given = conditions(points)
+    rates = {}
+    for on in (False, True):
+        wl.accelerate(on)
+        found = predict(**given)
+        rates[on] = found.wear_rate.m_as("kg/m/m^2")
+    wl.accelerate(None)
+    alone = [
+        predict(**{name: values[point] for name, values in given.items()}).wear_rate.m_as("kg/m/m^2")
+        for point in range(points)
+    ]
+    # USFD is a sum of ramps, each rounded as the whole dissipation is; 24 roundings, see the kernels' own tests.
+    dissipation = found.wear_index_density.m_as("N/m^2")
+    allowed = ramps * EPS * sum(abs(slope) for _, slope in predict.wear_law.ramps or ()) * dissipation
+    if law == "kth":  # the sum of some hundred nodes, in which a vector sine may differ by a rounding from a single one
+        allowed = nodes * EPS * rates[False]
+    assert np.count_nonzero(rates[False]) == 0.9 * points
+    assert (np.abs(rates[True] - rates[False]) <= allowed).all()
+    assert (np.abs(alone - rates[False]) <= allowed).all()

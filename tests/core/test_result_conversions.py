@@ -1,0 +1,93 @@
+"""What a wear rate is for a body: mass, depth and area of the profile, over a distance or a revolution."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.core.discs import CONDITIONS, DENSITIES, DIAMETERS, HALF_WIDTH, PREDICT, WIDTH
+from tests.strategies import EPS
+from wearlaw import Q
+
+
+@pytest.mark.parametrize("body", ["disc_1", "disc_2"])
+def test_conversions_follow_from_the_mass_and_the_body(body: str) -> None:
+    result = PREDICT(creepage="1 %", **CONDITIONS)
+    mass_per_metre = result.wear_rate.to("kg/m^3").magnitude * 2 * HALF_WIDTH * WIDTH
+    circumference = np.pi * DIAMETERS[body]
+    # Volume that a metre of rolling takes off, spread over the running surface that carries it.
+    depth = mass_per_metre / DENSITIES[body] / (circumference * WIDTH)
+    few = pytest.approx
+    assert result.mass_lost(over="10 km", body=body).to("kg").magnitude == few(mass_per_metre * 1e4, rel=16 * EPS)
+    assert result.mass_per_cycle(body).to("kg").magnitude == few(mass_per_metre * circumference, rel=16 * EPS)
+    assert result.depth_per_distance(body).to("m/m").magnitude == few(depth, rel=16 * EPS)
+    assert result.profile_area_rate(body).to("m^2/m").magnitude == few(depth * WIDTH, rel=16 * EPS)
+    shown = {
+        "mg": result.mass_lost(over="10 km", body=body),
+        "ug": result.mass_per_cycle(body),
+        "um/km": result.depth_per_distance(body),
+        "mm^2/km": result.profile_area_rate(body),
+    }
+    for unit, quantity in shown.items():
+        assert quantity.units == Q(1, unit).units
+
+
+@pytest.mark.validates(
+    "wear-laws",
+    "A point of a disc is in contact for 2a of each πD, so its surface loses 235 times less than the contact",
+    source="π · 47 mm/(2 · 0.31467 mm)",
+    held_to="{within:g}, relative (five digits of a)",
+    within=2e-05,
+)
+def test_a_surface_loses_235_times_less_than_what_the_contact_loses(within: float) -> None:
+    # π · 47 mm / (2 · 0.31467 mm) = 234.6 on the discs of Tassini et al. (2010) at 1500 MPa.
+    predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
+    result = predict(max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.46)
+    in_contact = result.wear_rate / Q(7850, "kg/m^3")
+    ratio = (in_contact / result.depth_per_distance("disc_1")).to("").magnitude
+    assert round(ratio) == 235
+    assert ratio == pytest.approx(np.pi * 47 / (2 * 0.31467), rel=within)  # a printed to 5 digits
+
+
+@pytest.mark.parametrize("creepage", [0.01, 0.15])
+def test_the_profile_area_rate_of_disc_1_gives_back_the_published_brr(creepage: float) -> None:
+    predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("brr")
+    result = predict(max_pressure="1500 MPa", creepage=Q(creepage, ""), friction_coefficient=0.46)
+    index, diameter = result.wear_index.to("N").magnitude, 47.0
+    # Table 1 of Tassini et al. (2010), mm² per km with D in mm.
+    published = 0.25 * index / diameter if index < 100 else (1.19 * index - 154) / diameter
+    assert index < 100 or index >= 200
+    assert result.profile_area_rate("disc_1").to("mm^2/km").magnitude == pytest.approx(published, rel=32 * EPS)
+
+
+def test_a_flat_body_makes_no_revolutions() -> None:
+    flat = wl.TwinDisc.suros(disc_2=wl.Disc(diameter="inf mm", material=wl.steel()))
+    result = (flat | wl.contact_model("global") | wl.wear_law("usfd"))(creepage="1 %", **CONDITIONS)
+    assert result.mass_lost(over="1 km", body="disc_2") == result.mass_lost(over="1 km", body="disc_1")
+    for convert in (result.depth_per_distance, result.profile_area_rate, result.mass_per_cycle):
+        assert convert("disc_1").magnitude > 0
+        with pytest.raises(wl.InputError, match="body: disc_2 is flat and makes no revolutions; name the other body"):
+            convert("disc_2")
+
+
+def test_conversions_refuse_a_wrong_body_or_distance() -> None:
+    result = PREDICT(creepage="1 %", **CONDITIONS)
+    for call in (
+        result.depth_per_distance,
+        result.profile_area_rate,
+        result.mass_per_cycle,
+        lambda body: result.mass_lost("1 km", body),
+    ):
+        with pytest.raises(wl.InputError, match="this rig has no 'wheel'; its bodies are 'disc_1' and 'disc_2'"):
+            call("wheel")
+    for wrong in (10, "10", "10 kg", "-1 km", "0 km"):
+        with pytest.raises(wl.UnitError, match=r'^over: .* such as Q\(1\.0, "km"\) or "1.0 km"$'):
+            result.mass_lost(over=wrong, body="disc_1")  # type: ignore[arg-type]
+
+
+def test_a_distance_may_be_an_array() -> None:
+    result = PREDICT(creepage=Q([1.0, 2.0], "%"), **CONDITIONS)
+    lost = result.mass_lost(over=Q([1.0, 10.0], "km"), body="disc_1")
+    each = result.mass_lost(over="1 km", body="disc_1")
+    np.testing.assert_allclose(lost.magnitude, each.magnitude * [1.0, 10.0], rtol=4 * EPS)
