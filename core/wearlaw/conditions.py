@@ -165,7 +165,7 @@ def condition_arrays(
     """
     given = {name: value for name, value in conditions.items() if value is not None}
     friction = given.get("friction_coefficient")
-    if _is_law(friction):
+    if is_friction_law(friction):
         given["friction_coefficient"] = 1.0
     units = table.units
     arrays: Arrays = {}
@@ -179,12 +179,13 @@ def condition_arrays(
         if name not in arrays:
             arrays[name] = np.zeros(())
     arrays = broadcast(arrays)
-    if _is_law(friction):
+    if is_friction_law(friction):
         arrays["friction_coefficient"] = friction.coefficient(creep_speed(arrays))
     return arrays
 
 
-def _is_law(friction: object) -> TypeGuard[FrictionLaw]:
+def is_friction_law(friction: object) -> TypeGuard[FrictionLaw]:
+    """Return whether friction depends on how fast the bodies slide."""
     # Whether it is an instance of the protocol takes a tenth of the time of a prediction.
     return hasattr(friction, "coefficient") and not isinstance(friction, type)
 

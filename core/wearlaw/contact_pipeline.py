@@ -131,7 +131,8 @@ class ContactPipeline(Configuration, Generic[RigT]):
         Raises
         ------
         ConditionsError
-            If no creepage, or more than one, transmits so much: at μN and above.
+            If no creepage, or more than one, transmits so much: at μN and above; or if friction falls with the creep
+            speed.
         """
         from wearlaw.inverse import creepage_for
 

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.conditions import is_friction_law
 from wearlaw.errors import ConditionsError, UnitError
+from wearlaw.integrate import integrate_contact
 from wearlaw.units import Quantity, Unit, from_si, real_array
 
 if TYPE_CHECKING:
@@ -29,6 +31,11 @@ def creepage_for(
     """Return the creepage [-] with which a contact transmits a traction; see `ContactPipeline.creepage_for`."""
     if (tangential_force is None) == (traction_coefficient is None):
         raise ConditionsError("give either tangential_force or traction_coefficient")
+    if is_friction_law(conditions.get("friction_coefficient")):
+        raise ConditionsError(
+            "friction_coefficient: must be a number here; where friction falls with the creep speed, two creepages can"
+            " transmit one force"
+        )
     problem = contact.rig.problem(**conditions, creepage=from_si(0.0, ""))
     if tangential_force is None:
         target = _finite(traction_coefficient)
@@ -42,7 +49,7 @@ def creepage_for(
         """Return by how much T/N falls short, for points as floats, as `find_root` hands them on."""
         index = point.astype(np.intp)
         at = dataclasses.replace(flat[index], creepage=np.exp(log_creepage))
-        return due[index] - contact.contact_model.tangential_force(at) / at.normal_force
+        return due[index] - integrate_contact(contact.contact_model, at) / at.normal_force
 
     points = np.arange(due.size, dtype=np.float64)
     short = lacking(np.zeros(due.size), points)

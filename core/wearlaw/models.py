@@ -1,5 +1,6 @@
 """What a plugin implements that predicts wear, `WearLaw`, and what its parameters were fitted to."""
 
+import math
 import warnings
 from abc import abstractmethod
 from collections.abc import Mapping
@@ -12,7 +13,9 @@ from pydantic import model_validator
 
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
+from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, did_you_mean
+from wearlaw.extremes import extremes
 from wearlaw.records import UNITS, Contact
 from wearlaw.tangential import ContactModel, Geometry, Model, Scale
 from wearlaw.units import WEAR_RATE, Quantity, Unit, from_si
@@ -134,7 +137,7 @@ class WearLaw(Model):
     def rate(self, contact: Contact) -> Array:
         """Return the mass lost per metre rolled and contact area [kg/m/m²], of the shape of the nodes.
 
-        Where nothing slips it must be zero.
+        It is not negative, and zero where nothing slips.
         """
 
     def checked_rate(self, contact: Contact) -> Array:
@@ -145,8 +148,15 @@ class WearLaw(Model):
                 f"wear law '{self.name}' returned rates of shape {rate.shape} for nodes of shape"
                 f" {contact.pressure.shape}; it must return one rate a node"
             )
-        if not np.isfinite(rate).all():
+        low, high = extremes(rate) if rate.size else (0.0, 0.0)
+        if not (math.isfinite(low) and math.isfinite(high)):
             raise ModelError(f"wear law '{self.name}' returned a rate that is not finite")
+        if low < 0.0:
+            raise ModelError(f"wear law '{self.name}' returned a negative rate, {low:g} kg/m/m²")
+        if (rate[contact.slip == 0.0] > 0.0).any():
+            raise ModelError(
+                f"wear law '{self.name}' gives wear where the bodies stick; the rate must be zero where the slip is"
+            )
         return rate
 
     def __ror__(self, contact: Contact) -> LocalWear:
@@ -164,14 +174,25 @@ class WearLaw(Model):
             raise CompositionError(
                 f"wear law '{self.name}' is stated for the means of the whole patch; use contact.patch_mean() | law"
             )
-        if self.calibration is not None and self.calibration.scale != scale:
-            warnings.warn(
-                f"the parameters of wear law '{self.name}' were fitted for {self.calibration}, but the contact holds"
-                f" {'the means of the patch' if scale == 'patch' else 'its cells'}; check them against data",
-                CalibrationWarning,
-                stacklevel=2,
-            )
+        self._warn_of_calibration(contact, scale)
         return LocalWear(contact, self.checked_rate(contact))
+
+    def _warn_of_calibration(self, contact: Contact, scale: Scale) -> None:
+        """Warn of parameters that were fitted for another contact than one solved elsewhere, as far as it shows."""
+        fitted_for = self.calibration
+        if fitted_for is None:
+            return
+        held = "the means of the patch" if scale == "patch" else "its cells"
+        if isinstance(contact, EllipticContact) and fitted_for.geometry == "line":
+            held += ", of an ellipse"
+        elif fitted_for.scale == scale:
+            return
+        warnings.warn(
+            f"the parameters of wear law '{self.name}' were fitted for {fitted_for}, but the contact holds {held};"
+            " check them against data",
+            CalibrationWarning,
+            stacklevel=3,
+        )
 
     @property
     def breakpoints(self) -> BreakpointMap | None:

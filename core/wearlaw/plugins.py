@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib.metadata import Distribution, EntryPoint, PackageNotFoundError, distributions, version
 from itertools import chain
+from threading import RLock
 from typing import Any
 
 import pluggy
@@ -51,11 +52,14 @@ class Installed:
         return [row for shelf in self.shelves() for row in shelf.listing()]
 
 
-@functools.cache
 def installed() -> Installed:
     """Return all installed plugins; they are searched for once in a process."""
-    if _under_way:  # a hook that gives a parameter set looks up the law that it belongs to
-        return _under_way[0]
+    with _searching:  # other threads wait, while a hook that gives a parameter set can look up the law it belongs to
+        return _under_way[0] if _under_way else _search()
+
+
+@functools.cache
+def _search() -> Installed:
     found = Installed()
     _under_way.append(found)
     try:
@@ -63,9 +67,11 @@ def installed() -> Installed:
     finally:
         _under_way.clear()
     for plugin in found.broken:
-        warnings.warn(f"left out: {plugin}", PluginWarning, stacklevel=3)
+        warnings.warn(f"left out: {plugin}", PluginWarning, stacklevel=4)
     return found
 
+
+_searching = RLock()
 
 _under_way: list[Installed] = []
 """What discovery has found so far, while it goes on."""

@@ -40,6 +40,10 @@ _FROM_ARRAYS = {
 }
 
 
+ONE_SIGN = 1e-9
+"""Share of traction of the other sign that passes for rounding; it moves the mean slip by no more."""
+
+
 def _broadcast(arrays: dict[str, Array], batch_axes: int) -> dict[str, Array]:
     """Return the arrays of nodes in one shape, which has the batch axes and at least one more."""
     shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
@@ -236,15 +240,27 @@ class Contact:
 
         Pressure and traction are area means; the slip is the one that dissipates the same energy,
         s = Tγ / T, which is the creepage.
+
+        Raises
+        ------
+        InputError
+            If the traction has both signs in a contact, so that T is not what dissipates.
         """
         force = self.tangential_force
+        signed = self.sum_over_nodes(self.traction * self.area)
+        unsigned = self.sum_over_nodes(np.abs(self.traction) * self.area)
+        if (unsigned - np.abs(signed) > ONE_SIGN * unsigned).any():
+            raise InputError(
+                "patch_mean: the traction has both signs in one contact, and its sum is not the force that dissipates;"
+                " give traction and slip as magnitudes"
+            )
         slip = np.divide(self.wear_index, force, out=np.zeros_like(force), where=force != 0)
         area = self.patch_area
         return Contact(
             pressure=(self.normal_force / area)[..., None],
             traction=(force / area)[..., None],
             slip=slip[..., None],
-            traction_bound=self.mean(self.traction_bound)[..., None],
+            traction_bound=self.mean(np.where(self.area > 0.0, self.traction_bound, 0.0))[..., None],
             area=area[..., None],
             x=np.zeros_like(area)[..., None],
             rolling_speed=self.rolling_speed,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -158,7 +159,10 @@ class Prediction(ContactSolution):
 
     @property
     def wear_rate(self) -> Quantity:
-        """Mass lost per metre rolled and contact area, mean over the patch [kg/m/m²]."""
+        """Mass lost per metre rolled and contact area, mean over the patch [kg/m/m²].
+
+        Of disc 1, where the law gives a volume and the densities of the discs differ.
+        """
         return from_si(self._wear.wear_rate, WEAR_RATE)
 
     @property
@@ -213,18 +217,28 @@ class Prediction(ContactSolution):
         body : str
             "disc_1" or "disc_2".
         """
-        self._disc(body)
-        return from_si(self._mass_per_distance() * Unit("km").si(over, "over"), "mg")
+        return from_si(self._mass_per_distance(body) * Unit("km").si(over, "over"), "mg")
 
     def mass_per_cycle(self, body: str) -> Quantity:
         """Return the mass that a body loses in one of its revolutions, over πD rolled [kg]."""
-        return from_si(self._mass_per_distance() * self._circumference(body), "ug")
+        return from_si(self._mass_per_distance(body) * self._circumference(body), "ug")
 
-    def _mass_per_distance(self) -> Array:
-        return self._wear.wear_rate * self.problem.patch_area
+    def _mass_per_distance(self, body: str) -> Array:
+        return self._rate(body) * self.problem.patch_area
 
     def _volume_rate(self, body: str) -> Array:
-        return self._wear.wear_rate / scalar_si(self._disc(body).material.density, "kg/m^3")
+        return self._rate(body) / self._density(body)
+
+    def _rate(self, body: str) -> Array:
+        """Return the wear rate of a body, which a law of volume gives in proportion to its density."""
+        density = np.full_like(self.problem.density, self._density(body))
+        if np.array_equal(density, self.problem.density):
+            return self._wear.wear_rate
+        of_body = dataclasses.replace(self.problem, density=density)
+        return integrate.integrate_wear(self.contact_model, self.wear_law, of_body, self.scale).wear_rate
+
+    def _density(self, body: str) -> float:
+        return scalar_si(self._disc(body).material.density, "kg/m^3")
 
     def _disc(self, body: str) -> Disc:
         return self.rig.body(body)

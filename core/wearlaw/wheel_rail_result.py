@@ -100,7 +100,12 @@ class WheelRailContact(Solution[EllipticProblem]):
 
     @cached_property
     def contact(self) -> EllipticContact:
-        """The solved contact as SI arrays, on the nodes that the contact model chose."""
+        """The solved contact as SI arrays, on the nodes that the contact model chose, or its patch means."""
+        of_patch = self.scale == "patch" and self.contact_model.scale != "patch"
+        return self._solved.patch_mean() if of_patch else self._solved
+
+    @cached_property
+    def _solved(self) -> EllipticContact:
         return self.contact_model.solve(self.problem)
 
     @cached_property
@@ -214,7 +219,7 @@ class WheelRailPrediction(WheelRailContact):
             )
         edges = np.linspace(-1.0, 1.0, PROFILE_STRIPS + 1)
         chosen = self.contact_model.on_strips(self.problem, 0.5 * (edges[1:] + edges[:-1]))
-        return self.contact if chosen is None else chosen
+        return self._solved if chosen is None else chosen
 
 
 def _across_patch(contact: EllipticContact, columns: dict[str, tuple[Array, str]], per: str) -> xarray.Dataset:

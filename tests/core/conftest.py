@@ -31,9 +31,9 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
     def write(name: str, source: str, version: str = "1.0") -> None:
         write_distribution(tmp_path, name, source, version)
         importlib.invalidate_caches()
-        plugins.installed.cache_clear()
+        plugins._search.cache_clear()
 
-    plugins.installed.cache_clear()
+    plugins._search.cache_clear()
     yield write
     for module in set(sys.modules) - known:
         if (
@@ -41,7 +41,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
             and tmp_path in Path(str(sys.modules[module].__file__)).parents
         ):
             del sys.modules[module]
-    plugins.installed.cache_clear()
+    plugins._search.cache_clear()
 
 
 @pytest.fixture

@@ -113,6 +113,30 @@ def test_a_law_of_the_patch_is_refused_on_nodes_and_taken_on_their_mean() -> Non
     assert wear.mass_per_distance.to("ug/m").magnitude == pytest.approx(expected, rel=16 * EPS)
 
 
+def test_traction_of_both_signs_has_no_patch_mean() -> None:
+    node = {"pressure": "1 GPa", "slip": Q([1.0, -1.0], "%"), "area": "1 mm^2", "rolling_speed": "1 m/s"}
+    contact = wl.Contact.from_arrays(**{**node, "traction": Q([300.0, -299.0], "MPa")})  # type: ignore[arg-type]
+    assert (contact | wl.wear_law("usfd", fitted_for="exact")).wear_rate.magnitude > 0
+    with pytest.raises(wl.InputError, match="patch_mean: the traction has both signs"):
+        contact.patch_mean()
+
+
+def test_a_node_without_area_has_no_part_in_the_mean() -> None:
+    with_one = {**FOUR_NODES, "area": Q([1.0, 1.0, 1.0, 0.0], "mm^2")}
+    mean = wl.Contact.from_arrays(**with_one).patch_mean()
+    assert mean.traction_bound == np.inf
+    assert mean.area == pytest.approx(3e-6, rel=4 * EPS)
+
+
+def test_parameters_of_a_line_are_warned_of_on_an_ellipse() -> None:
+    wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+    conditions: Any = {"normal_force": "80 kN", "longitudinal_creepage": "0.1 %", "friction_coefficient": 0.3}
+    contact = wl.contact_model("fastsim").solve(wheel.problem(**conditions))
+    with pytest.warns(wl.CalibrationWarning, match="the contact holds its cells, of an ellipse") as caught:
+        contact | wl.wear_law("usfd", fitted_for="fastsim")
+    assert caught[0].filename == __file__
+
+
 def test_parameters_of_another_scale_are_warned_of() -> None:
     contact = wl.Contact.from_arrays(**FOUR_NODES)
     with pytest.warns(wl.CalibrationWarning, match="fitted for patch means .* holds its cells"):

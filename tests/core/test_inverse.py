@@ -114,3 +114,28 @@ def test_shapes_that_do_not_fit_are_refused() -> None:
 def test_a_traction_that_is_no_number_is_refused() -> None:
     with pytest.raises(wl.WearlawError, match="traction_coefficient"):
         (RIG | wl.contact_model("exact")).creepage_for(traction_coefficient=np.nan, **LOAD)
+
+
+def test_friction_that_falls_is_refused_since_two_creepages_can_transmit_one_force() -> None:
+    falling = wl.FallingFriction(static_coefficient=0.5, limit_ratio=0.4, decay="6 s/m")
+    conditions: Any = {"max_pressure": "1500 MPa", "friction_coefficient": falling}
+    with pytest.raises(wl.ConditionsError, match=r"friction_coefficient: must be a number here"):
+        (RIG | wl.contact_model("exact")).creepage_for(traction_coefficient=0.3, **conditions)
+
+
+def test_a_model_whose_force_is_no_number_is_named() -> None:
+    class Nowhere(wl.ContactModel):
+        name = "nowhere"
+        source = "a test"
+
+        def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+            return wl.contact_model("global").solve(problem)
+
+        def tangential_force(self, problem: wl.LineProblem) -> wl.Array:
+            return problem.creepage * np.nan
+
+    contact = RIG | Nowhere()
+    with pytest.raises(wl.ModelError, match="'nowhere' gave a tangential force that is not finite"):
+        contact.creepage_for(traction_coefficient=0.3, **LOAD)
+    with pytest.raises(wl.ModelError, match="'nowhere' gave a tangential force that is not finite"):
+        contact(creepage="1 %", **LOAD)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -150,17 +151,44 @@ def test_a_calibration_says_what_it_was_fitted_for() -> None:
     )
 
 
-@pytest.mark.parametrize("wrong", ["shape", "nan"])
-def test_a_law_that_breaks_its_contract_is_named(wrong: str) -> None:
+WRONG_RATES: dict[str, Callable[[wl.Contact], Array]] = {
+    r"returned rates of shape \(\d+,\) for nodes": lambda contact: contact.density,
+    "returned a rate that is not finite": lambda contact: contact.pressure * np.nan,
+    "returned a negative rate, -": lambda contact: -contact.wear_index_density,
+    "gives wear where the bodies stick": lambda contact: contact.pressure,
+}
+
+
+@pytest.mark.parametrize("said", WRONG_RATES)
+def test_a_law_that_breaks_its_contract_is_named(said: str) -> None:
     class Wrong(Proportional):
         name = "wrong"
 
         def rate(self, contact: wl.Contact) -> Array:
-            return contact.density if wrong == "shape" else contact.pressure * np.nan
+            return WRONG_RATES[said](contact)
 
-    said = r"rates of shape \(1,\) for nodes" if wrong == "shape" else "not finite"
-    with pytest.raises(wl.ModelError, match=f"wear law 'wrong' returned .*{said}"):
+    with pytest.raises(wl.ModelError, match=f"wear law 'wrong' {said}"):
         (RIG | Ramp() | Wrong())(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4)
+    rail = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+    with pytest.raises(wl.ModelError, match=f"wear law 'wrong' {said}"):
+        (rail | wl.contact_model("fastsim") | Wrong())(
+            normal_force="80 kN", longitudinal_creepage="0.1 %", friction_coefficient=0.3
+        )
+
+
+def test_what_a_model_knows_of_its_force_without_nodes_is_used() -> None:
+    class Knows(wl.ContactModel):
+        name = "knows"
+        source = "a test"
+
+        def solve_line(self, problem: wl.LineProblem) -> wl.Contact:  # noqa: ARG002
+            raise AssertionError("not needed")
+
+        def tangential_force(self, problem: wl.LineProblem) -> Array:
+            return 7e3 * problem.creepage
+
+    contact = (RIG | Knows())(normal_force="7 kN", creepage=Q([1.0, 2.0], "%"), friction_coefficient=0.4)
+    assert contact.tangential_force.to("N").magnitude.tolist() == [70.0, 140.0]
 
 
 def test_a_contact_model_that_breaks_its_contract_is_named_with_the_conditions() -> None:

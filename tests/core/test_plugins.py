@@ -5,7 +5,12 @@ from __future__ import annotations
 import sys
 import textwrap
 import warnings
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Barrier
+from time import sleep
+from typing import Any
 
 import pytest
 
@@ -265,3 +270,20 @@ def test_a_wrong_option_is_named_with_what_is_allowed() -> None:
     with pytest.raises(wl.ConfigurationError) as error:
         wl.contact_model("fastsim", bound="ellipse")
     assert str(error.value) == "fastsim: bound: input should be 'parabolic' or 'elliptic', got 'ellipse'"
+
+
+def test_threads_that_need_plugins_at_once_all_find_them(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:
+    install("slow", "")
+    found, together = plugins._entry_points, Barrier(4)
+
+    def slowly() -> Iterable[Any]:
+        sleep(0.1)
+        return found()
+
+    def look_up(_: int) -> str:
+        together.wait()
+        return wl.contact_model("exact").name
+
+    monkeypatch.setattr(plugins, "_entry_points", slowly)
+    with ThreadPoolExecutor(4) as pool, pytest.warns(wl.PluginWarning, match="slow"):
+        assert list(pool.map(look_up, range(4))) == ["exact"] * 4

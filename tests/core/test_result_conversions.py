@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.discs import CONDITIONS, DENSITIES, DIAMETERS, HALF_WIDTH, PREDICT, WIDTH
+from tests.core.discs import CONDITIONS, DENSITIES, DIAMETERS, HALF_WIDTH, PREDICT, RIG, WIDTH
 from tests.strategies import EPS
 from wearlaw import Q
 
@@ -59,6 +59,14 @@ def test_the_profile_area_rate_of_disc_1_gives_back_the_published_brr(creepage: 
     published = 0.25 * index / diameter if index < 100 else (1.19 * index - 154) / diameter
     assert index < 100 or index >= 200
     assert result.profile_area_rate("disc_1").to("mm^2/km").magnitude == pytest.approx(published, rel=32 * EPS)
+
+
+def test_discs_of_unlike_density_lose_the_same_volume_by_archards_law() -> None:
+    # V = k N s/H (Archard, J. Appl. Phys. 24 (1953) 981-988) knows no density; the mass follows from that of the body.
+    result = (RIG | wl.contact_model("exact") | wl.wear_law("kth"))(creepage="1 %", **CONDITIONS)
+    volumes = [result.mass_lost("1 km", body) / wl.Q(density, "kg/m^3") for body, density in DENSITIES.items()]
+    ratio = (volumes[1] / volumes[0]).to("").magnitude
+    assert ratio == pytest.approx(1.0, rel=64 * EPS)  # two sums over the same nodes, with another factor in each term
 
 
 def test_a_flat_body_makes_no_revolutions() -> None:

@@ -172,6 +172,13 @@ def test_a_law_of_the_whole_patch_needs_patch_means() -> None:
     assert (RIG | FASTSIM | wl.patch_mean() | wl.wear_law("brr"))(**CONDITIONS).wear_rate.magnitude > 0
 
 
+def test_the_contact_is_what_the_law_saw() -> None:
+    predicted = (RIG | FASTSIM | wl.patch_mean() | wl.wear_law("kth"))(**CONDITIONS)
+    assert predicted.contact.pressure.size == 1
+    seen = predicted.contact | wl.wear_law("kth")
+    assert seen.wear_rate.magnitude == pytest.approx(predicted.wear_rate.magnitude, rel=4 * EPS)
+
+
 @pytest.mark.parametrize("fitted_for", ["global", "exact", "fastsim"])
 def test_parameters_of_line_contact_warn_on_an_ellipse(fitted_for: str) -> None:
     law = wl.wear_law("usfd", fitted_for=fitted_for)
