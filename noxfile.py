@@ -38,7 +38,7 @@ def docs(session: nox.Session) -> None:
 def pictures(session: nox.Session) -> None:
     """Draw the pictures of the README and the documentation anew; that of the report needs chromium."""
     session.install("-e", ".[test]")
-    session.run("python", "docs/pictures.py")
+    session.run("python", "-m", "docs.pictures")
 
 
 @nox.session(python="3.11", default=False)

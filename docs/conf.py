@@ -6,9 +6,9 @@ from pathlib import Path
 import wearlaw
 
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
-import nomenclature
-import pictures
+from docs import nomenclature, pictures
 
 nomenclature.write()
 pictures.draw()

@@ -60,7 +60,7 @@ def documented() -> Iterator[Documented]:
 
 def wheel_rail() -> wl.WheelRail:
     """Return a wheel on a rail."""
-    return wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+    return wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 
 
 def falling_friction() -> wl.FallingFriction:

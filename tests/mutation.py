@@ -114,11 +114,13 @@ class _LeftOut:
 def mutants(source: str) -> Iterator[tuple[int, str, str]]:
     """Yield line, name of the operator and source of each mutant."""
     provider, tree = OperatorProvider(), get_ast(source)
-    for operator in (*(provider[name]() for name in OPERATORS), _NumberInText(), _LeftOut()):
+    kinds: list[Any] = [*(provider[name] for name in OPERATORS), _NumberInText, _LeftOut]
+    for operator in (kind() for kind in kinds):
         places = [(node, position) for node in ast_nodes(tree) for position in operator.mutation_positions(node)]
         for occurrence, (node, position) in enumerate(places):
             if not _is_of_a_signature(node):
-                yield position[0][0], type(operator).__name__.lstrip("_"), mutate_code(source, operator, occurrence)
+                mutant: Any = mutate_code(source, operator, occurrence)
+                yield position[0][0], type(operator).__name__.lstrip("_"), mutant
 
 
 def _is_of_a_signature(node: Any) -> bool:

@@ -15,7 +15,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy import integrate, optimize
+from scipy import integrate
+
+from tests.roots import brentq
 
 Field = Callable[[Any], Any]
 """A function of v."""
@@ -69,7 +71,7 @@ class Solution:
         ends = [self.border * 1e-30, min(self.peak, self.border), self.border]
         signs = [self.density(v) - value for v in ends]
         return [
-            optimize.brentq(lambda v: self.density(v) - value, low, high, xtol=1e-300, rtol=1e-15)
+            brentq(lambda v: self.density(v) - value, low, high, xtol=1e-300, rtol=1e-15)
             for low, high, at_low, at_high in zip(ends, ends[1:], signs, signs[1:], strict=False)
             if at_low * at_high < 0.0
         ]
@@ -87,7 +89,7 @@ class Solution:
         if not low < value < high:
             return []
         return [
-            optimize.brentq(
+            brentq(
                 lambda v: self.slip(v) - value, self.border * 1e-30, self.border, xtol=1e-300, rtol=1e-15, maxiter=500
             )
         ]

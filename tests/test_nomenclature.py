@@ -20,7 +20,6 @@ SYMBOLS_OF_SEVERAL_NAMES = {
     "a": "half the width of a line and the semi-axis of an ellipse in the rolling direction",
     "ξ": "the only creepage of discs, the longitudinal one of wheel and rail",
     "A": "the area of the patch, and the limit of falling friction in its source",
-    "V": "the rolling speed, which the rig of a wheel calls its speed",
 }
 NAMES_OF_SEVERAL_SYMBOLS = {"wear_index_density": "q·s at a point, and Tγ/A as its mean over the patch"}
 IN_NO_CLASS = {"wear_rate_low", "wear_rate_high"}

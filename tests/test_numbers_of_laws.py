@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy import optimize
 
 import wearlaw as wl
 from tests import reference
@@ -24,6 +23,7 @@ from tests.plugins.sheffield import (
     point,
     printed,
 )
+from tests.roots import brentq
 from wearlaw import Q
 
 RIG = wl.TwinDisc.suros()
@@ -123,7 +123,7 @@ def test_brr_meets_usfd_at_797_newtons(ours: float, rounded: float, by_hand_with
     density = 7.85
     slope, offset = density * math.pi * 1.19, density * math.pi * 154.0
     by_hand = ((61.9 * 77.26 - 55.0) * AREA - offset) / (61.9 - slope)
-    root = optimize.brentq(difference, 500.0, 1000.0, xtol=1e-9)
+    root = brentq(difference, 500.0, 1000.0, xtol=1e-9)
     assert root == pytest.approx(ours, abs=rounded)
     assert root == pytest.approx(by_hand, rel=by_hand_within)
     assert difference(796.0) > 0.0 > difference(798.0)
@@ -224,7 +224,7 @@ def test_severe_wear_by_slip_speed_begins_above_20_percent_creepage(ours: str) -
         contact = (RIG | wl.contact_model("global"))(creepage=Q(percent, "%"), **CONDITIONS).contact
         return float(contact.slip_speed[0])
 
-    border = optimize.brentq(lambda percent: slip_speed(percent) - 0.2, 10.0, 30.0)
+    border = brentq(lambda percent: slip_speed(percent) - 0.2, 10.0, 30.0)
     assert border == printed(ours)
     kth = RIG | wl.contact_model("global") | wl.wear_law("kth")
     below, above = (kth(creepage=Q(border + d, "%"), **CONDITIONS).wear_rate.m for d in (-1e-6, 1e-6))
@@ -285,7 +285,7 @@ def test_the_three_laws_stand_to_each_other_as_section_5_1_1_says(ours: float, r
     severe = np.linspace(55.0 / 5.3 * AREA + 0.1, 350.0, 30)
     assert all(rates(w, "brr") > rates(w, "usfd") for w in severe)
     assert all(rates(w, "kth", coefficient="high") > rates(w, "usfd") for w in severe)
-    crossing = optimize.brentq(lambda w: rates(w, "kth", coefficient="mid") - rates(w, "usfd"), 70.0, 200.0)
+    crossing = brentq(lambda w: rates(w, "kth", coefficient="mid") - rates(w, "usfd"), 70.0, 200.0)
     assert crossing == pytest.approx(ours, abs=rounded)
     # mild: "close" is within a factor of 1.6 of USFD for BRR (6.165 against 5.3 per N) and KTH's mid range
     for w in (45.0, 50.0, 60.0):

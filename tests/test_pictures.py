@@ -14,6 +14,7 @@ from PIL import Image
 
 import wearlaw as wl
 from docs import pictures
+from docs.conventions import conventions
 from tests.environments import ROOT
 from wearlaw.case import Case, case_text
 from wearlaw.figures.drawing import draw as drawing_of
@@ -49,7 +50,7 @@ def test_the_figure_of_errors_has_a_point_for_every_force_that_is_not_zero_by_sy
 def test_arrows_of_the_drawing_are_the_rigid_slip_seen_with_x_to_the_right_and_rolling_to_the_left(
     creepage: str,
 ) -> None:
-    shown = {axes.get_title()[-5]: axes for axes in pictures.conventions().axes if axes.get_title().endswith("> 0")}
+    shown = {axes.get_title()[-5]: axes for axes in conventions().axes if axes.get_title().endswith("> 0")}
     (arrows,) = (artist for artist in shown[creepage].get_children() if isinstance(artist, Quiver))
     x, y = np.asarray(arrows.X), np.asarray(arrows.Y)
     xi, eta, phi = (float(creepage == one) for one in ("ξ", "η", "φ"))

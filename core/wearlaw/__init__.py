@@ -80,6 +80,7 @@ __all__ = [
     "BreakpointMap",
     "Calibration",
     "CalibrationWarning",
+    "Case",
     "CaseError",
     "CheckedClaim",
     "Claim",
@@ -136,6 +137,7 @@ __all__ = [
     "Study",
     "SweepError",
     "TwinDisc",
+    "Uncertainty",
     "Unit",
     "UnitError",
     "UnknownModelError",
@@ -162,6 +164,7 @@ __all__ = [
     "hookimpl",
     "kalker",
     "kernel",
+    "load_case",
     "lognormal",
     "material",
     "materials",
@@ -172,6 +175,7 @@ __all__ = [
     "published_range",
     "read_tests",
     "read_wear_law",
+    "run",
     "scalar_si",
     "steel",
     "uniform",
@@ -180,16 +184,22 @@ __all__ = [
 ]
 
 if _TYPE_CHECKING:
+    from wearlaw.case import Case, load_case
     from wearlaw.comparison.compare import compare
     from wearlaw.comparison.result import Comparison
     from wearlaw.fitting.fit import fit
     from wearlaw.fitting.law_files import read_wear_law
     from wearlaw.fitting.result import Fit
-    from wearlaw.study import Study
+    from wearlaw.study import Study, run
+    from wearlaw.uncertainty.result import Uncertainty
 
 _LATER = {
-    "Comparison": "wearlaw.comparison.result",
+    "Case": "wearlaw.case",
+    "load_case": "wearlaw.case",
     "Study": "wearlaw.study",
+    "run": "wearlaw.study",
+    "Uncertainty": "wearlaw.uncertainty.result",
+    "Comparison": "wearlaw.comparison.result",
     "compare": "wearlaw.comparison.compare",
     "Fit": "wearlaw.fitting.result",
     "fit": "wearlaw.fitting.fit",

@@ -11,11 +11,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
-import pint
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from wearlaw import plugins
-from wearlaw.configuration import Configuration, known_as
+from wearlaw.configuration import Configuration, known_as, shown
 from wearlaw.errors import CaseError, ConfigurationError, InputError, did_you_mean, with_problems
 from wearlaw.figures.check import Contents
 from wearlaw.figures.measured_points import known_variables
@@ -25,8 +24,9 @@ from wearlaw.measurement import Measurement
 from wearlaw.rig import Disc, TwinDisc
 from wearlaw.specification import ContactModelField, MaterialField, WearLawField
 from wearlaw.tangential import Model
+from wearlaw.text_files import read_text
 from wearlaw.uncertainty.specification import UncertainPoint
-from wearlaw.units import Length, Quantity, Speed, Unit, text_of
+from wearlaw.units import Length, Quantity, Speed, Unit
 
 ModelT = TypeVar("ModelT", bound=Model)
 
@@ -163,7 +163,7 @@ def labels(models: Sequence[Model]) -> list[str]:
         namesakes = [other for other in models if other.name == model.name]
         if sum(other == model for other in namesakes) > 1:
             raise InputError(f"the model {model.name} is listed twice; leave one out, or give it other options")
-        options = [f"{field}={_shown(getattr(model, field))}" for field in _telling_apart(namesakes)]
+        options = [f"{field}={shown(getattr(model, field))}" for field in _telling_apart(namesakes)]
         found.append(f"{model.name}({', '.join(options)})" if options else model.name)
     return found
 
@@ -178,14 +178,10 @@ def _telling_apart(models: Sequence[Model]) -> list[str]:
     fields: list[str] = []
     kinds: set[tuple[str, ...]] = {()}
     for field in type(models[0]).model_fields:
-        finer = {tuple(_shown(getattr(model, name)) for name in (*fields, field)) for model in models}
+        finer = {tuple(shown(getattr(model, name)) for name in (*fields, field)) for model in models}
         if len(finer) > len(kinds):
             fields, kinds = [*fields, field], finer
     return fields
-
-
-def _shown(value: Any) -> str:
-    return text_of(value) if isinstance(value, pint.Quantity) else str(value)
 
 
 def case_text(name_or_path: str) -> str:
@@ -203,7 +199,7 @@ def case_text(name_or_path: str) -> str:
     if name_or_path in found.cases.providers:
         return found.cases.find(name_or_path, found.broken)
     try:
-        return Path(name_or_path).read_text(encoding="utf-8")
+        return read_text(name_or_path)
     except FileNotFoundError:
         hint = did_you_mean(name_or_path, known)
         raise CaseError(f"there is no case file '{name_or_path}'{hint} Shipped cases: {', '.join(known)}") from None

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
+from wearlaw.errors import ModelError
 from wearlaw.line import LineProblem
 from wearlaw.line_model import FieldVariable, LineContactModel
 from wearlaw.quadrature import Nodes, Zone
@@ -110,13 +111,18 @@ def _searched(variable: _Variable, value: Array) -> Array:
     found = np.ones((variable.samples.shape[0], CROSSINGS))
     for point, column, low, high in (_sign_changes(variable, value), _hidden_humps(variable, value)):
         if point.size:
-            from scipy.optimize import elementwise  # half of the time of `import wearlaw`, so only where it is used
+            from scipy.optimize import elementwise  # loaded where it is used, as in `inverse`
 
             root = elementwise.find_root(
                 lambda share, who: variable.at(share, who) - value[who.astype(np.intp), 0],
                 (low, high),
                 args=(point.astype(np.float64),),
             )
+            if not root.success.all():
+                raise ModelError(
+                    f"contact model '{variable.model.name}': its {variable.name} passes a breakpoint, but cannot be"
+                    " followed to it; it must be finite in the whole slip zone, and the same at each call"
+                )
             found[point, column] = root.x
     return found
 

@@ -42,7 +42,7 @@ class EllipticContact(Contact):
     y : ndarray, (batch, nodes, strips)
         Position across the rolling direction [m].
     strip_width : ndarray, (batch, strips)
-        Width of the patch that a strip stands for [m]; a strip of width zero is there to be looked at.
+        Width of the patch that a strip stands for [m].
     force_x : ndarray, (batch)
         Longitudinal force [N], with the sign of the longitudinal creepage.
     force_y : ndarray, (batch)
@@ -190,7 +190,7 @@ class EllipticContact(Contact):
         Raises
         ------
         InputError
-            If nothing slips at a node where Tγ is not zero.
+            If no node dissipates energy where Tγ is not zero.
         """
         dissipated = self.cell_wear_index
         if ((dissipated == 0) & (self.wear_index != 0)).any():

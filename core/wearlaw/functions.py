@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -118,8 +118,9 @@ def as_wear_law(
     def decorate(function: Function) -> FunctionLaw:
         subject = f"as_wear_law on {function.__name__}"
         _check(subject, function, inputs, units, returns)
+        _check_names(subject, units, inputs, monotone_in)
         splits = None if breakpoints is None else _in_si(subject, "breakpoints", breakpoints, inputs)
-        named = _by_variable(subject, jumps, breakpoints or {})
+        named = _jumps(subject, jumps, breakpoints or {})
         declared = (splits, _in_si(subject, "jumps", named, inputs))
         fields = _fields(function, units)
         law: Any = create_model(function.__name__, __base__=FunctionLaw, __module__=function.__module__, **fields)
@@ -149,17 +150,20 @@ def _fields(function: Function, units: Mapping[str, str]) -> dict[str, Any]:
     }
 
 
-def _by_variable(
+def _jumps(
     subject: str, jumps: Sequence[float] | Mapping[str, Sequence[float]], breakpoints: Mapping[str, Sequence[float]]
 ) -> Mapping[str, Sequence[float]]:
     """Return the jumps by their variable, which need not be named where only one has breakpoints."""
-    if isinstance(jumps, Mapping):
-        return jumps
-    if not len(jumps):
-        return {}
-    if len(breakpoints) != 1:
-        raise _error(subject, "jumps", "name their variable, as in {'pressure': [2.1]}, unless there is only one")
-    return dict.fromkeys(breakpoints, jumps)
+    if not isinstance(jumps, Mapping):
+        if len(jumps) and len(breakpoints) != 1:
+            raise _error(subject, "jumps", "name their variable, as in {'pressure': [2.1]}, unless there is only one")
+        jumps = dict.fromkeys(breakpoints, jumps) if len(jumps) else {}
+    for name, values in jumps.items():
+        known = breakpoints.get(name, ())
+        for value in values:
+            if value not in known:
+                raise _error(subject, f"jumps.{name}", f"{value} is none of the breakpoints, {_listed(known)}")
+    return jumps
 
 
 def _check(subject: str, function: Function, inputs: Mapping[str, str], units: Mapping[str, str], returns: str) -> None:
@@ -181,7 +185,20 @@ def _check(subject: str, function: Function, inputs: Mapping[str, str], units: M
     for name in keywords:
         if signature[name].default is inspect.Parameter.empty:
             raise _error(subject, f"parameters.{name}", "needs a default value in the function")
-        Q(signature[name].default, units[name])
+        try:
+            Q(signature[name].default, units[name])
+        except UnitError as error:
+            raise _error(subject, f"parameters.{name}", str(error)) from None
+
+
+def _check_names(subject: str, units: Mapping[str, str], inputs: Mapping[str, str], monotone_in: Sequence[str]) -> None:
+    """Refuse parameters that cannot be fields of a law, and what is said of variables that are no inputs."""
+    for name in units:
+        if name.startswith("_") or name in FunctionLaw.__class_vars__ or hasattr(FunctionLaw, name):
+            raise _error(subject, f"parameters.{name}", "is a name that wear laws keep for themselves; choose another")
+    for name in monotone_in:
+        if name not in inputs:
+            raise _error(subject, f"monotone_in.{name}", f"is not one of the inputs, {_listed(inputs)}")
 
 
 def _check_unit(subject: str, path: str, unit: str, expected: str) -> None:
@@ -197,8 +214,12 @@ def _in_si(
     """Return breakpoints in SI, given in the units of the inputs."""
     for name in values:
         if name not in inputs:
-            raise _error(subject, f"{path}.{name}", f"is not one of the inputs, {', '.join(inputs)}")
+            raise _error(subject, f"{path}.{name}", f"is not one of the inputs, {_listed(inputs)}")
     return {name: tuple(float(v) * unit_in_si(inputs[name]) for v in given) for name, given in values.items()}
+
+
+def _listed(known: Iterable[object]) -> str:
+    return ", ".join(map(str, known)) or "of which there are none"
 
 
 def _error(subject: str, path: str, message: str) -> ConfigurationError:

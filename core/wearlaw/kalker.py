@@ -117,7 +117,8 @@ def coefficients(
     Raises
     ------
     InputError
-        If there is no such interpolation.
+        If an axis ratio is not positive and finite, a Poisson's ratio is not from 0 to 1/2, or there is no such
+        interpolation.
 
     Notes
     -----
@@ -145,6 +146,8 @@ def coefficients(
     if interpolation not in get_args(Interpolation):
         raise InputError(f"interpolation: must be 'scaled' or 'contact', got {interpolation!r}")
     ratio, nu = np.broadcast_arrays(axis_ratio, poisson_ratio)
+    _refuse("axis_ratio: must be positive and finite", ratio, (ratio > 0.0) & (ratio < np.inf))
+    _refuse("poisson_ratio: must be from 0 to 1/2", nu, (nu >= 0.0) & (nu <= 0.5))
     inside = np.clip(ratio, _EDGE, 1.0 / _EDGE)
     values = _from_table(inside, nu) if interpolation == "scaled" else _as_contact(inside, nu)
     if (inside != ratio).any():
@@ -153,6 +156,11 @@ def coefficients(
         _continue(values, ratio < _EDGE, ratio, nu, _short_asymptotes, fades)
         _continue(values, ratio > 1.0 / _EDGE, 1.0 / ratio, nu, _long_asymptotes, fades)
     return CreepageCoefficients(c11=values[0], c22=values[1], c23=values[2], c33=values[3])
+
+
+def _refuse(rule: str, values: Array, right: NDArray[np.bool_]) -> None:
+    if not right.all():
+        raise InputError(f"{rule}, got {values[~right][0]:g}")
 
 
 def linear_forces(problem: EllipticProblem, interpolation: Interpolation = "scaled") -> CreepForces:

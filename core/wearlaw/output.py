@@ -8,10 +8,11 @@ import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from wearlaw.case import CASE_FILE, Case, written
 from wearlaw.errors import OutputError
+from wearlaw.figures.formats import FigureFormat as FigureFormat
 from wearlaw.report.latex import latex_table
 from wearlaw.report.tables import tables
 from wearlaw.study import BAND, RATES, Study
@@ -30,7 +31,6 @@ CSV = "results.csv"
 FIGURES = "figures"
 REPORT = "report.html"
 TABLES = "tables"
-FigureFormat = Literal["png", "pdf", "svg"]
 COPIES = 2
 """How often a result is in memory: as it was computed, and among those of the other pairs."""
 ROW_IN_MEMORY, ROW_ON_DISK = 800, 400

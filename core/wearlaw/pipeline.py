@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import ArrayLike
 
+    from wearlaw.conditions import FrictionLaw
     from wearlaw.uncertainty.result import Uncertainty
 
 
@@ -118,10 +119,15 @@ class Pipeline(Configuration, Generic[RigT]):
                 on_block(part.size)
 
         if isinstance(rig, WheelRail) and isinstance(problem, EllipticProblem):
-            return WheelRailPrediction(rig, model, scale, problem, law, elliptic_wear(model, law, problem, scale, see))
+            rolled = elliptic_wear(model, law, problem, scale, see)
+            law.check_not_negative(rolled.wear_rate)
+            return WheelRailPrediction(rig, model, scale, problem, law, rolled)
         if isinstance(rig, TwinDisc) and isinstance(problem, LineProblem):
             check_traction(model, problem)
-            return Prediction(rig, model, scale, problem, law, integrate_wear(model, law, problem, scale, see))
+            wear = integrate_wear(model, law, problem, scale, see)
+            found = Prediction(rig, model, scale, problem, law, wear)
+            law.check_not_negative(wear.wear_rate, lambda: found.wear_rate_error.to("kg/m^3").magnitude)
+            return found
         raise InputError(f"problem: {type(problem).__name__} is not what a {type(rig).__name__} makes")
 
     def sweep(
@@ -194,7 +200,7 @@ class Pipeline(Configuration, Generic[RigT]):
         law: Mapping[str, Distribution | PublishedRange] | None = None,
         samples: int = 2**14,
         seed: int = 0,
-        **conditions: QuantityLike | ArrayLike | Distribution,
+        **conditions: QuantityLike | ArrayLike | Distribution | FrictionLaw | None,
     ) -> Uncertainty:
         """Return how uncertain the wear rate is where conditions and parameters are.
 

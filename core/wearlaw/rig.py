@@ -206,11 +206,13 @@ def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
     diameter = scalar_si(disc.diameter, "m")
     if np.isinf(diameter):
         raise InputError("rolling_speed: a flat disc_1 has no rotational speed; give rolling_speed instead")
-    angular = float(Unit("rpm").si(rotational_speed, "rotational_speed"))
+    angular = Unit("rpm").si(rotational_speed, "rotational_speed")
+    if angular.ndim:
+        raise UnitError(f"rotational_speed: must be one value, got an array of shape {angular.shape}")
     unit = str((parse(rotational_speed) if isinstance(rotational_speed, str) else rotational_speed).units)
     if not any(angle in unit for angle in ("radian", "degree", "turn", "revolutions")):
         raise UnitError(
             f"rotational_speed: got a value in '{unit}', which does not say whether it counts revolutions or radians;"
             ' give it in rpm or rad/s, such as "400 rpm"'
         )
-    return Q(angular * 0.5 * diameter, "m/s")
+    return Q(float(angular) * 0.5 * diameter, "m/s")

@@ -52,7 +52,7 @@ class WheelRail(Rig):
     """Lateral radius of the wheel's profile where it touches [m]; infinite for a cone, negative for a worn hollow."""
     material: MaterialField
     """What wheel and rail are made of; a file may also give the name of an installed material."""
-    speed: Speed
+    rolling_speed: Speed
     """Rolling speed, V [m/s]."""
 
     if TYPE_CHECKING:
@@ -64,7 +64,7 @@ class WheelRail(Rig):
             rail_head_radius: QuantityLike,
             wheel_profile_radius: QuantityLike = "inf mm",
             material: Material,
-            speed: QuantityLike,
+            rolling_speed: QuantityLike,
         ) -> None: ...
 
         def __or__(self, model: ContactModel) -> ContactPipeline[WheelRail]: ...
@@ -152,4 +152,4 @@ class WheelRail(Rig):
         a, b = hertz_ellipse.semi_axes(load, *curvatures, modulus)
         shear_modulus = 0.5 * youngs_modulus / (1.0 + ratio)
         p0 = hertz_ellipse.max_pressure(load, a, b)
-        return _Patch(float(a), float(b), float(p0), shear_modulus, scalar_si(self.speed, "m/s"))
+        return _Patch(float(a), float(b), float(p0), shear_modulus, scalar_si(self.rolling_speed, "m/s"))

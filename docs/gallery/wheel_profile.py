@@ -13,7 +13,7 @@ def energy_law(wear_index_density):
     return 5.3 * wear_index_density
 
 
-rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 predict = rig | wl.contact_model("fastsim") | energy_law
 
 plt.style.use("seaborn-v0_8-colorblind")

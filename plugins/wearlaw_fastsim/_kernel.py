@@ -21,11 +21,7 @@ from wearlaw import Array
 Number = TypeVar("Number", float, Array)
 
 CLOSE = 2e-3
-"""Step of Halley's method, over the distances from both ends of its range, after which a root is good enough.
-
-The next error is of the order of its cube, 1e-8; and since P is at its level in a root, the integral above the level
-only feels the square of that.
-"""
+"""Step of Halley's method after which a root is good enough; `wearlaw_exact._kernel.CLOSE` says why."""
 
 STEPS = 60
 """Steps at most; two to four are needed, next to d = 1 more."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, field_validator
 
 import wearlaw as wl
 
@@ -25,6 +25,13 @@ class Global(wl.ContactModel):
 
     total_from: wl.ContactModelField = Field(default="exact", validate_default=True)
     """The contact model that gives T where no traction coefficient was measured."""
+
+    @field_validator("total_from")
+    @classmethod
+    def _solves_lines(cls, model: wl.ContactModel) -> wl.ContactModel:
+        if "line" not in model.geometries():
+            raise ValueError(f'must be a contact model that solves line contacts, such as "exact"; got {model.name!r}')
+        return model
 
     @property
     def accuracy(self) -> float:

@@ -58,7 +58,7 @@ class KTH(wl.WearLaw):
     hardness: wl.Stress = Field(default="2.625 GPa", validate_default=True)
     """Hardness, H [Pa]. Not printed in the paper; 2.1 GPa is 0.8 H in the wear map."""
     pressure_threshold: wl.Stress = Field(default="2.1 GPa", validate_default=True)
-    """Pressure above which the wear is that of seizure [Pa]."""
+    """Pressure at and above which the wear is that of seizure [Pa]."""
     lower_slip_speed: wl.Speed = Field(default="0.2 m/s", validate_default=True)
     """Slip speed at which severe wear begins [m/s]."""
     upper_slip_speed: wl.Speed = Field(default="0.7 m/s", validate_default=True)

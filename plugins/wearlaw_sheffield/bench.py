@@ -78,8 +78,7 @@ class Bench:
         The law may have parameters that were fitted for another contact.
         """
         contact = wl.contact_model(model) if isinstance(model, str) else model
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", wl.WearlawWarning)  # that is what the claims are about
+        with _quietly():
             return (self.rig | contact | law)(
                 normal_force_per_width=self.normal_force_per_width if loads is None else loads,
                 creepage=Q(creepage, "%"),
@@ -98,6 +97,19 @@ class Bench:
     def rate_at_loads(self, model: str, law: wl.WearLaw, loads: Array) -> Array:
         """Return the wear rate [µg/m/mm²] at loads [kN/m] and 1 % creepage."""
         return _rate(self.predict(model, law, 1.0, Q(loads, "kN/m")))
+
+    def rate_at_index(self, law: wl.WearLaw, wear_index: Array) -> Array:
+        """Return the wear rate [µg/m/mm²] of a law of Tγ at given Tγ [N], whichever creepage that is."""
+        traction = wear_index / (self.problem.normal_force * self.problem.creepage)
+        with _quietly():
+            return _rate(
+                (self.rig | wl.contact_model("global") | law)(
+                    normal_force_per_width=self.normal_force_per_width,
+                    creepage=Q(self.problem.creepage, ""),
+                    friction_coefficient=self.friction_coefficient,
+                    traction_coefficient=traction,
+                )
+            )
 
     @cached_property
     def wear_index(self) -> Array:
@@ -148,6 +160,11 @@ class Bench:
         """Return which creepages have a wear index [N] in a range, its ends included."""
         rounding = 1e-9
         return (self.wear_index >= lowest * (1.0 - rounding)) & (self.wear_index <= highest * (1.0 + rounding))
+
+
+def _quietly() -> warnings.catch_warnings[None]:
+    """Return a context without the warnings of wearlaw, which are what the claims are about."""
+    return warnings.catch_warnings(action="ignore", category=wl.WearlawWarning)
 
 
 def _rate(prediction: wl.Prediction) -> Array:

@@ -96,7 +96,7 @@ def _print_peaks() -> None:
 
 
 def _print_faults() -> None:
-    predict, conditions, kept = pipeline(), workload(SWEEP).conditions(), []
+    predict, conditions, kept, before = pipeline(), workload(SWEEP).conditions(), [], 0
     for number in range(WARM_UP + KEPT):
         if number == WARM_UP:
             before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt

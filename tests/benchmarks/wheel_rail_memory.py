@@ -37,7 +37,7 @@ def main() -> None:
         rail_head_radius=Q(300, "mm"),
         wheel_profile_radius=Q(np.inf, "mm"),
         material=wl.steel(),
-        speed=Q(30, "m/s"),
+        rolling_speed=Q(30, "m/s"),
     )
     predict = rig | wl.contact_model("fastsim") | wl.wear_law("usfd")
     _ = predict(**conditions(FEW)).wear_rate

@@ -60,6 +60,13 @@ def test_a_case_can_be_written_with_its_tests_to_run_again_anywhere(tmp_path: Pa
     assert again.model_copy(update={"measured": None}) == read.model_copy(update={"measured": None})
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_a_case_reads_the_same_as_editors_and_shells_save_it(tmp_path: Path, encoding: str) -> None:
+    path = tmp_path / "my.toml"
+    path.write_text(tomli_w.dumps(table(title="Tγ/A, Größe")), encoding=encoding, newline="\r\n")
+    assert load_case(str(path)) == case(title="Tγ/A, Größe")
+
+
 def test_a_case_with_shipped_tests_is_written_without_them() -> None:
     shipped = load_case("tassini2010")
     assert list(written(shipped)) == ["case.toml"]

@@ -114,7 +114,9 @@ FIT_START = ("fit", "tests.csv", "--contact", "exact")
         ((*FIT_START, "--free", "friction_coefficient"), "the tests hold none", 1),
         ((*FIT_START, "--law", "brr", "--free", "k"), "wear law 'brr' is stated for the means of the whole patch", 1),
         ((*FIT_START, "--law", "absent.toml", "--free", "q_s"), "cannot read wear law 'absent.toml'", 1),
-        ((*FIT, "--confidence", "95"), "confidence: must lie between 0 and 1", 1),
+        ((*FIT, "--confidence", "95"), "confidence: must be a number between 0 and 1", 1),
+        ((*FIT, "--seed", "-1"), "seed: must be a whole number that is not negative, got -1", 1),
+        ((*FIT[:-1], "1"), "bootstrap: must be at least 40", 1),
         ((*FIT, "--rig", "absent.toml"), "cannot read the rig 'absent.toml'", 1),
         ((*FIT, "--rig", "tests.csv"), "the rig 'tests.csv' is not valid TOML", 1),
         ((*FIT, "--rig", "rig.toml"), "the rig 'rig.toml' is wrong in:\n  rig.track: unknown field", 1),
@@ -125,6 +127,11 @@ FIT_START = ("fit", "tests.csv", "--contact", "exact")
         ((*COMPARE, "--free", "q_s"), "--free: write it as LAW=FIELDS, with a LAW of usfd,kth,brr, got 'q_s'", 2),
         ((*COMPARE, "--free", "usdf=q_s"), "--free: write it as LAW=FIELDS, with a LAW of usfd,kth,brr, got", 2),
         ((*COMPARE, "--free", "usfd=q_m"), "no number 'q_m'; did you mean", 1),
+        (
+            (*COMPARE, "--free", "usfd=q_s", "--free", "usfd=m_m"),
+            "--free: 'usfd' is given twice; write all its fields",
+            2,
+        ),
         ((*COMPARE, "--free", "usfd="), "--free: name at least one, got ''", 2),
     ],
 )

@@ -75,10 +75,10 @@ def test_a_fitted_law_is_taken_where_a_law_is_asked_for() -> None:
 
 
 def test_the_settings_of_a_fit_are_those_of_the_options() -> None:
-    options = ("--bootstrap", "30", "--seed", "7", "--scatter", "absolute", "--latex", "--figure-format", "pdf")
+    options = ("--bootstrap", "40", "--seed", "7", "--scatter", "absolute", "--latex", "--figure-format", "pdf")
     assert wearlaw(*FIT[:-2], *options).exit_code == 0
     found = json.loads(Path("tests-fit/fit.json").read_text(encoding="utf-8"))["provenance"]
-    assert (found["bootstrap"], found["seed"], found["scatter"]) == (30, 7, "absolute")
+    assert (found["bootstrap"], found["seed"], found["scatter"]) == (40, 7, "absolute")
     assert Path("tests-fit/parameters.tex").read_text().startswith("% \\usepackage{booktabs}")
     assert Path("tests-fit/residuals.tex").exists()
     assert Path("tests-fit/fit.pdf").read_bytes().startswith(b"%PDF")
@@ -115,8 +115,8 @@ def test_a_friction_coefficient_that_the_tests_hold_too_is_noted_and_not_used() 
 
 
 def test_progress_of_the_bootstrap_is_shown_on_a_terminal_and_not_elsewhere() -> None:
-    arguments = [*FIT[:-2], "--bootstrap", "20"]
+    arguments = [*FIT[:-2], "--bootstrap", "40"]
     assert "fitting" not in wearlaw(*arguments).stderr
     on_terminal = wearlaw(*arguments, "--overwrite", FORCE_COLOR="1", TERM="xterm")
     assert "fitting" in on_terminal.stderr
-    assert "20/20" in on_terminal.stderr
+    assert "40/40" in on_terminal.stderr

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -81,6 +82,27 @@ def test_a_changed_case_or_version_is_not_resumed_and_told_what_changed(
     monkeypatch.setattr("wearlaw.study.__version__", "99.0")
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "is 99.0")
     assert contents(folder / "out.partial") == before
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_the_record_of_what_is_run_is_written_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = long_case(folder / "big.toml")
+    interrupted(case, monkeypatch)
+    record = folder / "out.partial" / checkpoint.RUN
+    os.utime(record, ns=(0, 0))
+    monkeypatch.setattr(checkpoint.Checkpoint, "remove", lambda _: None)
+    assert wearlaw("run", case, "-o", "out", "--resume").exit_code == 0
+    assert record.stat().st_mtime_ns == 0
+
+
+@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.parametrize("record", ["", '{"wearlaw": ', "\x00\xff"])
+def test_a_spoilt_record_of_what_is_run_is_refused(record: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = long_case(folder / "big.toml")
+    interrupted(case, monkeypatch)
+    (folder / "out.partial" / checkpoint.RUN).write_text(record, encoding="latin-1")
+    message = "run.json' is no record of a run; remove 'out.partial' and begin anew"
+    assert_refused(wearlaw("run", case, "-o", "out", "--resume"), message)
 
 
 def test_something_else_in_the_place_of_the_checkpoint_is_kept(folder: Path) -> None:
@@ -178,6 +200,11 @@ def test_what_cannot_be_uncertain_is_refused_with_its_place(
 
 def test_a_case_without_uncertainty_says_what_to_add(folder: Path) -> None:
     assert_refused(wearlaw("uncertainty", long_case(folder / "case.toml")), "add a table such as [uncertainty.scatter]")
+
+
+def test_a_seed_that_is_none_is_refused(folder: Path) -> None:
+    result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--seed", "-1")
+    assert_refused(result, "seed: must be a whole number, zero or positive; got -1")
 
 
 def test_a_law_of_which_nothing_is_uncertain_is_left_out_and_said_so(folder: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -13,7 +13,8 @@ import wearlaw as wl
 from tests.core.comparisons import CREEPAGE, EXACT, GLOBAL, RIG, TRACTION, by_label, made, order, scattered, usfd
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.comparison.compare import Predictor
+from wearlaw.comparison.compare import Predictor, compare_named
+from wearlaw.comparison.result import Names
 
 # What is compared
 
@@ -93,11 +94,33 @@ def test_predictors_are_called_after_their_law_and_contact_model_as_in_a_study()
         predictors = [EXACT | usfd(), fastsim | usfd(), EXACT | wl.wear_law("kth")]
         predictors += [EXACT | usfd(q_s="50 ug/m/mm^2"), EXACT | wl.patch_mean() | wl.wear_law("brr")]
     assert set(order(wl.compare(predictors, made()))) == {
-        "usfd(q_s=55.0 µg/m/mm**2) on exact",
-        "usfd(q_s=55.0 µg/m/mm**2) on fastsim",
-        "usfd(q_s=50.0 µg/m/mm**2) on exact",
+        "usfd(q_s=55.0 µg/m/mm²) on exact",
+        "usfd(q_s=55.0 µg/m/mm²) on fastsim",
+        "usfd(q_s=50.0 µg/m/mm²) on exact",
         "kth on exact",
         "brr on exact, patch means",
+    }
+
+
+class Tabled(wl.WearLaw):
+    """A law whose parameters are a table, which cannot be hashed."""
+
+    name: ClassVar[str] = "tabled"
+    source: ClassVar[str] = "made up"
+    slopes: dict[str, float]
+
+    def rate(self, contact: wl.Contact) -> Any:
+        return self.slopes["mild"] * 1e-9 * contact.wear_index_density
+
+
+def test_laws_that_cannot_be_hashed_are_compared_like_others() -> None:
+    first, second = (Tabled(slopes={"mild": mild}) for mild in (5.0, 6.0))
+    fastsim = RIG | wl.contact_model("fastsim")
+    found = wl.compare([EXACT | first, fastsim | Tabled(slopes={"mild": 5.0}), EXACT | second], made())
+    assert set(order(found)) == {
+        "tabled(slopes={'mild': 5.0}) on exact",
+        "tabled(slopes={'mild': 5.0}) on fastsim",
+        "tabled(slopes={'mild': 6.0}) on exact",
     }
 
 
@@ -111,6 +134,9 @@ def test_two_predictors_of_one_name_are_refused() -> None:
     with pytest.raises(wl.InputError, match="two predictors are called 'usfd on exact'; give a mapping"):
         wl.compare(twice, made())
     assert len(wl.compare({"10 mm": twice[0], "8 mm": twice[1]}, made()).compared) == 2
+    named = [(Names("mine", "usfd", "exact"), one) for one in twice]
+    with pytest.raises(wl.InputError, match="two predictors are called 'mine'"):
+        compare_named(named, made(), None)
 
 
 @pytest.mark.parametrize("predictors", [[], {}])

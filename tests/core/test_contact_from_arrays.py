@@ -129,7 +129,7 @@ def test_a_node_without_area_has_no_part_in_the_mean() -> None:
 
 
 def test_parameters_of_a_line_are_warned_of_on_an_ellipse() -> None:
-    wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+    wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
     conditions: Any = {"normal_force": "80 kN", "longitudinal_creepage": "0.1 %", "friction_coefficient": 0.3}
     contact = wl.contact_model("fastsim").solve(wheel.problem(**conditions))
     with pytest.warns(wl.CalibrationWarning, match="the contact holds its cells, of an ellipse") as caught:
@@ -146,6 +146,15 @@ def test_parameters_of_another_scale_are_warned_of() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         contact.patch_mean() | wl.wear_law("usfd", fitted_for="global")
+
+
+def test_negative_wear_is_refused() -> None:
+    gain = wl.as_wear_law(inputs={"pressure": "MPa"}, returns="ug/m/mm^2", breakpoints={}, source="made up")(
+        lambda pressure: -pressure
+    )
+    contact = wl.Contact.from_arrays(**{**FOUR_NODES, "slip": "1 %"})
+    with pytest.raises(wl.ModelError, match="gives a negative wear rate"):
+        contact | gain
 
 
 def test_only_a_contact_comes_before_a_law() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping
 
@@ -16,9 +17,10 @@ from tests.line import fields_at, slip_zone
 from tests.strategies import EPS, LINE_MODELS, line_problems, log_uniform, saturation_creepage, with_creepage
 from wearlaw import Array
 from wearlaw.crossings import CROSSINGS, crossings
+from wearlaw_exact import Exact
 
 
-class Searched(type(LINE_MODELS["exact"])):  # type: ignore[misc]
+class Searched(Exact):
     """Carter's theory without its closed forms."""
 
     def crossings(self, problem: wl.LineProblem, variable: wl.FieldVariable, value: Array) -> None:  # noqa: ARG002
@@ -157,6 +159,21 @@ def test_a_hump_next_to_the_start_of_the_zone_is_found(name: str, half: float, g
     x, there = find(name, slipping, {"pressure": (2.1e9,)})
     crossed = [v for v in (-root, root) if v > start]
     assert x[there] == pytest.approx(crossed, abs=64 * EPS / math.sqrt(2.0 * gap) * a)
+
+
+class WithAHole(Searched):
+    """No pressure is known where it is close to 1 GPa, between two of the places that are searched."""
+
+    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
+        fields = super().fields(problem, nodes)
+        pressure = np.where(np.abs(fields.pressure - 1e9) < 1e6, np.nan, fields.pressure)
+        return dataclasses.replace(fields, pressure=pressure)
+
+
+def test_a_model_whose_fields_are_not_finite_next_to_a_crossing_is_refused_by_name() -> None:
+    model, problem = WithAHole(), suros(0.1)
+    with pytest.raises(wl.ModelError, match="contact model 'exact': its pressure passes a breakpoint, but cannot be f"):
+        crossings(model, problem, model.slip_zone(problem), {"pressure": (1e9,)})
 
 
 @pytest.mark.parametrize("name", MODELS)

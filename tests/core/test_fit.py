@@ -172,12 +172,12 @@ def test_a_law_of_your_own_may_have_negative_parameters() -> None:
     # The offset that made the tests is negative; a straight line is fitted by linear algebra.
     true = GLOBAL | sloping.model_copy(update={"offset": Q(-5.0, "ug/m/mm^2")})
     tests = made_up(true, 0.05, seed=3, creepage=creepage)
-    fit = wl.fit(predict, tests, free=["offset", "slope"], scatter="absolute", bootstrap=20)
+    fit = wl.fit(predict, tests, free=["offset", "slope"], scatter="absolute", bootstrap=40)
     density = true(**tests.conditions(GLOBAL.contact_model)).wear_index_density.magnitude
     slope, offset = np.polyfit(density, in_microgram(tests.wear_rate), 1)
     assert fit.parameters["offset"].magnitude == pytest.approx(offset, rel=1e-6)
     assert fit.parameters["slope"].magnitude == pytest.approx(slope, rel=1e-6)
-    line = stats.linregress(density, in_microgram(tests.wear_rate))
+    line: Any = stats.linregress(density, in_microgram(tests.wear_rate))
     assert fit.standard_errors["offset"].magnitude == pytest.approx(line.intercept_stderr, rel=1e-5)
     assert fit.provenance["wear_law"] == "not installed"
 

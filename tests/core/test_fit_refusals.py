@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -80,12 +81,15 @@ def test_parameters_that_are_not_known_are_refused() -> None:
 def test_settings_that_cannot_be_are_refused() -> None:
     predict, tests = usfd("global"), made_up(usfd("global"), 0.1)
     refused("scatter: must be", predict, tests, ["q_s"], scatter="log")
-    refused("confidence: must lie", predict, tests, ["q_s"], confidence=95)
-    refused("bootstrap: must not be negative", predict, tests, ["q_s"], bootstrap=-1)
-    refused("starts: must not be negative", predict, tests, ["q_s"], starts=-1)
+    refused("confidence: must be a number between", predict, tests, ["q_s"], confidence=95)
     refused("'m_m' is not free", predict, tests, ["q_s"], bounds={"m_m": ("1 ug/m/N", "2 ug/m/N")})
     refused("q_s: got 1.000 N", predict, tests, ["q_s"], bounds={"q_s": ("1 N", "2 N")})
     refused("q_s: got the bare number 1", predict, tests, ["q_s"], bounds={"q_s": (1.0, 2.0)})
+    refused(
+        "bounds: those of 'q_s' must be two values, low and high, got 5", predict, tests, ["q_s"], bounds={"q_s": 5}
+    )
+    refused(r"bounds: give \{name: \(low, high\)\}, got 5", predict, tests, ["q_s"], bounds=5)
+    refused("free: give names of parameters, .* got 5", predict, tests, 5)
     refused(
         "greater than zero and in ascending order",
         predict,
@@ -95,6 +99,29 @@ def test_settings_that_cannot_be_are_refused() -> None:
     )
     flat = GLOBAL | sloping.model_copy(update={"offset": Q(0.0, "ug/m/mm^2")})
     refused("first value of 'offset' is zero", flat, tests, ["offset"])
+
+
+@pytest.mark.parametrize("wrong", [-1, 1.5, "3", True, None, np.nan])
+@pytest.mark.parametrize("name", ["starts", "bootstrap", "seed"])
+def test_a_count_that_is_none_is_refused_by_name(name: str, wrong: Any) -> None:
+    says = rf"^{name}: must be a whole number that is not negative, got {wrong!r}$"
+    refused(says, usfd("global"), made_up(usfd("global"), 0.1), ["q_s"], **{name: wrong})
+
+
+@pytest.mark.parametrize("wrong", ["0.9", None, 0.0, 1.0, np.nan, [0.9]])
+def test_a_confidence_that_is_none_is_refused_by_name(wrong: Any) -> None:
+    says = rf"^confidence: must be a number between 0 and 1, such as 0\.95, got {re.escape(repr(wrong))}$"
+    refused(says, usfd("global"), made_up(usfd("global"), 0.1), ["q_s"], confidence=wrong)
+
+
+@pytest.mark.parametrize(("confidence", "least"), [(0.5, 4), (0.9, 20), (0.95, 40), (0.99, 200)])
+def test_replicates_too_few_for_the_ends_of_an_interval_are_refused(confidence: float, least: int) -> None:
+    predict, tests = usfd("global"), made_up(usfd("global"), 0.1)
+    for few in (1, least - 1):
+        says = rf"^bootstrap: must be at least {least}, .* confidence {confidence}, or 0 .*; got {few}$"
+        refused(says, predict, tests, ["q_s"], bootstrap=few, confidence=confidence)
+    enough = wl.fit(predict, tests, ["q_s"], bootstrap=least, confidence=confidence)
+    assert len(enough.samples["q_s"].magnitude) == least
 
 
 def test_too_few_tests_are_refused() -> None:
@@ -123,11 +150,13 @@ def test_rates_of_zero_are_refused_where_scatter_is_by_a_factor() -> None:
     )
 
 
-@pytest.mark.parametrize("given", [0.0, -1, True, "0.4", np.nan])
-def test_a_friction_coefficient_that_is_none_is_refused_by_name(given: Any) -> None:
-    tests = traction_tests([0.45, 0.46, 0.44], [3.0, 10.0, 20.0])
+@pytest.mark.parametrize("given", [0.0, -1, True, "0.4", np.nan, [0.4, 0.5, 0.6], np.array([0.4])])
+@pytest.mark.parametrize("free", ["friction_coefficient", "q_s"])
+def test_a_friction_coefficient_that_is_none_is_refused_by_name(free: str, given: Any) -> None:
+    tests = traction_tests([0.45, 0.46, 0.44], [3.0, 10.0, 20.0], wear_rate=Q([40.0, 50.0, 60.0], "ug/m/mm^2"))
+    predict: Any = usfd("exact") if free == "q_s" else EXACT
     with pytest.raises(wl.InputError, match=r"^friction_coefficient: "):
-        wl.fit(EXACT, tests, free=["friction_coefficient"], friction_coefficient=given, bootstrap=0)
+        wl.fit(predict, tests, free=[free], friction_coefficient=given, bootstrap=0)
 
 
 def test_measurements_that_are_not_there_are_refused() -> None:
@@ -151,10 +180,10 @@ def test_measurements_that_are_not_there_are_refused() -> None:
 @pytest.mark.parametrize("contact", ["global", "exact"])
 def test_parameters_of_a_regime_without_tests_are_refused(contact: str) -> None:
     predict = usfd(contact)
-    for seed in range(3):
-        tests = made_up(predict, 0.1, seed=seed, creepage=np.geomspace(0.1, 12.0, 15))
+    several = [made_up(predict, 0.1, seed=seed, creepage=np.geomspace(0.1, 12.0, 15)) for seed in range(3)]
+    for tests in several:
         refused(r"depends? on m_c and tr_sc.*creepage 0.1000 % to 12.00 %", predict, tests, ALL)
-    refused("depends on m_c at the best fit", predict, tests, ["m_m", "m_c"])
+    refused("depends on m_c at the best fit", predict, several[-1], ["m_m", "m_c"])
 
 
 def test_parameters_of_which_only_a_combination_matters_are_refused() -> None:
@@ -222,7 +251,7 @@ def test_an_interval_ends_at_the_bounds() -> None:
     scatter = [1.1, 0.9, 1.05, 0.97, 1.02, 0.93, 1.08, 0.99, 0.98]
     tests = wl.WearTests.from_arrays(**conditions, wear_rate=(contact | law)(**conditions).wear_rate * scatter)
     wide = law.model_copy(update={"m_c": "61.9 ug/m/N", "tr_sc": "77.26 N/mm^2"})
-    fit = wl.fit(contact | wide, tests, ["m_m", "q_s"], scatter="absolute", bootstrap=30, seed=7)
+    fit = wl.fit(contact | wide, tests, ["m_m", "q_s"], scatter="absolute", bootstrap=40, seed=7)
     for intervals in (fit.intervals, fit.covariance_intervals):
         low, high = (end.to("ug/m/N").magnitude for end in intervals["m_m"])
         assert 5.3 / 100 * (1 - 1e-12) <= low <= high <= 5.3 * 100 * (1 + 1e-12)

@@ -165,6 +165,13 @@ def test_a_file_that_describes_no_law_is_refused(text: str, says: str, tmp_path:
         wl.read_wear_law(path)
 
 
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_a_law_reads_the_same_as_editors_and_shells_save_it(encoding: str, tmp_path: Path) -> None:
+    path = tmp_path / "law.toml"
+    path.write_text("[wear_law]\nmodel = 'usfd'\nq_s = '56 µg/m/mm²'\n", encoding=encoding, newline="\r\n")
+    assert wl.read_wear_law(path) == wl.wear_law("usfd", q_s="56 ug/m/mm^2")
+
+
 def test_a_missing_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(wl.InputError, match="No such file"):
         wl.read_wear_law(tmp_path / "law.toml")

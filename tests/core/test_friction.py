@@ -26,7 +26,7 @@ WHEEL_RAIL = wl.WheelRail(
     rail_head_radius=Q(300, "mm"),
     wheel_profile_radius=Q(np.inf, "mm"),
     material=wl.steel(),
-    speed=Q(30, "m/s"),
+    rolling_speed=Q(30, "m/s"),
 )
 ELLIPTIC = [name for name, model in wl.contact_models().items() if "ellipse" in model.geometries()]
 LINE = [name for name, model in wl.contact_models().items() if "line" in model.geometries()]
@@ -132,7 +132,7 @@ def test_with_polachs_model_the_traction_rises_to_a_maximum_and_falls() -> None:
 def test_faster_rolling_means_less_traction_at_the_same_creepage() -> None:
     conditions: dict[str, Any] = {"normal_force": Q(80, "kN"), "longitudinal_creepage": Q(2, "%")}
     tractions = [
-        float((WHEEL_RAIL.model_copy(update={"speed": Q(speed, "m/s")}) | wl.contact_model("polach"))(
+        float((WHEEL_RAIL.model_copy(update={"rolling_speed": Q(speed, "m/s")}) | wl.contact_model("polach"))(
             friction_coefficient=FRICTION, **conditions
         ).traction_coefficient.magnitude)
         for speed in (5.0, 30.0, 80.0)

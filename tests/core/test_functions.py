@@ -150,11 +150,36 @@ def test_the_docstring_and_the_source_are_kept() -> None:
         ({"function": lambda w, *, k: k * w, "parameters": {"k": ""}}, "parameters.k: needs a default value"),
         ({"breakpoints": {"pressure": [1.0]}}, "breakpoints.pressure: is not one of the inputs, wear_index_density"),
         ({"jumps": [1.0]}, "jumps: name their variable"),
+        (
+            {"breakpoints": {"wear_index_density": [1.0, 2.0]}, "jumps": [2.0, 3.0]},
+            "jumps.wear_index_density: 3.0 is none of the breakpoints, 1.0, 2.0",
+        ),
+        ({"jumps": {"wear_index_density": [1.0]}}, "1.0 is none of the breakpoints, of which there are none"),
+        ({"monotone_in": ["slip"]}, "monotone_in.slip: is not one of the inputs, wear_index_density"),
+        (
+            {"function": lambda w, *, k=1.0: k * w, "parameters": {"k": "foo"}},
+            "parameters.k: 'foo' is not a known unit",
+        ),
+        ({"function": lambda w, *, k="1": k * w, "parameters": {"k": "mm"}}, "parameters.k: '1' is not a real number"),
     ],
 )
 def test_a_declaration_that_does_not_fit_is_refused(changes: dict[str, Any], message: str) -> None:
-    with pytest.raises((wl.ConfigurationError, wl.UnitError), match=message):
+    with pytest.raises(wl.ConfigurationError, match=message):
         decorate(**changes)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["rate", "units", "inputs", "returns", "declared", "function", "calibration", "name", "source", "copy", "_k"],
+)
+def test_a_parameter_that_would_hide_what_every_law_has_is_refused(name: str) -> None:
+    function = eval(f"lambda w, *, {name}=1.0: {name} * w")
+    with pytest.raises(wl.ConfigurationError, match=f"parameters.{name}: is a name that wear laws keep for themselves"):
+        decorate(function, parameters={name: ""})
+
+
+def test_a_law_shows_its_parameters_as_other_results_are_shown() -> None:
+    assert repr(two_slopes) == "two_slopes(mild=5.0 µg/m/N, severe=15.0 µg/m/N, limit=4.0 N/mm²)"
 
 
 def test_jumps_of_several_variables_are_declared_by_their_names() -> None:

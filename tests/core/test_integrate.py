@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy import optimize
 
 import wearlaw as wl
 from tests import reference
 from tests.core.integrals import FULL_SLIP, MEANS, REFERENCE, RIG, SPEED, Points, compare, integrate_wear
+from tests.roots import brentq
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q, integrate
 from wearlaw.integrate import BLOCK, NODE_BLOCK, integrate_contact, integrate_slip
@@ -82,7 +82,7 @@ def test_usfd_means_meet_their_integral_where_a_regime_just_begins(name: str, bo
             return float(at.density(min(at.peak, at.border))) / 1e6 - border
 
         low, high = 1e-7, 1.0
-        creepages.append(optimize.brentq(excess, low, high, xtol=1e-18) if excess(low) < 0.0 else 0.01)
+        creepages.append(brentq(excess, low, high, xtol=1e-18) if excess(low) < 0.0 else 0.01)
     points.creepage = np.array(creepages) * points.crowd()
     got, want, _ = compare(name, "usfd", points)
     assert (np.abs(got - want) <= within * want).all()

@@ -54,7 +54,7 @@ def straight(scatter: Any) -> tuple[Any, Solutions, Any]:
 )
 def test_the_covariance_of_a_line_is_that_of_linear_regression(within: float) -> None:
     _, fit, target = straight(np.random.default_rng(0).standard_normal(X.size))
-    textbook = stats.linregress(X, target)
+    textbook: Any = stats.linregress(X, target)
     np.testing.assert_allclose(standard_errors(fit)[0], [textbook.intercept_stderr, textbook.stderr], rtol=within)
     columns = np.stack([np.ones_like(X), X], axis=-1)
     variance = fit.cost[0] / (X.size - 2)
@@ -63,7 +63,7 @@ def test_the_covariance_of_a_line_is_that_of_linear_regression(within: float) ->
 
 def test_student_intervals_of_a_line_are_those_of_the_textbook() -> None:
     _, fit, target = straight(np.random.default_rng(0).standard_normal(X.size))
-    textbook = stats.linregress(X, target)
+    textbook: Any = stats.linregress(X, target)
     reach = stats.t.ppf(0.95, X.size - 2) * textbook.stderr
     low, high = student_intervals(fit, 0.9)
     assert (low[1], high[1]) == pytest.approx((textbook.slope - reach, textbook.slope + reach), rel=1e-6)

@@ -154,6 +154,18 @@ def test_the_table_can_be_read_as_the_program_contact_does(within: float, g: flo
     assert values(beyond**turn, nu, "contact") == pytest.approx(limits, rel=within)
 
 
+@pytest.mark.parametrize("wrong", [0.0, -1.0, math.inf, math.nan])
+def test_an_axis_ratio_that_no_ellipse_has_is_refused(wrong: float) -> None:
+    with pytest.raises(wl.InputError, match=rf"^axis_ratio: must be positive and finite, got {wrong:g}$"):
+        kalker.coefficients(np.array([1.0, wrong]), 0.28)
+
+
+@pytest.mark.parametrize("wrong", [-0.01, 0.51, 1.0, math.nan])
+def test_a_poissons_ratio_that_no_rail_has_is_refused(wrong: float) -> None:
+    with pytest.raises(wl.InputError, match=rf"^poisson_ratio: must be from 0 to 1/2, got {wrong:g}$"):
+        kalker.coefficients(np.array(1.0), wrong)
+
+
 def test_an_unknown_interpolation_is_refused() -> None:
     with pytest.raises(wl.InputError, match="interpolation: must be 'scaled' or 'contact', got 'linear'"):
         kalker.coefficients(np.array(1.0), 0.28, "linear")  # type: ignore[arg-type]

@@ -169,11 +169,10 @@ def test_closed_forms_take_batches_of_any_shape(name: str) -> None:
 def without_closed_forms(model: wl.LineContactModel) -> wl.LineContactModel:
     """Return a model with the same fields that knows neither crossings nor dissipation."""
 
-    class Plain(type(model)):  # type: ignore[misc]
-        crossings = wl.LineContactModel.crossings
-        excess_dissipation = wl.LineContactModel.excess_dissipation
-
-    plain: wl.LineContactModel = Plain(**{field: getattr(model, field) for field in type(model).model_fields})
+    cautious = {name: getattr(wl.LineContactModel, name) for name in ("crossings", "excess_dissipation")}
+    plain: wl.LineContactModel = type("Plain", (type(model),), cautious)(
+        **{field: getattr(model, field) for field in type(model).model_fields}
+    )
     return plain
 
 

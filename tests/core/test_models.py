@@ -154,7 +154,7 @@ def test_a_calibration_says_what_it_was_fitted_for() -> None:
 WRONG_RATES: dict[str, Callable[[wl.Contact], Array]] = {
     r"returned rates of shape \(\d+,\) for nodes": lambda contact: contact.density,
     "returned a rate that is not finite": lambda contact: contact.pressure * np.nan,
-    "returned a negative rate, -": lambda contact: -contact.wear_index_density,
+    "gives a negative wear rate, -": lambda contact: -contact.wear_index_density,
     "gives wear where the bodies stick": lambda contact: contact.pressure,
 }
 
@@ -169,7 +169,7 @@ def test_a_law_that_breaks_its_contract_is_named(said: str) -> None:
 
     with pytest.raises(wl.ModelError, match=f"wear law 'wrong' {said}"):
         (RIG | Ramp() | Wrong())(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4)
-    rail = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+    rail = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
     with pytest.raises(wl.ModelError, match=f"wear law 'wrong' {said}"):
         (rail | wl.contact_model("fastsim") | Wrong())(
             normal_force="80 kN", longitudinal_creepage="0.1 %", friction_coefficient=0.3

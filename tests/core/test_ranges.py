@@ -127,7 +127,7 @@ def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> 
         assert f"; {outside} of 4 operating points lie outside" in message
 
 
-ON_RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+ON_RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 
 
 @pytest.mark.parametrize("name", ["pressure", "traction", "slip", "slip_speed", "wear_index", "wear_index_density"])

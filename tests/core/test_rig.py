@@ -20,8 +20,9 @@ from wearlaw import Q
 
 def problem(rig: wl.TwinDisc = RIG, **conditions: Any) -> wl.LineProblem:
     loads = {"normal_force", "normal_force_per_width", "max_pressure"}
-    load = {} if loads & set(conditions) else {"normal_force": "7.4143 kN"}
-    return rig.problem(**{"creepage": "1 %", "friction_coefficient": 0.46, **load, **conditions})
+    load: dict[str, Any] = {} if loads & set(conditions) else {"normal_force": "7.4143 kN"}
+    given: dict[str, Any] = {"creepage": "1 %", "friction_coefficient": 0.46, **load, **conditions}
+    return rig.problem(**given)
 
 
 def test_the_suros_rig_is_that_of_the_literature() -> None:

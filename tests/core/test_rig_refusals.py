@@ -28,6 +28,11 @@ def test_a_wrong_rotational_speed_is_refused(value: Any) -> None:
         wl.TwinDisc.suros(rotational_speed=value)
 
 
+def test_a_rotational_speed_is_one_value() -> None:
+    with pytest.raises(wl.UnitError, match=r"^rotational_speed: must be one value, got an array of shape \(2,\)$"):
+        wl.TwinDisc.suros(rotational_speed=Q([400, 500], "rpm"))
+
+
 @pytest.mark.parametrize("value", ["10 Hz", Q(7, "1/s")])
 def test_a_rotational_speed_must_say_what_it_counts(value: Any) -> None:
     with pytest.raises(wl.UnitError, match=r"rotational_speed: .* revolutions or radians; give it in rpm or rad/s"):

@@ -93,11 +93,23 @@ def test_a_block_lays_out_the_conditions_of_its_points() -> None:
 
 
 def test_a_wheel_on_a_rail_is_swept_as_well() -> None:
-    rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="20 m/s")
+    rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="20 m/s")
     predict = rig | wl.contact_model("fastsim") | wl.wear_law("kth")
     given: Any = {"longitudinal_creepage": Q([0.1, 0.3], "%"), "normal_force": "80 kN", "friction_coefficient": 0.3}
     ds = predict.sweep(**given, outputs=["wear_rate", "longitudinal_force"])
     assert ds.longitudinal_force.to_numpy() == pytest.approx(predict(**given).longitudinal_force.magnitude, rel=1e-14)
+
+
+def test_a_condition_that_is_none_is_not_given() -> None:
+    nothing: dict[str, Any] = {"max_pressure": None, "traction_coefficient": None}
+    xr.testing.assert_identical(predictor().sweep(**CONDITIONS, **nothing), predictor().sweep(**CONDITIONS))
+
+
+def test_a_number_is_a_coordinate_also_as_an_array_without_axes() -> None:
+    given: Any = {"creepage": Q([1, 2], "%"), "normal_force": "7 kN"}
+    due = predictor().sweep(**given, friction_coefficient=0.46)
+    xr.testing.assert_identical(predictor().sweep(**given, friction_coefficient=np.array(0.46)), due)
+    assert due.friction_coefficient.item() == 0.46
 
 
 HEADS = {
@@ -208,6 +220,9 @@ def test_wrong_tables_are_refused(table: Any, conditions: Any, message: str) -> 
         ({"outputs": ["creepage"]}, "outputs: 'creepage' is one of the conditions"),
         ({"outputs": "wear_rate"}, "outputs: must be a list of names"),
         ({"outputs": []}, "outputs: must be a list of names"),
+        ({"outputs": 5}, "outputs: must be a list of names, .*, got 5"),
+        ({"outputs": [5]}, r"outputs: must be a list of names, .*, got \[5\]"),
+        ({"store": 5}, 'store: must be the path of a folder, such as "map.zarr"; got 5'),
         ({"workers": 0}, "workers: must be the number of processes, at least 1; got 0"),
         ({"resume": True}, "resume: needs the store"),
         ({"creepage": "1 %", "normal_force": "1 kN", "friction_coefficient": 0.3}, "no condition is an axis"),

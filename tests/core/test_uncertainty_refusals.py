@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -59,6 +60,13 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"law": {"q_s": wl.published_range()}}, "q_s: the source of wear law 'usfd' publishes no ranges"),
     ({"law": {"m_m": wl.normal("5 ug/m/N", "1 ug/m/N")}, "samples": 0}, "samples: must be a whole number"),
     ({"law": {"m_m": wl.normal("5 ug/m/N", "1 ug/m/N")}, "samples": 1e3}, "samples: must be a whole number"),
+    ({"creepage": wl.uniform("1 %", "2 %"), "seed": -1}, "seed: must be a whole number, zero or positive; got -1"),
+    ({"creepage": wl.uniform("1 %", "2 %"), "seed": "1"}, "seed: must be a whole number, zero or positive; got '1'"),
+    (
+        {"creepage": wl.uniform("1 %", "2 %"), "max_pressur": Q(1, "GPa")},
+        "max_pressur: unknown condition; did you mean 'max_pressure'",
+    ),
+    ({"creepage": wl.uniform("1 %", "2 %"), "max_pressur": None}, "max_pressur: unknown condition"),
 ]
 
 
@@ -82,10 +90,33 @@ def test_a_range_that_is_not_published_is_named() -> None:
         predict.uncertainty(**FULL_SLIP, law={"hardness": wl.published_range()})
 
 
-@pytest.mark.parametrize("factor", [1.0, 0.5, np.inf, np.nan])
-def test_a_factor_that_is_none_is_refused(factor: float) -> None:
-    with pytest.raises(wl.InputError, match="geometric_standard_deviation"):
+@pytest.mark.parametrize("factor", [1.0, 0.5, np.inf, np.nan, "1.2", [1.2, 1.3], Q(1.2, "mm"), None])
+def test_a_factor_that_is_none_is_refused(factor: Any) -> None:
+    with pytest.raises(wl.InputError, match="geometric_standard_deviation: must be a factor above 1, such as"):
         wl.lognormal(0.3, factor)
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        (Q([1, 2], "%"), r"must be one value, got an array of shape \(2,\)"),
+        ([0.3, 0.4], r"must be one value, got an array of shape \(2,\)"),
+        ("1", "'1' is not a number with a unit"),
+        (None, "None is not a real number"),
+        (True, "True is not a real number"),
+    ],
+)
+def test_what_is_no_value_is_refused_where_a_distribution_is_made(value: Any, message: str) -> None:
+    made: list[tuple[str, Callable[[], object]]] = [
+        ("low", lambda: wl.uniform(value, "2 %")),
+        ("high", lambda: wl.uniform("1 %", value)),
+        ("mean", lambda: wl.normal(value, "2 %")),
+        ("standard_deviation", lambda: wl.normal("1 %", value)),
+        ("median", lambda: wl.lognormal(value, 1.2)),
+    ]
+    for name, make in made:
+        with pytest.raises(wl.InputError, match=f"^{name}: {message}"):
+            make()
 
 
 @pytest.mark.parametrize("confidence", [0.0, 1.0, 95])

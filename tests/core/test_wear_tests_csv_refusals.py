@@ -224,7 +224,7 @@ def test_whatever_a_file_holds_it_is_refused_as_data(tmp_path_factory: pytest.Te
 
 @given(st.data())
 def test_a_table_with_any_cell_changed_is_read_or_refused_as_data(data: st.DataObject) -> None:
-    rows = [line.split(",") for line in TESTS_CSV.splitlines()]
+    rows: list[list[str]] = [[*line.split(",")] for line in TESTS_CSV.splitlines()]
     row = data.draw(st.sampled_from(rows))
     row[data.draw(st.integers(0, len(row) - 1))] = data.draw(st.text(',;"[]%/^*()-+.eE0123456789 aµNk\n#', max_size=8))
     try:

@@ -17,7 +17,7 @@ GIVEN: dict[str, Any] = {
     "rail_head_radius": Q(300, "mm"),
     "wheel_profile_radius": Q(np.inf, "mm"),
     "material": wl.steel(),
-    "speed": Q(30, "m/s"),
+    "rolling_speed": Q(30, "m/s"),
 }
 CONDITIONS: dict[str, Any] = {
     "normal_force": Q(80, "kN"),
@@ -82,7 +82,8 @@ def test_lateral_creepage_and_spin_are_zero_where_they_are_not_given() -> None:
 
 def test_friction_can_fall_with_the_creep_speed() -> None:
     friction = wl.FallingFriction(static_coefficient=0.4, limit_ratio=0.5, decay=Q(2, "s/m"))
-    found = rig().problem(**{**CONDITIONS, "friction_coefficient": friction, "lateral_creepage": Q([0.0, 0.15], "%")})
+    falling: dict[str, Any] = {"friction_coefficient": friction, "lateral_creepage": Q([0.0, 0.15], "%")}
+    found = rig().problem(**{**CONDITIONS, **falling})
     speed = 30.0 * np.hypot(2e-3, [0.0, 1.5e-3])
     assert found.friction_coefficient == pytest.approx(0.2 * np.exp(-2.0 * speed) + 0.2, rel=8 * EPS)
 
@@ -94,7 +95,7 @@ WRONG_RIGS: list[tuple[dict[str, Any], str]] = [
     ({"wheel_profile_radius": Q(-250, "mm")}, "a hollow must have a larger radius than what it embraces"),
     ({"rail_head_radius": Q(0, "mm")}, "a radius must not be zero"),
     ({"rail_head_radius": 300}, "rail_head_radius: got the bare number 300, which has no unit"),
-    ({"speed": Q(0, "m/s")}, "speed: must be greater than zero"),
+    ({"rolling_speed": Q(0, "m/s")}, "rolling_speed: must be greater than zero"),
 ]
 
 

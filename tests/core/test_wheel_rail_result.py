@@ -13,7 +13,9 @@ from tests.strategies import EPS
 from tests.testing.strips import Strips
 from wearlaw import Q
 
-RIG = wl.WheelRail(wheel_radius=Q(460, "mm"), rail_head_radius=Q(300, "mm"), material=wl.steel(), speed=Q(30, "m/s"))
+RIG = wl.WheelRail(
+    wheel_radius=Q(460, "mm"), rail_head_radius=Q(300, "mm"), material=wl.steel(), rolling_speed=Q(30, "m/s")
+)
 CONDITIONS: dict[str, Any] = {
     "normal_force": Q(80, "kN"),
     "friction_coefficient": 0.3,
@@ -45,7 +47,7 @@ def test_the_pipeline_gives_what_the_model_solves() -> None:
     assert result.lateral_force == contact.lateral_force
     assert result.spin_moment == contact.spin_moment
     assert result.wear_index.to("N").magnitude == contact.wear_index
-    power = 2e-3 * result.longitudinal_force + 1e-3 * result.lateral_force + Q(0.3, "1/m") * result.spin_moment
+    power: Any = 2e-3 * result.longitudinal_force + 1e-3 * result.lateral_force + Q(0.3, "1/m") * result.spin_moment
     assert result.wear_index.magnitude == pytest.approx(power.to("N").magnitude, rel=8 * EPS)
     assert result.tangential_force.magnitude == pytest.approx(np.hypot(contact.force_x, contact.force_y), rel=4 * EPS)
     assert result.traction_coefficient.magnitude == pytest.approx(result.tangential_force.magnitude / 8e4, rel=4 * EPS)

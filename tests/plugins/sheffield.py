@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy import optimize
 
 import wearlaw as wl
 from tests import reference
+from tests.roots import brentq
 
 LOAD, FRICTION, RADIUS = 741.43e3, 0.46, 0.047 / 4.0
 MODULUS = 206.47742e9 / (2.0 * (1.0 - 0.28**2))
@@ -67,7 +67,7 @@ def index(creepage: float) -> float:
 
 
 def creepage_at(wear_index: float) -> float:
-    return float(optimize.brentq(lambda x: index(x) - wear_index, 1e-6, 30.0))
+    return brentq(lambda x: index(x) - wear_index, 1e-6, 30.0)
 
 
 def brr_of(wear_index: float) -> float:

@@ -23,7 +23,7 @@ RIG = wl.WheelRail(
     rail_head_radius=Q(300, "mm"),
     wheel_profile_radius=Q(np.inf, "mm"),
     material=wl.steel(),
-    speed=Q(30, "m/s"),
+    rolling_speed=Q(30, "m/s"),
 )
 CONDITIONS: dict[str, Any] = {
     "normal_force": Q([[80.0], [100.0]], "kN"),

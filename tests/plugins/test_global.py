@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
+from tests.core.cases import load, table
 from tests.strategies import EPS, LINE_MODELS, line_problems, log_uniform, saturation_creepage, with_creepage
 from tests.testing.cells import Cells
 from wearlaw import Q
@@ -95,6 +98,19 @@ def test_the_exemptions_follow_the_model_that_the_total_is_from() -> None:
 def test_an_unknown_model_for_the_total_is_refused_by_name() -> None:
     with pytest.raises(wl.ConfigurationError, match=r"total_from: no contact model is called 'exakt'.*'exact'"):
         wl.contact_model("global", total_from="exakt")
+
+
+@pytest.mark.parametrize("name", ["linear", "polach", "shen_hedrick_elkins"])
+def test_a_model_that_solves_no_lines_cannot_give_the_total(name: str) -> None:
+    message = f"total_from: must be a contact model that solves line contacts, such as \"exact\"; got '{name}'"
+    with pytest.raises(wl.ConfigurationError, match=re.escape(message)):
+        wl.contact_model("global", total_from=name)
+
+
+def test_a_case_whose_total_is_of_a_model_that_solves_no_lines_is_refused_at_its_path(tmp_path: Path) -> None:
+    models = [{"model": "global", "total_from": {"model": "linear"}}]
+    with pytest.raises(wl.CaseError, match=r"contact_models\.0\.total_from: must be .* line contacts, .* 'linear'"):
+        load(tmp_path, table(contact_models=models))
 
 
 def test_its_force_is_as_exact_as_that_of_the_model_it_is_taken_from() -> None:

@@ -80,6 +80,7 @@ def test_every_declared_border_is_a_jump(variable: str, borders: tuple[float, ..
 def test_the_band_is_the_published_range_of_this_instance() -> None:
     law = kth("high", hardness="3 GPa")
     band = law.band()
+    assert band is not None
     assert band == (kth("low", hardness="3 GPa"), kth("mid", hardness="3 GPa"), law)
     rates = [float(member.rate(contact_of(slip=0.1))[0]) for member in band]
     assert rates == pytest.approx([7850.0 * k * 1e9 * 0.1 / 3e9 for k in (1e-4, 5.5e-4, 10e-4)], rel=16 * EPS)

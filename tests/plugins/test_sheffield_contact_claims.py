@@ -8,7 +8,6 @@ import re
 
 import numpy as np
 import pytest
-from scipy import optimize
 
 from tests import reference
 from tests.plugins.sheffield import (
@@ -25,6 +24,7 @@ from tests.plugins.sheffield import (
     exact_force,
     point,
 )
+from tests.roots import brentq
 from wearlaw_sheffield import contact_claims
 from wearlaw_sheffield.bench import Bench
 
@@ -37,7 +37,7 @@ def test_elliptic_bound_and_exact_theory_have_one_force_in_full_slip(bench: Benc
 
     assert_says(claim, "T differs by", apart(3.0))
     assert_says(claim, "but by", apart(FULL_SLIP))
-    assert_says(claim, "less than 2 % from", float(optimize.brentq(lambda x: apart(x) + 2.0, 1.3, 5.0)), slack=STEP)
+    assert_says(claim, "less than 2 % from", brentq(lambda x: apart(x) + 2.0, 1.3, 5.0), slack=STEP)
     assert "by 0.0 % at 25 %" in claim.found
     assert abs(apart(25.0)) < 0.05
     assert claim.holds

@@ -188,6 +188,7 @@ def test_figure_10_shows_usfd_quadratic_and_kth_linear_in_partial_slip(
     paper: dict[str, FigureData], usfd_slope: float, kth_slope: float, roundings: int
 ) -> None:
     linear, logarithmic = paper["figure_10"].panels
+    assert linear.x.ends is not None
     assert linear.x.ends == (0.0, 1.2)
     assert (logarithmic.x.scale, logarithmic.y.scale) == ("log", "log")
     assert linear.x.ends[1] < FULL_SLIP

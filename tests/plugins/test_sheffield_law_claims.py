@@ -7,7 +7,6 @@ import math
 from typing import Any
 
 import pytest
-from scipy import optimize
 
 import wearlaw as wl
 from tests.plugins.sheffield import (
@@ -23,6 +22,7 @@ from tests.plugins.sheffield import (
     kth_of,
     usfd_of,
 )
+from tests.roots import brentq
 from wearlaw_sheffield import law_claims
 from wearlaw_sheffield.bench import Bench
 
@@ -87,7 +87,7 @@ def test_kth_lies_above_usfd_in_severe_wear_at_the_high_end_only(
 
 def test_brr_and_usfd_cross_at_797_newton(bench: Bench) -> None:
     claim = law_claims.brr_comes_closer(bench)
-    crossing = float(optimize.brentq(lambda w: brr_of(w) - usfd_of(w / AREA), 500.0, 850.0))
+    crossing = brentq(lambda w: brr_of(w) - usfd_of(w / AREA), 500.0, 850.0)
     assert_says(claim, "cross at", crossing)
     assert round(crossing) == 797
     assert_says(claim, "N and", brr_of(700.0) / usfd_of(700.0 / AREA))

@@ -8,7 +8,6 @@ import re
 
 import numpy as np
 import pytest
-from scipy import optimize
 
 import wearlaw as wl
 from tests.plugins.sheffield import (
@@ -28,6 +27,7 @@ from tests.plugins.sheffield import (
     point,
     usfd,
 )
+from tests.roots import brentq
 from wearlaw_sheffield import local_claims
 from wearlaw_sheffield.bench import Bench
 from wearlaw_sheffield.wording import percent
@@ -95,8 +95,8 @@ def test_usfd_on_cells_is_good_up_to_where_the_first_cells_wear_catastrophically
     def share(creepage: float) -> float:
         return usfd(model, creepage) / usfd("global", creepage) - 1.0
 
-    high = float(optimize.brentq(lambda x: share(x) - 0.1, 5.0, 13.0))
-    low = float(optimize.brentq(lambda x: share(x) + 0.1, 0.5, 1.9))
+    high = brentq(lambda x: share(x) - 0.1, 5.0, 13.0)
+    low = brentq(lambda x: share(x) + 0.1, 0.5, 1.9)
     assert_says(claim, "too high from", high, slack=STEP)
     assert high == pytest.approx({"exact": exact, "fastsim": fastsim}[model], abs=within)
     assert_says(claim, "less than 10 % up to", low, slack=STEP)

@@ -17,6 +17,7 @@ from tests.plugins.sheffield import (
     GLOBAL,
     KTH_MID,
     LOAD,
+    MODULUS,
     SPEED,
     assert_says,
     brr_of,
@@ -95,6 +96,25 @@ def test_brr_jumps_if_the_rates_on_both_sides_are_not_the_same(
 ) -> None:
     change(monkeypatch, "brr", severe_offset=offset)  # 1.19 · 200 - 213 = 25, the plateau
     assert law_claims.brr_jumps(under(bench)).holds is holds
+
+
+@pytest.mark.parametrize("load", [2100e3, 6000e3, 14000e3])
+def test_brr_jumps_by_the_same_factor_where_200_newton_are_met_in_partial_slip(bench: Bench, load: float) -> None:
+    claim = law_claims.brr_jumps(under(bench, load))
+    area = math.sqrt(load / LOAD)  # in patches of the paper
+    assert area**3 * index(FULL_SLIP) > 200.0
+    assert_says(claim, "From", brr_of(199.999) / area)
+    assert_says(claim, "to", brr_of(200.0) / area)
+    assert_says(claim, "factor of", 84.0 / 25.0)
+    assert "only" not in claim.found
+    assert claim.holds
+
+
+def test_where_200_newton_are_not_met_the_jump_of_brr_is_told_of_with_that(bench: Bench) -> None:
+    claim = law_claims.brr_jumps(under(bench, 300e3, track_width="5 mm"))
+    assert_says(claim, "factor of", 84.0 / 25.0)
+    assert_says(claim, "Up to 25 % creepage Tγ reaches", 0.46 * 300e3 * 0.005 * 0.25)
+    assert claim.holds
 
 
 @pytest.mark.parametrize(("share", "holds"), [(0.5, True), (0.2, False)])
@@ -196,6 +216,39 @@ def test_usfd_on_cells_is_judged_within_the_creepages_of_the_tests(
     # All that slips wears severely, a share ξ/ξ_sat of the patch, but for a few cells at its ends.
     assert_says(claim, "creepage, by", 100.0 * (0.2 / FULL_SLIP - 1.0), slack=1.0)
     assert "% at 0.20 %" in claim.found
+
+
+def test_usfd_without_a_threshold_is_the_same_on_cells(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    change(monkeypatch, "usfd", q_s="1e6 ug/m/mm^2", tr_sc="1e6 N/mm^2")
+    claim = local_claims.usfd_good_in_mild_and_severe(under(bench), "exact")
+    assert claim.found.startswith("It differs by less than 10 %, by 0.0 %")
+    assert "too high" not in claim.found
+    assert "inf" not in claim.found
+    assert claim.holds
+
+
+@pytest.mark.parametrize(
+    ("load", "speed", "passed"),
+    [
+        (LOAD, 0.7, ""),
+        # FASTSIM slips by ξ - Lμ dp/dx = ξ + 1.5 ξ_sat at the trailing edge; a step of 0.02 % is a fifth of a digit.
+        (LOAD, SPEED, f" Some cells pass 0.2 m/s from {20.0 / SPEED - 1.5 * FULL_SLIP:.1f} % creepage on."),
+        (2500e3, 0.6, " Cells in the middle are above 2.1 GPa."),
+    ],
+)
+def test_cells_pass_a_threshold_of_kth_only_where_they_do(bench: Bench, load: float, speed: float, passed: str) -> None:
+    claim = local_claims.kth_same_on_both_theories(under(bench, load, rolling_speed=wl.Q(speed, "m/s")))
+    assert claim.found.endswith(f"where the patch slips.{passed}")
+
+
+@pytest.mark.parametrize(("diameter", "by_pressure"), [(0.047, True), (0.6, False)])
+def test_over_the_load_local_kth_parts_by_the_pressure_where_that_passes_its_threshold(
+    bench: Bench, diameter: float, by_pressure: bool
+) -> None:
+    claim = local_claims.kth_local_like_global(under(bench, diameter=wl.Q(diameter, "m")))
+    passed_at = 2.1e9**2 * math.pi * diameter / 4.0 / MODULUS  # p0² = PE*/(πR)
+    assert (passed_at < 14829e3) is by_pressure
+    assert ("above 2.1 GPa and the mean pressure is not" in claim.found) is by_pressure
 
 
 def test_usfd_on_cells_is_too_high_with_both_theories_or_not_as_claimed(

@@ -15,11 +15,13 @@ class Cells(wl.ContactModel):
 
     name: ClassVar[str] = "cells"
     source: ClassVar[str] = "J. J. Kalker, Vehicle System Dynamics 11 (1982) 1-13"
-    # Slip begins anywhere in a cell of 1/400 of the patch, where q·s is at most 9/8 of its mean in full slip.
-    accuracy: ClassVar[float] = 1e-2
-
     cells: int = 400
     """Number of cells [-]."""
+
+    @property
+    def accuracy(self) -> float:
+        # Slip begins anywhere in a cell of 1/400 of the patch, where q·s is at most 9/8 of its mean in full slip.
+        return 1e-2
 
     def refined(self) -> Cells:
         return self.model_copy(update={"cells": 2 * self.cells})

@@ -19,13 +19,15 @@ class Strips(wl.ContactModel):
     name: ClassVar[str] = "strips"
     source: ClassVar[str] = "J. J. Kalker, Vehicle System Dynamics 11 (1982) 1-13"
 
-    # What the traction would grow by behind the last middle is left out: half of one of 32 cells, of the mean slip.
-    elliptic_accuracy: ClassVar[float] = 1.6e-2
-
     cells: int = 32
     """Number of cells of a strip [-]."""
     strips: int = 32
     """Number of strips [-]."""
+
+    @property
+    def elliptic_accuracy(self) -> float:
+        # What the traction would grow by behind the last middle is left out: half of one of 32 cells, of the mean slip.
+        return 1.6e-2
 
     def refined(self) -> Strips:
         return self.model_copy(update={"cells": 2 * self.cells, "strips": 2 * self.strips})

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from wearlaw.comparison.compare import Predictor
     from wearlaw.comparison.result import Comparison
     from wearlaw.contact_pipeline import ContactPipeline
+    from wearlaw.figures.formats import FigureFormat
     from wearlaw.fitting.result import Fit
-    from wearlaw.output import FigureFormat
     from wearlaw.pairs import Pair
     from wearlaw.pipeline import Pipeline
     from wearlaw.rig import TwinDisc
@@ -212,10 +212,7 @@ def _compare(
     predictors: list[tuple[Names, Predictor]] = [
         (Names(pair.label, pair.wear_law, pair.contact_model), pair.pipeline) for pair in pairs
     ]
-    for setting in free:
-        law, _, fields = setting.rpartition("=")
-        if law not in named:
-            raise click.UsageError(f"--free: write it as LAW=FIELDS, with a LAW of {laws}, got '{setting}'")
+    for law, fields in _freed(free, list(named)).items():
         of_law = [pair for pair in pairs if pair.wear_law == law]
         fits = _fits(of_law, listed("--free", fields), tests, notes, friction_coefficient=friction, scatter=scatter)
         predictors += [(Names(f"{law} fitted on {contact}", f"{law} fitted", contact), one) for contact, one in fits]
@@ -223,6 +220,19 @@ def _compare(
     for note in comparison.notes:
         notes.add(note)
     return comparison
+
+
+def _freed(settings: tuple[str, ...], laws: list[str]) -> dict[str, str]:
+    """Return the fields that are fitted, as they are written, by law."""
+    found: dict[str, str] = {}
+    for setting in settings:
+        law, _, fields = setting.rpartition("=")
+        if law not in laws:
+            raise click.UsageError(f"--free: write it as LAW=FIELDS, with a LAW of {','.join(laws)}, got '{setting}'")
+        if law in found:
+            raise click.UsageError(f"--free: '{law}' is given twice; write all its fields behind one, between commas")
+        found[law] = fields
+    return found
 
 
 def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **settings: Any) -> list[tuple[str, Fit]]:
@@ -273,4 +283,3 @@ def _tests(path: str, friction: float | None, fitted: bool, notes: Notes) -> Wea
 
 
 COMMANDS = (fit, compare)
-"""The commands of this module."""

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 import click
+
+from wearlaw.figures.formats import FigureFormat
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
@@ -15,7 +17,7 @@ def written_formats(command: CommandT) -> CommandT:
     formats = click.option(
         "--figure-format",
         "figure_formats",
-        type=click.Choice(["png", "pdf", "svg"]),
+        type=click.Choice(get_args(FigureFormat)),
         multiple=True,
         default=["png"],
         show_default=True,

@@ -142,4 +142,3 @@ def _model_class(name: str) -> type[Model]:
 
 
 COMMANDS = (list_plugins, show, new_plugin, check)
-"""The commands of this module."""

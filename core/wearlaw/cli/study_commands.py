@@ -20,7 +20,7 @@ from wearlaw.sweeping.progress import Bar
 from wearlaw.version import __version__
 
 if TYPE_CHECKING:
-    from wearlaw.output import FigureFormat
+    from wearlaw.figures.formats import FigureFormat
     from wearlaw.report.tables import NamedTable
     from wearlaw.study import Study
     from wearlaw.sweeping.checkpoint import Checkpoint
@@ -129,4 +129,3 @@ def _summary(summary: NamedTable) -> Table:
 
 
 COMMANDS = (run, case, schema)
-"""The commands of this module."""

@@ -12,7 +12,7 @@ from wearlaw.cli.printing import print_notes, print_results
 from wearlaw.sweeping.progress import Bar
 
 if TYPE_CHECKING:
-    from wearlaw.output import FigureFormat
+    from wearlaw.figures.formats import FigureFormat
 
 
 @click.command()
@@ -60,4 +60,3 @@ def uncertainty(
 
 
 COMMANDS = (uncertainty,)
-"""The commands of this module."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.case import labelled
+from wearlaw.case import labels
 from wearlaw.comparison.agreement import Information, agreement
 from wearlaw.comparison.result import Compared, Comparison, Names
 from wearlaw.composition import needs_discs
@@ -24,8 +24,6 @@ from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-
-ModelT = TypeVar("ModelT", bound=Model)
 
 Predictor: TypeAlias = Pipeline[TwinDisc] | Fit
 """What predicts a wear rate."""
@@ -76,6 +74,10 @@ def compare_named(
     named: Sequence[tuple[Names, Predictor]], tests: WearTests, friction_coefficient: ArrayLike | None
 ) -> Comparison:
     """Return what `compare` does, for predictors with the names of their laws and contact models."""
+    taken = [names.label for names, _ in named]
+    twice = [label for label in taken if taken.count(label) > 1]
+    if twice:
+        raise InputError(f"two predictors are called '{twice[0]}'; give a mapping from names of your own to them")
     notes = Notes()
     used = _with_wear_rate(tests, notes)
     compared = [_compared(*one, used, friction_coefficient, notes) for one in named]
@@ -98,29 +100,29 @@ def _named(predictors: Mapping[str, Predictor] | Sequence[Predictor]) -> list[tu
     names = _names(given)
     if isinstance(predictors, Mapping):
         names = [Names(own, own, of_models.contact) for own, of_models in zip(predictors, names, strict=True)]
-    taken = [one.label for one in names]
-    twice = [label for label in taken if taken.count(label) > 1]
-    if twice:
-        raise InputError(f"two predictors are called '{twice[0]}'; give a mapping from names of your own to them")
     return list(zip(names, given, strict=True))
 
 
 def _names(predictors: Sequence[Predictor]) -> list[Names]:
     """Return what predictors are called after their models, as in a study."""
-    models = _names_of([_pipeline(one).contact.contact_model for one in predictors])
-    laws = _names_of([one.wear_law for one in predictors if isinstance(one, Pipeline)])
+    models = _labels([_pipeline(one).contact.contact_model for one in predictors])
+    laws = iter(_labels([one.wear_law for one in predictors if isinstance(one, Pipeline)]))
     names = []
-    for one in predictors:
-        stage = _pipeline(one).contact
-        contact = models[stage.contact_model] + (", patch means" if stage.use_patch_mean else "")
-        law = laws[one.wear_law] if isinstance(one, Pipeline) else f"{_pipeline(one).wear_law.name} fitted"
+    for one, model in zip(predictors, models, strict=True):
+        contact = model + (", patch means" if _pipeline(one).contact.use_patch_mean else "")
+        law = next(laws) if isinstance(one, Pipeline) else f"{_pipeline(one).wear_law.name} fitted"
         names.append(Names(f"{law} on {contact}", law, contact))
     return names
 
 
-def _names_of(models: Sequence[ModelT]) -> dict[ModelT, str]:
-    distinct = list(dict.fromkeys(models))
-    return {model: label for label, model in labelled(distinct).items()}
+def _labels(models: Sequence[Model]) -> list[str]:
+    """Return the label of each model, equal ones the same; a model may hold what cannot be hashed."""
+    distinct: list[Model] = []
+    for model in models:
+        if model not in distinct:
+            distinct.append(model)
+    found = labels(distinct)
+    return [found[distinct.index(model)] for model in models]
 
 
 def _pipeline(predictor: Predictor) -> Pipeline[TwinDisc]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from numbers import Integral
 from typing import Literal
 
 import numpy as np
@@ -62,7 +64,8 @@ def fit(
     starts : int
         Starting points besides the given law, within a factor of ten of it.
     bootstrap : int
-        Replicates of the bootstrap; 0 for intervals by Student's t alone.
+        Replicates of the bootstrap, at least 2/(1 - confidence), so that there are some beyond each end of an interval;
+        0 for intervals by Student's t alone.
     seed : int
         Of all random numbers; the same seed gives the same fit.
     confidence : float
@@ -73,13 +76,15 @@ def fit(
     Raises
     ------
     FitError
-        If a parameter is not known or not determined by the tests, there are too few of them, or no fit is found.
+        If a parameter is not known or not determined by the tests, there are too few of them, no fit is found, or a
+        setting cannot be.
 
     Notes
     -----
     G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989, chapters 2, 5 and 14.
     """
-    _check_settings(starts, bootstrap, confidence, scatter)
+    _check_settings(scatter, confidence, starts=starts, bootstrap=bootstrap, seed=seed)
+    _check_replicates(bootstrap, confidence)
     task = Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
     replicates = None
     try:
@@ -94,14 +99,24 @@ def fit(
     return found
 
 
-def _check_settings(starts: int, bootstrap: int, confidence: float, scatter: str) -> None:
+def _check_settings(scatter: object, confidence: object, **counts: object) -> None:
     if scatter not in ("relative", "absolute"):
         raise FitError(f'scatter: must be "relative" or "absolute", got {scatter!r}')
-    if not 0.0 < confidence < 1.0:
-        raise FitError(f"confidence: must lie between 0 and 1, such as 0.95, got {confidence!r}")
-    for name, value in (("starts", starts), ("bootstrap", bootstrap)):
-        if value < 0:
-            raise FitError(f"{name}: must not be negative, got {value!r}")
+    if not (isinstance(confidence, float | np.floating) and 0.0 < confidence < 1.0):
+        raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {confidence!r}")
+    for name, value in counts.items():
+        if isinstance(value, bool) or not isinstance(value, Integral) or value < 0:
+            raise FitError(f"{name}: must be a whole number that is not negative, got {value!r}")
+
+
+def _check_replicates(bootstrap: int, confidence: float) -> None:
+    """Refuse replicates so few that the ends of an interval would be made up from the outermost ones."""
+    least = math.ceil(round(2.0 / (1.0 - confidence), 6))  # 1 - 0.9 and its like are off by a rounding
+    if 0 < bootstrap < least:
+        raise FitError(
+            f"bootstrap: must be at least {least}, for replicates beyond both ends of an interval of confidence"
+            f" {confidence:.6g}, or 0 for intervals by Student's t; got {bootstrap}"
+        )
 
 
 def _warn(task: Task, best: Solutions, replicates: Replicates | None) -> None:

@@ -71,6 +71,8 @@ class FreeParameters:
         positive = {name: _is_positive(law, name) for name in like} if law is not None else {}
         if friction is not None:
             like[FRICTION], positive[FRICTION] = float(friction), True
+        if not isinstance(bounds, Mapping):
+            raise FitError(f"bounds: give {{name: (low, high)}}, got {bounds!r}")
         for name in bounds:
             if name not in free:
                 raise FitError(f"bounds: '{name}' is not free{did_you_mean(name, free)} Free are: {', '.join(free)}")
@@ -144,6 +146,14 @@ def _is_positive(record: Configuration, name: str) -> bool:
     )
 
 
+def named(free: Any) -> Sequence[str]:
+    """Return the names of free parameters, of which one alone may be a text."""
+    names = [free] if isinstance(free, str) else free
+    if not (isinstance(names, Sequence) and all(isinstance(name, str) for name in names)):
+        raise FitError(f'free: give names of parameters, such as ["q_s", "m_c"], got {free!r}')
+    return names
+
+
 def _ends(name: str, like: Quantity | float, positive: bool, given: tuple[Any, Any] | None) -> tuple[float, float]:
     """Return the bounds of a parameter in SI."""
     first = number_in_si(like)
@@ -153,6 +163,8 @@ def _ends(name: str, like: Quantity | float, positive: bool, given: tuple[Any, A
         return (
             (first / FACTOR, first * FACTOR) if positive else (first - FACTOR * abs(first), first + FACTOR * abs(first))
         )
+    if not (isinstance(given, tuple | list) and len(given) == 2):
+        raise FitError(f"bounds: those of '{name}' must be two values, low and high, got {given!r}")
     try:
         low, high = (_end_in_si(name, like, end) for end in given)
     except UnitError as error:

@@ -12,6 +12,7 @@ from wearlaw import plugins
 from wearlaw.errors import ConfigurationError, InputError, OutputError, with_problems
 from wearlaw.models import WearLaw
 from wearlaw.specification import specification
+from wearlaw.text_files import read_text
 
 
 def write_wear_law(path: str | os.PathLike[str], law: WearLaw, provenance: Mapping[str, Any]) -> None:
@@ -46,7 +47,7 @@ def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
         If the file is missing or is not TOML.
     """
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        return tomllib.loads(read_text(path))
     except OSError as error:
         raise InputError(f"cannot read {subject} '{path}': {error.strerror or error}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

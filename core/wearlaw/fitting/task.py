@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from wearlaw.arrays import Array
 from wearlaw.contact_pipeline import ContactPipeline
 from wearlaw.errors import FitError
-from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
+from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, named
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
 from wearlaw.fitting.observations import AnyPipeline, Observations, Scatter, observe
@@ -59,15 +59,16 @@ class Task:
         FitError
             If the tests do not hold what is needed, or a parameter is not known.
         """
-        law = None
+        law, friction = None, _one_value(friction)
         if isinstance(predict, Pipeline):
             law = predict.wear_law.explicit()
             predict = Pipeline(contact=predict.contact, wear_law=law)
         elif not isinstance(predict, ContactPipeline):
             raise FitError(f"predict: give a rig with a contact model, and a wear law or none, not {predict!r}")
+        free = named(free)
         fits_friction = FRICTION in free
         first = _first_friction(tests, friction) if fits_friction else friction
-        parameters = FreeParameters.of(law, [free] if isinstance(free, str) else free, first, bounds)
+        parameters = FreeParameters.of(law, free, first, bounds)
         stated = law is not None and tests.wear_rate_uncertainty is not None
         chosen: Scatter = "uncertainty" if stated else scatter
         observations = observe(predict, tests, first, fits_friction, chosen)
@@ -122,6 +123,18 @@ class Task:
                 self.weights[groups == group] = 1.0 / scatter
 
 
+def _one_value(friction: float | None) -> float | None:
+    if friction is None:
+        return None
+    value = coefficient(friction, FRICTION)
+    if value.ndim:
+        raise FitError(
+            f"{FRICTION}: must be one number for all tests, such as 0.46, got an array of shape {value.shape}; one for"
+            " each can stand in a column of the tests"
+        )
+    return float(value)
+
+
 def _first_friction(tests: WearTests, given: float | None) -> float:
     """Return a friction coefficient to start from: the given one, that of the tests, or the greatest traction."""
     traction = tests.columns.get("traction_coefficient")
@@ -131,7 +144,7 @@ def _first_friction(tests: WearTests, given: float | None) -> float:
             " 'traction_coefficient', 'tangential_force [N]' or 'frictional_heat [W]', or give friction_coefficient"
         )
     if given is not None:
-        return float(coefficient(given, FRICTION))
+        return given
     if tests.friction_coefficient is not None:
         return float(np.mean(tests.friction_coefficient))
     return float(np.nanmax(traction))

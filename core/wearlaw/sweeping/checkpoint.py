@@ -10,7 +10,7 @@ import numpy as np
 
 from wearlaw.errors import OutputError
 from wearlaw.sweeping.evaluation import Job, Seen
-from wearlaw.sweeping.journal import Journal, Run, check_same, run_of
+from wearlaw.sweeping.journal import Journal, Run, check_same, run_of, write_whole
 from wearlaw.sweeping.points import Points
 from wearlaw.sweeping.targets import Arrays, Memory
 
@@ -32,7 +32,7 @@ class Checkpoint:
     Raises
     ------
     OutputError
-        If there is one that is not to be resumed, or that is of another run.
+        If there is one that is not to be resumed, or that is of another run or spoilt.
     """
 
     def __init__(self, folder: Path, run: Run, resume: bool) -> None:
@@ -46,15 +46,27 @@ class Checkpoint:
             raise OutputError(
                 f"output: '{folder}' holds what an interrupted run has done; go on with it by --resume, or remove it"
             )
-        check_same(folder, json.loads((folder / RUN).read_text(encoding="utf-8")), self._run)
+        check_same(folder, self._before(), self._run)
 
     def target(self, key: str, job: Job, points: Points) -> Arrays:
         """Return where the results go of what has the name `key` in the run."""
         if len(points.blocks()) == 1:
             return Memory(job, points)
-        self.folder.mkdir(parents=True, exist_ok=True)
-        (self.folder / RUN).write_text(json.dumps(self._run), encoding="utf-8")
+        if not (self.folder / RUN).exists():
+            self.folder.mkdir(parents=True, exist_ok=True)
+            write_whole(self.folder / RUN, json.dumps(self._run))
         return Files(job, points, self.folder / key)
+
+    def _before(self) -> Run:
+        """Return what the folder holds a part of."""
+        try:
+            run: Run = json.loads((self.folder / RUN).read_bytes())
+        except ValueError:
+            path = self.folder / RUN
+            raise OutputError(
+                f"output: '{path}' is no record of a run; remove '{self.folder}' and begin anew"
+            ) from None
+        return run
 
     def remove(self) -> None:
         """Remove the folder, since the results are elsewhere."""

@@ -16,7 +16,9 @@ from wearlaw.errors import InputError, did_you_mean
 from wearlaw.extremes import extremes
 from wearlaw.pipeline import Pipeline
 from wearlaw.ranges import RangeWatch
+from wearlaw.registry import symbol
 from wearlaw.sweeping.points import Points
+from wearlaw.units import Quantity
 from wearlaw.variables import UNITS
 
 Outputs = dict[str, Array]
@@ -101,25 +103,32 @@ def output_units(pipeline: Pipeline[Any], points: Points, outputs: list[str]) ->
     """
     problem = pipeline.contact.rig.problem(**points.part([slice(0, 1)] * len(points.dims)).conditions())
     prediction = pipeline.watched(problem, RangeWatch(pipeline.wear_law))
+    given = {*points.varying, *points.fixed}
     units = {}
     for name in outputs:
-        value = getattr(prediction, name, None) if name in _properties(prediction) else None
-        if not isinstance(value, pint.Quantity) or np.shape(value.magnitude) != (1,):
-            known = [one for one in _properties(prediction) if one in UNITS and one not in points.varying]
+        if name in given:
+            raise InputError(f"outputs: '{name}' is one of the conditions, and among the coordinates of the results")
+        value = _output(prediction, name)
+        if value is None:
+            known = [one for one in dir(prediction) if one not in given and _output(prediction, one) is not None]
             raise InputError(
                 f"outputs: there is no '{name}' at an operating point{did_you_mean(name, known)}"
                 f" There are: {', '.join(known)}"
             )
-        if name in points.varying or name in points.fixed:
-            raise InputError(f"outputs: '{name}' is one of the conditions, and among the coordinates of the results")
-        units[name] = UNITS.get(name, str(value.units))
+        units[name] = UNITS.get(name, _written(value))
     return units
 
 
-def _properties(result: object) -> list[str]:
-    """Return the names of the public properties of a result."""
-    found = [name for name in dir(type(result)) if not name.startswith("_")]
-    return [name for name in found if not callable(getattr(type(result), name))]
+def _output(prediction: object, name: str) -> Quantity | None:
+    """Return a property of a prediction of one point that can be an output, or None if it is none."""
+    there = not name.startswith("_") and hasattr(type(prediction), name)
+    value = getattr(prediction, name) if there else None
+    return value if isinstance(value, pint.Quantity) and np.shape(value.magnitude) == (1,) else None
+
+
+def _written(quantity: Quantity) -> str:
+    """Return the unit of a quantity in the way of `UNITS`."""
+    return symbol(quantity.units, "~C").replace("µ", "u").replace("**", "^")
 
 
 def _in_unit(quantity: Any, unit: str) -> Array:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Self
+
+import pint
 
 from wearlaw import plugins
 from wearlaw.configuration import parts
@@ -18,6 +21,7 @@ from wearlaw.shelf import Shelf
 from wearlaw.sweeping.evaluation import Job, Seen
 from wearlaw.sweeping.points import Points, Varying
 from wearlaw.tangential import Model
+from wearlaw.units import text_of
 from wearlaw.version import __version__
 
 Run = dict[str, Any]
@@ -38,12 +42,17 @@ def run_of(job: Job, points: Points) -> Run:
         "plugins": provided,
         "kernels": "compiled" if accelerated(WORTHWHILE) else "NumPy",
         "predict": job.pipeline.model_dump(mode="json"),
-        "conditions": {name: str(value) for name, value in points.fixed.items()} | varying,
+        "conditions": {name: _text(value) for name, value in points.fixed.items()} | varying,
         "outputs": dict(job.units),
         "blocks": list(points.block_shape),
     }
     as_read: Run = json.loads(json.dumps(run))
     return as_read
+
+
+def _text(value: object) -> str:
+    """Return a condition as text with all its digits."""
+    return text_of(value) if isinstance(value, pint.Quantity) else str(value)
 
 
 def _summary(one: Varying) -> str:
@@ -74,7 +83,14 @@ def _changes(path: str, before: Any, now: Any) -> Iterator[str]:
         for key in dict.fromkeys([*before, *now]):
             yield from _changes(f"{path}.{key}" if path else key, before.get(key, "nothing"), now.get(key, "nothing"))
     elif before != now:
-        yield f"{path}: was {before}, is {now}"
+        yield f"{path}: was {before}, is {now}".replace("**2", "²").replace("**3", "³")
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a file that is there whole or not at all, also if the process is killed."""
+    beside = path.with_name(f"{path.name}.partial")
+    beside.write_text(text, encoding="utf-8")
+    beside.replace(path)
 
 
 class Journal:
@@ -95,7 +111,7 @@ class Journal:
     @classmethod
     def begin(cls, path: Path, run: Run) -> Self:
         """Return a journal in which nothing is done yet."""
-        path.write_text(json.dumps(run) + "\n", encoding="utf-8")
+        write_whole(path, json.dumps(run) + "\n")
         return cls(path, {})
 
     @classmethod
@@ -107,15 +123,16 @@ class Journal:
         OutputError
             If it is that of another run.
         """
-        text = path.read_text(encoding="utf-8")
-        whole = text[: text.rfind("\n") + 1]
+        text = path.read_bytes()
+        whole = text[: text.rfind(b"\n") + 1]
         try:
             before, *lines = map(json.loads, whole.splitlines())
             done = {line.pop("block"): Seen(**line) for line in lines}
         except (ValueError, TypeError, KeyError):
             raise OutputError(f"'{path}' is no record of a sweep; remove it, and what it belongs to") from None
         check_same(where, before, run)
-        path.write_text(whole, encoding="utf-8")
+        if len(whole) < len(text):
+            os.truncate(path, len(whole))
         return cls(path, done)
 
     def add(self, number: int, seen: Seen) -> None:

@@ -180,7 +180,7 @@ def outer_product(conditions: Mapping[str, Any]) -> Points:
 
 
 def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Varying]]:
-    """Return the conditions that are one value, as they were given, and those that are axes.
+    """Return the conditions that are one value, as they were given, and those that are axes; None is not given.
 
     Raises
     ------
@@ -190,6 +190,8 @@ def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Vary
     fixed: dict[str, Any] = {}
     varying: dict[str, Varying] = {}
     for name, value in conditions.items():
+        if value is None:  # not given, as in a prediction
+            continue
         values, unit = _plain(name, value)
         if np.ndim(values) == 0:
             fixed[name] = value
@@ -230,8 +232,10 @@ def axis(name: str, dim: str, values: object, unit: str | None) -> Varying:
 
 
 def _number(value: Any) -> Any:
-    """Return a condition as a coordinate without axes, or None if it is no number, as a law of friction is none."""
+    """Return a condition as a coordinate without axes, or None if it is a law of friction."""
+    if hasattr(value, "coefficient"):
+        return None
     quantity = parse(value) if isinstance(value, str) else value
     if isinstance(quantity, pint.Quantity):
         return (), float(quantity.magnitude), {"units": symbol(quantity.units, "~C")}
-    return ((), float(quantity), {"units": ""}) if isinstance(quantity, int | float | np.number) else None
+    return (), float(quantity), {"units": ""}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import pickle
 import warnings
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +22,7 @@ from wearlaw.sweeping.store import Store, finished
 from wearlaw.sweeping.tables import from_table
 from wearlaw.sweeping.targets import Memory, Target
 from wearlaw.sweeping.worker import evaluated
+from wearlaw.units import shortened
 
 if TYPE_CHECKING:
     import xarray
@@ -42,6 +43,8 @@ def sweep(
     """Return predictions at all points of a sweep; see `Pipeline.sweep`."""
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise InputError(f"workers: must be the number of processes, at least 1; got {workers!r}")
+    if not isinstance(store, str | os.PathLike | None):
+        raise InputError(f'store: must be the path of a folder, such as "map.zarr"; got {shortened(store)}')
     points = outer_product(conditions) if table is None else from_table(table, conditions)
     job = _checked_job(pipeline, points, outputs, workers > 1 or client is not None)
     if store is None:
@@ -69,12 +72,13 @@ def _checked_job(pipeline: Pipeline[Any], points: Points, outputs: Sequence[str]
     InputError
         If they are not, or if other processes could not find a model.
     """
-    if isinstance(outputs, str) or not outputs:
+    names = list(outputs) if isinstance(outputs, Iterable) and not isinstance(outputs, str) else []
+    if not names or not all(isinstance(name, str) for name in names):
         raise InputError(f'outputs: must be a list of names, such as ["wear_rate"], got {outputs!r}')
     _check_conditions(pipeline, points)
     if elsewhere:
         check_importable(pipeline)
-    return Job(pipeline, output_units(pipeline, points, list(dict.fromkeys(outputs))))
+    return Job(pipeline, output_units(pipeline, points, list(dict.fromkeys(names))))
 
 
 def check_importable(pipeline: Pipeline[Any]) -> None:

@@ -24,7 +24,7 @@ from wearlaw.wheel_rail import WheelRail
 SATURATION = (3.0, 32.0 / (3.0 * np.pi))
 """Reduced creepages at which a theory may saturate."""
 
-WHEEL_RAIL = WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=steel(), speed="30 m/s")
+WHEEL_RAIL = WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=steel(), rolling_speed="30 m/s")
 """A new wheel on straight track."""
 
 

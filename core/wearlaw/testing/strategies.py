@@ -81,7 +81,7 @@ def wheel_rails(draw: st.DrawFn) -> WheelRail:
         rail_head_radius=Q(1.0 / head if head else np.inf, "m"),
         wheel_profile_radius=Q(1.0 / profile if profile else np.inf, "m"),
         material=draw(materials()),
-        speed=Q(draw(log_uniform(1e-2, 1e2)), "m/s"),
+        rolling_speed=Q(draw(log_uniform(1e-2, 1e2)), "m/s"),
     )
 
 

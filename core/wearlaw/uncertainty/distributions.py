@@ -9,8 +9,9 @@ import numpy as np
 import pint
 
 from wearlaw.arrays import Array
-from wearlaw.errors import InputError
-from wearlaw.units import Quantity, QuantityLike, parse, text_of
+from wearlaw.errors import InputError, UnitError
+from wearlaw.registry import symbol
+from wearlaw.units import Quantity, QuantityLike, coefficient, parse, real_array, shortened
 
 Value = Quantity | float
 """A value with its unit, or a plain number where the thing has none."""
@@ -45,8 +46,7 @@ class Distribution:
         return values
 
     def __str__(self) -> str:
-        first, second = (text_of(v) if isinstance(v, pint.Quantity) else f"{v:g}" for v in (self.first, self.second))
-        return f"{self.kind}({first}, {second})"
+        return f"{self.kind}({_shown(self.first)}, {_shown(self.second)})"
 
 
 @dataclass(frozen=True)
@@ -56,12 +56,12 @@ class PublishedRange:
 
 def uniform(low: QuantityLike | float, high: QuantityLike | float) -> Distribution:
     """Return the distribution in which all values from `low` to `high` are equally likely."""
-    return Distribution("uniform", _value(low), _value(high))
+    return Distribution("uniform", _value(low, "low"), _value(high, "high"))
 
 
 def normal(mean: QuantityLike | float, standard_deviation: QuantityLike | float) -> Distribution:
     """Return the normal distribution."""
-    return Distribution("normal", _value(mean), _value(standard_deviation))
+    return Distribution("normal", _value(mean, "mean"), _value(standard_deviation, "standard_deviation"))
 
 
 def lognormal(median: QuantityLike | float, geometric_standard_deviation: float) -> Distribution:
@@ -74,11 +74,15 @@ def lognormal(median: QuantityLike | float, geometric_standard_deviation: float)
     geometric_standard_deviation : float
         The factor, above 1, to which two thirds of the values stay close to the median.
     """
-    if not (np.ndim(geometric_standard_deviation) == 0 and 1.0 < geometric_standard_deviation < np.inf):
-        raise InputError(
-            f"geometric_standard_deviation: must be a factor above 1, such as 1.2; got {geometric_standard_deviation!r}"
-        )
-    return Distribution("lognormal", _value(median), float(geometric_standard_deviation))
+    name = "geometric_standard_deviation"
+    try:
+        factor = coefficient(geometric_standard_deviation, name)
+    except UnitError:
+        factor = np.zeros(())
+    if not (factor.ndim == 0 and factor > 1.0):
+        given = shortened(geometric_standard_deviation)
+        raise InputError(f"{name}: must be a factor above 1, such as 1.2; got {given}")
+    return Distribution("lognormal", _value(median, "median"), float(factor))
 
 
 def published_range() -> PublishedRange:
@@ -89,6 +93,19 @@ def published_range() -> PublishedRange:
     return PublishedRange()
 
 
-def _value(value: QuantityLike | float) -> Value:
-    found = parse(value) if isinstance(value, str) else value
-    return float(found) if isinstance(found, int | float) else found
+def _value(value: QuantityLike | float, name: str) -> Value:
+    """Return one of the two numbers of a distribution, or raise an `InputError` that names the argument."""
+    try:
+        found = parse(value) if isinstance(value, str) else value
+        magnitude = real_array(found.magnitude if isinstance(found, pint.Quantity) else found)
+    except UnitError as error:
+        raise UnitError(f"{name}: {error}") from None
+    if magnitude.ndim:
+        raise InputError(f"{name}: must be one value, got an array of shape {magnitude.shape}")
+    return found if isinstance(found, pint.Quantity) else float(magnitude)
+
+
+def _shown(value: Value) -> str:
+    if not isinstance(value, pint.Quantity):
+        return f"{value:g}"
+    return f"{float(value.magnitude)!r} {symbol(value.units, '~P') or 'dimensionless'}"

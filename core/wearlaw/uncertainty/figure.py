@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,10 +29,10 @@ def figure_data(uncertainty: Uncertainty) -> FigureData:
     Raises
     ------
     InputError
-        If the conditions have more than one axis.
+        If several operating points differ in more than one condition.
     """
     inputs = ", ".join(f"{one.name} {one.shown}" for one in uncertainty.inputs)
-    panel = _along_axis(uncertainty) if uncertainty.shape else _cumulative(uncertainty)
+    panel = _cumulative(uncertainty) if math.prod(uncertainty.shape) == 1 else _along_axis(uncertainty)
     caption = f"{uncertainty.samples} samples of {inputs}."
     return FigureData("uncertainty", uncertainty.title, (panel,), caption, f"{CONFIDENCE:.0%} of the samples")
 
@@ -39,8 +40,8 @@ def figure_data(uncertainty: Uncertainty) -> FigureData:
 def _cumulative(uncertainty: Uncertainty) -> Panel:
     rates = _plain(uncertainty.wear_rate)
     share = (np.arange(STEPS) + 0.5) / STEPS
-    low, high = (_plain(end)[None] for end in uncertainty.interval(CONFIDENCE))
-    median = _plain(uncertainty.median)[None]
+    low, high = (_plain(end) for end in uncertainty.interval(CONFIDENCE))
+    median = _plain(uncertainty.median)
     tail = 0.5 - 0.5 * CONFIDENCE
     curves = (
         Curve("wear rate", np.quantile(rates, share), share),
@@ -65,4 +66,4 @@ def _along_axis(uncertainty: Uncertainty) -> Panel:
 
 
 def _plain(quantity: Quantity) -> Array:
-    return np.asarray(quantity.to(UNITS["wear_rate"]).magnitude)
+    return np.ravel(quantity.to(UNITS["wear_rate"]).magnitude)

@@ -80,13 +80,9 @@ def condition(name: str, given: Distribution) -> Uncertain:
 
     Raises
     ------
-    ConditionsError
-        If there is no such condition.
     UnitError
         If the distribution has the wrong unit.
     """
-    if name not in TWIN_DISC.names:
-        raise TWIN_DISC.unknown(name)
     return _uncertain(name, given, TWIN_DISC.units.get(name), of_law=False)
 
 
@@ -159,6 +155,18 @@ def _check(name: str, given: Distribution, first: float, second: float) -> None:
 
 
 def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], list[Uncertain]]:
-    """Return the conditions that are known, and those that are distributed."""
-    known = {name: value for name, value in conditions.items() if not isinstance(value, Distribution)}
-    return known, [condition(name, value) for name, value in conditions.items() if isinstance(value, Distribution)]
+    """Return the conditions that are known, and those that are distributed; None is not given.
+
+    Raises
+    ------
+    ConditionsError
+        If there is no such condition.
+    UnitError
+        If a distribution has the wrong unit.
+    """
+    for name in conditions:
+        if name not in TWIN_DISC.names:
+            raise TWIN_DISC.unknown(name)
+    given = {name: value for name, value in conditions.items() if value is not None}
+    known = {name: value for name, value in given.items() if not isinstance(value, Distribution)}
+    return known, [condition(name, value) for name, value in given.items() if isinstance(value, Distribution)]

@@ -18,7 +18,7 @@ from wearlaw.ranges import RangeWatch, line_mean
 from wearlaw.uncertainty.distributions import Distribution, PublishedRange
 from wearlaw.uncertainty.figure import CONFIDENCE, figure_data
 from wearlaw.uncertainty.inputs import OTHERS, Uncertain, check_samples, parameter, split
-from wearlaw.units import WEAR_RATE, Q, Quantity, from_si
+from wearlaw.units import WEAR_RATE, Q, Quantity, from_si, shortened
 from wearlaw.varying import integrate_varying
 
 if TYPE_CHECKING:
@@ -63,9 +63,13 @@ class Uncertainty:
     ) -> None:
         if isinstance(samples, bool) or not isinstance(samples, int) or not 2 <= samples <= MOST_SAMPLES:
             raise InputError(f"samples: must be a whole number from 2 to {MOST_SAMPLES}, got {samples!r}")
+        if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+            raise InputError(f"seed: must be a whole number, zero or positive; got {shortened(seed)}")
         self._predict = predict
         self._law = predict.wear_law.explicit()
-        self._known, uncertain = split(conditions)
+        known, uncertain = split(conditions)
+        self._friction_law = {name: value for name, value in known.items() if hasattr(value, "coefficient")}
+        self._known = {name: value for name, value in known.items() if name not in self._friction_law}
         uncertain += [parameter(name, given, predict.wear_law) for name, given in law.items()]
         if not uncertain:
             raise InputError(
@@ -161,7 +165,7 @@ class Uncertainty:
 
     @cached_property
     def known(self) -> dict[str, Array]:
-        """The conditions that are not distributed, in SI."""
+        """The conditions that are not distributed, in SI, without a law of friction."""
         return {name: TWIN_DISC.si(name, value) for name, value in self._known.items()}
 
     @property
@@ -172,7 +176,7 @@ class Uncertainty:
     def _problem(self, sampled: dict[str, Array]) -> LineProblem:
         """Return the contact problem at all operating points and samples, the latter along the last axis."""
         known = {name: array[..., None] for name, array in self.known.items()}
-        given: Any = with_units(known | sampled)
+        given: Any = with_units(known | sampled) | self._friction_law
         try:
             return self._predict.contact.rig.problem(**given)
         except UnitError as error:

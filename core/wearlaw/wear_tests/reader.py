@@ -13,6 +13,7 @@ import numpy as np
 from wearlaw import plugins
 from wearlaw.arrays import Array
 from wearlaw.errors import DataError, did_you_mean
+from wearlaw.text_files import UTF_16, decoded
 from wearlaw.units import shortened
 from wearlaw.wear_tests.columns import COLUMNS, faulty, with_traction
 from wearlaw.wear_tests.csv_table import TEXTS, Head, Problems, Table, table_of
@@ -74,17 +75,14 @@ def _refuse_missing(path: Path, shipped: list[str]) -> NoReturn:
 def _decoded(content: bytes, path: Path) -> str:
     """Return the text of UTF-8 or UTF-16 with its mark, or else of the code page of old spreadsheets."""
     kind = next((kind for start, kind in _NOT_TEXT.items() if content.startswith(start)), None)
-    utf16 = content.startswith((b"\xff\xfe", b"\xfe\xff"))
-    if kind is None and b"\0" in content and not utf16:
+    if kind is None and b"\0" in content and not content.startswith(UTF_16):
         kind = "no text"
     if kind is not None:
         raise DataError(f"cannot read the tests '{path}': it is {kind}; save it as CSV and give that file")
-    for encoding in ("utf-16",) if utf16 else ("utf-8-sig", "cp1252"):
-        try:
-            return content.decode(encoding)
-        except UnicodeDecodeError:
-            continue
-    raise DataError(f"cannot read the tests '{path}': it is no text in UTF-8; save it as CSV in UTF-8")
+    try:
+        return decoded(content, otherwise="cp1252")
+    except UnicodeDecodeError:
+        raise DataError(f"cannot read the tests '{path}': it is no text in UTF-8; save it as CSV in UTF-8") from None
 
 
 def parse_tests(text: str, name: str) -> WearTests:

@@ -48,7 +48,7 @@ wl.TwinDisc(
 wl.TwinDisc.suros(diameter="50 mm", track_width=Q(8, "mm"), rotational_speed="300 rpm")
 assert_type(wl.parse("47 mm"), wl.Quantity)
 
-wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius=Q(300, "mm"), material=wl.steel(), speed="30 m/s")
+wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius=Q(300, "mm"), material=wl.steel(), rolling_speed="30 m/s")
 on_rail = wheel | wl.contact_model("fastsim") | wl.wear_law("usfd")
 assert_type(on_rail, wl.Pipeline[wl.WheelRail])
 worn = on_rail(normal_force="80 kN", longitudinal_creepage="0.2 %", spin="0.3 1/m", friction_coefficient=0.3)

@@ -44,7 +44,7 @@ result.mass_lost(over=10, body="disc_1")  # expect-error
 result.depth_per_distance()  # expect-error
 (rig | model)(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4).wear_rate  # expect-error
 
-wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), speed="30 m/s")
+wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 on_rail = wheel | model | law
 on_rail(normal_force="80 kN", creepage="1 %", friction_coefficient=0.3)  # expect-error
 on_rail(normal_force="80 kN", longitudinal_creepage=0.01, friction_coefficient=0.3)  # expect-error

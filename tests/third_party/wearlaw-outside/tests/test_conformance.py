@@ -1,6 +1,7 @@
 """The outside law and model keep what wearlaw relies on."""
 
-from wearlaw_outside import MadeUp, Rigid
+from wearlaw_outside.contact import Rigid
+from wearlaw_outside.law import MadeUp
 
 from wearlaw.testing import Check, conformance
 

@@ -1,0 +1,37 @@
+"""Text as editors and shells write it into files: UTF-8, with a byte order mark or without, and UTF-16 with one."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+"""The byte order marks of UTF-16, which `>` writes in Windows PowerShell 5."""
+
+
+def read_text(path: str | os.PathLike[str]) -> str:
+    """Return the text of a file, or raise an `OSError` or a `UnicodeDecodeError`."""
+    return decoded(Path(path).read_bytes())
+
+
+def decoded(content: bytes, otherwise: str = "utf-8-sig") -> str:
+    """Return the text of UTF-8, or of UTF-16 with its mark, without the mark.
+
+    Parameters
+    ----------
+    content : bytes
+        The content of a file.
+    otherwise : str
+        The encoding of what is neither.
+
+    Raises
+    ------
+    UnicodeDecodeError
+        If it is no such text.
+    """
+    if content.startswith(UTF_16):
+        return content.decode("utf-16")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode(otherwise)

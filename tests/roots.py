@@ -1,0 +1,14 @@
+"""Brent's method as scipy has it, with the type of what it returns here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from scipy import optimize
+
+
+def brentq(function: Callable[[float], Any], low: float, high: float, **options: Any) -> float:
+    """Return where a function passes zero between two places at which it has different signs."""
+    found: Any = optimize.brentq(function, low, high, **options)
+    return float(found)
