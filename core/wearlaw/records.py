@@ -150,7 +150,7 @@ class Contact:
         ----------
         pressure, traction, slip, area : Quantity, (batch, nodes)
             Pressure [Pa], traction [Pa], relative slip [-] and area [m²] of each node; they broadcast against each
-            other. Traction and slip have the same sign, and there may be several axes of nodes.
+            other. Traction and slip have one sign, or are magnitudes, and there may be several axes of nodes.
         rolling_speed, density : Quantity, (batch)
             Rolling speed [m/s] and mass density of the body whose wear is predicted [kg/m³].
 
@@ -159,7 +159,8 @@ class Contact:
         UnitError
             If a value lacks its unit or is out of bounds.
         InputError
-            If the shapes do not broadcast, or traction and slip have opposite signs anywhere.
+            If the shapes do not broadcast, traction and slip have opposite signs anywhere, or traction has both signs
+            in one contact.
         """
         given = {"pressure": pressure, "traction": traction, "slip": slip, "area": area}
         speed = Unit("m/s").si(rolling_speed, "rolling_speed")
@@ -172,13 +173,19 @@ class Contact:
             raise InputError("area: must not be negative, and not zero at all nodes of a contact")
         if (q * s < 0).any():
             raise InputError("traction and slip: must have the same sign at every node; turn the sign of one of them")
+        force, magnitude = (q * a).sum(axis=axes), (np.abs(q) * a).sum(axis=axes)
+        if (magnitude - np.abs(force) > ONE_SIGN * magnitude).any():
+            raise InputError(
+                "traction: has both signs in one contact, so that its sum is not the force that dissipates; give"
+                " traction and slip as magnitudes"
+            )
         return cls(
             **nodes,
             traction_bound=np.full(p.shape, np.inf),
             x=np.zeros(p.shape),
             rolling_speed=speed,
             normal_force=(p * a).sum(axis=axes),
-            tangential_force=(q * a).sum(axis=axes),
+            tangential_force=force,
             wear_index=(q * s * a).sum(axis=axes),
             density=np.broadcast_to(Unit("kg/m^3").si(density, "density"), speed.shape),
         )
@@ -240,20 +247,8 @@ class Contact:
 
         Pressure and traction are area means; the slip is the one that dissipates the same energy,
         s = Tγ / T, which is the creepage.
-
-        Raises
-        ------
-        InputError
-            If the traction has both signs in a contact, so that T is not what dissipates.
         """
         force = self.tangential_force
-        signed = self.sum_over_nodes(self.traction * self.area)
-        unsigned = self.sum_over_nodes(np.abs(self.traction) * self.area)
-        if (unsigned - np.abs(signed) > ONE_SIGN * unsigned).any():
-            raise InputError(
-                "patch_mean: the traction has both signs in one contact, and its sum is not the force that dissipates;"
-                " give traction and slip as magnitudes"
-            )
         slip = np.divide(self.wear_index, force, out=np.zeros_like(force), where=force != 0)
         area = self.patch_area
         return Contact(

@@ -116,7 +116,8 @@ def test_a_result_is_a_quantity_like_any_other(value: Any) -> None:
     made, usual = from_si(value, "ug/m/mm^2"), Q(value * 1e3, "ug/m/mm^2")
     assert type(made) is type(usual)
     assert vars(made).keys() >= vars(usual).keys() - {"_dimensionality"}
-    assert np.array_equal(made, usual)
+    same: Any = made == usual
+    assert np.all(same)
     assert made.units == usual.units
     assert repr(made) == repr(usual)
     assert np.all((2 * made).to("kg/m/m^2").m == 2.0 * np.asarray(value))
