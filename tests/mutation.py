@@ -25,10 +25,10 @@ from typing import Any
 
 import hypothesis
 import pytest
-from cosmic_ray.ast import ast_nodes, get_ast
-from cosmic_ray.mutating import mutate_code
-from cosmic_ray.operators.provider import OperatorProvider
-from parso.python.tree import Keyword, String
+from cosmic_ray.ast import ast_nodes, get_ast  # pyright: ignore[reportMissingImports]
+from cosmic_ray.mutating import mutate_code  # pyright: ignore[reportMissingImports]
+from cosmic_ray.operators.provider import OperatorProvider  # pyright: ignore[reportMissingImports]
+from parso.python.tree import Keyword, String  # pyright: ignore[reportMissingImports]
 
 ROOT = Path(__file__).parents[1]
 
