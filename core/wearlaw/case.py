@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from wearlaw import plugins
-from wearlaw.configuration import Configuration, known_as, shown
+from wearlaw.configuration import Configuration, known_as
 from wearlaw.errors import CaseError, ConfigurationError, InputError, did_you_mean, with_problems
 from wearlaw.figures.check import Contents
 from wearlaw.figures.measured_points import known_variables
@@ -26,7 +26,7 @@ from wearlaw.specification import ContactModelField, MaterialField, WearLawField
 from wearlaw.tangential import Model
 from wearlaw.text_files import read_text
 from wearlaw.uncertainty.specification import UncertainPoint
-from wearlaw.units import Length, Quantity, Speed, Unit
+from wearlaw.units import Length, Quantity, Speed, Unit, shown
 
 ModelT = TypeVar("ModelT", bound=Model)
 
@@ -203,8 +203,9 @@ def case_text(name_or_path: str) -> str:
     except FileNotFoundError:
         hint = did_you_mean(name_or_path, known)
         raise CaseError(f"there is no case file '{name_or_path}'{hint} Shipped cases: {', '.join(known)}") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise CaseError(f"cannot read the case file '{name_or_path}': {error}") from None
+    except (OSError, InputError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise CaseError(f"cannot read the case file '{name_or_path}': {reason}") from None
 
 
 def case_schema() -> dict[str, Any]:

@@ -10,8 +10,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from wearlaw.docstrings import field_docstrings, place_of_statement
 from wearlaw.errors import ConfigurationError, FrozenError, Problem, did_you_mean
-from wearlaw.registry import symbol
-from wearlaw.units import shortened
+from wearlaw.units import shortened, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -127,13 +126,6 @@ class Configuration(BaseModel):
     def __repr_args__(self) -> Any:
         for name, value in super().__repr_args__():
             yield name, _Text(shown(value)) if isinstance(value, pint.Quantity) else value
-
-
-def shown(value: object) -> str:
-    """Return a value as it is shown to a reader, quantities with all their digits."""
-    if not isinstance(value, pint.Quantity):
-        return str(value)
-    return f"{float(value.magnitude)!r} {symbol(value.units, '~P') or 'dimensionless'}"
 
 
 _BUILDING = RLock()

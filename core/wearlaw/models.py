@@ -151,7 +151,7 @@ class WearLaw(Model):
         low, high = extremes(rate) if rate.size else (0.0, 0.0)
         if not (math.isfinite(low) and math.isfinite(high)):
             raise ModelError(f"wear law '{self.name}' returned a rate that is not finite")
-        if (rate[contact.slip == 0.0] > 0.0).any():
+        if rate[contact.slip == 0.0].any():
             raise ModelError(
                 f"wear law '{self.name}' gives wear where the bodies stick; the rate must be zero where the slip is"
             )

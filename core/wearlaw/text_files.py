@@ -5,13 +5,26 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from wearlaw.errors import InputError
+
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 """The byte order marks of UTF-16, which `>` writes in Windows PowerShell 5."""
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
-    """Return the text of a file, or raise an `OSError` or a `UnicodeDecodeError`."""
-    return decoded(Path(path).read_bytes())
+    """Return the text of a file.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    InputError
+        If it is no text; the message goes behind the name of the file.
+    """
+    try:
+        return decoded(Path(path).read_bytes())
+    except UnicodeDecodeError:
+        raise InputError("it is no text in UTF-8; save it in UTF-8") from None
 
 
 def decoded(content: bytes, otherwise: str = "utf-8-sig") -> str:

@@ -80,6 +80,13 @@ def text_of(quantity: Quantity) -> str:
     return f"{float(quantity.magnitude)!r} {symbol(quantity.units, '~C') or 'dimensionless'}"
 
 
+def shown(value: object) -> str:
+    """Return a value as it is shown to a reader, scalar quantities with all their digits."""
+    if not isinstance(value, pint.Quantity):
+        return str(value)
+    return f"{float(value.magnitude)!r} {symbol(value.units, '~P') or 'dimensionless'}"
+
+
 _QUANTITY_TEXT = re.compile(
     r"\s*(?P<number>[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan))\s*(?P<unit>(?:(?:(?<=\s)1(?=\s*/)|[^\d\s+.-]).*)?)"
 )

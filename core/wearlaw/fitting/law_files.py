@@ -48,9 +48,10 @@ def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
     """
     try:
         return tomllib.loads(read_text(path))
-    except OSError as error:
-        raise InputError(f"cannot read {subject} '{path}': {error.strerror or error}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (OSError, InputError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"cannot read {subject} '{path}': {reason}") from None
+    except tomllib.TOMLDecodeError as error:
         raise InputError(f"{subject} '{path}' is not valid TOML: {error}") from None
 
 

@@ -17,6 +17,7 @@ import numpy as np
 import pint
 
 from wearlaw.arrays import Array
+from wearlaw.conditions import is_friction_law
 from wearlaw.errors import ConditionsError, UnitError
 from wearlaw.registry import symbol
 from wearlaw.units import Q, parse, real_array
@@ -209,7 +210,7 @@ def _plain(name: str, value: Any) -> tuple[Any, str | None]:
     """Return the number or numbers of a condition, and their unit if they have one."""
     if isinstance(value, pint.Quantity):
         return value.magnitude, symbol(value.units, "~C")
-    if isinstance(value, (str, int, float)) or hasattr(value, "coefficient"):  # text with a unit, or a law of friction
+    if isinstance(value, (str, int, float)) or is_friction_law(value):  # text with a unit, or a law of friction
         return 0.0, None
     try:
         return real_array(value), None
@@ -233,7 +234,7 @@ def axis(name: str, dim: str, values: object, unit: str | None) -> Varying:
 
 def _number(value: Any) -> Any:
     """Return a condition as a coordinate without axes, or None if it is a law of friction."""
-    if hasattr(value, "coefficient"):
+    if is_friction_law(value):
         return None
     quantity = parse(value) if isinstance(value, str) else value
     if isinstance(quantity, pint.Quantity):

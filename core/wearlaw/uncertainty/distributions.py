@@ -10,8 +10,7 @@ import pint
 
 from wearlaw.arrays import Array
 from wearlaw.errors import InputError, UnitError
-from wearlaw.registry import symbol
-from wearlaw.units import Quantity, QuantityLike, coefficient, parse, real_array, shortened
+from wearlaw.units import Quantity, QuantityLike, coefficient, parse, real_array, shortened, shown
 
 Value = Quantity | float
 """A value with its unit, or a plain number where the thing has none."""
@@ -106,6 +105,4 @@ def _value(value: QuantityLike | float, name: str) -> Value:
 
 
 def _shown(value: Value) -> str:
-    if not isinstance(value, pint.Quantity):
-        return f"{value:g}"
-    return f"{float(value.magnitude)!r} {symbol(value.units, '~P') or 'dimensionless'}"
+    return shown(value) if isinstance(value, pint.Quantity) else f"{value:g}"

@@ -10,7 +10,7 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.composition import check_traction
-from wearlaw.conditions import TWIN_DISC, broadcast
+from wearlaw.conditions import TWIN_DISC, broadcast, is_friction_law
 from wearlaw.errors import InputError, UnitError
 from wearlaw.grid import with_units
 from wearlaw.integrate import integrate_contact
@@ -68,7 +68,7 @@ class Uncertainty:
         self._predict = predict
         self._law = predict.wear_law.explicit()
         known, uncertain = split(conditions)
-        self._friction_law = {name: value for name, value in known.items() if hasattr(value, "coefficient")}
+        self._friction_law = {name: value for name, value in known.items() if is_friction_law(value)}
         self._known = {name: value for name, value in known.items() if name not in self._friction_law}
         uncertain += [parameter(name, given, predict.wear_law) for name, given in law.items()]
         if not uncertain:
