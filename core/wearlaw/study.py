@@ -127,7 +127,9 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
         with notes.of(f"section '{name}'"):
             section = make(study)
     except WearlawError as error:
-        raise InputError(f"{subject}: {error}") from error
+        raise InputError(
+            f"{subject}: {error}\nTo run the case without this section, take '{name}' out of `sections`"
+        ) from error
     except Exception as error:
         raise ModelError(f"{subject} failed with {type(error).__name__}: {error}") from error
     if not isinstance(section, Section):

@@ -84,6 +84,7 @@ def test_what_a_section_cannot_do_names_it_and_its_plugin(install: Install) -> N
     assert str(caught.value) == (
         "section 'needs_load' of lab 1.2.3 (plugin 'lab'): the case has no sweep 'lod';"
         " did you mean 'load'? Add [sweeps.lod]"
+        "\nTo run the case without this section, take 'needs_load' out of `sections`"
     )
     assert "Dimensions" in run(case(sections=["needs_load"], sweeps={"lod": SWEEP})).sections[0].text
 
@@ -102,7 +103,7 @@ def test_what_a_section_raises_is_the_plugins_fault_and_kept_as_the_cause(instal
     assert isinstance(refused.value.__cause__, ZeroDivisionError)
 
 
-def test_the_command_line_ends_with_one_line_and_leaves_no_folder(
+def test_the_command_line_ends_with_the_message_and_leaves_no_folder(
     install: Install,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
