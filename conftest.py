@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from coverage import Coverage
 from hypothesis import is_hypothesis_test
 from sybil import Example, Sybil
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
@@ -27,6 +28,17 @@ from sybil.region import Region
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 MATLAB_READS = re.compile(r'(\w*read\w*)\("([^"]+)"(?:, "([^"]+)")?(?:, "([^"]+)")?')
 """A function of MATLAB, its file, and the variable and attribute that it reads there."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Let the mark `no_cover` stop all measuring in a worker of xdist.
+
+    There pytest-cov 7.1 begins to measure twice, and pauses what it begins here, not what it began before.
+    """
+    first = Coverage.current()
+    if first and hasattr(session.config, "workerinput"):
+        first.stop()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

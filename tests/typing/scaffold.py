@@ -1,5 +1,7 @@
 """Check that new plugins are sound as they are generated: by ruff and mypy --strict, and by their own CI workflow.
 
+Their tests, which the workflow runs last, are left to `tests/core/test_scaffold.py`.
+
 Usage: python tests/typing/scaffold.py ENVIRONMENT
 
 ENVIRONMENT is the folder of a virtual environment that holds wearlaw and what it needs. The commands of the workflow of
@@ -28,6 +30,7 @@ TOOLS = (
 )
 
 WORKFLOW = Path(".github/workflows/tests.yml")
+LAST = "pytest"
 
 
 def inside(environment: Path) -> dict[str, str]:
@@ -37,9 +40,12 @@ def inside(environment: Path) -> dict[str, str]:
 
 
 def workflow(plugin: Path) -> list[str]:
-    """Return the commands of a plugin's workflow."""
+    """Return the commands of a plugin's workflow before the last."""
     steps = yaml.safe_load((plugin / WORKFLOW).read_text(encoding="utf-8"))["jobs"]["tests"]["steps"]
-    return [step["run"] for step in steps if "run" in step]
+    *commands, last = [step["run"] for step in steps if "run" in step]
+    if last != LAST or not commands:
+        sys.exit(f"{plugin / WORKFLOW}: runs {[*commands, last]}, where {LAST} should come last, after other commands")
+    return commands
 
 
 def complaints(folder: Path, commands: list[str], variables: Mapping[str, str]) -> list[str]:
@@ -64,9 +70,7 @@ def main(environment: Path) -> int:
             plugin = write_plugin(f"new_{kind}", kind, folder)
             commands = workflow(plugin)
             print("\n".join(f"{plugin.name}: {command}" for command in commands))
-            said += (
-                complaints(plugin, commands, variables) if commands else [f"{plugin.name}: its workflow runs nothing"]
-            )
+            said += complaints(plugin, commands, variables)
             for word in (kind[0], kind[0] * LONGEST_NAME):  # no two alike, for mypy sees them together
                 write_plugin(word, kind, short_and_long)
         said += complaints(short_and_long, list(TOOLS), variables)
