@@ -215,6 +215,7 @@ def test_wrong_tables_are_refused(table: Any, conditions: Any, message: str) -> 
         ({"creepage": [0.01, 0.02]}, "creepage: got .*has no unit"),
         ({"creepage": ["a"]}, "creepage: .* is not a real number"),
         ({"crepage": Q([1], "%")}, "crepage: unknown condition; did you mean 'creepage'"),
+        ({"crepage": None}, "crepage: unknown condition; did you mean 'creepage'"),
         ({"outputs": ["wear_rat"]}, "outputs: there is no 'wear_rat' .*did you mean 'wear_rate'"),
         ({"outputs": ["contact"]}, "outputs: there is no 'contact'"),
         ({"outputs": ["creepage"]}, "outputs: 'creepage' is one of the conditions"),

@@ -46,6 +46,7 @@ def sweep(
     if not isinstance(store, str | os.PathLike | None):
         raise InputError(f'store: must be the path of a folder, such as "map.zarr"; got {shortened(store)}')
     points = outer_product(conditions) if table is None else from_table(table, conditions)
+    _check_conditions(pipeline, points, {name: None for name, value in conditions.items() if value is None})
     job = _checked_job(pipeline, points, outputs, workers > 1 or client is not None)
     if store is None:
         if resume:
@@ -65,7 +66,7 @@ def sweep(
 
 
 def _checked_job(pipeline: Pipeline[Any], points: Points, outputs: Sequence[str], elsewhere: bool) -> Job:
-    """Return what is done at every point, once points and outputs are found to be possible.
+    """Return what is done at every point, once the outputs are found to be possible.
 
     Raises
     ------
@@ -75,7 +76,6 @@ def _checked_job(pipeline: Pipeline[Any], points: Points, outputs: Sequence[str]
     names = list(outputs) if isinstance(outputs, Iterable) and not isinstance(outputs, str) else []
     if not names or not all(isinstance(name, str) for name in names):
         raise InputError(f'outputs: must be a list of names, such as ["wear_rate"], got {outputs!r}')
-    _check_conditions(pipeline, points)
     if elsewhere:
         check_importable(pipeline)
     return Job(pipeline, output_units(pipeline, points, list(dict.fromkeys(names))))
@@ -97,11 +97,11 @@ def check_importable(pipeline: Pipeline[Any]) -> None:
             )
 
 
-def _check_conditions(pipeline: Pipeline[Any], points: Points) -> None:
-    """Find values that cannot be before anything is evaluated: each dimension at the first values of the others."""
+def _check_conditions(pipeline: Pipeline[Any], points: Points, not_given: Mapping[str, None]) -> None:
+    """Find what cannot be before anything is evaluated: each dimension at the first values of the others."""
     for dim in points.dims:
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
-        pipeline.contact.rig.problem(**line.conditions())
+        pipeline.contact.rig.problem(**{**not_given, **line.conditions()})
 
 
 def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:
