@@ -121,6 +121,17 @@ def test_traction_of_both_signs_is_refused_and_its_magnitude_taken() -> None:
     assert mean.slip == pytest.approx(0.01, rel=4 * EPS)
 
 
+def test_no_traction_is_no_contradiction_and_rounding_about_zero_none_either() -> None:
+    node: Any = {"pressure": "1 GPa", "area": "1 mm^2", "rolling_speed": "1 m/s"}
+    rolling = wl.Contact.from_arrays(**node, traction=Q([0.0, 0.0], "MPa"), slip=Q([0.0, 0.0], "%"))
+    assert rolling.tangential_force == 0.0
+    # A share e of either sign leaves 2 e / (1 + e) of the magnitudes out of the force, of which 1e-9 are allowed.
+    slip = Q([1.0, -1.0], "%")
+    assert wl.Contact.from_arrays(**node, traction=Q([300.0, -300 * 0.4e-9], "MPa"), slip=slip).wear_index > 0.0
+    with pytest.raises(wl.InputError, match="traction: has both signs"):
+        wl.Contact.from_arrays(**node, traction=Q([300.0, -300 * 0.6e-9], "MPa"), slip=slip)
+
+
 def test_a_node_without_area_has_no_part_in_the_mean() -> None:
     with_one = {**FOUR_NODES, "area": Q([1.0, 1.0, 1.0, 0.0], "mm^2")}
     mean = wl.Contact.from_arrays(**with_one).patch_mean()
