@@ -47,7 +47,8 @@ TESTS = {
     " plugins/test_sheffield_verdicts.py plugins/test_sheffield_tables.py plugins/test_sheffield_report.py",
     "wearlaw_shen_hedrick_elkins": "plugins/test_shen_hedrick_elkins.py",
     "wearlaw_usfd": "plugins/test_usfd.py",
-    "wearlaw.composition": "core/test_composition.py core/test_pipeline.py core/test_wheel_rail_result.py",
+    "wearlaw.composition": "core/test_composition.py core/test_pipeline.py core/test_wheel_rail.py"
+    " core/test_wheel_rail_result.py",
     "wearlaw.contact_pipeline": "core/test_composition.py core/test_pipeline.py core/test_inverse.py"
     " core/test_wheel_rail.py test_interface.py",
     "wearlaw.hertz": "core/test_hertz.py",

@@ -15,13 +15,13 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.core.units import TO_SI
 from wearlaw import Q
-from wearlaw.units import from_si, text_of
+from wearlaw.units import from_si, shown, text_of
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 
 
 @pytest.mark.parametrize(
-    ("value", "unit", "shown"),
+    ("value", "unit", "text"),
     [
         (27.70413, "ug/m/mm^2", "27.70 µg/m/mm²"),
         (7850, "kg/m^3", "7850 kg/m³"),
@@ -33,8 +33,22 @@ finite = st.floats(allow_nan=False, allow_infinity=False)
         (np.array(2.0), "mm", "2.000 mm"),
     ],
 )
-def test_repr_shows_four_significant_digits(value: Any, unit: str, shown: str) -> None:
-    assert repr(Q(value, unit)) == shown
+def test_repr_shows_four_significant_digits(value: Any, unit: str, text: str) -> None:
+    assert repr(Q(value, unit)) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (Q(27.70413, "ug/m/mm^2"), "27.70413 µg/m/mm²"),
+        (Q(0.1 + 0.2, "%"), "0.30000000000000004 %"),
+        (Q(0.01, ""), "0.01 dimensionless"),
+        ("mid", "mid"),
+        (0.5, "0.5"),
+    ],
+)
+def test_what_is_shown_to_a_reader_has_all_digits(value: Any, text: str) -> None:
+    assert shown(value) == text
 
 
 def test_magnitude_keeps_all_digits() -> None:
