@@ -47,6 +47,7 @@ def bench(session: nox.Session) -> None:
     session.install("-e", ".[fast]")
     session.run("python", "-m", "tests.benchmarks.speed", *session.posargs)
     session.run("python", "-m", "tests.benchmarks.wheel_rail")
+    session.run("python", "-m", "tests.benchmarks.checks")
     session.run("python", "-m", "tests.benchmarks.fit")
     session.run("python", "tests/benchmarks/study.py")
     session.install("-e", ".[fast,dask]")

@@ -9,3 +9,8 @@ from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
 """A float64 array of SI values."""
+
+
+def type_name(value: object) -> str:
+    """Return what a message calls the type of a value that should be a float64 array."""
+    return str(value.dtype) if type(value) is np.ndarray else type(value).__name__

@@ -7,21 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.blocks import Columns, OnBlock, by_block
+from wearlaw.blocks import Columns, OnBlock
 from wearlaw.ellipse import CreepForces, EllipticProblem
-from wearlaw.elliptic_contact import EllipticContact
-from wearlaw.finite import check_finite
-from wearlaw.integrate import EPS, SlipTotals, thinning_error
+from wearlaw.integrate import EPS, SlipTotals, seen_by_law, thinning_error
 from wearlaw.models import WearLaw
-from wearlaw.records import Contact
-from wearlaw.tangential import ContactModel, Scale
+from wearlaw.solving import Solver
+from wearlaw.tangential import Blame, ContactModel, Scale
 
-NODES = 2**17
+NODES = 2**16
 """Nodes of a block of operating points: enough to outweigh what each call of NumPy takes, few enough for the memory of
 any machine."""
 
@@ -42,10 +39,13 @@ class EllipticWear:
         Area mean of the law's rate over the patch [kg/m/m²].
     forces : CreepForces
         The forces and the moment.
+    patch_area : ndarray
+        Area of the patch, the sum of its nodes' areas [m²].
     """
 
     wear_rate: Array
     forces: CreepForces
+    patch_area: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,23 +63,29 @@ class EllipticSlip(SlipTotals):
 
 def creep_forces(model: ContactModel, problem: EllipticProblem) -> CreepForces:
     """Return the forces and the moment."""
-    columns = _by_block(model, problem, partial(_force_columns, model))
-    return CreepForces.of(_checked(model, problem, columns))
+
+    def columns(part: EllipticProblem) -> Columns:
+        forces = model.creep_forces(part)
+        return {name: getattr(forces, name) for name in FORCES}
+
+    return CreepForces.of(_by_block(Solver(model), problem, columns))
 
 
 def elliptic_slip(model: ContactModel, problem: EllipticProblem, scale: Scale) -> EllipticSlip:
     """Return how the patch slips."""
+    solver = Solver(model)
 
     def columns(part: EllipticProblem) -> Columns:
-        contact = model.solve(part)
-        seen = _seen_by_law(contact, scale)
+        contact = solver.solve(part)
+        seen = seen_by_law(model, contact, scale)
         return {
             "mean_slip": seen.mean_slip,
             "slip_area": seen.slip_area,
+            "patch_area": seen.patch_area,
             "cell_wear_index": contact.cell_wear_index,
         }
 
-    return EllipticSlip(**_checked(model, problem, _by_block(model, problem, columns)))
+    return EllipticSlip(**_by_block(solver, problem, columns))
 
 
 def elliptic_wear(
@@ -96,15 +102,18 @@ def elliptic_wear(
     ModelError
         If the model or the law breaks its contract.
     """
+    solver = Solver(model)
 
     def columns(part: EllipticProblem) -> Columns:
-        contact = model.solve(part)
-        seen = _seen_by_law(contact, scale)
+        contact = solver.solve(part)
+        seen = seen_by_law(model, contact, scale)
         forces = {name: getattr(contact, field) for name, field in FORCES.items()}
-        return {"wear_rate": seen.mean(law.checked_rate(seen)), **forces}
+        area = seen.patch_area
+        rate = seen.sum_over_nodes(solver.rate(law, seen, part) * seen.area) / area
+        return {"wear_rate": rate, "patch_area": area, **forces}
 
-    found = _checked(model, problem, _by_block(model, problem, columns, on_block))
-    return EllipticWear(wear_rate=found["wear_rate"], forces=CreepForces.of(found))
+    found = _by_block(solver, problem, columns, on_block)
+    return EllipticWear(wear_rate=found["wear_rate"], forces=CreepForces.of(found), patch_area=found["patch_area"])
 
 
 def wear_rate_error(
@@ -118,43 +127,29 @@ def wear_rate_error(
     """
     if scale == "patch":
         return EPS * np.abs(wear_rate)
-    twice = model.refined()
-    four_times = None if twice is None else twice.refined()
+    with Blame(model):
+        twice = model.refined()
+        four_times = None if twice is None else twice.refined()
     if twice is not None and four_times is not None:
         fine, finest = (elliptic_wear(one, law, problem, scale).wear_rate for one in (twice, four_times))
         return 4.0 / 3.0 * (np.abs(fine - wear_rate) + np.abs(finest - fine))
 
+    solver = Solver(model)
+
     def columns(part: EllipticProblem) -> Columns:
-        contact = model.solve(part)
-        return {"error": thinning_error(contact, law.checked_rate(contact))}
+        contact = solver.solve(part)
+        return {"error": thinning_error(contact, solver.rate(law, contact, part))}
 
-    return _checked(model, problem, _by_block(model, problem, columns))["error"]
-
-
-def _seen_by_law(contact: EllipticContact, scale: Scale) -> Contact:
-    """Return the contact as a law gets to see it: its patch means, where those are asked for."""
-    return contact.patch_mean() if scale == "patch" else contact
+    return _by_block(solver, problem, columns)["error"]
 
 
 def _by_block(
-    model: ContactModel,
+    solver: Solver,
     problem: EllipticProblem,
     columns: Callable[[EllipticProblem], Columns],
     on_block: OnBlock[EllipticProblem] | None = None,
 ) -> Columns:
     """Return columns over blocks of as many operating points as the model's nodes allow."""
-    flat = problem.flatten()
     few = problem.size <= FEW
-    nodes = 1 if few else model.solve(flat[:1]).pressure.size
-    return by_block(flat, FEW if few else max(NODES // nodes, 1), columns, on_block)
-
-
-def _force_columns(model: ContactModel, problem: EllipticProblem) -> Columns:
-    forces = model.creep_forces(problem)
-    return {name: getattr(forces, name) for name in FORCES}
-
-
-def _checked(model: ContactModel, problem: EllipticProblem, columns: Columns) -> Columns:
-    """Return columns in the shape of the batch, or raise a `ModelError` where a value is not finite."""
-    check_finite(model, columns, problem)
-    return {name: value.reshape(problem.batch_shape) for name, value in columns.items()}
+    nodes = 1 if few else Solver(solver.model).solve(problem.flatten()[:1]).pressure.size
+    return solver.by_block(problem, FEW if few else max(NODES // nodes, 1), columns, on_block)

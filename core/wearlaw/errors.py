@@ -82,7 +82,7 @@ class SweepError(WearlawError, RuntimeError):
 
 
 class ModelError(WearlawError, RuntimeError):
-    """A contact model or wear law broke its contract: wrong shape, or a value that is not finite."""
+    """A contact model or wear law failed, or broke its contract: a wrong shape or type, or a value out of bounds."""
 
 
 @dataclass(frozen=True)
@@ -147,6 +147,15 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return "; did you mean 'x'?" for the nearest known word, or a full stop when none is near."""
     near = get_close_matches(word, list(known), n=1)
     return f"; did you mean '{near[0]}'?" if near else "."
+
+
+def described(error: BaseException) -> str:
+    """Return the type and the message of any exception, also of one whose message cannot be made."""
+    try:
+        message = str(error)
+    except Exception:
+        message = "its message cannot be shown"
+    return f"{type(error).__name__}: {message}" if message else type(error).__name__
 
 
 def with_problems(head: str, problems: Iterable[object]) -> str:

@@ -22,14 +22,14 @@ from wearlaw.arrays import Array
 from wearlaw.blocks import Columns, OnBlock, by_block
 from wearlaw.crossings import crossings
 from wearlaw.extremes import extremes
-from wearlaw.finite import check_finite
 from wearlaw.kernels import accelerated
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import WearLaw
 from wearlaw.quadrature import join, remainder
 from wearlaw.records import NODE_VARIABLES, Contact
-from wearlaw.tangential import ContactModel, Scale
+from wearlaw.solving import Solver, check_columns, check_type
+from wearlaw.tangential import Blame, ContactModel, Scale
 
 BLOCK = 8192
 """Operating points of a block in closed form: its arrays stay in the cache, and in memory that is used again."""
@@ -59,10 +59,13 @@ class SlipTotals:
         Area mean of the magnitude of the slip [-].
     slip_area : ndarray
         Area of what slips [m²].
+    patch_area : ndarray
+        Area of the whole patch, the sum of its nodes' areas [m²].
     """
 
     mean_slip: Array
     slip_area: Array
+    patch_area: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,36 +80,49 @@ class WearTotals:
         Estimate of the numerical error in it [kg/m/m²]; None for a closed form, where `rounding` gives it.
     tangential_force : ndarray or None
         T with the sign of the creepage [N]; None where the contact model knows it without nodes.
+    patch_area : ndarray or None
+        Area of the patch, the sum of its nodes' areas [m²]; None where that is the area of the problem.
     """
 
     wear_rate: Array
     wear_rate_error: Array | None = None
     tangential_force: Array | None = None
+    patch_area: Array | None = None
 
 
 def integrate_contact(model: ContactModel, problem: LineProblem) -> Array:
     """Return the tangential force [N], or raise a `ModelError` if it is not finite."""
     if isinstance(model, LineContactModel):  # in closed form, without nodes that would fill the memory
-        force = model.tangential_force(problem)
-    else:
-        columns = by_block(problem.flatten(), NODE_BLOCK, lambda part: {"force": model.tangential_force(part)})
-        force = columns["force"].reshape(problem.batch_shape)
-    check_finite(model, {"tangential_force": force}, problem)
-    return force
+        with Blame(model):
+            force = model.tangential_force(problem)
+        check_columns(model, {"tangential_force": force}, problem)
+        return force
+
+    def columns(part: LineProblem) -> Columns:
+        return {"tangential_force": model.tangential_force(part)}
+
+    return Solver(model).by_block(problem, NODE_BLOCK, columns)["tangential_force"]
 
 
 def integrate_slip(model: ContactModel, problem: LineProblem, scale: Scale) -> SlipTotals:
     """Return how the patch slips."""
+    solver = Solver(model)
 
     def columns(part: LineProblem) -> Columns:
-        contact = solve(model, part, scale)
-        area = contact.slip_area
+        contact = seen_by_law(model, solver.solve(part), scale)
+        slip_area, patch_area = contact.slip_area, contact.patch_area
         if scale == "cells" and isinstance(model, LineContactModel):
-            area = model.slip_length(part.forward()) * part.track_width
-        return {"mean_slip": contact.mean_slip, "slip_area": area}
+            slip_area, patch_area = model.slip_length(part.forward()) * part.track_width, part.patch_area
+        return {"mean_slip": contact.mean_slip, "slip_area": slip_area, "patch_area": patch_area}
 
-    found = by_block(problem.flatten(), NODE_BLOCK, columns)
-    return SlipTotals(**{name: values.reshape(problem.batch_shape) for name, values in found.items()})
+    return SlipTotals(**solver.by_block(problem, NODE_BLOCK, columns))
+
+
+def patch_area(model: ContactModel, problem: LineProblem, scale: Scale) -> Array:
+    """Return the area of the patch, the sum of its nodes' areas [m²]."""
+    if isinstance(model, LineContactModel):  # its nodes share out the patch of the problem
+        return problem.patch_area
+    return integrate_slip(model, problem, scale).patch_area
 
 
 def integrate_wear(
@@ -125,46 +141,48 @@ def integrate_wear(
     ModelError
         If the model or the law breaks its contract.
     """
-    ramps = law.ramps if scale == "cells" else None
+    solver = Solver(model)
+    with Blame(law):
+        ramps = law.ramps if scale == "cells" else None
     closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
 
     def columns(part: LineProblem) -> Columns:
-        return (closed and closed_form(*closed, part)) or _from_nodes(model, law, part, scale)
+        return (closed and closed_form(*closed, part)) or _from_nodes(solver, law, part, scale)
 
     if closed and problem.batch_shape == ():  # scalars are computed as scalars
-        found = closed_form(*closed, problem)
+        with Blame(model):
+            found = closed_form(*closed, problem)
         if found is not None:
+            check_columns(model, found, problem)
             if on_block is not None:
                 on_block(problem, found)
-            check_finite(model, found, problem)
             return WearTotals(wear_rate=found["wear_rate"])
     block = NODE_BLOCK
     if closed:
         block = COMPILED_BLOCK if accelerated(problem.creepage.size) else BLOCK
-    found = by_block(problem.flatten(), block, columns, on_block, drop_force=isinstance(model, LineContactModel))
-    found = {name: values.reshape(problem.batch_shape) for name, values in found.items()}
-    check_finite(model, found, problem)
-    return WearTotals(**found)
+    drop_force = isinstance(model, LineContactModel)
+    return WearTotals(**solver.by_block(problem, block, columns, on_block, drop_force))
 
 
 def solve(model: ContactModel, problem: LineProblem, scale: Scale) -> Contact:
     """Return the contact of a model on its own nodes, or its patch mean where that is asked for."""
-    contact = model.solve(problem)
-    fields = ("pressure", "traction", "slip", "area", "tangential_force")
-    check_finite(model, {name: getattr(contact, name) for name in fields}, problem)
-    if scale == "patch" and model.scale != "patch":
-        return contact.patch_mean()
-    return contact
+    return seen_by_law(model, Solver(model).solve(problem), scale)
+
+
+def seen_by_law(model: ContactModel, contact: Contact, scale: Scale) -> Contact:
+    """Return a contact as a law gets to see it: its patch means, where those are asked for."""
+    return contact.patch_mean() if scale == "patch" and model.scale != "patch" else contact
 
 
 def contact_for(model: ContactModel, law: WearLaw, problem: LineProblem, scale: Scale) -> Contact:
     """Return the contact on the nodes that suit a law, for a batch of one axis."""
     if scale == "patch" or not isinstance(model, LineContactModel):
         return solve(model, problem, scale)
-    slip = model.slip_zone(problem)
-    splits = splits_of(model, law, problem)
-    nodes = slip.nodes(panels=PANELS_UNDECLARED) if splits is None else slip.nodes(splits)
-    return model.at(problem, join(model.stick_zone(problem).nodes().reversed(), nodes))
+    with Blame(model):
+        slip, stick = model.slip_zone(problem), model.stick_zone(problem)
+        splits = splits_of(model, law, problem)
+        nodes = slip.nodes(panels=PANELS_UNDECLARED) if splits is None else slip.nodes(splits)
+    return Solver(model).at(problem, join(stick.nodes().reversed(), nodes), totals=True)
 
 
 def closed_form(
@@ -173,12 +191,14 @@ def closed_form(
     """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form."""
     forward = problem.forward()
     force = model.tangential_force_per_width(forward)
+    check_type(model, "tangential_force_per_width", force, problem.batch_shape)
     total: Array | float = 0.0
     for threshold, slope in ramps:
         above = _any_positive(threshold)
         excess = model.excess_dissipation(forward, _of_points(threshold)) if above else force * forward.creepage
         if excess is None:
             return None
+        check_type(model, "excess_dissipation", excess, problem.batch_shape)
         total += 0.5 * _of_points(slope) * excess
     force = force * problem.track_width
     rate = total / problem.half_width
@@ -203,21 +223,25 @@ def rounding(law: WearLaw, problem: LineProblem, tangential_force: Array) -> Arr
     return (ROUNDINGS * EPS * slopes) * tangential_force * problem.creepage / problem.patch_area
 
 
-def _from_nodes(model: ContactModel, law: WearLaw, problem: LineProblem, scale: Scale) -> Columns:
+def _from_nodes(solver: Solver, law: WearLaw, problem: LineProblem, scale: Scale) -> Columns:
     """Return the mean of a law's rate at nodes."""
+    model = solver.model
 
     def columns(part: LineProblem) -> Columns:
         if scale == "cells" and isinstance(model, LineContactModel):
-            return over_slip_zone(model, law, part)
-        contact = solve(model, part, scale)
-        rate = law.checked_rate(contact)
-        error = thinning_error(contact, rate) if scale == "cells" else EPS * np.abs(contact.mean(rate))
-        return {"wear_rate": contact.mean(rate), "wear_rate_error": error, "tangential_force": contact.tangential_force}
+            return over_slip_zone(solver, model, law, part)
+        contact = seen_by_law(model, solver.solve(part), scale)
+        rate = solver.rate(law, contact, part)
+        mean, force = contact.mean(rate), contact.tangential_force
+        error = thinning_error(contact, rate) if scale == "cells" else EPS * np.abs(mean)
+        found = {"wear_rate": mean, "wear_rate_error": error, "tangential_force": force}
+        return found if isinstance(model, LineContactModel) else found | {"patch_area": contact.patch_area}
 
     return by_block(problem.flatten(), NODE_BLOCK, columns)
 
 
 def over_slip_zone(
+    solver: Solver,
     model: LineContactModel,
     law: WearLaw,
     problem: LineProblem,
@@ -228,9 +252,10 @@ def over_slip_zone(
     `law_at` gives the law at some of the operating points, where its parameters differ from one to the other.
     """
     splits = splits_of(model, law, problem)
+    totals = solver.block_is_summed()
     rate, error = np.empty(problem.creepage.shape), np.empty(problem.creepage.shape)
     if splits is None:
-        rate, error = over_panels(model, law, problem, None)
+        rate, error = _over_panels(solver, model, law, problem, None, totals)
     else:
         end = model.slip_zone(problem).angle[:, None]
         needed = np.sum((splits > 0.0) & (splits < end), axis=-1)
@@ -239,29 +264,36 @@ def over_slip_zone(
             points = np.flatnonzero(needed == count)
             columns = first[points, None] + np.arange(count)
             own = law if law_at is None else law_at(points)
-            rate[points], error[points] = over_panels(model, own, problem[points], splits[points[:, None], columns])
+            own_splits = splits[points[:, None], columns]
+            rate[points], error[points] = _over_panels(solver, model, own, problem[points], own_splits, totals)
     return {"wear_rate": rate, "wear_rate_error": error, "tangential_force": model.tangential_force(problem)}
 
 
 def splits_of(model: LineContactModel, law: WearLaw, problem: LineProblem) -> Array | None:
     """Return ψ where a law branches in the slip zone, (points, k), or None if nothing is known of that."""
-    breakpoints = law.breakpoints
+    with Blame(law):
+        breakpoints = law.breakpoints
     if breakpoints is None:
         return None
     per_node = {name: values for name, values in breakpoints.items() if name in NODE_VARIABLES}
     return crossings(model, problem.forward(), model.slip_zone(problem), per_node)
 
 
-def over_panels(
-    model: LineContactModel, law: WearLaw, problem: LineProblem, splits: Array | None
+def _over_panels(
+    solver: Solver, model: LineContactModel, law: WearLaw, problem: LineProblem, splits: Array | None, totals: bool
 ) -> tuple[Array, Array]:
-    """Return the mean of a law's rate over the patch and its error estimate, by panels of the slip zone."""
-    zone = model.slip_zone(problem)
+    """Return the mean of a law's rate over the patch and its error estimate, by panels of the slip zone.
+
+    Where nothing slips nothing wears, so that one node is enough there, unless sums are compared with `totals`.
+    """
+    zone, stick = model.slip_zone(problem), model.stick_zone(problem)
     nodes = zone.nodes(panels=PANELS_UNDECLARED) if splits is None else zone.nodes(splits)
-    contact = model.at(problem, join(model.stick_zone(problem).middle().reversed(), nodes))
-    weighted = law.checked_rate(contact) * contact.area
+    sticking = (stick.nodes() if totals else stick.middle()).reversed()
+    contact = solver.at(problem, join(sticking, nodes), totals=totals)
+    weighted = solver.rate(law, contact, problem) * contact.area
     total = weighted.sum(axis=-1)
-    error = ROUNDINGS * EPS * np.abs(weighted).sum(axis=-1) + remainder(weighted[..., 1:])
+    slipping = weighted[..., sticking.length.shape[-1] :]
+    error = ROUNDINGS * EPS * np.abs(weighted).sum(axis=-1) + remainder(slipping)
     return total / problem.patch_area, error / problem.patch_area
 
 

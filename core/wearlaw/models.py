@@ -11,13 +11,13 @@ from typing import ClassVar, Literal, TypeAlias
 import numpy as np
 from pydantic import model_validator
 
-from wearlaw.arrays import Array
+from wearlaw.arrays import Array, type_name
 from wearlaw.configuration import Configuration
 from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, did_you_mean
 from wearlaw.extremes import extremes
 from wearlaw.records import UNITS, Contact
-from wearlaw.tangential import ContactModel, Geometry, Model, Scale
+from wearlaw.tangential import Blame, ContactModel, Geometry, Model, Scale
 from wearlaw.units import WEAR_RATE, Quantity, Unit, from_si
 
 BreakpointMap: TypeAlias = Mapping[str, tuple[float, ...]]
@@ -142,7 +142,12 @@ class WearLaw(Model):
 
     def checked_rate(self, contact: Contact) -> Array:
         """Return `rate`, or raise a `ModelError` if that is not what a rate must be."""
-        rate = np.asarray(self.rate(contact))
+        with Blame(self):
+            rate = self.rate(contact)
+        if type(rate) is not np.ndarray or rate.dtype != np.float64:
+            raise ModelError(
+                f"wear law '{self.name}' returned rates of type {type_name(rate)}; it must return a float64 array"
+            )
         if rate.shape != contact.pressure.shape:
             raise ModelError(
                 f"wear law '{self.name}' returned rates of shape {rate.shape} for nodes of shape"

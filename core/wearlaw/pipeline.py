@@ -13,7 +13,7 @@ from wearlaw.composition import check_scale, check_traction, needs_discs
 from wearlaw.conditions import TwinDiscConditions, WheelRailConditions
 from wearlaw.configuration import Configuration
 from wearlaw.contact_pipeline import ORDER, ContactPipeline, RigT
-from wearlaw.ellipse import CreepForces, EllipticProblem
+from wearlaw.ellipse import EllipticProblem
 from wearlaw.elliptic_wear import elliptic_wear
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.integrate import integrate_wear
@@ -112,9 +112,9 @@ class Pipeline(Configuration, Generic[RigT]):
 
         def see(part: LineProblem | EllipticProblem, columns: Columns) -> None:
             if isinstance(part, LineProblem):
-                watch.see(part.size, partial(line_mean, part, columns["tangential_force"]))
+                watch.see(part.size, partial(line_mean, part, columns))
             else:
-                watch.see(part.size, partial(elliptic_mean, part, CreepForces.of(columns)))
+                watch.see(part.size, partial(elliptic_mean, part, columns))
             if on_block is not None:
                 on_block(part.size)
 

@@ -8,12 +8,14 @@ from collections.abc import Callable
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.blocks import Columns
 from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.errors import ModelError, RangeWarning
 from wearlaw.extremes import extremes
 from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
 from wearlaw.records import UNITS
+from wearlaw.tangential import Blame
 from wearlaw.units import from_si
 
 
@@ -22,7 +24,8 @@ class RangeWatch:
 
     def __init__(self, law: WearLaw) -> None:
         self.law = law
-        self.range = law.valid_range
+        with Blame(law):
+            self.range = law.valid_range
         self.seen = {name: _Seen() for name in self.range}
         self.points = 0
 
@@ -61,22 +64,35 @@ class _Seen:
         self.lowest, self.highest, self.outside = np.inf, -np.inf, 0
 
 
-def line_mean(problem: LineProblem, force: Array, variable: str) -> Array:
-    """Return a variable of `Contact` as its mean over a line contact, where the tangential force is `force` [N]."""
+def line_mean(problem: LineProblem, columns: Columns, variable: str) -> Array:
+    """Return a variable of `Contact` as its mean over a line contact, from forces [N] and areas [m²] in columns."""
+    force = columns["tangential_force"]
     return _mean(
-        problem, lambda: np.abs(force), lambda: np.abs(problem.creepage), lambda: force * problem.creepage, variable
+        problem,
+        lambda: columns.get("patch_area", problem.patch_area),
+        lambda: np.abs(force),
+        lambda: np.abs(problem.creepage),
+        lambda: force * problem.creepage,
+        variable,
     )
 
 
-def elliptic_mean(problem: EllipticProblem, forces: CreepForces, variable: str) -> Array:
+def elliptic_mean(problem: EllipticProblem, columns: Columns, variable: str) -> Array:
     """Return a variable of `Contact` as its mean over an ellipse, as in `EllipticContact.of_patch`."""
+    forces = CreepForces.of(columns)
     return _mean(
-        problem, lambda: forces.tangential, lambda: problem.rigid_slip, lambda: problem.power(forces), variable
+        problem,
+        lambda: columns.get("patch_area", problem.patch_area),
+        lambda: forces.tangential,
+        lambda: problem.rigid_slip,
+        lambda: problem.power(forces),
+        variable,
     )
 
 
 def _mean(
     problem: LineProblem | EllipticProblem,
+    area: Callable[[], Array],
     force: Callable[[], Array],
     slip: Callable[[], Array],
     wear_index: Callable[[], Array],
@@ -85,15 +101,15 @@ def _mean(
     """Return a variable of `Contact` as its mean, from the magnitudes of force and slip and from the wear index."""
     match variable:
         case "pressure":
-            return problem.normal_force / problem.patch_area
+            return problem.normal_force / area()
         case "traction":
-            return force() / problem.patch_area
+            return force() / area()
         case "slip":
             return slip()
         case "slip_speed":
             return slip() * problem.rolling_speed
         case "wear_index_density":
-            return wear_index() / problem.patch_area
+            return wear_index() / area()
         case "wear_index":
             return wear_index()
     raise ModelError(f"`valid_range` names '{variable}', which is no variable of a contact that has a patch mean")

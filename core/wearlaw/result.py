@@ -19,6 +19,7 @@ from wearlaw.quadrature import uniform_cells
 from wearlaw.records import UNITS, Contact
 from wearlaw.rig import Disc, TwinDisc
 from wearlaw.solution import Solution
+from wearlaw.solving import Solver
 from wearlaw.tangential import ContactModel, Scale
 from wearlaw.units import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
 
@@ -67,7 +68,7 @@ class ContactSolution(Solution[LineProblem]):
         """
         slip = self._slip
         slipping = np.divide(
-            slip.mean_slip * self.problem.patch_area,
+            slip.mean_slip * slip.patch_area,
             slip.slip_area,
             out=np.zeros_like(slip.slip_area),
             where=slip.slip_area > 0,
@@ -107,6 +108,10 @@ class ContactSolution(Solution[LineProblem]):
         return integrate.integrate_slip(self.contact_model, self.problem, self.scale)
 
     @cached_property
+    def _patch_area(self) -> Array:
+        return integrate.patch_area(self.contact_model, self.problem, self.scale)
+
+    @cached_property
     def contact(self) -> Contact:
         """The solved contact as SI arrays, on the nodes that the contact model chose."""
         return integrate.solve(self.contact_model, self.problem, self.scale)
@@ -119,7 +124,8 @@ class ContactSolution(Solution[LineProblem]):
     def _cells(self) -> Contact:
         """Return the contact on uniform cells where the model can give them, else on its own nodes."""
         if self.scale == "cells" and isinstance(self.contact_model, LineContactModel):
-            return self.contact_model.at(self.problem, uniform_cells(self.problem.half_width, PROFILE_CELLS))
+            cells = uniform_cells(self.problem.half_width, PROFILE_CELLS)
+            return Solver(self.contact_model).at(self.problem, cells, totals=False)
         return self.contact
 
     def _profile(self, more: dict[str, tuple[Array, str]]) -> xarray.Dataset:
@@ -156,6 +162,10 @@ class Prediction(ContactSolution):
         super().__init__(rig, model, scale, problem, wear.tangential_force)
         self.wear_law = law
         self._wear = wear
+
+    @cached_property
+    def _patch_area(self) -> Array:
+        return self.problem.patch_area if self._wear.patch_area is None else self._wear.patch_area
 
     @property
     def wear_rate(self) -> Quantity:
@@ -204,7 +214,7 @@ class Prediction(ContactSolution):
         This is the measure of the BRR law (Pearce and Sherratt, Wear 144 (1991) 343-351): the depth per distance,
         times the track width.
         """
-        section = self._volume_rate(body) * self.problem.patch_area / self._circumference(body)
+        section = self._volume_rate(body) * self._patch_area / self._circumference(body)
         return from_si(section, "mm^2/km")
 
     def mass_lost(self, over: QuantityLike, body: str) -> Quantity:
@@ -224,7 +234,7 @@ class Prediction(ContactSolution):
         return from_si(self._mass_per_distance(body) * self._circumference(body), "ug")
 
     def _mass_per_distance(self, body: str) -> Array:
-        return self._rate(body) * self.problem.patch_area
+        return self._rate(body) * self._patch_area
 
     def _volume_rate(self, body: str) -> Array:
         return self._rate(body) / self._density(body)

@@ -38,6 +38,11 @@ class Solution(ABC, Generic[P]):
     def _slip(self) -> SlipTotals:
         """Return how the patch slips."""
 
+    @cached_property
+    def _patch_area(self) -> Array:
+        """Return the area of the patch, the sum of its nodes' areas [m²]."""
+        return self._slip.patch_area
+
     @property
     def traction_coefficient(self) -> Quantity:
         """Tangential over normal force, T/N [-]."""
@@ -46,7 +51,7 @@ class Solution(ABC, Generic[P]):
     @property
     def wear_index_density(self) -> Quantity:
         """Wear index over the area of the patch, Tγ/A [N/m²]."""
-        return from_si(self._wear_index / self.problem.patch_area, "N/mm^2")
+        return from_si(self._wear_index / self._patch_area, "N/mm^2")
 
     @property
     def friction_coefficient(self) -> Quantity:
@@ -60,13 +65,13 @@ class Solution(ABC, Generic[P]):
 
     @property
     def patch_area(self) -> Quantity:
-        """Area of the patch, A [m²]: 2a × track width, or πab."""
-        return from_si(self.problem.patch_area, "mm^2")
+        """Area of the patch, A [m²], the sum of its nodes' areas: of Hertz's patches 2a × track width, or πab."""
+        return from_si(self._patch_area, "mm^2")
 
     @property
     def stick_ratio(self) -> Quantity:
         """Share of the patch that sticks [-]."""
-        return from_si(1.0 - self._slip.slip_area / self.problem.patch_area, "")
+        return from_si(1.0 - self._slip.slip_area / self._slip.patch_area, "")
 
     @property
     def mean_slip(self) -> Quantity:

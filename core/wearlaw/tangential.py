@@ -11,7 +11,7 @@ from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
-from wearlaw.errors import CompositionError
+from wearlaw.errors import CompositionError, ModelError, WearlawError, described
 from wearlaw.line import LineProblem
 from wearlaw.records import Contact
 
@@ -55,6 +55,27 @@ class Model(Configuration, ABC):
                 f"'{self.name}' cannot start a pipeline; begin with a rig, as in"
                 ' wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd")'
             )
+
+
+class Blame:
+    """A context in which whatever a model's code raises becomes a `ModelError` that names the model.
+
+    wearlaw's own errors pass, as they say what is wrong; so do a person's interrupt and a lack of memory.
+    """
+
+    __slots__ = ("_model",)
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
+        if error is None or isinstance(error, WearlawError | KeyboardInterrupt | MemoryError):
+            return
+        what = "contact model" if isinstance(self._model, ContactModel) else "wear law"
+        raise ModelError(f"{what} '{self._model.name}' failed: {described(error)}") from error
 
 
 class ContactModel(Model):

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.blocks import blocks
-from wearlaw.finite import check_finite
-from wearlaw.integrate import BLOCK, NODE_BLOCK, closed_form, integrate_wear, over_slip_zone, solve
+from wearlaw.integrate import BLOCK, NODE_BLOCK, closed_form, integrate_wear, over_slip_zone, seen_by_law
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import WearLaw
 from wearlaw.parameters import changed, number_like, numbers, per_point
-from wearlaw.tangential import ContactModel, Scale
+from wearlaw.solving import Solver, check_columns
+from wearlaw.tangential import Blame, ContactModel, Scale
 
 
 def integrate_varying(
@@ -41,10 +41,13 @@ def integrate_varying(
         return integrate_wear(model, law, problem, scale).wear_rate
     if not law.varies:
         return _one_law_at_a_time(model, law, values, problem, scale)
-    rate = np.empty(problem.creepage.shape)
+    rate, solver = np.empty(problem.creepage.shape), Solver(model)
     for part in blocks(rate.size, NODE_BLOCK if law.ramps is None else BLOCK):
-        rate[part] = _block(model, law, {name: value[part] for name, value in values.items()}, problem[part], scale)
-    check_finite(model, {"wear_rate": rate}, problem)
+        within = problem[part]
+        with Blame(model):
+            found = _block(solver, law, {name: value[part] for name, value in values.items()}, within, scale)
+        check_columns(model, {"wear_rate": found}, within)
+        rate[part] = found
     return rate
 
 
@@ -61,16 +64,16 @@ def _one_law_at_a_time(
     return rate
 
 
-def _block(model: ContactModel, law: WearLaw, values: Mapping[str, Array], problem: LineProblem, scale: Scale) -> Array:
-    varied = per_point(law, values)
+def _block(solver: Solver, law: WearLaw, values: Mapping[str, Array], problem: LineProblem, scale: Scale) -> Array:
+    varied, model = per_point(law, values), solver.model
     if scale == "patch" or not isinstance(model, LineContactModel):
-        contact = solve(model, problem, scale)
-        return contact.mean(varied.checked_rate(contact))
+        contact = seen_by_law(model, solver.solve(problem), scale)
+        return contact.mean(solver.rate(varied, contact, problem))
     found = None if varied.ramps is None else closed_form(model, varied.ramps, problem)
     if found is None:
 
         def law_at(points: NDArray[np.intp]) -> WearLaw:
             return per_point(law, {name: value[points] for name, value in values.items()})
 
-        found = over_slip_zone(model, varied, problem, law_at)
+        found = over_slip_zone(solver, model, varied, problem, law_at)
     return found["wear_rate"]

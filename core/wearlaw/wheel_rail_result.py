@@ -15,7 +15,8 @@ from wearlaw.elliptic_wear import EllipticSlip, EllipticWear
 from wearlaw.errors import CompositionError
 from wearlaw.models import WearLaw
 from wearlaw.solution import Solution
-from wearlaw.tangential import ContactModel, Scale
+from wearlaw.solving import Solver
+from wearlaw.tangential import Blame, ContactModel, Scale
 from wearlaw.units import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit
 from wearlaw.wheel_rail import WheelRail
 
@@ -106,7 +107,7 @@ class WheelRailContact(Solution[EllipticProblem]):
 
     @cached_property
     def _solved(self) -> EllipticContact:
-        return self.contact_model.solve(self.problem)
+        return Solver(self.contact_model).solve(self.problem)
 
     @cached_property
     def _force(self) -> Array:
@@ -138,6 +139,10 @@ class WheelRailPrediction(WheelRailContact):
         super().__init__(rig, model, scale, problem, wear.forces)
         self.wear_law = law
         self._wear = wear
+
+    @cached_property
+    def _patch_area(self) -> Array:
+        return self._wear.patch_area
 
     @property
     def wear_rate(self) -> Quantity:
@@ -208,7 +213,7 @@ class WheelRailPrediction(WheelRailContact):
 
     @property
     def _mass_per_distance(self) -> Array:
-        return self._wear.wear_rate * self.problem.patch_area
+        return self._wear.wear_rate * self._patch_area
 
     def _across(self) -> EllipticContact:
         """Return the contact on strips across the patch."""
@@ -218,8 +223,12 @@ class WheelRailPrediction(WheelRailContact):
                 ' resolves it, such as wl.contact_model("fastsim")'
             )
         edges = np.linspace(-1.0, 1.0, PROFILE_STRIPS + 1)
-        chosen = self.contact_model.on_strips(self.problem, 0.5 * (edges[1:] + edges[:-1]))
-        return self._solved if chosen is None else chosen
+        with Blame(self.contact_model):
+            chosen = self.contact_model.on_strips(self.problem, 0.5 * (edges[1:] + edges[:-1]))
+        if chosen is None:
+            return self._solved
+        Solver(self.contact_model).check(chosen, self.problem, totals=False)
+        return chosen
 
 
 def _across_patch(contact: EllipticContact, columns: dict[str, tuple[Array, str]], per: str) -> xarray.Dataset:

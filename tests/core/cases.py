@@ -94,6 +94,10 @@ class Coarse(wl.ContactModel):
     name = "coarse"
     source = "A test, 2. ed., 2026"
 
+    @property
+    def accuracy(self) -> float:
+        return 0.02  # of the midpoint rule under an ellipse
+
     def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
         edges = np.linspace(-1.0, 1.0, 8) * problem.half_width[..., None]
         x = 0.5 * (edges[..., 1:] + edges[..., :-1])

@@ -44,13 +44,14 @@ class Bare(wl.LineContactModel):
         return np.where(problem.creepage > 0.0, 2.0 * problem.half_width, 0.0)
 
     def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
+        pressure = wl.hertz.pressure(nodes.x, problem.half_width, problem.max_pressure)
         bound = np.broadcast_to(problem.friction_coefficient * problem.max_pressure, nodes.x.shape)
         slip = np.broadcast_to(problem.creepage, nodes.x.shape)
-        return wl.LineFields(pressure=bound, traction=0.5 * bound, slip=slip, traction_bound=bound)
+        return wl.LineFields(pressure=pressure, traction=0.5 * bound, slip=slip, traction_bound=bound)
 
     def tangential_force_per_width(self, problem: wl.LineProblem) -> Array:
-        force: Array = problem.friction_coefficient * problem.max_pressure * problem.half_width
-        return force
+        force = problem.friction_coefficient * problem.max_pressure * problem.half_width
+        return np.where(problem.creepage > 0.0, force, 0.0)
 
 
 # --- What the class gives ----------------------------------------------------------------------------------------

@@ -83,7 +83,7 @@ def test_a_block_at_which_every_worker_dies_is_given_up(tmp_path: Path, monkeypa
 
 def test_what_a_model_raises_in_a_worker_is_raised_here_and_the_worker_lives_on() -> None:
     failing = predictor(Failing(slope=Q(1.0, "mm")))
-    with pytest.raises(OverflowError, match="too much"):
+    with pytest.raises(wl.ModelError, match="wear law 'failing' failed: OverflowError: too much"):
         failing.sweep(**CONDITIONS, workers=2)
     assert processes._idle.qsize() > 0
     assert predictor().sweep(**CONDITIONS, workers=2).wear_rate.notnull().all()

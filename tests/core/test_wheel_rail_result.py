@@ -282,7 +282,7 @@ class Lost(Strips):
 
 
 def test_a_model_of_ellipses_that_gives_no_number_is_named_with_the_creepages() -> None:
-    said = "contact model 'lost' gave a spin moment that is not finite for longitudinal creepages from 0.002 to 0.002"
+    said = "contact model 'lost' gave a spin moment that is not finite, first for longitudinal creepage 0.2000 %"
     with pytest.raises(wl.ModelError, match=said):
         (RIG | Lost(cells=8, strips=8))(**CONDITIONS).spin_moment  # noqa: B018
 

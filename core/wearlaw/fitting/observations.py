@@ -15,7 +15,7 @@ from wearlaw.composition import needs_discs
 from wearlaw.contact_pipeline import ContactPipeline
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION
-from wearlaw.integrate import integrate_contact, integrate_wear
+from wearlaw.integrate import integrate_contact, integrate_wear, patch_area
 from wearlaw.line import LineProblem
 from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
@@ -123,8 +123,9 @@ def predictions(
 
 def wear_index_density(pipeline: AnyPipeline, problem: LineProblem) -> Array:
     """Return the patch mean of Tγ/A [N/m²], of the batch shape."""
-    force = integrate_contact(contact_of(pipeline).contact_model, problem)
-    density: Array = np.abs(force * problem.creepage) / problem.patch_area
+    contact = contact_of(pipeline)
+    force = integrate_contact(contact.contact_model, problem)
+    density: Array = np.abs(force * problem.creepage) / patch_area(contact.contact_model, problem, contact.scale)
     return density
 
 

@@ -13,7 +13,7 @@ from wearlaw.composition import check_traction
 from wearlaw.conditions import TWIN_DISC, broadcast, is_friction_law
 from wearlaw.errors import InputError, UnitError
 from wearlaw.grid import with_units
-from wearlaw.integrate import integrate_contact
+from wearlaw.integrate import integrate_contact, patch_area
 from wearlaw.ranges import RangeWatch, line_mean
 from wearlaw.uncertainty.distributions import Distribution, PublishedRange
 from wearlaw.uncertainty.figure import CONFIDENCE, figure_data
@@ -202,8 +202,11 @@ class Uncertainty:
         if stacklevel is not None:
             contact.rig.warn_of_plasticity(flat.max_pressure, stacklevel=stacklevel)
             watch = RangeWatch(self._law)
-            force = integrate_contact(contact.contact_model, flat)
-            watch.see(flat.size, partial(line_mean, flat, force))
+            columns = {
+                "tangential_force": integrate_contact(contact.contact_model, flat),
+                "patch_area": patch_area(contact.contact_model, flat, contact.scale),
+            }
+            watch.see(flat.size, partial(line_mean, flat, columns))
             watch.warn(stacklevel)
         rates = integrate_varying(contact.contact_model, self._law, varied, flat, contact.scale)
         return rates.reshape(shape)

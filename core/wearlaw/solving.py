@@ -1,0 +1,303 @@
+"""Solving contacts by a model, and checking what it returns.
+
+A contact model may come from anyone, so each block of operating points is checked: types, shapes, finite values, areas
+that are not negative, tractions within their bound. What the nodes sum to is compared with the totals in the first
+block and in every 64th one after it. A breach is a `ModelError` that names the model, the field and the first place.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wearlaw.arrays import Array, type_name
+from wearlaw.blocks import Columns, OnBlock, by_block
+from wearlaw.ellipse import EllipticProblem
+from wearlaw.elliptic_contact import TOTALS, EllipticContact
+from wearlaw.errors import ModelError
+from wearlaw.extremes import extremes
+from wearlaw.line import LineProblem
+from wearlaw.line_model import LineContactModel
+from wearlaw.models import WearLaw
+from wearlaw.quadrature import Nodes
+from wearlaw.records import Contact
+from wearlaw.tangential import QUADRATURE, Blame, ContactModel
+from wearlaw.units import from_si
+
+ProblemT = TypeVar("ProblemT", LineProblem, EllipticProblem)
+
+EVERY = 64
+"""Blocks from one comparison of sums with totals to the next."""
+
+SLACK = 2.0
+"""How far sums over nodes may be off, over what the model declares: more than that on the contacts of the conformance
+kit, which are a sample."""
+
+ROUNDINGS = 64.0 * float(np.finfo(np.float64).eps)
+"""Rounding of a sum over nodes, and of the magnitude of a vector, with some to spare."""
+
+FLOAT64 = np.dtype(np.float64)
+
+ONE_THREAD = 2**13
+"""Numbers of which BLAS computes a product in one thread; with several it takes processors from other workers."""
+
+FIELDS = ("pressure", "traction", "slip", "area", "traction_bound", "x")
+"""Arrays with one value for each node."""
+
+VECTORS = ("traction_x", "traction_y", "slip_x", "slip_y", "y")
+"""Those that only an `EllipticContact` has."""
+
+LINE_TOTALS = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
+
+TO_SHOW = {"area": "mm^2", "moment_z": "N*m", "wear_index": "N"}
+"""Units in which messages show fields; pressures and forces have units of their own."""
+
+
+class Solver:
+    """A contact model whose contacts are checked; it counts the blocks.
+
+    Parameters
+    ----------
+    model : ContactModel
+    """
+
+    def __init__(self, model: ContactModel) -> None:
+        self.model = model
+        self._blocks = 0
+
+    def by_block(
+        self,
+        problem: ProblemT,
+        block: int,
+        columns: Callable[[ProblemT], Columns],
+        on_block: OnBlock[ProblemT] | None = None,
+        drop_force: bool = False,
+    ) -> Columns:
+        """Return the columns of a function of the problem, in the shape of its batch; see `blocks.by_block`.
+
+        Raises
+        ------
+        ModelError
+            If the model or the law fails, or a column is not one finite float64 for each operating point.
+        """
+
+        def checked(part: ProblemT) -> Columns:
+            with Blame(self.model):
+                found = columns(part)
+            check_columns(self.model, found, part)
+            return found
+
+        found = by_block(problem.flatten(), block, checked, on_block, drop_force)
+        return {name: values.reshape(problem.batch_shape) for name, values in found.items()}
+
+    @overload
+    def solve(self, problem: LineProblem) -> Contact: ...
+    @overload
+    def solve(self, problem: EllipticProblem) -> EllipticContact: ...
+    def solve(self, problem: LineProblem | EllipticProblem) -> Contact:
+        """Return the contact on the model's own nodes."""
+        with Blame(self.model):
+            contact = self.model.solve(problem)
+        self.check(contact, problem, totals=self.block_is_summed())
+        return contact
+
+    def at(self, problem: LineProblem, nodes: Nodes, *, totals: bool) -> Contact:
+        """Return the contact on given nodes, by a model that knows its fields; `totals` needs nodes all over it."""
+        assert isinstance(self.model, LineContactModel)
+        with Blame(self.model):
+            contact = self.model.at(problem, nodes)
+        self.check(contact, problem, totals=totals, areas=False)
+        return contact
+
+    def block_is_summed(self) -> bool:
+        """Count a block, and return whether its sums are to be compared with its totals."""
+        self._blocks += 1
+        return self._blocks % EVERY == 1
+
+    def check(
+        self, contact: Contact, problem: LineProblem | EllipticProblem, *, totals: bool, areas: bool = True
+    ) -> None:
+        """Raise a `ModelError` if a contact breaks the contract of contact models."""
+        _check_types(self.model, contact, problem)
+        _check_values(self.model, contact, problem, areas=areas)
+        if totals:
+            check_finite(self.model, contact, problem)
+            _check_totals(self.model, contact, problem)
+
+    def rate(self, law: WearLaw, contact: Contact, problem: LineProblem | EllipticProblem) -> Array:
+        """Return the rates of a law, or blame the contact for them if that is what is wrong."""
+        try:
+            return law.checked_rate(contact)
+        except ModelError:
+            check_finite(self.model, contact, problem)
+            raise
+
+
+def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: LineProblem | EllipticProblem) -> None:
+    """Raise a `ModelError` unless each column holds one finite float64 for each operating point."""
+    for name, values in columns.items():
+        check_type(model, name, values, problem.batch_shape)
+        low, high = extremes(values)
+        if not (math.isfinite(low) and math.isfinite(high)):
+            raise _error(model, f"gave {_words(name)} that is not finite", problem, ~np.isfinite(values))
+
+
+def _check_types(model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem) -> None:
+    ellipse = isinstance(problem, EllipticProblem)
+    expected = EllipticContact if ellipse else Contact
+    if not isinstance(contact, expected):
+        raise ModelError(f"contact model '{model.name}' returned {contact!r}, not a wearlaw.{expected.__name__}")
+    batch, nodes = problem.batch_shape, np.shape(contact.pressure)
+    axes = len(batch) + (2 if ellipse else 1)
+    if len(nodes) != axes or nodes[: len(batch)] != batch or 0 in nodes:
+        wanted = ", ".join([*map(str, batch), "nodes", *(["strips"] if ellipse else [])])
+        raise ModelError(f"contact model '{model.name}' gave a pressure of shape {nodes}; it must be ({wanted})")
+    for name in (*FIELDS, *VECTORS) if ellipse else FIELDS:
+        check_type(model, name, getattr(contact, name), nodes)
+    for name in TOTALS if ellipse else LINE_TOTALS:
+        check_type(model, name, getattr(contact, name), batch)
+    if isinstance(contact, EllipticContact):
+        check_type(model, "strip_width", contact.strip_width, (*batch, nodes[-1]))
+
+
+def check_type(model: ContactModel, name: str, values: Any, shape: tuple[int, ...]) -> None:
+    """Raise a `ModelError` unless a value is a float64 array of a shape, or a number where that has no axes."""
+    if type(values) not in (np.ndarray, np.float64) or values.dtype != FLOAT64:
+        raise ModelError(
+            f"contact model '{model.name}' gave {_words(name)} of type {type_name(values)}; it must be a float64 array"
+        )
+    if values.shape != shape:
+        raise ModelError(
+            f"contact model '{model.name}' gave {_words(name)} of shape {values.shape}; it must be {shape}"
+        )
+
+
+def _check_values(
+    model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem, *, areas: bool
+) -> None:
+    """Look at what laws read in as few passes as possible, and for the first wrong value only if there is one.
+
+    The components of vectors are left to their magnitudes, and to the sums of some blocks; areas that are not the
+    model's, to wearlaw.
+    """
+    finite = math.isfinite(_product(contact.pressure, contact.slip))
+    if areas:
+        finite = finite and math.isfinite(_product(contact.area, contact.area))
+        if contact.area.min() < 0.0:
+            raise _error(model, "gave a negative area", problem, contact.area < 0.0)
+    traction = contact.traction if isinstance(contact, EllipticContact) else np.abs(contact.traction)
+    least = float((contact.traction_bound - traction).min())
+    if not finite or math.isnan(least):
+        check_finite(model, contact, problem)
+    if least < 0.0 and least < -ROUNDINGS * float(traction.max()):
+        _check_bound(model, contact, problem)
+
+
+def _product(one: Array, other: Array) -> float:
+    """Return the sum of the products of two arrays of one shape, which is finite only if all their entries are.
+
+    Nothing takes less time. It may also overflow.
+    """
+    first, second = one.ravel(order="K"), other.ravel(order="K")
+    if first.size <= ONE_THREAD:
+        return float(np.vdot(first, second))
+    parts = (slice(start, start + ONE_THREAD) for start in range(0, first.size, ONE_THREAD))
+    return float(sum(np.vdot(first[part], second[part]) for part in parts))
+
+
+def check_finite(model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem) -> None:
+    """Raise a `ModelError` if a value is not finite; the traction bound may be infinite."""
+    names = (*FIELDS, *VECTORS, *TOTALS) if isinstance(contact, EllipticContact) else (*FIELDS, *LINE_TOTALS)
+    for name in names:
+        values = getattr(contact, name)
+        bad = np.isnan(values) if name == "traction_bound" else ~np.isfinite(values)
+        if bad.any():
+            raise _error(model, f"gave {_words(name)} that is not finite", problem, bad)
+
+
+def _check_bound(model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem) -> None:
+    if "traction_bound" in model.exemptions:
+        return
+    over = ~(np.abs(contact.traction) <= contact.traction_bound * (1.0 + _rounding_of_traction(model)))
+    if over.any():
+        first = _first(over)
+        traction, bound = (_shown(name, getattr(contact, name)[first]) for name in ("traction", "traction_bound"))
+        raise _error(model, f"gave a traction of {traction} where its own bound is {bound}", problem, over)
+
+
+def _rounding_of_traction(model: ContactModel) -> float:
+    """Return by how much a traction may exceed its bound: rounding, and the error of the force where it is its mean."""
+    return ROUNDINGS if model.scale == "cells" or model.accuracy == QUADRATURE else model.accuracy
+
+
+def _check_totals(model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem) -> None:
+    """Compare sums over the nodes with the totals, to what the model declares of its sums."""
+    limit = np.maximum(problem.friction_coefficient * problem.normal_force, np.abs(contact.tangential_force))
+    area = contact.area
+    if isinstance(contact, EllipticContact) and isinstance(problem, EllipticProblem):
+        declared, error = "elliptic_accuracy", SLACK * max(model.elliptic_accuracy, ROUNDINGS)
+        sums = {
+            "force_x": (contact.traction_x, limit),
+            "force_y": (contact.traction_y, limit),
+        }
+        if model.scale == "cells":  # the means of a patch have no moment
+            turning = -(contact.x * contact.traction_y + contact.y * contact.traction_x)
+            sums["moment_z"] = turning, limit * np.hypot(problem.a, problem.b)
+    else:
+        declared, error = "accuracy", SLACK * max(model.accuracy, ROUNDINGS)
+        sums = {"tangential_force": (contact.traction, limit)}
+        if "energy_balance" not in model.exemptions and model.scale == "cells":
+            sums["wear_index"] = contact.wear_index_density, limit * np.abs(_creepage(problem))
+    for name, (values, size) in {"normal_force": (contact.pressure, contact.normal_force), **sums}.items():
+        total, found = getattr(contact, name), contact.sum_over_nodes(values * area)
+        wrong = ~(np.abs(found - total) <= error * size)
+        if wrong.any():
+            first = _first(wrong)
+            raise _error(
+                model,
+                f"gave {_words(name)} of {_shown(name, total[first])}, but its nodes sum to"
+                f" {_shown(name, found[first])}; they may differ by twice its `{declared}`, {0.5 * error:.2g}, which a"
+                " model on coarser nodes declares",
+                problem,
+                wrong,
+            )
+
+
+def _creepage(problem: LineProblem | EllipticProblem) -> Array:
+    return problem.longitudinal_creepage if isinstance(problem, EllipticProblem) else problem.creepage
+
+
+def _error(
+    model: ContactModel, what: str, problem: LineProblem | EllipticProblem, wrong: NDArray[np.bool_]
+) -> ModelError:
+    """Return the error that names the first place where something is wrong, of the shape of the batch or the nodes."""
+    first = _first(wrong)
+    batch = len(problem.batch_shape)
+    point, node = first[:batch], first[batch:]
+    creepage = "longitudinal creepage" if isinstance(problem, EllipticProblem) else "creepage"
+    conditions = (
+        f"{creepage} {from_si(_creepage(problem)[point], '%')!r}"
+        f" and maximum pressure {from_si(problem.max_pressure[point], 'MPa')!r}"
+    )
+    at = f"node {', '.join(map(str, node))} at " if node else ""
+    return ModelError(f"contact model '{model.name}' {what}, first for {at}{conditions}")
+
+
+def _first(wrong: NDArray[np.bool_]) -> tuple[int, ...]:
+    return tuple(int(index) for index in np.unravel_index(int(np.argmax(wrong)), wrong.shape))
+
+
+def _words(name: str) -> str:
+    """Return what messages call a field, with its article."""
+    words = {"force_x": "longitudinal force", "force_y": "lateral force", "moment_z": "spin moment"}
+    named = words.get(name, name.replace("_", " "))
+    return f"{'an' if named[0] in 'aeiou' else 'a'} {named}"
+
+
+def _shown(name: str, value: float) -> str:
+    unit = TO_SHOW.get(name, "N" if "force" in name else "MPa")
+    return repr(from_si(value, unit))
