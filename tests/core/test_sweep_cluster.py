@@ -69,6 +69,17 @@ def test_the_tasks_of_a_stored_sweep_are_small_and_hand_nothing_back(
     assert sorted(tasks)[:10] == [0] * 10
 
 
+@pytest.mark.parametrize("threads", [2, 8])
+def test_the_threads_of_a_new_worker_may_all_begin_at_once(threads: int) -> None:
+    predict = predictor()
+    with (
+        distributed.LocalCluster(n_workers=1, threads_per_worker=threads, dashboard_address=":0") as machine,
+        distributed.Client(machine) as connected,
+    ):
+        swept = predict.sweep(**CONDITIONS, outputs=OUTPUTS, client=connected)
+    xr.testing.assert_identical(swept, predict.sweep(**CONDITIONS, outputs=OUTPUTS))
+
+
 def test_there_are_tasks_before_there_are_workers() -> None:
     class Empty:
         def nthreads(self) -> dict[str, int]:
