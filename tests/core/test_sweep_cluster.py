@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, deadly, predictor
+from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, deadly, ending, predictor
 from wearlaw.sweeping import cluster
 
 distributed = pytest.importorskip("distributed")
@@ -78,6 +78,16 @@ def test_the_threads_of_a_new_worker_may_all_begin_at_once(threads: int) -> None
     ):
         swept = predict.sweep(**CONDITIONS, outputs=OUTPUTS, client=connected)
     xr.testing.assert_identical(swept, predict.sweep(**CONDITIONS, outputs=OUTPUTS))
+
+
+@pytest.mark.parametrize("error", ["SystemExit", "KeyboardInterrupt"])
+def test_what_would_end_a_worker_of_the_cluster_is_an_error_here_and_the_workers_live_on(
+    client: Any, error: str
+) -> None:
+    before = set(client.nthreads())
+    with pytest.raises(wl.ModelError, match=f"{error}: 0"):
+        ending(error).sweep(**CONDITIONS, client=client)
+    assert set(client.nthreads()) == before
 
 
 def test_there_are_tasks_before_there_are_workers() -> None:
