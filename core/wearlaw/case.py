@@ -7,7 +7,8 @@ evaluated. `load_case` reads one from a file, or by the name of a case that is s
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -15,13 +16,22 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from wearlaw import plugins
 from wearlaw.configuration import Configuration, known_as
-from wearlaw.errors import CaseError, ConfigurationError, InputError, did_you_mean, with_problems
+from wearlaw.errors import (
+    CaseError,
+    ConfigurationError,
+    InputError,
+    PluginWarning,
+    described,
+    did_you_mean,
+    with_problems,
+)
 from wearlaw.figures.check import Contents
 from wearlaw.figures.measured_points import known_variables
 from wearlaw.figures.spec import FigureSpec
 from wearlaw.grid import Grid
 from wearlaw.measurement import Measurement
 from wearlaw.rig import Disc, TwinDisc
+from wearlaw.shelf import Shelf
 from wearlaw.specification import ContactModelField, MaterialField, WearLawField
 from wearlaw.tangential import Model
 from wearlaw.text_files import read_text
@@ -212,23 +222,33 @@ def case_schema() -> dict[str, Any]:
     """Return the JSON Schema of a case file, with the options of all installed models."""
     schema = Case.model_json_schema(by_alias=True)
     definitions = schema["$defs"]
-    kinds: dict[str, Mapping[str, type[Model]]] = {
-        "contact_models": plugins.contact_models(),
-        "wear_laws": plugins.wear_laws(),
-    }
-    for field, models in kinds.items():
-        tables = [_model_schema(name, model, definitions) for name, model in models.items()]
-        schema["properties"][field]["items"] = {"anyOf": [{"enum": list(models)}, *tables]}
-    schema["properties"]["wear_laws"]["items"]["anyOf"] += [
-        choice
-        for name, law in plugins.parameter_sets().items()
-        for choice in ({"const": name}, {**_model_schema(name, type(law), definitions), "required": ["model"]})
+    properties, found = schema["properties"], plugins.installed()
+    for field, shelf in (("contact_models", found.contact_models), ("wear_laws", found.wear_laws)):
+        properties[field]["items"] = {"anyOf": [{"enum": list(shelf.items())}, *_tables(shelf, definitions)]}
+    sets = found.parameter_sets
+    properties["wear_laws"]["items"]["anyOf"] += [
+        *({"const": name} for name in sets.items()),
+        *({**table, "required": ["model"]} for table in _tables(sets, definitions)),
     ]
-    schema["properties"]["sections"]["items"] = {"enum": list(plugins.installed().sections.items())}
+    properties["sections"]["items"] = {"enum": list(found.sections.items())}
     preset = Preset.model_json_schema()
     definitions.update(preset.pop("$defs", {}))
-    schema["properties"]["rig"] = {"anyOf": [{"$ref": "#/$defs/TwinDisc"}, preset]}
+    properties["rig"] = {"anyOf": [{"$ref": "#/$defs/TwinDisc"}, preset]}
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def _tables(shelf: Shelf[Any], definitions: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Give the schema of each model's table; a model that fails to give one is left out with a warning."""
+    for name, item in shelf.items().items():
+        try:
+            table = _model_schema(name, item if isinstance(item, type) else type(item), definitions)
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
+            reason = f"{shelf.kind} '{name}' of {shelf.origin(name)} is left out of the schema: {described(error)}"
+            warnings.warn(reason, PluginWarning, stacklevel=3)
+        else:
+            yield table
 
 
 def _model_schema(name: str, model: type[Model], definitions: dict[str, Any]) -> dict[str, Any]:

@@ -140,7 +140,7 @@ class WorkerWarning(WearlawWarning):
 
 
 class PluginWarning(WearlawWarning):
-    """An installed plugin could not be loaded and is left out."""
+    """An installed plugin, or a part of it, could not be used and is left out."""
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
@@ -149,12 +149,19 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f"; did you mean '{near[0]}'?" if near else "."
 
 
-def described(error: BaseException) -> str:
-    """Return the type and the message of any exception, also of one whose message cannot be made."""
+def message_of(error: BaseException) -> str:
+    """Return the message of an exception, or a remark if its `__str__` fails, as a plugin's may."""
     try:
-        message = str(error)
-    except Exception:
-        message = "its message cannot be shown"
+        return str(error)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as another:
+        return f"(its message cannot be shown: {type(another).__name__})"
+
+
+def described(error: BaseException) -> str:
+    """Return the type and the message of an exception."""
+    message = message_of(error)
     return f"{type(error).__name__}: {message}" if message else type(error).__name__
 
 

@@ -21,7 +21,7 @@ from packaging.utils import canonicalize_name
 
 from wearlaw import hookspecs
 from wearlaw.configuration import Configuration, known_as
-from wearlaw.errors import InputError, PluginWarning
+from wearlaw.errors import InputError, PluginWarning, described
 from wearlaw.material import Material
 from wearlaw.models import WearLaw
 from wearlaw.shelf import Broken, Origin, Shelf, add_model
@@ -95,11 +95,14 @@ def _discover(found: Installed) -> None:
 
 @contextmanager
 def _isolated(found: Installed, origin: Origin) -> Iterator[None]:
-    """Note what a plugin raises, whatever that is, and go on."""
+    """Note what a plugin raises, whatever that is, and go on; only Ctrl-C ends the program."""
     try:
         yield
-    except Exception as error:
-        found.broken.append(Broken(origin, f"{type(error).__name__}: {error}"))
+    except KeyboardInterrupt as interrupt:  # the plugin may have raised it itself, which looks the same
+        interrupt.add_note(f"wearlaw was loading {origin}")
+        raise
+    except BaseException as error:
+        found.broken.append(Broken(origin, described(error)))
 
 
 def contact_models() -> Mapping[str, type[ContactModel]]:

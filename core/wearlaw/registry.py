@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
+from threading import RLock
 from typing import Any
 
 import numpy as np
@@ -14,11 +15,28 @@ from wearlaw.errors import UnitError
 _SIGNIFICANT_DIGITS = 4
 
 
+_MAKING = RLock()
+"""Held by the thread that makes a registry or its class of quantities."""
+
+_ready: object = None
+"""The last registry that was in force, which is made for certain."""
+
+
 def application_registry() -> pint.UnitRegistry[Any]:
     """Return the registry that is in force now, which `pint.set_application_registry` may have changed."""
     current: Any = pint.application_registry
     registry: pint.UnitRegistry[Any] = current.get()
+    if registry is not _ready:
+        _make(registry)
     return registry
+
+
+def _make(registry: pint.UnitRegistry[Any]) -> None:
+    """Have pint make its default registry, which it puts off until the first use; once made, threads may share it."""
+    global _ready
+    with _MAKING:
+        registry.Unit  # noqa: B018  # any attribute does
+        _ready = registry
 
 
 _UNBOUNDED = re.compile(r"(?<![.\d])\d{3,}|(\*\*|\^)[^a-zA-Zµμ°%*/]*(\*\*|\^)|\)\s*(\*\*|\^).*\)\s*(\*\*|\^)")
@@ -110,7 +128,12 @@ def _shown_in(registry: pint.UnitRegistry[Any], unit: str) -> tuple[type[Any], A
 @functools.lru_cache(maxsize=64)
 def quantity_class(registry: pint.UnitRegistry[Any]) -> type[Any]:
     """Return the registry's quantity class with a repr that a reader of wear rates can read."""
+    with _MAKING:  # pint's methods ask whether two quantities are of one class
+        return _quantity_class(registry)
 
+
+@functools.lru_cache(maxsize=64)
+def _quantity_class(registry: pint.UnitRegistry[Any]) -> type[Any]:
     class ReadableQuantity(registry.Quantity):  # type: ignore[misc, name-defined]
         @classmethod
         def of(cls, magnitude: Any, container: Any) -> Any:

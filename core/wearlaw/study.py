@@ -15,7 +15,15 @@ from wearlaw import plugins
 from wearlaw.arrays import Array
 from wearlaw.case import Case, labelled
 from wearlaw.configuration import known_name, parts
-from wearlaw.errors import InputError, ModelError, WearlawError, WearlawWarning, did_you_mean
+from wearlaw.errors import (
+    InputError,
+    ModelError,
+    WearlawError,
+    WearlawWarning,
+    described,
+    did_you_mean,
+    message_of,
+)
 from wearlaw.material import Material
 from wearlaw.models import WearLaw
 from wearlaw.notes import Notes
@@ -126,14 +134,16 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
     try:
         with notes.of(f"section '{name}'"):
             section = make(study)
+        if not isinstance(section, Section):
+            raise TypeError(f"it must be a Section, got {section!r}")
     except WearlawError as error:
         raise InputError(
-            f"{subject}: {error}\nTo run the case without this section, take '{name}' out of `sections`"
+            f"{subject}: {message_of(error)}\nTo run the case without this section, take '{name}' out of `sections`"
         ) from error
-    except Exception as error:
-        raise ModelError(f"{subject} failed with {type(error).__name__}: {error}") from error
-    if not isinstance(section, Section):
-        raise ModelError(f"{subject} must be a Section, got {section!r}")
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        raise ModelError(f"{subject} failed with {described(error)}") from error
     return section
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import os
 from pathlib import Path
 from typing import Any
@@ -57,6 +58,27 @@ class Failing(Linear):
         if contact.normal_force.max() > 8e3:
             raise OverflowError("too much")
         return super().rate(contact)
+
+
+class Ending(Linear):
+    """A law that raises what ends a process, in any but that of the test."""
+
+    name = "ending"
+
+    spared: int
+    """The process of the test."""
+    error: str
+    """What it raises, an exception of Python."""
+
+    def rate(self, contact: wl.Contact) -> Array:
+        if os.getpid() != self.spared:
+            raise getattr(builtins, self.error)(0)
+        return super().rate(contact)
+
+
+def ending(error: str) -> wl.Pipeline[wl.TwinDisc]:
+    """Return a pipeline that raises an exception of Python in every worker."""
+    return predictor(Ending(slope=Q(1.0, "mm"), spared=os.getpid(), error=error))
 
 
 def deadly(marker: Path, always: bool = False) -> wl.Pipeline[wl.TwinDisc]:

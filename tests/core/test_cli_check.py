@@ -114,6 +114,27 @@ def test_another_module_that_is_missing_is_not_laid_to_hypothesis(monkeypatch: p
     assert result.exception.name == "wearlaw.testing.kit"
 
 
+@pytest.mark.parametrize("error", [SystemExit(0), GeneratorExit("over")], ids=["SystemExit", "GeneratorExit"])
+def test_a_law_that_ends_the_program_fails_the_checks(
+    error: BaseException, monkeypatch: pytest.MonkeyPatch, install_model: InstallModel
+) -> None:
+    class Ending(cases.Linear):
+        name = "ending"
+
+        def rate(self, contact: wl.Contact) -> wl.Array:
+            if contact.pressure.size:
+                raise error
+            return contact.pressure
+
+    install_model(Ending)
+    name = "no_slip_no_wear"
+    monkeypatch.setattr("wearlaw.testing.checks", lambda law: [one for one in checks(law) if one.name == name])
+    result = wearlaw("check", "ending", "--option", "slope=1 m")
+    assert result.exit_code == 1
+    reason = f"the model raised {type(error).__name__}: {error}"
+    assert result.stdout == f"FAILED no_slip_no_wear: {reason}\n0 ok, 1 failed, 0 not claimed\n"
+
+
 def test_a_law_that_breaks_its_contract_fails_the_checks(
     monkeypatch: pytest.MonkeyPatch, install_model: InstallModel
 ) -> None:

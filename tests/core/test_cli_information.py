@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
+import textwrap
 from pathlib import Path
 
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import wearlaw
+from tests.core.cases import assert_refused, table, wearlaw, write
 from tests.core.distributions import Install
+from wearlaw import plugins
 from wearlaw.case import case_schema, case_text
 
 # case, schema, show, help
@@ -91,6 +95,88 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
         *(["section", f"tassini2010_{name}", "wearlaw", wl.__version__] for name in ("claims", "table_4", "tables")),
     ]
     assert result.stderr == ""
+
+
+ENDING = "raise SystemExit(0)"
+
+
+def test_a_plugin_that_ends_the_program_ends_no_command(install: Install, folder: Path) -> None:
+    install("ending", ENDING)
+    listed = wearlaw("plugins")
+    assert listed.exit_code == 0
+    assert listed.stderr == "left out: ending 1.0 (plugin 'ending'): SystemExit: 0\n"
+    assert "usfd" in listed.stdout
+    write(folder / "own.toml", table(contact_models=["global"], wear_laws=["usfd"], profiles={}))
+    for arguments in (
+        ["show", "usfd"],
+        ["schema"],
+        ["case", "own.toml"],
+        ["run", "own.toml", "--figure-format", "svg"],
+    ):
+        plugins._search.cache_clear()
+        with pytest.warns(wl.PluginWarning, match=r"left out: ending 1\.0 \(plugin 'ending'\): SystemExit: 0"):
+            result = wearlaw(*arguments)
+        assert result.exit_code == 0
+        assert result.stdout
+    assert (folder / "own-results" / "report.html").exists()
+
+
+def test_the_plugin_is_named_where_a_shell_shows_it(install: Install, tmp_path: Path) -> None:
+    install("ending", ENDING)
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from wearlaw.cli import main; main()"
+    done = subprocess.run([sys.executable, "-c", code, "show", "usfd"], capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("usfd: a wear law of wearlaw ")
+    assert "PluginWarning: left out: ending 1.0 (plugin 'ending'): SystemExit: 0\n" in done.stderr
+
+
+UNDESCRIBED = """
+    from typing import ClassVar
+
+    import wearlaw as wl
+
+    class Mute(wl.WearLaw):
+        name: ClassVar[str] = "mute"
+        source: ClassVar[str] = "a test"
+
+        def rate(self, contact):
+            return 0.0 * contact.pressure
+
+        @classmethod
+        def __get_pydantic_json_schema__(cls, schema, handler):
+            raise {error}
+
+    @wl.hookimpl
+    def wearlaw_wear_laws():
+        return [Mute]
+
+    @wl.hookimpl
+    def wearlaw_parameter_sets():
+        return {{"mute_set": Mute()}}
+"""
+
+
+@pytest.mark.parametrize(("error", "said"), [("SystemExit(0)", "SystemExit: 0"), ("KeyError(3)", "KeyError: 3")])
+def test_a_model_without_a_schema_is_left_out_of_it_with_its_plugin_named(
+    error: str, said: str, install: Install
+) -> None:
+    names_before, *tables_before = case_schema()["properties"]["wear_laws"]["items"]["anyOf"]
+    install("undescribed", UNDESCRIBED.format(error=error))
+    with pytest.warns(wl.PluginWarning) as caught:
+        result = wearlaw("schema")
+    assert result.exit_code == 0
+    reason = f"of undescribed 1.0 (plugin 'undescribed') is left out of the schema: {said}"
+    assert [str(one.message) for one in caught] == [f"wear law 'mute' {reason}", f"parameter set 'mute_set' {reason}"]
+    names, *tables = json.loads(result.stdout)["properties"]["wear_laws"]["items"]["anyOf"]
+    assert set(names["enum"]) == {*names_before["enum"], "mute"}  # its name alone is still right
+    assert tables == [*tables_before, {"const": "mute_set"}]
+
+
+def test_a_model_that_ends_the_program_gives_an_error_that_says_where(install: Install, tmp_path: Path) -> None:
+    source = UNDESCRIBED.format(error="SystemExit(0)")
+    install("undescribed", source)
+    line = textwrap.dedent(source).splitlines().index("        raise SystemExit(0)") + 1
+    place = f"{tmp_path / 'undescribed.py'}, line {line}"
+    assert_refused(wearlaw("show", "mute"), f"the command was ended by SystemExit: 0, raised in {place}")
 
 
 def test_what_failed_to_load_is_named_once_with_its_cause(install: Install) -> None:

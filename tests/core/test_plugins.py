@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
+from tests.core.cases import wearlaw
 from tests.core.distributions import FIRST_PARTY_LAWS, FIRST_PARTY_MODELS, LAW, Install, write_distribution
 from wearlaw import hookspecs, plugins
 
@@ -22,6 +23,37 @@ BROKEN = {
     "import_that_fails": ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named"),
     "error_on_import": ("raise RuntimeError('no licence')", "RuntimeError: no licence"),
     "syntax_error": ("def", "SyntaxError"),
+    "exit_on_import": ("raise SystemExit(0)", "SystemExit: 0"),
+    "exit_without_a_word": ("import sys\nsys.exit()", "SystemExit"),
+    "end_of_a_generator": ("raise GeneratorExit", "GeneratorExit"),
+    "error_beside_exception": ("class Own(BaseException): ...\nraise Own('mine')", "Own: mine"),
+    "memory_error": ("raise MemoryError", "MemoryError"),
+    "endless_recursion": ("def f(): f()\nf()", "RecursionError: maximum recursion depth exceeded"),
+    "error_without_a_message": (
+        "class Mute(Exception):\n    def __str__(self): 1 / 0\nraise Mute",
+        "Mute: (its message cannot be shown: ZeroDivisionError)",
+    ),
+    "error_whose_message_ends_the_program": (
+        "class Mute(Exception):\n    def __str__(self): raise SystemExit(0)\nraise Mute",
+        "Mute: (its message cannot be shown: SystemExit)",
+    ),
+    "exit_in_a_hook": (
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    raise SystemExit(0)",
+        "SystemExit: 0",
+    ),
+    "exit_in_a_generator": (
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_contact_models():\n    yield from ()\n    raise SystemExit(0)",
+        "SystemExit: 0",
+    ),
+    "exit_in_a_hook_of_named_things": (
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_materials():\n    raise SystemExit(0)",
+        "SystemExit: 0",
+    ),
+    "thing_that_cannot_be_shown": (
+        "import wearlaw\nclass Mute:\n    def __repr__(self): raise SystemExit(0)\n"
+        "@wearlaw.hookimpl\ndef wearlaw_sections():\n    return {'mute': Mute()}",
+        "SystemExit: 0",
+    ),
     "misspelt_hook": (
         "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_law():\n    return []",
         "unknown hook 'wearlaw_wear_law'",
@@ -128,6 +160,22 @@ def test_a_broken_plugin_is_warned_of_once_and_then_left_alone(install: Install)
         warnings.simplefilter("error")
         wl.wear_laws()
         wl.contact_model("exact")
+
+
+@pytest.mark.parametrize(
+    "source",
+    ["import signal\nsignal.raise_signal(signal.SIGINT)", "raise KeyboardInterrupt"],
+    ids=["by a person", "by the plugin"],
+)
+def test_ctrl_c_while_a_plugin_is_loading_ends_the_program_and_names_the_plugin(source: str, install: Install) -> None:
+    install("slow_plugin", source)
+    with pytest.raises(KeyboardInterrupt) as interrupt:
+        wl.wear_laws()
+    assert interrupt.value.__notes__ == ["wearlaw was loading slow_plugin 1.0 (plugin 'slow_plugin')"]
+    result = wearlaw("show", "usfd")
+    assert result.exit_code == 1
+    assert result.stdout == ""
+    assert result.stderr.split("\n") == [*interrupt.value.__notes__, "", "Aborted!", ""]
 
 
 def test_every_broken_plugin_is_warned_of(install: Install) -> None:

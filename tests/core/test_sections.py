@@ -48,6 +48,37 @@ LAB = """
         }
 """
 
+UNKIND = """
+    import wearlaw as wl
+
+    def exits(study):
+        raise SystemExit(0)
+
+    class Mute(Exception):
+        def __str__(self):
+            raise SystemExit(0)
+
+    def mute(study):
+        raise Mute
+
+    class MuteError(Mute, wl.WearlawError):
+        pass
+
+    def refuses(study):
+        raise MuteError
+
+    class Unshown:
+        def __repr__(self):
+            raise SystemExit(0)
+
+    def unshown(study):
+        return Unshown()
+
+    @wl.hookimpl
+    def wearlaw_sections():
+        return {"exits": exits, "mute": mute, "refuses": refuses, "unshown": unshown}
+"""
+
 OURS = ["tassini2010_claims", "tassini2010_table_4", "tassini2010_tables"]
 
 
@@ -101,6 +132,24 @@ def test_what_a_section_raises_is_the_plugins_fault_and_kept_as_the_cause(instal
     with pytest.raises(wl.ModelError, match=message) as refused:
         run(case(sections=["raises"]))
     assert isinstance(refused.value.__cause__, ZeroDivisionError)
+
+
+@pytest.mark.parametrize(
+    ("name", "error", "reason"),
+    [
+        ("exits", wl.ModelError, " failed with SystemExit: 0"),
+        ("mute", wl.ModelError, " failed with Mute: (its message cannot be shown: SystemExit)"),
+        ("refuses", wl.InputError, ": (its message cannot be shown: SystemExit)"),
+        ("unshown", wl.ModelError, " failed with SystemExit: 0"),
+    ],
+)
+def test_a_section_that_ends_the_program_or_cannot_say_why_it_fails_is_named(
+    install: Install, name: str, error: type[Exception], reason: str
+) -> None:
+    install("unkind", UNKIND)
+    with pytest.raises(error) as refused:
+        run(case(sections=[name]))
+    assert str(refused.value).startswith(f"section '{name}' of unkind 1.0 (plugin 'unkind'){reason}")
 
 
 def test_the_command_line_ends_with_the_message_and_leaves_no_folder(

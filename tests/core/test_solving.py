@@ -362,7 +362,7 @@ class UnprintableError(Exception):
 ERRORS: dict[type[BaseException], str] = {
     ZeroDivisionError: "ZeroDivisionError",
     SystemExit: "SystemExit",
-    UnprintableError: "UnprintableError: its message cannot be shown",
+    UnprintableError: r"UnprintableError: \(its message cannot be shown: RuntimeError\)",
 }
 
 

@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, deadly, predictor
+from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, deadly, ending, predictor
 from wearlaw.sweeping import cluster
 
 distributed = pytest.importorskip("distributed")
@@ -67,6 +67,27 @@ def test_the_tasks_of_a_stored_sweep_are_small_and_hand_nothing_back(
     # 24 points of 3 conditions would take 576 bytes as they are; a task names 2 x 3 x 4 values, with their frame.
     assert max(tasks) < 2000
     assert sorted(tasks)[:10] == [0] * 10
+
+
+@pytest.mark.parametrize("threads", [2, 8])
+def test_the_threads_of_a_new_worker_may_all_begin_at_once(threads: int) -> None:
+    predict = predictor()
+    with (
+        distributed.LocalCluster(n_workers=1, threads_per_worker=threads, dashboard_address=":0") as machine,
+        distributed.Client(machine) as connected,
+    ):
+        swept = predict.sweep(**CONDITIONS, outputs=OUTPUTS, client=connected)
+    xr.testing.assert_identical(swept, predict.sweep(**CONDITIONS, outputs=OUTPUTS))
+
+
+@pytest.mark.parametrize("error", ["SystemExit", "KeyboardInterrupt"])
+def test_what_would_end_a_worker_of_the_cluster_is_an_error_here_and_the_workers_live_on(
+    client: Any, error: str
+) -> None:
+    before = set(client.nthreads())
+    with pytest.raises(wl.ModelError, match=f"{error}: 0"):
+        ending(error).sweep(**CONDITIONS, client=client)
+    assert set(client.nthreads()) == before
 
 
 def test_there_are_tasks_before_there_are_workers() -> None:

@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, predictor
+from tests.core.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, ending, predictor
 from wearlaw import Q, kernels
 from wearlaw.sweeping import processes
 
@@ -87,6 +87,13 @@ def test_what_a_model_raises_in_a_worker_is_raised_here_and_the_worker_lives_on(
         failing.sweep(**CONDITIONS, workers=2)
     assert processes._idle.qsize() > 0
     assert predictor().sweep(**CONDITIONS, workers=2).wear_rate.notnull().all()
+
+
+@pytest.mark.parametrize("error", ["SystemExit", "KeyboardInterrupt", "GeneratorExit"])
+def test_what_would_end_a_worker_is_an_error_here_and_the_worker_lives_on(error: str) -> None:
+    with pytest.raises(wl.ModelError, match=f"{error}: 0"):
+        ending(error).sweep(**CONDITIONS, workers=2)
+    assert processes._idle.qsize() > 0
 
 
 class Choosing(Failing):

@@ -1,17 +1,36 @@
-"""Quantities of another registry of pint, and an application registry that is changed."""
+"""Quantities of another registry of pint, and an application registry that is changed or not made yet."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
+from time import sleep
+from typing import Any, TypeVar
 
 import pint
 import pytest
+from pint.registry import LazyRegistry
 
 import wearlaw as wl
 from tests.core.units import LENGTH
 from wearlaw import Q
+from wearlaw.registry import quantity_class
 from wearlaw.units import from_si
+
+T = TypeVar("T")
+
+
+def in_eight_threads(work: Callable[[], T]) -> list[T]:
+    """Return what each of eight threads gives, which all begin at once."""
+    together = Barrier(8)
+
+    def begin(_: int) -> T:
+        together.wait()
+        return work()
+
+    with ThreadPoolExecutor(8) as threads:
+        return list(threads.map(begin, range(8)))
 
 
 @pytest.fixture
@@ -58,3 +77,21 @@ def test_a_registry_with_another_default_system_still_gives_si(system: str) -> N
     predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
     result = predict(normal_force="7.4143 kN", creepage="1 %", friction_coefficient=0.46)
     assert repr(result.wear_rate) == "27.70 µg/m/mm²"
+
+
+@pytest.mark.usefixtures("original_registry")
+def test_threads_wait_until_a_lazy_registry_is_made() -> None:
+    for _ in range(2):
+        pint.set_application_registry(LazyRegistry())  # type: ignore[no-untyped-call]
+        assert in_eight_threads(lambda: repr(wl.steel().youngs_modulus)) == ["206.5 GPa"] * 8
+
+
+def test_a_registry_has_one_class_of_quantities_for_all_threads() -> None:
+    class Slow:
+        @property
+        def Quantity(self) -> type:
+            sleep(0.01)
+            return object
+
+    registry: Any = Slow()
+    assert len(set(in_eight_threads(lambda: quantity_class(registry)))) == 1

@@ -23,7 +23,7 @@ from tests.testing import (
     wrong_laws,
     wrong_strips,
 )
-from wearlaw.testing import Check, checks, conformance, examples
+from wearlaw.testing import Check, checks, conformance, examples, fresh
 
 WRONG: dict[Any, str] = {
     **wrong_laws.CAUGHT,
@@ -114,6 +114,13 @@ def two_slopes(wear_index_density: Any, *, mild: float = 5.0, severe: float = 15
 @conformance(two_slopes)
 def test_a_law_from_one_function_passes(check: Check) -> None:
     check()
+
+
+def test_what_would_end_the_fresh_process_is_the_reason_why_a_model_cannot_be_made_again() -> None:
+    def ends() -> None:
+        raise SystemExit(0)
+
+    assert fresh.made_again(ends, []) == ("SystemExit: 0", None)
 
 
 @pytest.mark.no_cover  # as for the models that come with wearlaw

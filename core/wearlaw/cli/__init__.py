@@ -3,24 +3,36 @@
 from __future__ import annotations
 
 import sys
+import traceback
 from io import TextIOWrapper
 from typing import Any
 
 import click
 
 from wearlaw.cli import data_commands, model_commands, study_commands, uncertainty_commands
-from wearlaw.errors import WearlawError
+from wearlaw.errors import WearlawError, described, message_of
 from wearlaw.version import __version__
 
 
 class _Commands(click.Group):
-    """Commands that end with one clear line, not a traceback, when wearlaw raises an error on purpose."""
+    """Commands that end with one clear line when wearlaw raises an error on purpose, or a plugin ends the program."""
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
             return super().invoke(ctx)
         except WearlawError as error:
-            raise click.ClickException(str(error)) from None
+            raise click.ClickException(message_of(error)) from None
+        except KeyboardInterrupt as interrupt:
+            for note in getattr(interrupt, "__notes__", []):
+                click.echo(note, err=True)
+            raise
+        except Exception:
+            raise
+        except BaseException as error:  # such as a model's SystemExit(0), after which all would seem well
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            raise click.ClickException(
+                f"the command was ended by {described(error)}, raised in {place.filename}, line {place.lineno}"
+            ) from error
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-import sys
 import warnings
 from collections.abc import Iterable
 from pathlib import Path
@@ -14,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 from wearlaw import plugins
-from wearlaw.errors import PluginWarning, UnknownModelError
+from wearlaw.errors import PluginWarning, UnknownModelError, message_of
 from wearlaw.shelf import unknown
 
 if TYPE_CHECKING:
@@ -105,7 +104,7 @@ def check(name: str, options: tuple[str, ...]) -> None:
         click.echo(f"not claimed {claim}: {reason}")
     click.echo(f"{outcomes.count(True)} ok, {outcomes.count(False)} failed, {len(not_claimed)} not claimed")
     if not all(outcomes):
-        sys.exit(1)
+        click.get_current_context().exit(1)
 
 
 def _checks(model: Model) -> Iterable[Check]:
@@ -123,7 +122,7 @@ def _outcome(check: Check) -> bool:
     try:
         check()
     except AssertionError as error:
-        reason = str(error) or check.doc
+        reason = message_of(error) or check.doc
         click.echo(f"FAILED {check.name}: {reason.strip().splitlines()[0]}")
         return False
     click.echo(f"ok {check.name}")

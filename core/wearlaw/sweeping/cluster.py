@@ -7,7 +7,7 @@ from collections.abc import Generator, Iterable
 from typing import Any
 
 from wearlaw.arrays import Array
-from wearlaw.errors import SweepError
+from wearlaw.errors import ModelError, SweepError, described
 from wearlaw.sweeping.evaluation import Seen
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.sweeping.processes import Done, Into
@@ -56,7 +56,12 @@ def on_cluster(
 
 
 def _evaluate(job: bytes, block: Block, part: Points, store: str | None) -> tuple[list[Array], Seen]:
-    outputs, seen = evaluated(job_of(job), block, part, store)
+    try:
+        outputs, seen = evaluated(job_of(job), block, part, store)
+    except Exception:
+        raise
+    except BaseException as error:  # a model's SystemExit would end the worker
+        raise ModelError(described(error)) from None
     return list(outputs.values()), seen
 
 

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable
 from typing import BinaryIO
 
-from wearlaw.errors import ModelError
+from wearlaw.errors import ModelError, described
 from wearlaw.sweeping.evaluation import Job, Outputs, Seen, evaluate
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.sweeping.store import write_block
@@ -33,7 +33,7 @@ def _answer(task: bytes, answers: BinaryIO) -> None:
     try:
         job, block, part, store = pickle.loads(task)
         outputs, seen = evaluated(job_of(job), block, part, store)
-    except Exception as error:
+    except BaseException as error:  # a model's SystemExit would end the worker, and Ctrl-C is not for it
         pickle.dump(_portable(error), answers)
     else:
         pickle.dump(seen, answers)
@@ -60,10 +60,10 @@ def job_of(pickled: bytes) -> Job:
     return job
 
 
-def _portable(error: Exception) -> Exception:
-    """Return an exception that can be sent to another process."""
+def _portable(error: BaseException) -> Exception:
+    """Return the exception, or a `ModelError` if it would end a process or cannot be sent to one."""
     try:
         pickle.loads(pickle.dumps(error))
-    except Exception:
-        return ModelError(f"{type(error).__name__}: {error}")
-    return error
+        return error if isinstance(error, Exception) else ModelError(described(error))
+    except BaseException:
+        return ModelError(described(error))

@@ -24,10 +24,14 @@ def computed(model: Any, arguments: list[Any]) -> list[Any]:
 
 def made_again(way: Callable[[], Any], arguments: list[Any]) -> tuple[str, Any]:
     """Return what a model computes, or why it could not be made."""
+    from wearlaw.errors import described  # once `sys.path` is that of the test
+
     try:
         return "", computed(way(), arguments)
-    except Exception as error:
-        return f"{type(error).__name__}: {error}", None
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        return described(error), None
 
 
 def main() -> None:

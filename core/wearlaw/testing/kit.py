@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from wearlaw.errors import InputError
+from wearlaw.errors import InputError, described
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import WearLaw
 from wearlaw.tangential import ContactModel, Model
@@ -64,15 +64,15 @@ class Check:
         """
         try:
             self._run()
-        except AssertionError:
+        except (AssertionError, KeyboardInterrupt):
             raise
-        except Exception as raised:
+        except BaseException as raised:
             error = raised
-            while isinstance(error, ExceptionGroup):  # of several different failures, the first
+            while isinstance(error, BaseExceptionGroup):  # of several different failures, the first
                 error = error.exceptions[0]
             if isinstance(error, AssertionError):
                 raise error from None
-            failure = AssertionError(f"the model raised {type(error).__name__}: {error}")
+            failure = AssertionError(f"the model raised {described(error)}")
             for note in getattr(error, "__notes__", []):
                 failure.add_note(note)
             raise failure from error
