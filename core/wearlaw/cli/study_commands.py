@@ -66,7 +66,7 @@ def run(
             study = run_case(loaded, shown, workers, checkpoint)
             names = write(study, fresh, figure_formats, latex, shown.stage)
     checkpoint.remove()
-    print_notes(study.notes)
+    print_notes([*study.notes, *checkpoint.notes()])
     for table in summaries(study):
         Console().print(_summary(table))
     _print_used(study)
