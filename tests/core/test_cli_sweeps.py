@@ -135,6 +135,19 @@ def test_what_is_in_the_way_of_a_resumed_run_is_named(name: str, folder: Path, m
 
 
 @pytest.mark.usefixtures("small_blocks")
+@pytest.mark.parametrize("line", ["[0, 1]", "null", '{"block": 0}'])
+def test_a_spoilt_journal_is_refused_with_what_to_remove(
+    line: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = long_case(folder / "big.toml")
+    interrupted(case, monkeypatch)
+    with (folder / "out.partial" / "long-0" / "journal").open("a", encoding="utf-8") as file:
+        file.write(line + "\n")
+    message = f"is no record of a sweep that can be resumed; remove it and '{Path('out.partial') / 'long-0'}'"
+    assert_refused(wearlaw("run", case, "-o", "out", "--resume"), message)
+
+
+@pytest.mark.usefixtures("small_blocks")
 def test_a_file_in_the_place_of_the_checkpoint_is_kept(folder: Path) -> None:
     (folder / "out.partial").write_text("thesis")
     result = wearlaw("run", long_case(folder / "big.toml"), "-o", "out", "--resume")
@@ -224,6 +237,46 @@ def test_a_case_too_large_for_memory_or_disk_says_what_it_needs_before_it_starts
     monkeypatch.setattr("shutil.disk_usage", lambda _: type("Usage", (), {"free": 2**30}))
     assert_refused(wearlaw("run", case), "the results need 6.26 GiB on disk, but")
     assert [path.name for path in folder.iterdir()] == ["big.toml"]
+
+
+@pytest.mark.usefixtures("small_blocks", "blank_figures")
+def test_a_run_whose_folder_was_taken_keeps_its_results_beside_and_no_checkpoint(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = long_case(folder / "big.toml")
+    write_results = output.write
+
+    def late(*arguments: Any) -> list[str]:
+        assert (folder / "out.partial").is_dir()
+        (folder / "out").mkdir()
+        (folder / "out" / "thesis.txt").touch()
+        return write_results(*arguments)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(output, "write", late)
+        assert_refused(wearlaw("run", case, "-o", "out"), f"The results are in '{folder / 'out-2'}'")
+    assert sorted(path.name for path in folder.iterdir()) == ["big.toml", "out", "out-2"]
+    wearlaw("run", case, "-o", "whole")
+    assert contents(folder / "out-2") == contents(folder / "whole")
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_a_checkpoint_that_another_run_made_meanwhile_is_left_to_it(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = long_case(folder / "big.toml")
+    monkeypatch.setattr(output, "check_room", lambda *_: (folder / "out.partial").mkdir())
+    message = "'out.partial' was made by another run meanwhile; choose another folder with -o"
+    assert_refused(wearlaw("run", case, "-o", "out"), message)
+    assert contents(folder).keys() == {"big.toml"}
+    assert (folder / "out.partial").is_dir()
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_a_checkpoint_that_cannot_be_written_is_refused(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(checkpoint, "write_whole", full_disk)
+    message = "cannot write to 'out.partial': No space left on device; choose another folder with -o"
+    assert_refused(wearlaw("run", long_case(folder / "big.toml"), "-o", "out"), message)
 
 
 def test_a_small_run_makes_no_checkpoint(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -39,6 +39,8 @@ class Checkpoint:
 
     Attributes
     ----------
+    exists : bool
+        Whether there is a folder of this run.
     listed, damaged : int
         How many blocks an interrupted run has left, and how many of them are damaged and computed again.
     """
@@ -47,13 +49,15 @@ class Checkpoint:
         self.folder = folder
         self.listed = self.damaged = 0
         self._run: Run = json.loads(json.dumps(run))
-        if not folder.exists():
+        self.exists = os.path.lexists(folder)
+        if not self.exists:
             return
         if not (folder / RUN).is_file():
             raise OutputError(f"output: '{folder}' is in the way, and holds no unfinished run; remove or rename it")
         if not resume:
             raise OutputError(
-                f"output: '{folder}' holds what an interrupted run has done; go on with it by --resume, or remove it"
+                f"output: '{folder}' holds what an interrupted run has done, or one that is still at work;"
+                " go on with it by --resume, remove it, or choose another folder with -o"
             )
         check_same(folder, self._before(), self._run)
 
@@ -61,13 +65,28 @@ class Checkpoint:
         """Return where the results go of what has the name `key` in the run."""
         if len(points.blocks()) == 1:
             return Memory(job, points)
-        if not (self.folder / RUN).exists():
-            self.folder.mkdir(parents=True, exist_ok=True)
-            write_whole(self.folder / RUN, json.dumps(self._run))
+        if not self.exists:
+            self._make()
         files = Files(job, points, self.folder / key)
         self.listed += files.listed
         self.damaged += files.damaged
         return files
+
+    def _make(self) -> None:
+        """Make the folder, which no other run may have made meanwhile."""
+        try:
+            self.folder.parent.mkdir(parents=True, exist_ok=True)
+            self.folder.mkdir()
+            self.exists = True
+            write_whole(self.folder / RUN, json.dumps(self._run))
+        except FileExistsError:
+            raise OutputError(
+                f"output: '{self.folder}' was made by another run meanwhile; choose another folder with -o"
+            ) from None
+        except OSError as error:
+            raise OutputError(
+                f"output: cannot write to '{self.folder}': {error.strerror or error}; choose another folder with -o"
+            ) from None
 
     def notes(self) -> list[str]:
         """Return what is to be said of damage to what was done."""
@@ -86,7 +105,8 @@ class Checkpoint:
 
     def remove(self) -> None:
         """Remove the folder, since the results are elsewhere."""
-        shutil.rmtree(self.folder, ignore_errors=True)
+        if self.exists:
+            shutil.rmtree(self.folder, ignore_errors=True)
 
 
 class Files(Arrays):

@@ -106,8 +106,8 @@ class Store(Target):
         for cut_off in self.path.rglob("*.partial"):  # of a worker that died as it wrote
             cut_off.unlink()
         _zarr().open_group(self.store, mode="r+").attrs.update(attributes(self._run, notes))
-        if self._journal is not None:
-            self._journal.remove()
+        assert self._journal is not None
+        self._journal.remove()
         return _opened(self.path)
 
 

@@ -58,9 +58,9 @@ def sweep(
         if there is not None:
             return there
         target = Store(job, points, path, resume)
-    with closing(target), Bar(points.size, progress) as bar:
         if target.damaged:
             warnings.warn(damage(target.damaged, target.listed, path), ResumeWarning, stacklevel=3)
+    with closing(target), Bar(points.size, progress) as bar:
         texts = run(target, bar, workers, client)
         for text in texts:
             warnings.warn(text, RangeWarning, stacklevel=3)
