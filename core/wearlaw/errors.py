@@ -139,6 +139,10 @@ class WorkerWarning(WearlawWarning):
     """A worker process of a sweep died, and what it was at is computed again."""
 
 
+class ResumeWarning(WearlawWarning):
+    """Blocks that an interrupted sweep has left are damaged on disk, and are computed again."""
+
+
 class PluginWarning(WearlawWarning):
     """An installed plugin, or a part of it, could not be used and is left out."""
 

@@ -1,12 +1,9 @@
-"""Writing the results of a study: a folder that is there whole or not at all."""
+"""Writing the results of a study."""
 
 from __future__ import annotations
 
 import os
-import shutil
-import tempfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -38,75 +35,6 @@ ROW_IN_MEMORY, ROW_ON_DISK = 800, 400
 METADATA: dict[FigureFormat, Any] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
 """What matplotlib would write into a figure, and must not, for the same bytes each time."""
 T = TypeVar("T")
-
-
-@contextmanager
-def fresh_folder(folder: Path, overwrite: bool, marker: str = RESULTS) -> Iterator[Path]:
-    """Give a temporary folder that becomes `folder` when the context ends without an error.
-
-    What is there is only replaced if it holds the file `marker`, by which earlier results of the same kind are known.
-
-    Raises
-    ------
-    OutputError
-        At once, if `folder` cannot be written or holds something that is not to be overwritten.
-    """
-    with _os_errors_of(folder):
-        target = folder.resolve()
-        _check(folder, target, overwrite, marker)
-        nearest = next(parent for parent in target.parents if parent.exists())
-        temporary = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=nearest))
-    try:
-        inside = temporary / "results"
-        inside.mkdir()  # by itself, since only the user may enter what mkdtemp makes
-        yield inside
-        with _os_errors_of(folder):
-            _move(inside, target, temporary / "replaced")
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
-
-
-@contextmanager
-def _os_errors_of(folder: Path) -> Iterator[None]:
-    try:
-        yield
-    except OutputError:
-        raise
-    except OSError as error:
-        raise OutputError(
-            f"output: cannot write to '{folder}': {error.strerror or error}; choose another folder with -o"
-        ) from None
-
-
-def _check(folder: Path, target: Path, overwrite: bool, marker: str) -> None:
-    if not target.exists():
-        return
-    if not target.is_dir():
-        raise OutputError(f"output: '{folder}' is a file, not a folder; choose another with -o")
-    if Path.cwd().is_relative_to(target):
-        raise OutputError(f"output: '{folder}' is the working folder or above it; choose another folder with -o")
-    if not any(target.iterdir()):
-        return
-    if not (target / marker).is_file():
-        raise OutputError(
-            f"output: '{folder}' does not hold results of wearlaw, and will not be overwritten;"
-            " choose another folder with -o"
-        )
-    if not overwrite:
-        raise OutputError(f"output: '{folder}' is not empty; choose another folder with -o, or add --overwrite")
-
-
-def _move(inside: Path, target: Path, replaced: Path) -> None:
-    """Put new results in the place of old ones, which stay if that fails."""
-    target.parent.mkdir(parents=True, exist_ok=True)
-    if target.exists():
-        target.rename(replaced)
-    try:
-        inside.rename(target)
-    except OSError:
-        if replaced.exists():
-            replaced.rename(target)
-        raise
 
 
 def check_room(case: Case, folder: Path) -> None:

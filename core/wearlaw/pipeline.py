@@ -159,7 +159,8 @@ class Pipeline(Configuration, Generic[RigT]):
             A folder for the results, in zarr format, where they are written block by block. An interrupted sweep leaves
             there what is done. Without it the results are in memory.
         resume : bool
-            Whether to go on with the sweep that `store` holds a part of, if it does.
+            Whether to go on with the sweep that `store` holds a part of, if it does. Blocks that are damaged there are
+            computed again, with a `ResumeWarning`.
         progress : bool
             Whether to show a progress bar with rate and time left.
         **conditions

@@ -105,3 +105,10 @@ def interrupted_after(blocks: int, monkeypatch: pytest.MonkeyPatch) -> None:
 def contents(folder: Path) -> dict[str, bytes]:
     """Return all files below a folder."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def overwrite(path: Path, start: int, values: bytes) -> None:
+    """Damage a file from some byte on."""
+    with path.open("rb+") as file:
+        file.seek(start)
+        file.write(values)

@@ -21,9 +21,10 @@ def test_earlier_results_are_only_replaced_where_that_is_asked_for(folder: Path,
     before = {name: (folder / name).read_bytes() for name in files(folder)}
     assert_refused(wearlaw(*command, "-o", "out"), "output: 'out' is not empty; choose another folder with -o, or add")
     assert {name: (folder / name).read_bytes() for name in files(folder)} == before
-    (folder / "out" / "old").write_text("")
+    (folder / "out" / "mine").write_text("precious")
     assert wearlaw(*command, "-o", "out", "--overwrite").exit_code == 0
-    assert {name: (folder / name).read_bytes() for name in files(folder)} == before
+    after = {name: (folder / name).read_bytes() for name in files(folder)}
+    assert after == {**before, str(Path("out") / "mine"): b"precious"}
 
 
 @pytest.mark.parametrize("flag", [[], ["--overwrite"]])
@@ -55,7 +56,7 @@ def test_a_full_disk_is_one_clear_error_and_leaves_earlier_results_as_they_were(
 def test_a_fit_does_not_replace_a_comparison(folder: Path) -> None:
     assert wearlaw(*COMPARE, "-o", "out").exit_code == 0
     before = files(folder)
-    assert_refused(wearlaw(*FIT, "-o", "out", "--overwrite"), "output: 'out' does not hold results of wearlaw")
+    assert_refused(wearlaw(*FIT, "-o", "out", "--overwrite"), "output: 'out' holds results of another command")
     assert files(folder) == before
 
 

@@ -28,7 +28,7 @@ def test_a_study_is_run_and_its_files_are_listed_as_they_are(folder: Path) -> No
     assert result.exit_code == 0
     assert f"\nComputed with wearlaw {wl.__version__}\nResults in out folder:\n" in result.stdout
     listing = result.stdout.partition("Results in out folder:\n")[2].splitlines()
-    assert {line.strip() for line in listing} == files(folder) - {"my case.toml"}
+    assert {line.strip() for line in listing} == files(folder) - {"my case.toml", "out folder/.wearlaw.json"}
     assert listing[0] == "  out folder/report.html"
     assert len(listing) == 4 + 3 + 3 + 1
     notes = result.stderr.splitlines()
@@ -97,6 +97,49 @@ def test_progress_is_shown_on_a_terminal_and_not_elsewhere(folder: Path) -> None
     assert "evaluating" in on_terminal.stderr
     assert "15/15" in on_terminal.stderr  # 5 points, and the band of KTH
     assert "writing the report" in on_terminal.stderr
+
+
+def test_files_of_others_survive_a_second_run_into_the_same_folder(folder: Path) -> None:
+    write(folder / "c.toml", table(contact_models=["global"], wear_laws=["usfd"], profiles={}))
+    assert wearlaw("run", "c.toml", "-o", "out").exit_code == 0
+    ours = files(folder / "out")
+    for name in ("thesis.tex", "figures/mine.png"):
+        (folder / "out" / name).write_text("years of work")
+    write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["kth"], profiles={}))
+    assert wearlaw("run", "c.toml", "-o", "out", "--overwrite", "--figure-format", "svg").exit_code == 0
+    assert (folder / "out" / "thesis.tex").read_text() == "years of work"
+    assert (folder / "out" / "figures" / "mine.png").read_text() == "years of work"
+    assert [name for name in files(folder / "out") & ours if name.endswith(".png")] == []
+    assert "kth on exact" in (folder / "out" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_of_two_programs_that_run_two_cases_into_one_folder_one_says_where_its_results_are(
+    folder: Path, overwrite: bool
+) -> None:
+    names = ("usfd", "kth")
+    for name in names:
+        write(folder / f"{name}.toml", table(contact_models=["global"], wear_laws=[name], profiles={}))
+    if overwrite:
+        assert wearlaw("run", "usfd.toml", "-o", "out").exit_code == 0
+    program = "from wearlaw.cli import main; main()"
+    options = ["-o", "out", "--figure-format", "svg", *(["--overwrite"] if overwrite else [])]
+    both = {
+        name: subprocess.Popen(
+            [sys.executable, "-c", program, "run", f"{name}.toml", *options],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )
+        for name in names
+    }  # fmt: skip
+    said = {name: one.communicate() for name, one in both.items()}
+    assert sorted(one.returncode for one in both.values()) == [0, 1], said
+    (winner, loser) = sorted(names, key=lambda name: both[name].returncode)
+    assert f"{winner} on global" in (folder / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Results in out:" in said[winner][0]
+    assert said[loser][0] == ""
+    assert "Error: output: 'out' was taken by another run or program meanwhile" in said[loser][1]
+    assert str(folder / "out-2") in said[loser][1]
+    assert f"{loser} on global" in (folder / "out-2" / "report.html").read_text(encoding="utf-8")
 
 
 def test_units_that_look_like_markup_are_printed(folder: Path) -> None:

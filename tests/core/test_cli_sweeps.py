@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pytest
 
 import wearlaw as wl
 from tests.core.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
-from tests.core.sweeps import contents, interrupted_after
+from tests.core.sweeps import contents, interrupted_after, overwrite
 from wearlaw import output
 from wearlaw.sweeping import checkpoint, space
 
@@ -58,6 +61,115 @@ def test_what_is_done_is_not_done_again(folder: Path, monkeypatch: pytest.Monkey
     wearlaw("run", case, "-o", "out", "--resume")
     assert seen[0] == 100
     assert sum(seen) == 300
+
+
+RATE = "long-0/wear_rate.f64"
+"""A file of four blocks, 25 numbers or 200 bytes each."""
+
+
+def swapped(path: Path) -> None:
+    content = path.read_bytes()
+    path.write_bytes(content[200:400] + content[:200] + content[400:])
+
+
+DAMAGE: dict[str, tuple[Callable[[Path], object], int]] = {
+    "cut off": (lambda left: os.truncate(left / RATE, 500), 2),
+    "empty": (lambda left: os.truncate(left / RATE, 0), 4),
+    "missing": (lambda left: (left / RATE).unlink(), 4),
+    "zeroed": (lambda left: overwrite(left / RATE, 208, bytes(8)), 1),
+    "a bit": (lambda left: overwrite(left / RATE, 208, b"\x01"), 1),
+    "swapped": (lambda left: swapped(left / RATE), 2),
+    "outputs swapped": (lambda left: (left / RATE).replace(left / "long-0/mean_slip.f64"), 4),
+    "garbage": (lambda left: (left / RATE).write_bytes(b"garbage"), 4),
+    "another format": (
+        lambda left: (left / RATE).write_bytes(b"\x93NUMPY" + bytes(121) + (left / RATE).read_bytes()),
+        4,
+    ),
+}
+"""What may happen to the folder that an interrupted run leaves, and how many blocks are lost by it."""
+
+
+@pytest.mark.usefixtures("small_blocks", "blank_figures")
+@pytest.mark.parametrize("what", DAMAGE)
+def test_damaged_blocks_are_computed_again_and_said(what: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = long_case(folder / "big.toml")
+    interrupted(case, monkeypatch, blocks=8)
+    listed = sum(path.read_bytes().count(b"\n") - 1 for path in folder.glob("out.partial/*/journal"))
+    assert listed > 4
+    damage, count = DAMAGE[what]
+    damage(folder / "out.partial")
+    resumed = wearlaw("run", case, "-o", "out", "--resume")
+    assert resumed.exit_code == 0, resumed.output
+    note = f"note: {count} of the {listed} blocks kept in 'out.partial' were damaged, and are computed again\n"
+    assert note in resumed.stderr
+    assert "damaged" not in wearlaw("run", case, "-o", "whole").stderr
+    assert contents(folder / "out") == contents(folder / "whole")
+
+
+@pytest.mark.usefixtures("small_blocks", "blank_figures")
+def test_longer_files_lose_what_is_too_much_and_no_block(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = long_case(folder / "big.toml")
+    interrupted(case, monkeypatch)
+    with (folder / "out.partial" / RATE).open("ab") as file:
+        file.write(b"more")
+    assert "damaged" not in wearlaw("run", case, "-o", "out", "--resume").stderr
+    wearlaw("run", case, "-o", "whole")
+    assert contents(folder / "out") == contents(folder / "whole")
+
+
+@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.parametrize("name", ["long-0", "long-0/journal", RATE, "run.json"])
+def test_what_is_in_the_way_of_a_resumed_run_is_named(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = long_case(folder / "big.toml")
+    interrupted(case, monkeypatch)
+    path = folder / "out.partial" / name
+    if path.is_dir():
+        shutil.rmtree(path)
+        path.write_text("a file in the place of a folder")
+    else:
+        path.unlink()
+        path.mkdir()
+    result = wearlaw("run", case, "-o", "out", "--resume")
+    assert_refused(result, "out.partial")
+    assert "remove" in result.stderr
+
+
+@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.parametrize("line", ["[0, 1]", "null", '{"block": 0}'])
+def test_a_spoilt_journal_is_refused_with_what_to_remove(
+    line: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = long_case(folder / "big.toml")
+    interrupted(case, monkeypatch)
+    with (folder / "out.partial" / "long-0" / "journal").open("a", encoding="utf-8") as file:
+        file.write(line + "\n")
+    message = f"is no record of a sweep that can be resumed; remove it and '{Path('out.partial') / 'long-0'}'"
+    assert_refused(wearlaw("run", case, "-o", "out", "--resume"), message)
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_a_file_in_the_place_of_the_checkpoint_is_kept(folder: Path) -> None:
+    (folder / "out.partial").write_text("thesis")
+    result = wearlaw("run", long_case(folder / "big.toml"), "-o", "out", "--resume")
+    assert_refused(result, "'out.partial' is in the way, and holds no unfinished run")
+    assert (folder / "out.partial").read_text() == "thesis"
+
+
+@pytest.mark.usefixtures("small_blocks", "blank_figures")
+def test_results_are_on_disk_before_the_journal_lists_their_block(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    flushed: list[str] = []
+
+    def flush(self: np.memmap[Any, Any]) -> None:
+        path = Path(str(self.filename))
+        assert (path.parent / checkpoint.JOURNAL).read_bytes().count(b"\n") == 1
+        flushed.append(f"{path.parent.name}/{path.name}")
+
+    monkeypatch.setattr(np.memmap, "flush", flush)
+    assert wearlaw("run", long_case(folder / "big.toml"), "-o", "out").exit_code == 0
+    assert flushed.count(RATE) == 1
+    assert {Path(name).parent.name for name in flushed} == {"long-0", "long-0-wear_rate_low", "long-0-wear_rate_high"}
 
 
 def test_resuming_where_nothing_was_left_is_running(folder: Path) -> None:
@@ -125,6 +237,46 @@ def test_a_case_too_large_for_memory_or_disk_says_what_it_needs_before_it_starts
     monkeypatch.setattr("shutil.disk_usage", lambda _: type("Usage", (), {"free": 2**30}))
     assert_refused(wearlaw("run", case), "the results need 6.26 GiB on disk, but")
     assert [path.name for path in folder.iterdir()] == ["big.toml"]
+
+
+@pytest.mark.usefixtures("small_blocks", "blank_figures")
+def test_a_run_whose_folder_was_taken_keeps_its_results_beside_and_no_checkpoint(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = long_case(folder / "big.toml")
+    write_results = output.write
+
+    def late(*arguments: Any) -> list[str]:
+        assert (folder / "out.partial").is_dir()
+        (folder / "out").mkdir()
+        (folder / "out" / "thesis.txt").touch()
+        return write_results(*arguments)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(output, "write", late)
+        assert_refused(wearlaw("run", case, "-o", "out"), f"The results are in '{folder / 'out-2'}'")
+    assert sorted(path.name for path in folder.iterdir()) == ["big.toml", "out", "out-2"]
+    wearlaw("run", case, "-o", "whole")
+    assert contents(folder / "out-2") == contents(folder / "whole")
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_a_checkpoint_that_another_run_made_meanwhile_is_left_to_it(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = long_case(folder / "big.toml")
+    monkeypatch.setattr(output, "check_room", lambda *_: (folder / "out.partial").mkdir())
+    message = "'out.partial' was made by another run meanwhile; choose another folder with -o"
+    assert_refused(wearlaw("run", case, "-o", "out"), message)
+    assert contents(folder).keys() == {"big.toml"}
+    assert (folder / "out.partial").is_dir()
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_a_checkpoint_that_cannot_be_written_is_refused(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(checkpoint, "write_whole", full_disk)
+    message = "cannot write to 'out.partial': No space left on device; choose another folder with -o"
+    assert_refused(wearlaw("run", long_case(folder / "big.toml"), "-o", "out"), message)
 
 
 def test_a_small_run_makes_no_checkpoint(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

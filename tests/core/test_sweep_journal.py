@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import os
+import zlib
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.core.cases import full_disk
 from tests.core.sweeps import predictor
 from wearlaw import Q
-from wearlaw.sweeping.evaluation import Job, Seen
+from wearlaw.sweeping import journal as sweep_journal
+from wearlaw.sweeping.evaluation import Job, Seen, checksum
 from wearlaw.sweeping.journal import Journal, check_same, run_of, write_whole
 from wearlaw.sweeping.points import outer_product
 
@@ -20,9 +24,9 @@ RUN = {"wearlaw": "0.1.0"}
 
 def journal(path: Path) -> None:
     """Write the journal of a sweep of which two blocks are done."""
-    begun = Journal.begin(path, RUN)
+    begun = Journal.begin(path, RUN, lambda _: None)
     for number in (0, 1):
-        begun.add(number, Seen(24, 1e9, {"slip_speed": (0.1, 0.2, 3)}))
+        begun.add(number, Seen(24, 1e9, {"slip_speed": (0.1, 0.2, 3)}, 2**32 - 1))
     begun.close()
 
 
@@ -30,7 +34,7 @@ def test_a_whole_journal_is_not_written_to_as_it_is_resumed(tmp_path: Path) -> N
     path = tmp_path / "journal"
     journal(path)
     os.utime(path, ns=(0, 0))
-    resumed = Journal.resume(path, RUN, tmp_path)
+    resumed = Journal.resume(path, RUN, tmp_path, lambda _: None)
     assert list(resumed.done) == [0, 1]
     resumed.close()
     assert path.stat().st_mtime_ns == 0
@@ -42,10 +46,75 @@ def test_of_a_journal_that_was_cut_off_the_whole_lines_are_left(left: int, tmp_p
     journal(path)
     head, first, second = path.read_bytes().splitlines(keepends=True)
     path.write_bytes(head + first + second[:left])
-    resumed = Journal.resume(path, RUN, tmp_path)
+    resumed = Journal.resume(path, RUN, tmp_path, lambda _: None)
     assert list(resumed.done) == [0]
     resumed.close()
     assert path.read_bytes() == head + first
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '{"block": 0, "points": 24, "max_pressure": 1e9, "ranges": {}}',  # without a checksum
+        '[0, {"points": 24, "max_pressure": 1e9, "ranges": {}}]',
+        '["0", {"points": 24, "max_pressure": 1e9, "ranges": {}, "checksum": 7}]',
+        '[0, {"points": 24, "max_pressure": "high", "ranges": {}, "checksum": 7}]',
+        '[0, {"points": 24, "max_pressure": 1e9, "ranges": {"slip_speed": [0.1, 0.2]}, "checksum": 7}]',
+        "[0, 1]",
+        "null",
+        "\x00\x00",
+    ],
+)
+def test_a_line_that_is_none_of_a_journal_is_refused_with_what_to_remove(line: str, tmp_path: Path) -> None:
+    path = tmp_path / "journal"
+    journal(path)
+    with path.open("a", encoding="utf-8") as file:
+        file.write(line + "\n")
+    with pytest.raises(wl.OutputError, match=r"journal' is no record of a sweep that can be resumed; remove it and '"):
+        Journal.resume(path, RUN, tmp_path, lambda _: None)
+
+
+@pytest.mark.parametrize("head", ["", "[]\n", "1\n", '{"wearlaw": \n'])
+def test_a_journal_without_a_head_is_refused(head: str, tmp_path: Path) -> None:
+    path = tmp_path / "journal"
+    path.write_text(head, encoding="utf-8")
+    with pytest.raises(wl.OutputError, match="is no record of a sweep that can be resumed"):
+        Journal.resume(path, RUN, tmp_path, lambda _: None)
+
+
+@pytest.mark.parametrize("pause", [0.0, 60.0])
+def test_a_line_is_written_after_the_results_of_its_block(
+    pause: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As soon as they can be where the pause is over, and at the latest as the journal is closed."""
+    monkeypatch.setattr(sweep_journal, "SYNC_S", pause)
+    path = tmp_path / "journal"
+    synced: list[list[int]] = []
+
+    def sync(numbers: list[int]) -> None:
+        assert path.read_bytes().count(b"\n") == 1 + sum(map(len, synced))
+        synced.append(numbers)
+
+    begun = Journal.begin(path, RUN, sync)
+    for number in range(9):
+        begun.add(number, Seen(24, 1e9, {}, number))
+    begun.close()
+    assert [number for numbers in synced for number in numbers] == list(range(9))
+    assert (len(synced) == 1) == (pause > 0.0)
+    resumed = Journal.resume(path, RUN, tmp_path, sync)
+    assert resumed.done == {number: Seen(24, 1e9, {}, number) for number in range(9)}
+
+
+@pytest.mark.parametrize("pause", [0.0, 60.0])
+def test_results_that_cannot_be_synced_are_not_listed_and_an_error(
+    pause: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sweep_journal, "SYNC_S", pause)
+    begun = Journal.begin(tmp_path / "journal", RUN, full_disk)
+    begun.add(0, Seen(24, 1e9, {}, 0))
+    with pytest.raises(wl.OutputError, match="journal': what is done cannot be kept: No space left on device"):
+        begun.close()
+    assert (tmp_path / "journal").read_bytes().count(b"\n") == 1
 
 
 def test_a_process_that_is_killed_as_it_writes_a_record_leaves_the_one_before(
@@ -62,6 +131,15 @@ def test_a_process_that_is_killed_as_it_writes_a_record_leaves_the_one_before(
     with pytest.raises(KeyboardInterrupt):
         write_whole(path, "after")
     assert path.read_bytes() == b"before"
+
+
+def test_the_checksum_is_that_of_what_was_seen_and_the_bytes_in_their_order() -> None:
+    a, b = np.arange(6.0), np.arange(6.0, 10.0)
+    seen = Seen(24, 1e9, {"slip_speed": (0.1, np.inf, 3)}, 0)
+    text = b'[24, 1000000000.0, {"slip_speed": [0.1, Infinity, 3]}]'
+    assert checksum(seen, [a, b]) == zlib.crc32(text + a.tobytes() + b.tobytes())
+    assert checksum(seen, [a[::2]]) == zlib.crc32(text + a[::2].tobytes())
+    assert checksum(seen, [b, a]) != checksum(seen, [a, b])
 
 
 def test_what_has_changed_is_said_with_units_as_they_are_shown_elsewhere(tmp_path: Path) -> None:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +18,11 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, interrupted_after, predictor
+from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, interrupted_after, overwrite, predictor
 from wearlaw import Q
 from wearlaw.sweeping import journal
+from wearlaw.sweeping.points import Block
+from wearlaw.sweeping.store import write_block
 
 pytest.importorskip("zarr")
 pytestmark = pytest.mark.usefixtures("small_blocks")
@@ -80,6 +84,107 @@ def test_a_resumed_sweep_has_the_same_bytes_as_an_uninterrupted_one(
     assert contents(tmp_path / "resumed.zarr") == contents(tmp_path / "whole.zarr")
     assert seen[0] >= 3 * 24  # done before, and not again
     assert not (tmp_path / "resumed.zarr.journal").exists()
+
+
+def swap(one: Path, other: Path) -> None:
+    first, second = one.read_bytes(), other.read_bytes()
+    one.write_bytes(second)
+    other.write_bytes(first)
+
+
+def replace(path: Path, before: str, after: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert before in text
+    path.write_text(text.replace(before, after), encoding="utf-8")
+
+
+def beside(store: Path) -> Path:
+    return store.with_name(f"{store.name}.journal")
+
+
+RATE, FORCE = "wear_rate", "tangential_force"
+# A block is a chunk of 2 x 3 x 4 points, 192 bytes, for each of the outputs; three are done.
+DAMAGE: dict[str, tuple[Callable[[Path], None], int]] = {
+    "cut off": (lambda store: os.truncate(store / RATE / "c/0/0/0", 100), 1),
+    "empty": (lambda store: os.truncate(store / RATE / "c/1/0/0", 0), 1),
+    "zeroed": (lambda store: overwrite(store / FORCE / "c/1/0/0", 64, bytes(64)), 1),
+    "a bit": (lambda store: overwrite(store / FORCE / "c/1/0/0", 64, b"\x01"), 1),
+    "deleted": (lambda store: (store / RATE / "c/2/0/0").unlink(), 1),
+    "longer": (lambda store: overwrite(store / RATE / "c/0/0/0", 192, b"more"), 1),
+    "garbage": (lambda store: overwrite(store / RATE / "c/0/0/0", 0, b"garbage" * 40), 1),
+    "swapped": (lambda store: swap(store / RATE / "c/0/0/0", store / RATE / "c/1/0/0"), 2),
+    "outputs swapped": (lambda store: swap(store / RATE / "c/0/0/0", store / FORCE / "c/0/0/0"), 1),
+    "all of an output": (lambda store: shutil.rmtree(store / RATE), 3),
+    "all": (shutil.rmtree, 3),
+    "journal": (lambda store: replace(beside(store), '"points": 24', '"points": 25'), 3),
+    "number of a block": (lambda store: replace(beside(store), "[1, {", "[7, {"), 1),
+    "number of no block": (lambda store: replace(beside(store), "[1, {", "[10, {"), 1),
+}
+"""What may happen to a store, and how many of its blocks are lost by it."""
+
+
+@pytest.mark.parametrize("what", DAMAGE)
+def test_damaged_blocks_are_computed_again_and_said(what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    store = tmp_path / "map.zarr"
+    interrupted(store, monkeypatch)
+    damage, count = DAMAGE[what]
+    damage(store)
+    seen: list[int] = []
+    monkeypatch.setattr("wearlaw.sweeping.progress.Bar.__call__", lambda _, points: seen.append(points))
+    message = f"^{count} of the 3 blocks kept in '.*map.zarr' were damaged, and are computed again$"
+    with pytest.warns(wl.ResumeWarning, match=message) as said:
+        predictor().sweep(**GIVEN, store=store, resume=True)
+    assert {Path(one.filename).name for one in said} == {Path(__file__).name}
+    assert seen[0] == 24 * (3 - count)
+    predictor().sweep(**GIVEN, store=tmp_path / "whole.zarr")
+    assert contents(store) == contents(tmp_path / "whole.zarr")
+
+
+@pytest.mark.parametrize("name", ["zarr.json", f"{RATE}/zarr.json", "creepage/c/0", "creepage/zarr.json"])
+@pytest.mark.parametrize("text", [None, "", "garbage", "[]"])
+def test_whatever_describes_the_results_is_written_anew(
+    name: str, text: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    interrupted(tmp_path / "map.zarr", monkeypatch)
+    if text is None:
+        (tmp_path / "map.zarr" / name).unlink()
+    else:
+        (tmp_path / "map.zarr" / name).write_text(text)
+    predictor().sweep(**GIVEN, store=tmp_path / "map.zarr", resume=True)
+    predictor().sweep(**GIVEN, store=tmp_path / "whole.zarr")
+    assert contents(tmp_path / "map.zarr") == contents(tmp_path / "whole.zarr")
+
+
+def test_each_chunk_is_on_disk_before_the_journal_lists_its_block(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "map.zarr"
+    synced: list[str] = []
+
+    def sync(chunk: Path) -> None:
+        assert (tmp_path / "map.zarr.journal").read_bytes().count(b"\n") == 1
+        synced.append(str(chunk.relative_to(path)))
+
+    monkeypatch.setattr("wearlaw.sweeping.store.sync_file", sync)
+    interrupted(path, monkeypatch)
+    assert sorted(synced) == [f"{name}/c/{number}/0/0" for name in (FORCE, RATE) for number in range(3)]
+    assert (tmp_path / "map.zarr.journal").read_bytes().count(b"\n") == 4
+
+
+def test_a_chunk_that_is_gone_before_it_is_synced_is_found_to_be_damaged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def written_and_gone(store: str, block: Block, outputs: Any) -> None:
+        write_block(store, block, outputs)
+        if block.number == 1:
+            (Path(store) / RATE / "c/1/0/0").unlink()
+
+    with monkeypatch.context() as patched:
+        patched.setattr("wearlaw.sweeping.worker.write_block", written_and_gone)
+        interrupted(tmp_path / "map.zarr", monkeypatch)
+    with pytest.warns(wl.ResumeWarning, match="^1 of the 3 blocks"):
+        swept = predictor().sweep(**GIVEN, store=tmp_path / "map.zarr", resume=True)
+    assert swept.wear_rate.notnull().all()
 
 
 def test_a_journal_that_was_cut_off_loses_only_its_last_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -205,10 +310,11 @@ import signal
 
 import numpy as np
 import wearlaw as wl
-from wearlaw.sweeping import points
+from wearlaw.sweeping import journal, points
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # tests in the background of a shell have it ignored
 points.BLOCK = 500
+journal.SYNC_S = 0.0  # a line for each block at once
 wl.accelerate(False)
 predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("kth")
 predict.sweep(

@@ -29,7 +29,9 @@ def common(command: CommandT) -> CommandT:
     """Add the options that both commands have."""
     for option in (
         written_formats,
-        click.option("--overwrite", is_flag=True, help="Replace earlier results of this command in that folder."),
+        click.option(
+            "--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay."
+        ),
         click.option(
             "--scatter",
             type=click.Choice(["relative", "absolute"]),
@@ -79,7 +81,7 @@ def fit(
     confidence intervals; residuals.csv; a figure; and fit.json with all that the fit comes from.
     """  # noqa: D301
     from wearlaw.data_output import FIT, write_fit
-    from wearlaw.output import fresh_folder
+    from wearlaw.output_folder import fresh_folder
 
     folder = output if output is not None else Path(f"{Path(tests).stem}-fit")
     notes = Notes()
@@ -176,7 +178,7 @@ def compare(
     predicted wear rates; and comparison.json with all models.
     """  # noqa: D301
     from wearlaw.data_output import COMPARISON, write_comparison
-    from wearlaw.output import fresh_folder
+    from wearlaw.output_folder import fresh_folder
 
     folder = output if output is not None else Path(f"{Path(tests).stem}-comparison")
     notes = Notes()

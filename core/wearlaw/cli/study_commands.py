@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("case")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-results].")
-@click.option("--overwrite", is_flag=True, help="Replace the results of an earlier run in that folder.")
+@click.option("--overwrite", is_flag=True, help="Replace the files of an earlier run in that folder; others stay.")
 @click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Processes that take part.")
 @click.option(
     "--resume", is_flag=True, help="Go on with what an interrupted run has left in FOLDER.partial, if it has."
@@ -51,7 +51,8 @@ def run(
     spelt out.
     """
     from wearlaw.case import load_case
-    from wearlaw.output import check_room, fresh_folder, write
+    from wearlaw.output import RESULTS, check_room, write
+    from wearlaw.output_folder import fresh_folder
     from wearlaw.report.tables import summaries
     from wearlaw.study import evaluations, provenance
     from wearlaw.study import run as run_case
@@ -59,14 +60,13 @@ def run(
 
     loaded = load_case(case)
     folder = output if output is not None else Path(f"{Path(case).stem}-results")
-    with fresh_folder(folder, overwrite) as fresh:
+    checkpoint = Checkpoint(folder.parent / f"{folder.name}.partial", provenance(loaded), resume)
+    with _kept(checkpoint), fresh_folder(folder, overwrite, RESULTS) as fresh:
         check_room(loaded, folder)
-        checkpoint = Checkpoint(folder.with_name(f"{folder.name}.partial"), provenance(loaded), resume)
-        with _kept(checkpoint), Bar(evaluations(loaded)) as shown:
+        with Bar(evaluations(loaded)) as shown:
             study = run_case(loaded, shown, workers, checkpoint)
             names = write(study, fresh, figure_formats, latex, shown.stage)
-    checkpoint.remove()
-    print_notes(study.notes)
+    print_notes([*study.notes, *checkpoint.notes()])
     for table in summaries(study):
         Console().print(_summary(table))
     _print_used(study)
@@ -75,13 +75,19 @@ def run(
 
 @contextmanager
 def _kept(checkpoint: Checkpoint) -> Iterator[None]:
-    """Say after an interrupt where what is done is kept."""
+    """Keep a checkpoint until the results are in a folder, and say after an interrupt where it is."""
+    from wearlaw.output_folder import ElsewhereError
+
     try:
         yield
+    except ElsewhereError:
+        checkpoint.remove()
+        raise
     except KeyboardInterrupt:
-        if checkpoint.folder.exists():
+        if checkpoint.exists:
             click.echo(f"What is done is kept in '{checkpoint.folder}'; add --resume to go on with it.", err=True)
         raise
+    checkpoint.remove()
 
 
 @click.command()

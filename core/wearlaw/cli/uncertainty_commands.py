@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-uncertainty]."
 )
-@click.option("--overwrite", is_flag=True, help="Replace the results of an earlier command in that folder.")
+@click.option("--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay.")
 @written_formats
 def uncertainty(
     case: str,
@@ -39,7 +39,7 @@ def uncertainty(
     intervals, sobol_indices.csv with the share of the variance that each input explains, and a figure of each pair.
     """
     from wearlaw.case import load_case
-    from wearlaw.output import fresh_folder
+    from wearlaw.output_folder import fresh_folder
     from wearlaw.uncertainty.of_case import uncertainty_of
     from wearlaw.uncertainty.written import UNCERTAINTY, write_uncertainty
 

@@ -17,7 +17,7 @@ from packaging.utils import canonicalize_name
 
 from wearlaw import plugins
 from wearlaw.errors import InputError, OutputError
-from wearlaw.output import fresh_folder
+from wearlaw.output_folder import fresh_folder
 from wearlaw.shelf import Shelf
 from wearlaw.version import __version__
 
@@ -78,7 +78,7 @@ def write_plugin(name: str, kind: Kind, parent: Path, licence: Licence = "none")
     if os.path.lexists(folder):
         raise OutputError(f"output: '{folder}' exists and is left as it is; choose another parent folder with -o")
     contents = _files(name, kind, licence)
-    with fresh_folder(folder, overwrite=False) as fresh:
+    with fresh_folder(folder) as fresh:
         _write(contents, fresh)
     return folder
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import warnings
+import zlib
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -45,7 +47,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Seen:
-    """What warnings must know of a block.
+    """What is kept of a block besides its outputs: for warnings, and to find damage on disk.
 
     Attributes
     ----------
@@ -56,15 +58,18 @@ class Seen:
     ranges : mapping of str to tuple
         For each variable with a range in the law: lowest and highest mean over the patch in SI, and how many points lie
         outside.
+    checksum : int
+        That of the outputs and of the above.
     """
 
     points: int
     max_pressure: float
     ranges: Mapping[str, tuple[float, float, int]]
+    checksum: int
 
 
 def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, Seen]:
-    """Return the outputs of a block of operating points, and what warnings must know of it.
+    """Return the outputs of a block of operating points, and what else is kept of it.
 
     `on_block` is called with the number of points done, several times where that takes long.
     """
@@ -74,7 +79,20 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     prediction = job.pipeline.watched(problem, watch, on_block)
     outputs = {name: _in_unit(getattr(prediction, name), unit) for name, unit in job.units.items()}
     ranges = {name: (seen.lowest, seen.highest, seen.outside) for name, seen in watch.seen.items()}
-    return outputs, Seen(watch.points, extremes(problem.max_pressure)[1], ranges)
+    seen = Seen(watch.points, extremes(problem.max_pressure)[1], ranges, checksum=0)
+    return outputs, replace(seen, checksum=checksum(seen, outputs.values()))
+
+
+def checksum(seen: Seen, outputs: Iterable[Array]) -> int:
+    """Return the CRC-32 of the outputs of a block in their order, and of what was seen of it.
+
+    CRC-32 is the fastest checksum of the standard library, above 1 GB/s, and misses one in 2³² cases of accidental
+    damage. It does not protect against forgery.
+    """
+    found = zlib.crc32(json.dumps([seen.points, seen.max_pressure, seen.ranges]).encode())
+    for values in outputs:
+        found = zlib.crc32(np.ascontiguousarray(values).data, found)
+    return found
 
 
 def notes(pipeline: Pipeline[Any], blocks: Iterable[Seen]) -> list[str]:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping
+import time
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Self
 
 import pint
+from pydantic import TypeAdapter
 
 from wearlaw import plugins
 from wearlaw.configuration import parts
@@ -26,6 +29,9 @@ from wearlaw.version import __version__
 
 Run = dict[str, Any]
 """What a sweep is, as JSON holds it: two of the same `Run` give the same bytes."""
+
+SYNC_S = 1.0
+"""Seconds between two times that results are forced to disk; a crash loses the blocks since the last."""
 
 
 def run_of(job: Job, points: Points) -> Run:
@@ -87,64 +93,114 @@ def _changes(path: str, before: Any, now: Any) -> Iterator[str]:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a file that is there whole or not at all, also if the process is killed."""
+    """Write a file that is there whole or not at all, even after a crash of the machine."""
     beside = path.with_name(f"{path.name}.partial")
     beside.write_text(text, encoding="utf-8")
+    sync_file(beside)
     beside.replace(path)
+
+
+def sync_file(path: Path) -> None:
+    """Wait until a file is on disk."""
+    with path.open("rb+") as file:
+        os.fsync(file.fileno())
 
 
 class Journal:
     """The record of the blocks that are done, on disk.
 
-    Attributes
+    A line follows the results of its block to disk, in a thread that does not hold up the sweep.
+
+    Parameters
     ----------
     path : Path
     done : dict of int to Seen
-        What was seen of each block that was done when it was opened.
+        The blocks that it lists.
+    sync : callable
+        Called with the numbers of some blocks; waits until their results are on disk.
     """
 
-    def __init__(self, path: Path, done: Mapping[int, Seen]) -> None:
+    def __init__(self, path: Path, done: Mapping[int, Seen], sync: Callable[[list[int]], None]) -> None:
         self.path = path
         self.done = dict(done)
-        self._file = path.open("a", encoding="utf-8")
+        self._sync = sync
+        self._waiting: dict[int, Seen] = {}
+        self._thread = ThreadPoolExecutor(1)
+        self._writing: Future[None] | None = None
+        self._due = time.monotonic() + SYNC_S
 
     @classmethod
-    def begin(cls, path: Path, run: Run) -> Self:
+    def begin(cls, path: Path, run: Run, sync: Callable[[list[int]], None]) -> Self:
         """Return a journal in which nothing is done yet."""
         write_whole(path, json.dumps(run) + "\n")
-        return cls(path, {})
+        return cls(path, {}, sync)
 
     @classmethod
-    def resume(cls, path: Path, run: Run, where: Path) -> Self:
-        """Return a journal that goes on, with the last line left out if it was cut off.
+    def resume(cls, path: Path, run: Run, where: Path, sync: Callable[[list[int]], None]) -> Self:
+        """Return the journal of the sweep in `where`, with the last line left out if it was cut off.
 
         Raises
         ------
         OutputError
-            If it is that of another run.
+            If it is damaged, or that of another run.
         """
         text = path.read_bytes()
         whole = text[: text.rfind(b"\n") + 1]
         try:
-            before, *lines = map(json.loads, whole.splitlines())
-            done = {line.pop("block"): Seen(**line) for line in lines}
-        except (ValueError, TypeError, KeyError):
-            raise OutputError(f"'{path}' is no record of a sweep; remove it, and what it belongs to") from None
+            head, *lines = whole.splitlines()
+            before = TypeAdapter(Run).validate_json(head)
+            line_type = TypeAdapter(tuple[int, Seen])
+            done = dict(line_type.validate_json(line, strict=True) for line in lines)
+        except ValueError:
+            raise OutputError(
+                f"'{path}' is no record of a sweep that can be resumed; remove it and '{where}' to begin anew"
+            ) from None
         check_same(where, before, run)
         if len(whole) < len(text):
             os.truncate(path, len(whole))
-        return cls(path, done)
+        return cls(path, done, sync)
 
     def add(self, number: int, seen: Seen) -> None:
-        """Take note that a block is done."""
-        self._file.write(json.dumps({"block": number, **asdict(seen)}) + "\n")
-        self._file.flush()
+        """Take note that a block is done; its line is written a little later."""
+        self._waiting[number] = seen
+        if time.monotonic() >= self._due and (self._writing is None or self._writing.done()):
+            self._wait()
+            self._writing = self._thread.submit(self._write, self._waiting)
+            self._waiting, self._due = {}, time.monotonic() + SYNC_S
+
+    def _wait(self) -> None:
+        """Wait for the lines that are being written, and raise what went wrong."""
+        if self._writing is not None:
+            self._writing.result()
+
+    def _write(self, blocks: Mapping[int, Seen]) -> None:
+        """Write the lines of blocks once their results are on disk.
+
+        Raises
+        ------
+        OutputError
+            If either cannot be written.
+        """
+        try:
+            self._sync(list(blocks))
+            with self.path.open("a", encoding="utf-8") as file:
+                file.writelines(json.dumps([number, asdict(seen)]) + "\n" for number, seen in blocks.items())
+                file.flush()
+                os.fsync(file.fileno())
+        except OSError as error:
+            raise OutputError(f"'{self.path}': what is done cannot be kept: {error.strerror or error}") from None
 
     def close(self) -> None:
-        """Close the file, which stays."""
-        self._file.close()
+        """Write the lines that are left; the file stays."""
+        try:
+            self._wait()
+            if self._waiting:
+                self._write(self._waiting)
+        finally:
+            self._thread.shutdown()
 
     def remove(self) -> None:
         """Remove the file when all is done."""
-        self._file.close()
+        self._thread.shutdown()
+        self._waiting = {}
         self.path.unlink()

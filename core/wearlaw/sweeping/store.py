@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import functools
 import json
+import shutil
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,14 +14,18 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.errors import InputError, OutputError
-from wearlaw.sweeping.evaluation import Job, Seen
-from wearlaw.sweeping.journal import Journal, check_same, run_of
+from wearlaw.sweeping.evaluation import Job
+from wearlaw.sweeping.journal import Journal, check_same, run_of, sync_file
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.sweeping.space import check_disk
 from wearlaw.sweeping.targets import COMPLETE, INCOMPLETE, Target, attributes
 
 if TYPE_CHECKING:
     import xarray
+
+
+METADATA = "zarr.json"
+"""The file of a group or an array that says what it is."""
 
 
 def write_block(store: str, block: Block, outputs: Mapping[str, Array]) -> None:
@@ -45,22 +51,23 @@ class Store(Target):
         self.path, self.store = path, str(path.absolute())
         self._run = run_of(job, points)
         beside = _beside(path)
-        if resume and beside.exists() and path.is_dir():
-            self._journal = Journal.resume(beside, self._run, path)
-            self.done = dict(self._journal.done)
-            if self.done:
-                return
-            self._journal.close()  # the store may not have been made
-        check_disk(self.size, path)
-        self._journal = self._begin(beside)
+        if resume and beside.exists():
+            journal = Journal.resume(beside, self._run, path, self._sync)
+        else:
+            check_disk(self.size, path)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            journal = Journal.begin(beside, self._run, self._sync)
+        self._lay_out()
+        self._take_over(journal)
 
-    def _begin(self, beside: Path) -> Journal:
-        """Make a store in which nothing is done yet."""
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        journal = Journal.begin(beside, self._run)
+    def _lay_out(self) -> None:
+        """Write all of the store but the results, also where it is there already and may be damaged."""
         empty = self.points.dataset({}, {}).assign_attrs(status=INCOMPLETE)
-        empty.to_zarr(str(self.store), mode="w", consolidated=False, zarr_format=3)
-        group = _zarr().open_group(self.store, mode="r+")
+        for name in map(str, empty.coords):
+            shutil.rmtree(self.path / name, ignore_errors=True)
+        for name in ("", *self.job.units):
+            (self.path / name / METADATA).unlink(missing_ok=True)
+        group = _zarr().open_group(self.store, mode="a", zarr_format=3)
         for name, unit in self.job.units.items():
             group.create_array(
                 name,
@@ -72,28 +79,36 @@ class Store(Target):
                 dimension_names=self.points.dims,
                 attributes={"units": unit},
             )
-        return journal
+        empty.to_zarr(self.store, mode="a", consolidated=False, zarr_format=3)
 
     def places(self, block: Block) -> list[Array]:  # noqa: ARG002
         """Return nothing, since nothing is handed back."""
         return []
 
-    def add(self, number: int, seen: Seen) -> None:
-        """Take note that a block is done, also on disk."""
-        super().add(number, seen)
-        self._journal.add(number, seen)
+    def _kept(self, block: Block) -> list[Array]:
+        """Return the outputs of a block as they are on disk, or nothing where they cannot be read."""
+        try:
+            return [_group(self.store)[name][block.slices] for name in self.job.units]
+        except (OSError, ValueError):
+            return []
+
+    def _sync(self, numbers: list[int]) -> None:
+        blocks = self.points.blocks()
+        for name in self.job.units:
+            array = _group(self.store)[name]
+            for number in numbers:
+                which = (one.start // size for one, size in zip(blocks[number].slices, array.chunks, strict=True))
+                with suppress(FileNotFoundError):  # zarr writes none where all values are NaN
+                    sync_file(self.path / name / array.metadata.encode_chunk_key(tuple(which)))
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Mark the store as complete, and return what is in it; values are read when they are used."""
         for cut_off in self.path.rglob("*.partial"):  # of a worker that died as it wrote
             cut_off.unlink()
         _zarr().open_group(self.store, mode="r+").attrs.update(attributes(self._run, notes))
+        assert self._journal is not None
         self._journal.remove()
         return _opened(self.path)
-
-    def close(self) -> None:
-        """Leave store and journal as they are."""
-        self._journal.close()
 
 
 def finished(job: Job, points: Points, path: Path, resume: bool) -> xarray.Dataset | None:

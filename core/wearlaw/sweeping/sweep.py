@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wearlaw.configuration import parts
-from wearlaw.errors import InputError, RangeWarning, WorkerWarning
+from wearlaw.errors import InputError, RangeWarning, ResumeWarning, WorkerWarning
 from wearlaw.pipeline import Pipeline
 from wearlaw.sweeping.cluster import on_cluster
 from wearlaw.sweeping.evaluation import Job, notes, output_units
@@ -20,7 +20,7 @@ from wearlaw.sweeping.processes import Done, in_processes
 from wearlaw.sweeping.progress import Bar
 from wearlaw.sweeping.store import Store, finished
 from wearlaw.sweeping.tables import from_table
-from wearlaw.sweeping.targets import Memory, Target
+from wearlaw.sweeping.targets import Memory, Target, damage
 from wearlaw.sweeping.worker import evaluated
 from wearlaw.units import shortened
 
@@ -58,6 +58,8 @@ def sweep(
         if there is not None:
             return there
         target = Store(job, points, path, resume)
+        if target.damaged:
+            warnings.warn(damage(target.damaged, target.listed, path), ResumeWarning, stacklevel=3)
     with closing(target), Bar(points.size, progress) as bar:
         texts = run(target, bar, workers, client)
         for text in texts:

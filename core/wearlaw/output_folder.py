@@ -1,0 +1,252 @@
+"""A folder of results: there whole or not at all, with a list of its files, and never at the cost of other files."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from wearlaw.errors import OutputError
+from wearlaw.version import __version__
+
+MANIFEST = ".wearlaw.json"
+"""The list of the files that wearlaw wrote into a folder, which are all that it replaces there."""
+
+
+class ElsewhereError(OutputError):
+    """Results are whole, but in another folder than the one asked for."""
+
+
+@dataclass(frozen=True)
+class _Earlier:
+    """Results that are to be replaced.
+
+    Attributes
+    ----------
+    files : frozenset of str
+        What wearlaw wrote, relative to the folder.
+    identity : tuple of int
+        Of the manifest, to tell the folder from another that took its place.
+    """
+
+    files: frozenset[str]
+    identity: tuple[int, ...]
+
+
+@contextmanager
+def fresh_folder(folder: Path, overwrite: bool = False, marker: str | None = None) -> Iterator[Path]:
+    """Yield a temporary folder that becomes `folder` if the context ends without an error.
+
+    Parameters
+    ----------
+    folder : Path
+        A folder that is empty or does not exist, or whose files are to be replaced.
+    overwrite : bool
+        Whether to replace the files that the manifest of an earlier folder lists. Others stay.
+    marker : str, optional
+        A file of the results, by which earlier ones of the same kind are known. Without it no manifest is written.
+
+    Raises
+    ------
+    OutputError
+        At once, if `folder` cannot be written or holds something that is not to be overwritten.
+    ElsewhereError
+        At the end, if something else has taken `folder` meanwhile, or a file in it that is not wearlaw's has the name
+        of a new one. The new files are then in a folder beside it, which the message names.
+    """
+    with _os_errors_of(folder):
+        target = folder.resolve()
+        earlier = _earlier(folder, target, overwrite, marker)
+        nearest = next(parent for parent in target.parents if parent.exists())
+        temporary = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=nearest))
+    inside, replaced = temporary / "results", temporary / "replaced"
+    try:
+        inside.mkdir()  # by itself, since only the user may enter what mkdtemp makes
+        yield inside
+        try:
+            with _os_errors_of(folder):
+                if marker is not None:
+                    _write_manifest(inside)
+                if earlier is None:
+                    _put(inside, folder, target)
+                else:
+                    _replace(inside, folder, target, replaced, earlier)
+        except OutputError as error:
+            beside = _put_beside(inside, target)
+            if beside is None:
+                raise
+            raise ElsewhereError(f"{error}. The results are in '{beside}'") from None
+    finally:
+        shutil.rmtree(inside, ignore_errors=True)
+        with suppress(OSError):  # not empty if something of others could not be put back
+            temporary.rmdir()
+
+
+@contextmanager
+def _os_errors_of(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OutputError:
+        raise
+    except OSError as error:
+        raise OutputError(
+            f"output: cannot write to '{folder}': {error.strerror or error}; choose another folder with -o"
+        ) from None
+
+
+def _earlier(folder: Path, target: Path, overwrite: bool, marker: str | None) -> _Earlier | None:
+    """Return the results that are to be replaced, or None if the place is free."""
+    if not target.exists():
+        return None
+    if not target.is_dir():
+        raise OutputError(f"output: '{folder}' is a file, not a folder; choose another with -o")
+    if Path.cwd().is_relative_to(target):
+        raise OutputError(f"output: '{folder}' is the working folder or above it; choose another folder with -o")
+    if not any(target.iterdir()):
+        return None
+    files = _listed(target)
+    if marker not in files:
+        what = "holds results of another command" if files else f"does not hold results of wearlaw (no {MANIFEST})"
+        raise OutputError(f"output: '{folder}' {what}, and will not be overwritten; choose another folder with -o")
+    if not overwrite:
+        raise OutputError(f"output: '{folder}' is not empty; choose another folder with -o, or add --overwrite")
+    identity = _identity(target)
+    return None if identity is None else _Earlier(files, identity)
+
+
+def _listed(folder: Path) -> frozenset[str]:
+    """Return the files that wearlaw wrote into a folder, the manifest among them; none without a manifest."""
+    try:
+        found: Any = json.loads((folder / MANIFEST).read_bytes())
+        return frozenset([MANIFEST, *map(str, found["files"])])
+    except (OSError, ValueError, TypeError, KeyError):
+        return frozenset()
+
+
+def _identity(folder: Path) -> tuple[int, ...] | None:
+    """Return what tells the manifest of a folder from any other, or None without one."""
+    try:
+        found = (folder / MANIFEST).stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_mtime_ns
+
+
+def _write_manifest(folder: Path) -> None:
+    manifest = {"wearlaw": __version__, "files": _files(folder)}
+    (folder / MANIFEST).write_text(json.dumps(manifest, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def _files(folder: Path) -> list[str]:
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir())
+
+
+def _taken(folder: Path) -> OutputError:
+    return OutputError(f"output: '{folder}' was taken by another run or program meanwhile, and is left as it is")
+
+
+def _put(inside: Path, folder: Path, target: Path) -> None:
+    """Put new results in a place that was free, unless something else is there now."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        with suppress(FileNotFoundError):
+            target.rmdir()  # an empty folder, which Windows does not replace
+        inside.rename(target)
+    except OSError:
+        if os.path.lexists(target):
+            raise _taken(folder) from None
+        raise
+
+
+def _replace(inside: Path, folder: Path, target: Path, replaced: Path, earlier: _Earlier) -> None:
+    """Put new results in the place of earlier ones, which stay if that fails."""
+    if _identity(target) != earlier.identity:
+        raise _taken(folder)
+    try:
+        target.rename(replaced)
+    except FileNotFoundError:
+        raise _taken(folder) from None
+    try:
+        if _identity(replaced) != earlier.identity:  # another run was faster since the lines above
+            raise _taken(folder)
+        new = frozenset(_files(inside))
+        others = list(_others(replaced, earlier.files, new))
+        _check_names(folder, others, new)
+        inside.rename(target)
+    except BaseException:
+        _restore(replaced, folder, target)
+        raise
+    _carry_over(others, replaced, folder, target)
+    _remove(replaced, earlier.files)
+
+
+def _others(folder: Path, ours: frozenset[str], new: frozenset[str], within: str = "") -> Iterator[str]:
+    """Yield what others have put into a folder: files, and folders with no file of wearlaw below them."""
+    for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
+        name, is_folder = f"{within}{entry.name}", entry.is_dir(follow_symlinks=False)
+        if is_folder and any(one.startswith(f"{name}/") for one in ours | new):
+            yield from _others(Path(entry), ours, new, f"{name}/")
+        elif is_folder or name not in ours:
+            yield name
+
+
+def _check_names(folder: Path, others: list[str], new: frozenset[str]) -> None:
+    """Refuse to replace a file that is not wearlaw's."""
+    for name in others:
+        if name in new or any(one.startswith(f"{name}/") for one in new):
+            raise OutputError(
+                f"output: '{folder / name}' was not written by wearlaw, and a new file has its name; move it"
+                " elsewhere, or choose another folder with -o"
+            )
+
+
+def _restore(replaced: Path, folder: Path, target: Path) -> None:
+    try:
+        replaced.rename(target)
+    except OSError as error:
+        raise OutputError(
+            f"output: what '{folder}' held is now in '{replaced}', and cannot be moved back: {error.strerror or error}"
+        ) from None
+
+
+def _carry_over(names: list[str], replaced: Path, folder: Path, target: Path) -> None:
+    """Move files that are not wearlaw's from the earlier folder to the new one."""
+    try:
+        for name in names:
+            for parent in reversed(Path(name).parents[:-1]):
+                (target / parent).mkdir(exist_ok=True)
+            (replaced / name).rename(target / name)
+    except (OSError, KeyboardInterrupt) as error:
+        raise OutputError(
+            f"output: the results are in '{folder}', but other files that were there are still in '{replaced}':"
+            f" {str(error) or 'interrupted'}"
+        ) from None
+
+
+def _remove(folder: Path, files: frozenset[str]) -> None:
+    """Remove a folder with some files below it; what else is there, if anything, stays."""
+    for path in (*sorted(folder.rglob("*"), reverse=True), folder):  # what a folder holds comes before it
+        with suppress(OSError):
+            if path.is_dir() and not path.is_symlink():
+                path.rmdir()
+            elif path.relative_to(folder).as_posix() in files:
+                path.unlink()
+
+
+def _put_beside(inside: Path, target: Path) -> Path | None:
+    """Put results into the first folder of that name and a number that is free; return None if that fails."""
+    numbered = (target.with_name(f"{target.name}-{number}") for number in itertools.count(2))
+    beside = next(path for path in numbered if not os.path.lexists(path))
+    try:
+        inside.rename(beside)
+    except OSError:
+        taken_meanwhile = os.path.lexists(beside)
+        return _put_beside(inside, target) if taken_meanwhile else None
+    return beside
