@@ -49,6 +49,7 @@ def bench(session: nox.Session) -> None:
     session.run("python", "-m", "tests.benchmarks.wheel_rail")
     session.run("python", "-m", "tests.benchmarks.fit")
     session.run("python", "tests/benchmarks/study.py")
+    session.run("python", "tests/benchmarks/importing.py")
     session.install("-e", ".[fast,dask]")
     session.run("python", "-m", "tests.benchmarks.sweep")
 
