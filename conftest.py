@@ -62,13 +62,18 @@ def run_console(example: Example) -> None:
         printed = subprocess.run(
             command,
             shell=True,
-            env=environment(example.namespace["_installed"].name),
+            env=environment(example.namespace["_installed"].name) | strict(command),
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
         ).stdout
         if not doctest.OutputChecker().check_output(expected, printed, OPTIONS):
             raise AssertionError(f"$ {command}\nexpected:\n{expected}\nprinted:\n{printed}")
+
+
+def strict(command: str) -> dict[str, str]:
+    """Return the variables with which a warning is an error, but for what pip and the plugins of pytest warn of."""
+    return {"PYTHONWARNINGS": "error"} if command.startswith("wearlaw ") else {}
 
 
 def environment(installed: str) -> dict[str, str]:
