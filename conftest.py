@@ -42,8 +42,29 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         first.stop()
 
 
+@pytest.hookimpl(optionalhook=True)  # without xdist there is no such hook
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Give each file to one worker, as `--dist=loadfile` does, and each model to be held to the conformance kit."""
+    from xdist.scheduler import LoadFileScheduling
+
+    scheduler = LoadFileScheduling(config, log)
+    file_of = scheduler._split_scope
+
+    def share_of(nodeid: str) -> str:
+        file: str = file_of(nodeid)
+        return nodeid.rpartition("-")[0] if file == "tests/test_conformance.py" else file
+
+    scheduler._split_scope = share_of
+    config.option.loadscopereorder = False  # keep the order below, where xdist since 3.8 puts many tests first
+    return scheduler
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Leave property tests and pages out of the coverage: they run lines that others run, and twice as long with it."""
+    """Put files that take long first, or one worker would be left with them at the end.
+
+    Property tests and pages are left out of the coverage: they run lines that others run, and twice as long with it.
+    """
+    items.sort(key=lambda item: (item.path.parent.name != "third_party", item.path.suffix != ".md"))
     for item in items:
         if item.path.suffix == ".md" or is_hypothesis_test(getattr(item, "obj", None)):
             item.add_marker(pytest.mark.no_cover)
@@ -62,13 +83,18 @@ def run_console(example: Example) -> None:
         printed = subprocess.run(
             command,
             shell=True,
-            env=environment(example.namespace["_installed"].name),
+            env=environment(example.namespace["_installed"].name) | strict(command),
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
         ).stdout
         if not doctest.OutputChecker().check_output(expected, printed, OPTIONS):
             raise AssertionError(f"$ {command}\nexpected:\n{expected}\nprinted:\n{printed}")
+
+
+def strict(command: str) -> dict[str, str]:
+    """Return the variables with which a warning is an error, but for what pip and the plugins of pytest warn of."""
+    return {"PYTHONWARNINGS": "error"} if command.startswith("wearlaw ") else {}
 
 
 def environment(installed: str) -> dict[str, str]:

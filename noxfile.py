@@ -19,6 +19,13 @@ def tests(session: nox.Session) -> None:
 
 
 @nox.session(python="3.11", default=False)
+def deep(session: nox.Session) -> None:
+    """Test with ten times the examples in each property and in the conformance kit, before a release."""
+    session.install("-e", ".[test]")
+    session.run("pytest", "-n", "auto", "--hypothesis-profile=deep", *session.posargs)
+
+
+@nox.session(python="3.11", default=False)
 def minimum(session: nox.Session) -> None:
     """Test with the lowest version of each dependency that is declared to do."""
     project = PYPROJECT["project"]
@@ -50,6 +57,7 @@ def bench(session: nox.Session) -> None:
     session.run("python", "-m", "tests.benchmarks.checks")
     session.run("python", "-m", "tests.benchmarks.fit")
     session.run("python", "tests/benchmarks/study.py")
+    session.run("python", "tests/benchmarks/importing.py")
     session.install("-e", ".[fast,dask]")
     session.run("python", "-m", "tests.benchmarks.sweep")
 

@@ -1,6 +1,6 @@
 """How much hypothesis searches, and the numbers of marks that tests receive.
 
-`pytest --hypothesis-profile thorough` searches twenty-five times as long.
+`pytest --hypothesis-profile deep`, or `nox -s deep`, searches ten times as long, in the conformance kit too.
 """
 
 from __future__ import annotations
@@ -9,14 +9,23 @@ import pytest
 from hypothesis import settings
 
 from docs.validation import numbers
+from wearlaw.testing import examples
+
+EXAMPLES, DEEP = 20, 10
 
 # Times of single examples vary with the machine and with what is imported first, so there is no deadline.
-settings.register_profile("default", max_examples=40, deadline=None)
-settings.register_profile("thorough", max_examples=1000, deadline=None)
+settings.register_profile("default", max_examples=EXAMPLES, deadline=None)
+settings.register_profile("deep", max_examples=DEEP * EXAMPLES, deadline=None)
 settings.load_profile("default")
 
 # A relative tolerance is one: pytest's own floor of 1e-12 would let any value below that pass, as flexibilities in SI.
 type(pytest.approx(1.0)).DEFAULT_ABSOLUTE_TOLERANCE = 0.0  # type: ignore[attr-defined]
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Let the conformance kit, which searches the same few examples in each run, search more and others if asked."""
+    if config.getoption("--hypothesis-profile") == "deep":
+        examples._SETTINGS = settings(examples._SETTINGS, max_examples=DEEP * examples.EXAMPLES, derandomize=False)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

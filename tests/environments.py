@@ -29,7 +29,7 @@ class Environment:
         self._bin = self.folder / ("Scripts" if os.name == "nt" else "bin")
         self.python = str(self._bin / "python")
         self.install(*wheels)
-        inside = self.run("-c", "import sysconfig; print(sysconfig.get_path('purelib'))").stdout.strip()
+        inside = self.run("-c", "import sysconfig; print(sysconfig.get_path('purelib'))").strip()
         (Path(inside) / "dependencies.pth").write_text(str(self._dependencies()))
 
     def _dependencies(self) -> Path:
@@ -51,18 +51,18 @@ class Environment:
         pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "--python", self.python)
         _run(*pip, *arguments, cwd=self.folder)
 
-    def run(self, *arguments: str, cwd: Path | None = None, check: bool = True) -> subprocess.CompletedProcess[str]:
-        """Run Python with arguments, away from the checkout."""
-        return _run(self.python, *arguments, cwd=cwd or self.folder, check=check)
+    def run(self, *arguments: str, cwd: Path | None = None, **environment: str) -> str:
+        """Run Python with arguments, away from the checkout, and return what it prints."""
+        return _run(self.python, *arguments, cwd=cwd or self.folder, **environment).stdout
 
-    def wearlaw(self, *arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    def wearlaw(self, *arguments: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
         """Run the program as a user does, whatever its exit code."""
-        return _run(str(self._bin / "wearlaw"), *arguments, cwd=cwd or self.folder, check=False)
+        return _run(str(self._bin / "wearlaw"), *arguments, cwd=cwd or self.folder, check=False, **environment)
 
 
-def _run(*command: str, cwd: Path, check: bool = True) -> subprocess.CompletedProcess[str]:
+def _run(*command: str, cwd: Path, check: bool = True, **environment: str) -> subprocess.CompletedProcess[str]:
     clean = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "PYTEST", "PIP_"))}
-    clean |= {"COLUMNS": "100", "PYTHONUTF8": "1"}
+    clean |= {"COLUMNS": "100", "PYTHONUTF8": "1", **environment}
     done = subprocess.run(command, cwd=cwd, env=clean, capture_output=True, text=True, encoding="utf-8", check=False)
     assert done.returncode == 0 or not check, f"{command}\n{done.stdout}\n{done.stderr}"
     return done

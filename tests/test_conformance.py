@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from importlib.metadata import distribution
 
 import pytest
@@ -12,6 +13,7 @@ from tests.testing.cells import Cells
 from tests.testing.strips import Means, Strips
 from wearlaw.tangential import Model
 from wearlaw.testing import Check, checks
+from wearlaw.testing.roundtrip import RoundTrip
 from wearlaw_kth import PUBLISHED
 
 OWN = {"high_pressure": 0.02, "low_speed": 2e-4, "mid_speed": 3e-3, "high_speed": 4e-4}
@@ -63,10 +65,15 @@ def named(model: Model) -> str:
     return "-".join([model.name, *options, *own])
 
 
+MODELS: list[Model] = [*CONTACT_MODELS, *WEAR_LAWS, Cells(), Strips(), Means()]
+ALIKE = [model for number, model in enumerate(MODELS) if type(model) in {type(one) for one in MODELS[:number]}]
+"""Models of a class of which another one has a fresh process of its own, in other options."""
+
 CASES = [
     pytest.param(check, id=f"{named(model)}-{check.name}")
-    for model in [*CONTACT_MODELS, *WEAR_LAWS, Cells(), Strips(), Means()]
+    for model in MODELS
     for check in checks(model)
+    if not (check.name.startswith("round_trip_") and model in ALIKE)
 ]
 
 
@@ -83,6 +90,19 @@ CASES = [
 @pytest.mark.parametrize("check", CASES)
 def test_the_model_conforms(check: Check) -> None:
     check()
+
+
+@pytest.fixture(scope="module")
+def trip() -> RoundTrip:
+    return RoundTrip(*ALIKE)
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize("way", [RoundTrip.through_toml, RoundTrip.through_json, RoundTrip.through_pickle])
+def test_all_options_make_the_round_trip_through_one_fresh_process(
+    way: Callable[[RoundTrip], None], trip: RoundTrip
+) -> None:
+    way(trip)
 
 
 def test_every_model_that_comes_with_wearlaw_is_checked() -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import io
 import math
 import re
 import runpy
 import struct
-from collections.abc import Iterator
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -25,18 +28,19 @@ SCRIPTS = sorted((DOCS / "gallery").glob("*.py"))
 WIDTH = 0.01
 
 
-@pytest.fixture(autouse=True)
-def _own_folder_and_style(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.chdir(tmp_path)
-    with mpl.rc_context():
+@functools.cache
+def drawn(name: str) -> tuple[dict[str, Any], dict[str, bytes]]:
+    """Run a script in an empty folder, where a warning is an error, and return its names and the files it leaves."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), mpl.rc_context():
         plt.switch_backend("Agg")
-        yield
+        names = runpy.run_path(str(DOCS / "gallery" / f"{name}.py"), run_name="__main__")
         plt.close("all")
+        return names, {path.name: path.read_bytes() for path in Path(folder).iterdir()}
 
 
 def run(name: str) -> dict[str, Any]:
-    """Run a script in the empty folder, where a warning is an error, and return its names."""
-    return runpy.run_path(str(DOCS / "gallery" / f"{name}.py"), run_name="__main__")
+    """Return the names of a script that was run."""
+    return drawn(name)[0]
 
 
 def patch_area(force: Any) -> Any:
@@ -63,15 +67,16 @@ def curves(figure: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
-def test_a_script_draws_the_one_picture_of_its_name_in_the_size_it_asks_for(script: Path, tmp_path: Path) -> None:
-    figure = run(script.stem)["figure"]
-    (picture,) = tmp_path.iterdir()
-    assert picture.name == f"{script.stem}.png"
-    content = picture.read_bytes()
+def test_a_script_draws_the_one_picture_of_its_name_in_the_size_it_asks_for(script: Path) -> None:
+    names, files = drawn(script.stem)
+    ((file, content),) = files.items()
+    assert file == f"{script.stem}.png"
     assert content.startswith(b"\x89PNG")
-    assert struct.unpack(">2I", content[16:24]) == tuple(round(150 * side) for side in figure.get_size_inches())
-    pixels = plt.imread(picture)[..., :3]
-    assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 16  # an empty page has one colour
+    assert struct.unpack(">2I", content[16:24]) == tuple(
+        round(150 * side) for side in names["figure"].get_size_inches()
+    )
+    red, green, blue = np.moveaxis(np.rint(255.0 * plt.imread(io.BytesIO(content))[..., :3]), -1, 0)
+    assert len(np.unique(red + 256.0 * green + 65536.0 * blue)) > 16  # an empty page has one colour
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)

@@ -1,4 +1,4 @@
-"""New plugins: what is written, and that it passes its own tests where it is installed as its author would."""
+"""New plugins: what is written. `tests/third_party/test_outside.py` installs them and runs their tests."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from click.testing import Result
 import wearlaw as wl
 from tests.core.cases import Coarse, Linear, assert_refused, case, installer, wearlaw
 from tests.core.distributions import LAB, LAW, Install
-from tests.environments import ROOT, Environment, build
 from wearlaw import plugins
 from wearlaw.case import case_text
 from wearlaw.scaffold import Kind, Licence, write_plugin
@@ -31,28 +30,6 @@ def new_plugin(*arguments: str) -> Result:
 
 def files(folder: Path) -> set[str]:
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*")}
-
-
-@pytest.fixture(scope="module")
-def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
-    wheel = build(ROOT, tmp_path_factory.mktemp("wheel"))
-    return Environment(tmp_path_factory.mktemp("environment"), wheel)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_new_plugin_passes_its_own_tests_and_checks_as_generated(kind: Kind, environment: Environment) -> None:
-    name = f"my_{kind}"
-    plugin = write_plugin(name, kind, Path()).resolve()
-    environment.install("-e", plugin)
-    passed = environment.run("-m", "pytest", "-p", "no:cacheprovider", cwd=plugin).stdout
-    assert " passed in " in passed
-    assert not {"failed", "skipped", "xfailed", "error", "warning", "warnings"} & set(passed.split())
-    example = (plugin / "README.md").read_text(encoding="utf-8").partition("```python\n")[2].partition("```")[0]
-    assert "Prediction of 1 operating point" in environment.run("-c", example).stdout
-    checked = environment.wearlaw("check", name)
-    assert checked.returncode == 0, checked.stdout + checked.stderr
-    rows = [line.split() for line in environment.wearlaw("plugins").stdout.splitlines()]
-    assert [*kind.split("_"), name, f"wearlaw-{name}", "0.1.0"] in rows
 
 
 @pytest.mark.parametrize(("kind", "flag"), KINDS.items())
@@ -221,11 +198,3 @@ def test_nothing_is_left_when_the_writing_fails(folder: Path, monkeypatch: pytes
 def test_without_a_kind_both_are_named(folder: Path) -> None:
     assert_refused(new_plugin("zobory"), "say what it provides: --wear-law or --contact-model", exit_code=2)
     assert files(folder) == set()
-
-
-def test_the_wheel_holds_the_templates(environment: Environment, tmp_path: Path) -> None:
-    assert environment.wearlaw("new-plugin", "outside", "--wear-law", cwd=tmp_path).returncode == 0
-    there = tmp_path / "wearlaw-outside"
-    here = write_plugin("outside", "wear_law", Path())
-    assert files(there) == files(here)
-    assert (there / "wearlaw_outside.py").read_bytes() == (here / "wearlaw_outside.py").read_bytes()

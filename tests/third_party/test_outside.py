@@ -1,16 +1,17 @@
-"""Distributions of other people, built and installed with wearlaw's wheel into a fresh environment."""
+"""Distributions of other people, installed with wearlaw's wheel into a fresh environment, which all tests share."""
 
 from __future__ import annotations
 
 import json
 import shutil
 import textwrap
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
+from tests.core.distributions import write_distribution
 from tests.environments import ROOT, Environment, build
+from wearlaw.scaffold import Kind, write_plugin
 
 HERE = Path(__file__).parent
 
@@ -68,73 +69,60 @@ r = predict(normal_force="5 kN", creepage="1 %", friction_coefficient=0.4)
 print(json.dumps([r.tangential_force.to("N").magnitude, r.wear_rate.to("ug/m/mm^2").magnitude]))
 """
 
-
-@dataclass
-class Wheels:
-    """Everything that is installed, built once."""
-
-    ours: Path
-    outside: Path
-    broken: list[Path]
+NEW: dict[Kind, str] = {"wear_law": "--wear-law", "contact_model": "--contact-model"}
+"""The kinds of plugins that wearlaw writes, with the options of `wearlaw new-plugin`."""
 
 
-def project(folder: Path, name: str, module: str) -> Path:
-    """Write the project of a plugin that is one module."""
-    here = folder / f"wearlaw-{name.replace('_', '-')}"
-    here.mkdir()
-    (here / f"wearlaw_{name}.py").write_text(textwrap.dedent(module))
-    (here / "pyproject.toml").write_text(
-        f'[build-system]\nrequires = ["hatchling"]\nbuild-backend = "hatchling.build"\n'
-        f'[project]\nname = "{here.name}"\nversion = "9.9"\n'
-        f'[project.entry-points.wearlaw]\n{name} = "wearlaw_{name}"\n'
-        f'[tool.hatch.build]\ninclude = ["wearlaw_{name}.py"]\n'
-    )
-    return here
-
-
-@pytest.fixture(scope="session")
-def wheels(tmp_path_factory: pytest.TempPathFactory) -> Wheels:
-    folder = tmp_path_factory.mktemp("wheels")
-    sources = {name: module for name, (module, _) in BROKEN.items()} | {"usurper": USURPER}
-    broken = [build(project(folder, name, module), folder) for name, module in sources.items()]
-    return Wheels(build(ROOT, folder), build(HERE / "wearlaw-outside", folder), broken)
-
-
-@pytest.fixture(scope="session")
-def environment(wheels: Wheels, tmp_path_factory: pytest.TempPathFactory) -> Environment:
+@pytest.fixture(scope="module")
+def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
     """Return an environment with wearlaw and a distribution from outside."""
-    return Environment(tmp_path_factory.mktemp("with outside"), wheels.ours, wheels.outside)
+    folder = tmp_path_factory.mktemp("wheels")
+    wheels = build(ROOT, folder), build(HERE / "wearlaw-outside", folder)
+    return Environment(tmp_path_factory.mktemp("with outside"), *wheels)
 
 
-@pytest.fixture(scope="session")
-def troubled(wheels: Wheels, tmp_path_factory: pytest.TempPathFactory) -> Environment:
-    """Return an environment with broken distributions beside those that work."""
-    return Environment(tmp_path_factory.mktemp("troubled"), wheels.ours, wheels.outside, *wheels.broken)
+@pytest.fixture(scope="module")
+def troubles(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """Return the variables of an environment with broken distributions beside those that work."""
+    folder = tmp_path_factory.mktemp("troubles")
+    sources = {name: module for name, (module, _) in BROKEN.items()} | {"usurper": USURPER}
+    for name, module in sources.items():
+        write_distribution(folder, name, module, "9.9")
+    return {"PYTHONPATH": str(folder)}
 
 
-def listed(environment: Environment) -> dict[str, list[str]]:
-    """Return the rows of `wearlaw plugins` by the name of the model."""
-    rows = [line.split() for line in environment.wearlaw("plugins").stdout.splitlines()[1:]]
+@pytest.fixture(scope="module")
+def generated(environment: Environment, tmp_path_factory: pytest.TempPathFactory) -> dict[Kind, Path]:
+    """Return the folders of new plugins that the program wrote, installed as their author would."""
+    folder = tmp_path_factory.mktemp("generated")
+    for kind, option in NEW.items():
+        assert environment.wearlaw("new-plugin", f"my_{kind}", option, cwd=folder).returncode == 0
+    plugins = {kind: folder / f"wearlaw-my_{kind}" for kind in NEW}
+    environment.install(*(argument for plugin in plugins.values() for argument in ("-e", plugin)))
+    return plugins
+
+
+def models(listed: str) -> dict[str, list[str]]:
+    """Return the distribution and version of each model that `wearlaw plugins` lists."""
+    rows = [line.split() for line in listed.splitlines()[1:]]
     return {row[-3]: row[-2:] for row in rows}
 
 
 def test_the_wheels_are_what_is_imported_and_nothing_of_the_running_environment(environment: Environment) -> None:
-    code = "import wearlaw, wearlaw_exact, wearlaw_outside\nfor m in (wearlaw, wearlaw_exact, wearlaw_outside):\n"
-    files = environment.run("-W", "error", "-c", f"{code}    print(m.__file__)").stdout.splitlines()
+    code = (
+        "import importlib.metadata, wearlaw, wearlaw_exact, wearlaw_outside\n"
+        "for module in (wearlaw, wearlaw_exact, wearlaw_outside):\n    print(module.__file__)\n"
+        "print(*(one.name for one in importlib.metadata.distributions() if 'wearlaw' in one.name))"
+    )
+    *files, distributions = environment.run("-W", "error", "-c", code).splitlines()
     assert len(files) == 3
     assert all(Path(file).is_relative_to(environment.folder) for file in files), files
-    found = "import importlib.metadata as m; print(*(d.name for d in m.distributions() if 'wearlaw' in d.name))"
-    assert sorted(environment.run("-c", found).stdout.split()) == ["wearlaw", "wearlaw-outside"]
-
-
-def test_the_outside_law_and_model_are_listed_with_their_distribution(environment: Environment) -> None:
-    rows = listed(environment)
-    assert rows["made_up"] == rows["rigid"] == ["wearlaw-outside", "1.2.3"]
-    assert {"exact", "fastsim", "global", "brr", "kth", "usfd"} < set(rows)
+    assert {"wearlaw", "wearlaw-outside"} <= {*distributions.split()}
+    assert distributions.split().count("wearlaw") == 1
 
 
 def test_they_work_in_a_pipeline(environment: Environment) -> None:
-    force, rate = json.loads(environment.run("-W", "error", "-c", PREDICT).stdout)
+    force, rate = json.loads(environment.run("-W", "error", "-c", PREDICT))
     assert force == pytest.approx(2000.0, rel=1e-12)  # μN, to rounding
     assert rate > 0
 
@@ -158,38 +146,69 @@ def test_the_law_passes_the_checks(environment: Environment) -> None:
 
 def test_the_outside_distribution_passes_its_own_tests(environment: Environment, tmp_path: Path) -> None:
     shutil.copytree(HERE / "wearlaw-outside" / "tests", tmp_path / "tests")
-    done = environment.run("-m", "pytest", "-W", "error", cwd=tmp_path)
-    assert " passed in " in done.stdout
+    assert " passed in " in environment.run("-m", "pytest", "-W", "error", cwd=tmp_path)
 
 
-def test_once_uninstalled_it_is_gone(wheels: Wheels, tmp_path: Path) -> None:
-    environment = Environment(tmp_path / "here", wheels.ours, wheels.outside)
-    assert "made_up" in listed(environment)
-    environment.pip("uninstall", "--yes", "wearlaw-outside")
-    assert not {"made_up", "rigid"} & set(listed(environment))
-    shown = environment.wearlaw("show", "made_up")
+@pytest.mark.parametrize("kind", NEW)
+def test_the_wheel_holds_the_templates(generated: dict[Kind, Path], kind: Kind, tmp_path: Path) -> None:
+    here = write_plugin(f"my_{kind}", kind, tmp_path)
+    written = {path.relative_to(here): path.read_bytes() for path in here.rglob("*") if path.is_file()}
+    assert {path: (generated[kind] / path).read_bytes() for path in written} == written
+
+
+@pytest.mark.parametrize("kind", NEW)
+def test_a_new_plugin_passes_its_own_tests_as_generated(
+    generated: dict[Kind, Path], kind: Kind, environment: Environment
+) -> None:
+    passed = environment.run("-m", "pytest", "-p", "no:cacheprovider", cwd=generated[kind])
+    assert " passed in " in passed
+    assert not {"failed", "skipped", "xfailed", "error", "warning", "warnings"} & set(passed.split())
+
+
+def test_the_examples_in_the_readmes_of_new_plugins_run(generated: dict[Kind, Path], environment: Environment) -> None:
+    pages = [(plugin / "README.md").read_text(encoding="utf-8") for plugin in generated.values()]
+    examples = [page.partition("```python\n")[2].partition("```")[0] for page in pages]
+    printed = environment.run("-c", "\n".join(examples))
+    assert printed.count("Prediction of 1 operating point") == len(NEW)
+
+
+def test_new_and_outside_models_are_listed_with_their_distributions_until_they_are_uninstalled(
+    generated: dict[Kind, Path], environment: Environment
+) -> None:
+    found = models(environment.wearlaw("plugins").stdout)
+    assert {"exact", "fastsim", "global", "brr", "kth", "usfd"} < set(found)
+    assert found["made_up"] == found["rigid"] == ["wearlaw-outside", "1.2.3"]
+    for kind in generated:
+        assert found[f"my_{kind}"] == [f"wearlaw-my_{kind}", "0.1.0"]
+    environment.pip("uninstall", "--yes", *(plugin.name for plugin in generated.values()))
+    shown = environment.wearlaw("show", "my_wear_law")
     assert shown.returncode == 1
-    assert shown.stderr.startswith("Error: no model is called 'made_up'.")
+    assert shown.stderr.startswith("Error: no model is called 'my_wear_law'.")
 
 
-def test_broken_distributions_are_named_each_with_its_cause(troubled: Environment) -> None:
-    said = troubled.wearlaw("plugins").stderr.splitlines()
+def test_broken_distributions_are_named_each_with_its_cause_and_the_others_listed(
+    environment: Environment, troubles: dict[str, str]
+) -> None:
+    done = environment.wearlaw("plugins", **troubles)
+    said = done.stderr.splitlines()
     assert len(said) == len(BROKEN)
     for name, (_, cause) in BROKEN.items():
-        start = f"left out: wearlaw-{name.replace('_', '-')} 9.9 (plugin '{name}'): "
+        start = f"left out: {name} 9.9 (plugin '{name}'): "
         (line,) = [line for line in said if line.startswith(start)]
         assert line.removeprefix(start).startswith(cause)
+    assert {"made_up", "rigid", "exact", "fastsim", "global", "brr", "kth"} < set(models(done.stdout))
 
 
-def test_beside_broken_distributions_the_others_go_on_working(troubled: Environment) -> None:
-    assert {"made_up", "rigid", "exact", "fastsim", "global", "brr", "kth"} < set(listed(troubled))
-    force, _ = json.loads(troubled.run("-c", PREDICT).stdout)
+def test_beside_broken_distributions_the_others_go_on_working(
+    environment: Environment, troubles: dict[str, str]
+) -> None:
+    force, _ = json.loads(environment.run("-c", PREDICT, **troubles))
     assert force == pytest.approx(2000.0, rel=1e-12)  # μN, to rounding
 
 
-def test_a_taken_name_is_refused_with_both_distributions(troubled: Environment) -> None:
-    shown = troubled.wearlaw("show", "usfd")
+def test_a_taken_name_is_refused_with_both_distributions(environment: Environment, troubles: dict[str, str]) -> None:
+    shown = environment.wearlaw("show", "usfd", **troubles)
     assert shown.returncode == 1
-    assert "wear law 'usfd' is provided more than once, by wearlaw 0.1.0 (plugin 'usfd') and wearlaw-usurper 9.9" in (
-        shown.stderr
-    )
+    assert "wear law 'usfd' is provided more than once" in shown.stderr
+    assert "usurper 9.9 (plugin 'usurper')" in shown.stderr
+    assert "wearlaw 0.1.0 (plugin 'usfd')" in shown.stderr

@@ -1,6 +1,6 @@
 """Check that new plugins are sound as they are generated: by ruff and mypy --strict, and by their own CI workflow.
 
-Their tests, which the workflow runs last, are left to `tests/core/test_scaffold.py`.
+Their tests, which the workflow runs last, are left to `tests/third_party/test_outside.py`.
 
 Usage: python tests/typing/scaffold.py ENVIRONMENT
 

@@ -12,7 +12,6 @@ import dataclasses
 from functools import partial
 
 import numpy as np
-from hypothesis import strategies as st
 
 from wearlaw.arrays import Array
 from wearlaw.line import LineProblem
@@ -30,7 +29,7 @@ from wearlaw.testing.shared_checks import (
     assert_unchanged,
     friction_limit,
 )
-from wearlaw.testing.strategies import line_problems
+from wearlaw.testing.strategies import LINE_PROBLEMS, TWO_LINE_PROBLEMS
 
 
 def with_creepage(problem: LineProblem, creepage: Array | float) -> LineProblem:
@@ -84,7 +83,7 @@ def contact_has_the_shape_of_the_problem(model: ContactModel) -> None:
                 assert found == contact.pressure.shape, f"{name} has the shape {found}, pressure another"
                 assert found[:-1] == shape, f"{name} has the shape {found} for a batch of shape {shape}"
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def contact_is_finite(model: ContactModel) -> None:
@@ -93,7 +92,7 @@ def contact_is_finite(model: ContactModel) -> None:
     def examine(problem: LineProblem) -> None:
         assert_finite(model.solve(problem))
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def contact_carries_the_conditions(model: ContactModel) -> None:
@@ -104,7 +103,7 @@ def contact_carries_the_conditions(model: ContactModel) -> None:
         for name in ("rolling_speed", "density", "normal_force"):
             assert_close(getattr(contact, name), getattr(problem, name), f"the {name} of the contact")
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def nodes_cover_the_patch(model: ContactModel) -> None:
@@ -117,7 +116,7 @@ def nodes_cover_the_patch(model: ContactModel) -> None:
         assert inside.all(), f"a node lies outside the patch, at x = {contact.x[~inside]!r}"
         assert_close(contact.patch_area, problem.patch_area, "the sum of the areas", SUM)
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def pressure_sums_to_the_load(model: ContactModel) -> None:
@@ -129,7 +128,7 @@ def pressure_sums_to_the_load(model: ContactModel) -> None:
         load = contact.sum_over_nodes(contact.pressure * contact.area)
         assert_close(load, problem.normal_force, "the sum of the pressures", model.accuracy)
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def tractions_sum_to_the_force(model: ContactModel) -> None:
@@ -141,7 +140,7 @@ def tractions_sum_to_the_force(model: ContactModel) -> None:
         force = contact.sum_over_nodes(contact.traction * contact.area)
         assert_close(force, contact.tangential_force, "the sum of the tractions", absolute=allowed)
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def traction_and_slip_follow_the_creepage(model: ContactModel) -> None:
@@ -155,7 +154,7 @@ def traction_and_slip_follow_the_creepage(model: ContactModel) -> None:
                 assert (sign * contact.slip >= -allowed).all(), f"slip against the creepage: {contact.slip!r}"
                 assert (sign * contact.traction >= 0).all(), f"traction against the creepage: {contact.traction!r}"
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def random_problems(points: int) -> LineProblem:
@@ -193,7 +192,7 @@ def batch_equals_loop(model: ContactModel) -> None:
                 found, due = getattr(together, name)[index], getattr(alone, name)
                 assert_close(found, due, f"the {name} at operating point {index} of a batch", SUM)
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def problem_is_not_changed(model: ContactModel) -> None:
@@ -205,7 +204,7 @@ def problem_is_not_changed(model: ContactModel) -> None:
         model.solve(batch)
         assert_unchanged(batch, before)
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def solutions_agree_to_the_bit(model: ContactModel) -> None:
@@ -214,7 +213,7 @@ def solutions_agree_to_the_bit(model: ContactModel) -> None:
     def examine(problems: tuple[LineProblem, LineProblem]) -> None:
         assert_solved_alike(model, *problems)
 
-    for_each(st.tuples(line_problems(), line_problems()), examine)
+    for_each(TWO_LINE_PROBLEMS, examine)
 
 
 def solution_is_in_double_precision(model: ContactModel) -> None:

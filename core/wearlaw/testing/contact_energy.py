@@ -13,7 +13,7 @@ from wearlaw.tangential import QUADRATURE, ContactModel
 from wearlaw.testing.contact_checks import random_problems, saturation, with_creepage
 from wearlaw.testing.examples import SUM, assert_close, for_each
 from wearlaw.testing.shared_checks import Claims, friction_limit
-from wearlaw.testing.strategies import line_problems
+from wearlaw.testing.strategies import LINE_PROBLEMS
 
 MANY = 512
 """Problems over which an error is averaged, since where a zone begins within a cell is as good as random."""
@@ -41,7 +41,7 @@ def slip_dissipates_the_energy_fed_in(model: ContactModel) -> None:
         allowed = model.accuracy * whole
         assert_close(_dissipated(contact), due, "the energy dissipated per metre", rounding, allowed)
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def _dissipated(contact: Contact) -> Array:

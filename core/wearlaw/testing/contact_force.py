@@ -19,7 +19,7 @@ from wearlaw.testing.contact_checks import (
 )
 from wearlaw.testing.examples import SAME, assert_close, for_each
 from wearlaw.testing.shared_checks import friction_limit
-from wearlaw.testing.strategies import line_problems
+from wearlaw.testing.strategies import LINE_PROBLEMS
 
 
 def force_is_odd_in_creepage(model: ContactModel) -> None:
@@ -30,7 +30,7 @@ def force_is_odd_in_creepage(model: ContactModel) -> None:
         assert_close(-back.tangential_force, ahead.tangential_force, "minus the force at the opposite creepage")
         assert_close(back.wear_index, ahead.wear_index, "the wear index at the opposite creepage")
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def force_grows_with_creepage(model: ContactModel) -> None:
@@ -45,7 +45,7 @@ def force_grows_with_creepage(model: ContactModel) -> None:
         assert not fell.any(), f"the force falls as the creepage grows: {force!r}"
         assert force[0] > 0, f"the force is {force[0]!r} at a positive creepage"
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def force_stays_below_friction(model: ContactModel) -> None:
@@ -57,7 +57,7 @@ def force_stays_below_friction(model: ContactModel) -> None:
         limit = friction_limit(problem) * (1.0 + error_of_force(model))
         assert (force <= limit).all(), f"the force reaches {force.max() / friction_limit(problem):.9g} μN"
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def force_is_continuous(model: ContactModel) -> None:
@@ -93,7 +93,7 @@ def zero_creepage_gives_nothing(model: ContactModel) -> None:
             value = getattr(contact, name)
             assert (value == 0).all(), f"at zero creepage {name} is {value!r}"
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def wear_index_is_force_times_creepage(model: ContactModel) -> None:
@@ -103,7 +103,7 @@ def wear_index_is_force_times_creepage(model: ContactModel) -> None:
         contact = model.solve(problem)
         assert_close(contact.wear_index, contact.tangential_force * problem.creepage, "the wear index")
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def force_alone_is_that_of_the_contact(model: ContactModel) -> None:

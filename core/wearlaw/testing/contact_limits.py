@@ -18,7 +18,7 @@ from wearlaw.testing.contact_checks import (
 )
 from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
 from wearlaw.testing.shared_checks import Claims, friction_limit, full_slip, steps_into_full_slip
-from wearlaw.testing.strategies import line_problems, log_uniform
+from wearlaw.testing.strategies import LINE_PROBLEMS, TWO_LINE_PROBLEMS, log_uniform
 
 
 def traction_keeps_its_bound(model: ContactModel) -> None:
@@ -30,7 +30,7 @@ def traction_keeps_its_bound(model: ContactModel) -> None:
             share = np.abs(contact.traction[over]) / contact.traction_bound[over]
             assert not over.any(), f"the traction is {share} times its bound at x = {contact.x[over]}"
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def what_sticks_does_not_slip(model: ContactModel) -> None:
@@ -42,7 +42,7 @@ def what_sticks_does_not_slip(model: ContactModel) -> None:
             wrong = below & (contact.slip != 0)
             assert not wrong.any(), f"slip of {contact.slip[wrong]} where the traction is below its bound"
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def full_slip_is_reached(model: ContactModel) -> None:
@@ -55,7 +55,7 @@ def full_slip_is_reached(model: ContactModel) -> None:
         assert (contact.slip != 0).all(), "a node sticks in full slip"
         assert_close(contact.mean_slip, 100.0 * saturation(problem), "the mean slip in full slip", model.accuracy)
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
 
 
 def full_slip_is_met_from_both_sides(model: ContactModel) -> None:
@@ -77,7 +77,11 @@ def full_slip_is_met_from_both_sides(model: ContactModel) -> None:
                 f"the {name} jumps by {near[name]:.2g} of its value into full slip, at the creepage {float(full):g}"
             )
 
-    for_each(line_problems(), examine)
+    for_each(LINE_PROBLEMS, examine)
+
+
+AT_SMALL_CREEPAGES = st.tuples(LINE_PROBLEMS, log_uniform(1e-9, 1e-4))
+"""Problems, and creepages over that of full slip."""
 
 
 def initial_slope_is_that_of_the_half_space(model: ContactModel) -> None:
@@ -97,7 +101,7 @@ def initial_slope_is_that_of_the_half_space(model: ContactModel) -> None:
         remainder = 2.0 * (1.0 + reduced) * np.abs(whole - half)
         assert_close(whole, due, "the force over a small creepage", 5.0 * error_of_force(model), remainder)
 
-    for_each(st.tuples(line_problems(), log_uniform(1e-9, 1e-4)), examine)
+    for_each(AT_SMALL_CREEPAGES, examine)
 
 
 def contacts_are_similar(model: ContactModel) -> None:
@@ -109,7 +113,7 @@ def contacts_are_similar(model: ContactModel) -> None:
         first, second = (model.solve(p).tangential_force / friction_limit(p) for p in (problem, alike))
         assert_close(second, first, "T/(μN) of a similar contact", SUM)
 
-    for_each(st.tuples(line_problems(), line_problems()), examine)
+    for_each(TWO_LINE_PROBLEMS, examine)
 
 
 CLAIMS: Claims = {

@@ -11,7 +11,6 @@ import dataclasses
 from functools import partial
 
 import numpy as np
-from hypothesis import strategies as st
 
 from wearlaw.arrays import Array
 from wearlaw.conditions import WheelRailConditions
@@ -34,7 +33,7 @@ from wearlaw.testing.ellipses import (
 from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
 from wearlaw.testing.sampling import EPS
 from wearlaw.testing.shared_checks import assert_double, assert_finite, assert_solved_alike, assert_unchanged
-from wearlaw.testing.strategies import elliptic_problems
+from wearlaw.testing.strategies import ELLIPTIC_PROBLEMS, TWO_ELLIPTIC_PROBLEMS
 from wearlaw.units import Q
 
 FIELDS = (
@@ -75,7 +74,7 @@ def elliptic_contact_has_the_shape_of_the_problem(model: ContactModel) -> None:
             found = contact.strip_width.shape
             assert found == (*shape, nodes[1]), f"strip_width has the shape {found}, not {(*shape, nodes[1])}"
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def elliptic_contact_is_finite(model: ContactModel) -> None:
@@ -84,7 +83,7 @@ def elliptic_contact_is_finite(model: ContactModel) -> None:
     def examine(problem: EllipticProblem) -> None:
         assert_finite(model.solve(problem))
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def elliptic_contact_carries_the_conditions(model: ContactModel) -> None:
@@ -98,7 +97,7 @@ def elliptic_contact_carries_the_conditions(model: ContactModel) -> None:
         turning = 0.5 * problem.spin * np.hypot(problem.a, problem.b)
         assert_close(contact.rigid_slip, np.hypot(translation(problem), turning), "the rigid slip of the contact")
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def nodes_cover_the_ellipse(model: ContactModel) -> None:
@@ -114,7 +113,7 @@ def nodes_cover_the_ellipse(model: ContactModel) -> None:
         )
         assert_close(contact.patch_area, problem.patch_area, "the sum of the areas", error_of_sums(model))
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def pressure_on_the_ellipse_sums_to_the_load(model: ContactModel) -> None:
@@ -126,7 +125,7 @@ def pressure_on_the_ellipse_sums_to_the_load(model: ContactModel) -> None:
         load = contact.sum_over_nodes(contact.pressure * contact.area)
         assert_close(load, problem.normal_force, "the sum of the pressures", error_of_sums(model))
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def traction_vectors_sum_to_the_forces(model: ContactModel) -> None:
@@ -139,7 +138,7 @@ def traction_vectors_sum_to_the_forces(model: ContactModel) -> None:
             sums = dataclasses.replace(sums, spin_moment=due.spin_moment)
         assert_same_forces(problem, sums, due, "that the tractions sum to", error_of_sums(model))
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def magnitudes_are_those_of_the_vectors(model: ContactModel) -> None:
@@ -153,7 +152,7 @@ def magnitudes_are_those_of_the_vectors(model: ContactModel) -> None:
             due = np.hypot(*(getattr(contact, component) for component in components))
             assert_close(getattr(contact, name), due, f"the magnitude of the {name.replace('_', ' ')}")
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 MAGNITUDES = {
@@ -174,7 +173,7 @@ def no_node_gains_energy(model: ContactModel) -> None:
         cosine = contact.wear_index_density[gains] / (contact.traction * contact.slip)[gains]
         assert not gains.any(), f"traction and slip are at angles of cosines {cosine!r} at x/a, y/b = {where!r}"
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def batch_of_ellipses_equals_loop(model: ContactModel) -> None:
@@ -210,7 +209,7 @@ def elliptic_solutions_agree_to_the_bit(model: ContactModel) -> None:
     def examine(problems: tuple[EllipticProblem, EllipticProblem]) -> None:
         assert_solved_alike(model, *problems)
 
-    for_each(st.tuples(elliptic_problems(), elliptic_problems()), examine)
+    for_each(TWO_ELLIPTIC_PROBLEMS, examine)
 
 
 def elliptic_solution_is_in_double_precision(model: ContactModel) -> None:

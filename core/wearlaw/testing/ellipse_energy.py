@@ -22,7 +22,7 @@ from wearlaw.testing.ellipses import (
 )
 from wearlaw.testing.examples import assert_close, for_each
 from wearlaw.testing.shared_checks import Claims, friction_limit
-from wearlaw.testing.strategies import elliptic_problems
+from wearlaw.testing.strategies import ELLIPTIC_PROBLEMS
 
 PATCHES = 8
 """Patches over which an error is averaged, and with it over their strips."""
@@ -42,7 +42,7 @@ def translation_dissipates_the_energy_fed_in(model: ContactModel) -> None:
         allowed = error_of_sums(model) * np.maximum(sliding_power(straight), due)
         assert_close(contact.cell_wear_index, due, "the energy dissipated per metre", 0.0, allowed)
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def refined_strips_improve_the_sums(model: ContactModel) -> None:

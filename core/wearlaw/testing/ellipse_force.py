@@ -24,7 +24,7 @@ from wearlaw.testing.ellipses import (
 )
 from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
 from wearlaw.testing.shared_checks import friction_limit
-from wearlaw.testing.strategies import elliptic_problems
+from wearlaw.testing.strategies import ELLIPTIC_PROBLEMS
 
 
 def forces_are_odd_in_the_creepages(model: ContactModel) -> None:
@@ -33,7 +33,7 @@ def forces_are_odd_in_the_creepages(model: ContactModel) -> None:
     def examine(problem: EllipticProblem) -> None:
         _compare_turned(model, problem, (-1.0, -1.0, -1.0), "at the opposite creepages")
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def forces_are_mirrored_with_the_creepages(model: ContactModel) -> None:
@@ -42,7 +42,7 @@ def forces_are_mirrored_with_the_creepages(model: ContactModel) -> None:
     def examine(problem: EllipticProblem) -> None:
         _compare_turned(model, problem, (1.0, -1.0, -1.0), "at the mirrored creepages")
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def _compare_turned(
@@ -80,7 +80,7 @@ def longitudinal_force_grows_with_creepage(model: ContactModel) -> None:
         assert not fell.any(), f"the force falls as the creepage grows: {force!r}"
         assert force[0] > 0, f"the force is {force[0]!r} at a positive creepage"
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def forces_are_continuous(model: ContactModel) -> None:
@@ -119,7 +119,7 @@ def zero_creepages_give_nothing(model: ContactModel) -> None:
             value = getattr(contact, name)
             assert (value == 0).all(), f"without creepage {name} reaches {np.abs(value).max():.3g} in SI units"
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def wear_index_is_forces_times_creepages(model: ContactModel) -> None:
@@ -130,7 +130,7 @@ def wear_index_is_forces_times_creepages(model: ContactModel) -> None:
         due, rounding = problem.power(forces_of(contact)), SAME * _parts_of_power(problem, contact)
         assert_close(contact.wear_index, due, "the wear index", 0.0, rounding)
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def creep_forces_are_those_of_the_contact(model: ContactModel) -> None:
@@ -139,7 +139,7 @@ def creep_forces_are_those_of_the_contact(model: ContactModel) -> None:
     def examine(problem: EllipticProblem) -> None:
         assert_same_forces(problem, model.creep_forces(problem), forces_of(model.solve(problem)), "of `creep_forces`")
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 CHECKS = (

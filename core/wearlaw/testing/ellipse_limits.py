@@ -22,7 +22,7 @@ from wearlaw.testing.ellipses import (
 )
 from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
 from wearlaw.testing.shared_checks import Claims, friction_limit, full_slip, steps_into_full_slip
-from wearlaw.testing.strategies import elliptic_problems, log_uniform
+from wearlaw.testing.strategies import ELLIPTIC_PROBLEMS, log_uniform
 
 POINTS = 32
 """Patches that are checked at once."""
@@ -43,7 +43,7 @@ def traction_vector_keeps_its_bound(model: ContactModel) -> None:
         share = contact.traction[over] / contact.traction_bound[over]
         assert not over.any(), f"the traction is {share} times its bound at x, y = {contact.x[over]}, {contact.y[over]}"
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def forces_stay_below_friction(model: ContactModel) -> None:
@@ -55,7 +55,7 @@ def forces_stay_below_friction(model: ContactModel) -> None:
         share = model.creep_forces(batch).tangential / friction_limit(problem)
         assert (share <= 1.0 + error_of_sums(model)).all(), f"the force reaches {share.max():.9g} μN"
 
-    for_each(elliptic_problems(), examine)
+    for_each(ELLIPTIC_PROBLEMS, examine)
 
 
 def nothing_slips_below_the_bound(model: ContactModel) -> None:
@@ -180,8 +180,12 @@ def elliptic_contacts_are_similar(model: ContactModel) -> None:
         )
         assert_same_forces(alike, model.creep_forces(alike), due, "of a similar contact")
 
-    factor = log_uniform(0.1, 10.0)
-    for_each(st.tuples(elliptic_problems(), st.tuples(factor, factor, factor, log_uniform(0.1, 1.0), factor)), examine)
+    for_each(SCALED, examine)
+
+
+FACTOR = log_uniform(0.1, 10.0)
+SCALED = st.tuples(ELLIPTIC_PROBLEMS, st.tuples(FACTOR, FACTOR, FACTOR, log_uniform(0.1, 1.0), FACTOR))
+"""Problems, with factors of length, modulus, friction, creepage and speed; the creepages may not grow above 1."""
 
 
 CLAIMS: Claims = {

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
+from functools import cache
 from typing import TypeVar
 
 import numpy as np
@@ -37,6 +39,28 @@ _SETTINGS = settings(
 
 def for_each(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> None:
     """Run a function on examples; a counter-example is shrunk and named in a note of the error."""
+    for example in _drawn(strategy):
+        try:
+            examine(copy.deepcopy(example))
+        except Exception as error:
+            failure = error
+            break
+    else:
+        return
+    _search(strategy, examine)
+    raise failure  # which the search did not meet again: the model does not do the same twice
+
+
+@cache
+def _drawn(strategy: st.SearchStrategy[T]) -> list[T]:
+    """Return the examples of a strategy; once, since hypothesis takes longer to draw them than most checks do."""
+    examples: list[T] = []
+    _search(strategy, examples.append)
+    return examples
+
+
+def _search(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> None:
+    """Run a function on the examples of a strategy, which are the same for every function until one fails."""
 
     @_SETTINGS
     @given(strategy)

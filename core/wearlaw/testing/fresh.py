@@ -1,4 +1,4 @@
-"""Run in a fresh process: make a model again from its TOML, its JSON and its pickle, and say what it computes.
+"""Run in a fresh process: make models again from their TOML, JSON and pickles, and say what they compute.
 
 Reads a pickled request from standard input and writes a pickled answer to standard output; it imports nothing of the
 kit, which would cost more time than all of that.
@@ -34,11 +34,8 @@ def made_again(way: Callable[[], Any], arguments: list[Any]) -> tuple[str, Any]:
         return described(error), None
 
 
-def main() -> None:
-    """Answer the request."""
-    path, request = pickle.load(sys.stdin.buffer)
-    sys.path[:] = path
-    contents = pickle.loads(request)
+def answer(contents: dict[str, Any]) -> dict[str, tuple[str, Any]]:
+    """Return what a model computes after each way, or why it could not be made."""
     cls: Any = importlib.import_module(contents["module"])
     for part in contents["qualname"].split("."):
         cls = getattr(cls, part)
@@ -49,7 +46,14 @@ def main() -> None:
         "pickle": lambda: pickle.loads(contents["pickle"]),
     }
     arguments = pickle.loads(contents["arguments"])
-    pickle.dump({name: made_again(way, arguments) for name, way in ways.items()}, sys.stdout.buffer)
+    return {name: made_again(way, arguments) for name, way in ways.items()}
+
+
+def main() -> None:
+    """Answer the request."""
+    path, request = pickle.load(sys.stdin.buffer)
+    sys.path[:] = path
+    pickle.dump([answer(contents) for contents in pickle.loads(request)], sys.stdout.buffer)
 
 
 if __name__ == "__main__":

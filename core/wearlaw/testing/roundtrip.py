@@ -1,4 +1,4 @@
-"""Whether a model is the same after it was written and read again in another process."""
+"""Whether models are the same after they were written and read again in another process."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from wearlaw.units import Q
 
 
 class RoundTrip:
-    """Three ways to write a model, read again by one fresh process."""
+    """Three ways to write models, read again by one fresh process."""
 
-    def __init__(self, model: Model) -> None:
-        self.model = model
+    def __init__(self, *models: Model) -> None:
+        self.models = models
 
     def through_toml(self) -> None:
         """The model computes the same after TOML, as in a case file, in a fresh process."""
@@ -37,53 +37,57 @@ class RoundTrip:
 
     def through_pickle(self) -> None:
         """The model computes the same after pickling, as for work on several cores, in a fresh process."""
-        pickle.dumps(self.model)
+        pickle.dumps(self.models)
         self._same("pickle")
 
     def _same(self, way: str) -> None:
-        error, computed = self._answer[way]
-        assert not error, f"the model cannot be made again from {way}: {error}"
-        for found, due in zip(computed, fresh.computed(self.model, self._arguments), strict=True):
-            assert_close(found, due, f"what the model computes after {way}")
+        for model, answer in zip(self.models, self._answers, strict=True):
+            error, computed = answer[way]
+            assert not error, f"the model cannot be made again from {way}: {error}"
+            for found, due in zip(computed, fresh.computed(model, _arguments(model)), strict=True):
+                assert_close(found, due, f"what the model computes after {way}")
 
     @cached_property
-    def _arguments(self) -> list[Any]:
-        """The contacts or problems for which the model computes something."""
-        if isinstance(self.model, WearLaw):
-            return [random_contacts(16)]
-        assert isinstance(self.model, ContactModel)
-        problems: dict[Geometry, Any] = {
-            "line": TwinDisc.suros().problem(
-                max_pressure="1.5 GPa", creepage=Q(np.array([-1.0, 0.1, 1.0, 10.0]), "%"), friction_coefficient=0.46
-            ),
-            "ellipse": random_ellipses(4),
-        }
-        return [problems[geometry] for geometry in self.model.geometries()]
-
-    @property
-    def _pickled(self) -> bytes:
-        try:
-            return pickle.dumps(self.model)
-        except Exception:  # `through_pickle` raises it again; the other two ways do not need it
-            return b""
-
-    @cached_property
-    def _answer(self) -> dict[str, tuple[str, Any]]:
-        cls, fields = type(self.model), self.model.model_dump(mode="json", exclude_none=True, by_alias=True)
-        text = {
-            "module": cls.__module__,
-            "qualname": cls.__qualname__,
-            "toml": tomli_w.dumps(fields),
-            "json": self.model.model_dump_json(by_alias=True),
-            "pickle": self._pickled,
-            "arguments": pickle.dumps(self._arguments),
-        }
+    def _answers(self) -> list[dict[str, tuple[str, Any]]]:
         # The path comes first and by itself, since reading the rest needs it.
-        request = pickle.dumps((sys.path, pickle.dumps(text)))
+        request = pickle.dumps((sys.path, pickle.dumps([_written(model) for model in self.models])))
         done = subprocess.run([sys.executable, fresh.__file__], input=request, capture_output=True, check=False)
         message = done.stderr.decode().strip().splitlines()
-        assert done.returncode == 0, (
-            f"a fresh process cannot import {cls.__module__}.{cls.__qualname__}: {message[-1:]}"
-        )
-        answer: dict[str, tuple[str, Any]] = pickle.loads(done.stdout)
-        return answer
+        names = ", ".join(f"{type(model).__module__}.{type(model).__qualname__}" for model in self.models)
+        assert done.returncode == 0, f"a fresh process cannot import {names}: {message[-1:]}"
+        answers: list[dict[str, tuple[str, Any]]] = pickle.loads(done.stdout)
+        return answers
+
+
+def _written(model: Model) -> dict[str, Any]:
+    """Return what a fresh process makes the model again from, and for what it computes something."""
+    cls, fields = type(model), model.model_dump(mode="json", exclude_none=True, by_alias=True)
+    return {
+        "module": cls.__module__,
+        "qualname": cls.__qualname__,
+        "toml": tomli_w.dumps(fields),
+        "json": model.model_dump_json(by_alias=True),
+        "pickle": _pickled(model),
+        "arguments": pickle.dumps(_arguments(model)),
+    }
+
+
+def _pickled(model: Model) -> bytes:
+    try:
+        return pickle.dumps(model)
+    except Exception:  # `through_pickle` raises it again; the other two ways do not need it
+        return b""
+
+
+def _arguments(model: Model) -> list[Any]:
+    """Return the contacts or problems for which the model computes something."""
+    if isinstance(model, WearLaw):
+        return [random_contacts(16)]
+    assert isinstance(model, ContactModel)
+    problems: dict[Geometry, Any] = {
+        "line": TwinDisc.suros().problem(
+            max_pressure="1.5 GPa", creepage=Q(np.array([-1.0, 0.1, 1.0, 10.0]), "%"), friction_coefficient=0.46
+        ),
+        "ellipse": random_ellipses(4),
+    }
+    return [problems[geometry] for geometry in model.geometries()]

@@ -150,6 +150,10 @@ def _line_problem(
     return LineProblem(**{name: np.asarray(value, dtype=np.float64) for name, value in values.items()})
 
 
+LINE_PROBLEMS = line_problems()
+"""The problems that the checks share, to draw them once."""
+TWO_LINE_PROBLEMS = st.tuples(LINE_PROBLEMS, LINE_PROBLEMS)
+
 _SIGNS = st.sampled_from([1.0, -1.0])
 
 
@@ -217,6 +221,11 @@ def _elliptic_problem(
     creepages = Creepages.of(problem)
     fastest = np.hypot(creepages.longitudinal, creepages.lateral) + np.abs(creepages.spin) * max(a, b)
     return problem.with_creepages(*creepages.times(1.0 / np.maximum(fastest, 1.0)))
+
+
+ELLIPTIC_PROBLEMS = elliptic_problems()
+"""The problems that the checks share, to draw them once."""
+TWO_ELLIPTIC_PROBLEMS = st.tuples(ELLIPTIC_PROBLEMS, ELLIPTIC_PROBLEMS)
 
 
 @cache
