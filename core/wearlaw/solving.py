@@ -34,16 +34,16 @@ EVERY = 64
 """Blocks from one comparison of sums with totals to the next."""
 
 SLACK = 2.0
-"""How far sums over nodes may be off, over what the model declares: more than that on the contacts of the conformance
-kit, which are a sample."""
+"""Factor by which sums over nodes may be farther off than the model declares: a declared error is one that the
+conformance kit has verified on a sample of contacts."""
 
 ROUNDINGS = 64.0 * float(np.finfo(np.float64).eps)
-"""Rounding of a sum over nodes, and of the magnitude of a vector, with some to spare."""
+"""Rounding error of a sum over nodes, or of the magnitude of a vector."""
 
 FLOAT64 = np.dtype(np.float64)
 
 ONE_THREAD = 2**13
-"""Numbers of which BLAS computes a product in one thread; with several it takes processors from other workers."""
+"""Length up to which BLAS multiplies vectors in one thread. Several would take processors from other workers."""
 
 FIELDS = ("pressure", "traction", "slip", "area", "traction_bound", "x")
 """Arrays with one value for each node."""
@@ -58,7 +58,7 @@ TO_SHOW = {"area": "mm^2", "moment_z": "N*m", "wear_index": "N"}
 
 
 class Solver:
-    """A contact model whose contacts are checked; it counts the blocks.
+    """Solves contacts by a model, checks them, and counts the blocks.
 
     Parameters
     ----------
@@ -106,7 +106,10 @@ class Solver:
         return contact
 
     def at(self, problem: LineProblem, nodes: Nodes, *, totals: bool) -> Contact:
-        """Return the contact on given nodes, by a model that knows its fields; `totals` needs nodes all over it."""
+        """Return the contact on given nodes, by a model that knows its fields.
+
+        `totals` says whether sums over the nodes, which then cover the whole patch, are compared with the totals.
+        """
         assert isinstance(self.model, LineContactModel)
         with Blame(self.model):
             contact = self.model.at(problem, nodes)
@@ -178,10 +181,10 @@ def check_type(model: ContactModel, name: str, values: Any, shape: tuple[int, ..
 def _check_values(
     model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem, *, areas: bool
 ) -> None:
-    """Look at what laws read in as few passes as possible, and for the first wrong value only if there is one.
+    """Check the values that laws read in few passes, and search for the first wrong one only if there is one.
 
-    The components of vectors are left to their magnitudes, and to the sums of some blocks; areas that are not the
-    model's, to wearlaw.
+    Components of vectors are checked by their magnitudes, and where sums are compared with totals. Areas are checked
+    where the model chose the nodes.
     """
     finite = math.isfinite(_product(contact.pressure, contact.slip))
     if areas:
@@ -189,8 +192,9 @@ def _check_values(
         if contact.area.min() < 0.0:
             raise _error(model, "gave a negative area", problem, contact.area < 0.0)
     traction = contact.traction if isinstance(contact, EllipticContact) else np.abs(contact.traction)
-    least = float((contact.traction_bound - traction).min())
-    if not finite or math.isnan(least):
+    with np.errstate(invalid="ignore"):  # infinity less infinity is NaN
+        least = float((contact.traction_bound - traction).min())
+    if not finite or math.isnan(least) or least == -math.inf:
         check_finite(model, contact, problem)
     if least < 0.0 and least < -ROUNDINGS * float(traction.max()):
         _check_bound(model, contact, problem)
@@ -199,7 +203,7 @@ def _check_values(
 def _product(one: Array, other: Array) -> float:
     """Return the sum of the products of two arrays of one shape, which is finite only if all their entries are.
 
-    Nothing takes less time. It may also overflow.
+    This is the fastest way to look at them. The sum may overflow as well.
     """
     first, second = one.ravel(order="K"), other.ravel(order="K")
     if first.size <= ONE_THREAD:
@@ -209,7 +213,7 @@ def _product(one: Array, other: Array) -> float:
 
 
 def check_finite(model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem) -> None:
-    """Raise a `ModelError` if a value is not finite; the traction bound may be infinite."""
+    """Raise a `ModelError` if a value is not finite. Only the traction bound may be infinite."""
     names = (*FIELDS, *VECTORS, *TOTALS) if isinstance(contact, EllipticContact) else (*FIELDS, *LINE_TOTALS)
     for name in names:
         values = getattr(contact, name)
@@ -229,7 +233,7 @@ def _check_bound(model: ContactModel, contact: Contact, problem: LineProblem | E
 
 
 def _rounding_of_traction(model: ContactModel) -> float:
-    """Return by how much a traction may exceed its bound: rounding, and the error of the force where it is its mean."""
+    """Return by how much a traction may exceed its bound: by rounding, or by the error of the force that it is."""
     return ROUNDINGS if model.scale == "cells" or model.accuracy == QUADRATURE else model.accuracy
 
 

@@ -168,6 +168,11 @@ BROKEN: dict[str, tuple[Change, str]] = {
     "a pressure that is no number": (replace(pressure=entry(np.nan)), "gave a pressure that is not finite"),
     "an infinite slip": (replace(slip=entry(np.inf)), "gave a slip that is not finite"),
     "a traction that is no number": (replace(traction=entry(np.nan)), "gave a traction that is not finite"),
+    "an infinite traction": (replace(traction=entry(np.inf)), "gave a traction that is not finite"),
+    "an infinite traction at an infinite bound": (
+        replace(traction=entry(np.inf), traction_bound=entry(np.inf)),
+        "gave a traction that is not finite",
+    ),
     "a bound that is no number": (replace(traction_bound=entry(np.nan)), "gave a traction bound that is not finite"),
     "a negative area": (replace(area=entry(-1e-8)), "gave a negative area"),
     "an infinite area": (replace(area=entry(np.inf)), "gave an area that is not finite"),
