@@ -155,21 +155,6 @@ def force_errors_in_words() -> str:
     return "The largest error is {} with the elliptic bound, and {} with the parabolic one.".format(*sizes)
 
 
-def power_errors_in_words() -> str:
-    """Return the sentence about the dissipated power in the reference cases with spin."""
-    table, solved = solve_reference()
-    spin, full = table.phi != 0.0, table.fullX_Tgamma
-    ends = []
-    for bound in reversed(BOUNDS):
-        for power in (solved[bound].cell_wear_index, solved[bound].wear_index):
-            error = 100.0 * (power / full - 1.0)[spin]
-            ends.append(f"{error.min():+.0f} to {error.max():+.0f} %")
-    return (
-        "In the [cases with spin](theory-elliptic.md#what-it-meets-and-what-not), the cells are off by {} and Tγ by {}"
-        " with the parabolic bound, by {} and {} with the elliptic one."
-    ).format(*ends)
-
-
 def fastsim_against_half_space() -> Figure:
     """Return the errors of the forces case by case."""
     cases, errors = fastsim_errors()

@@ -30,6 +30,12 @@ class Fastsim(wl.LineContactModel):
     that it dissipates differs from Tγ = ξFx + ηFy + φMz.
 
     `pressure` is always Hertz's; the parabola is the bound of the traction only.
+
+    Notes
+    -----
+    Prefer this for wear, and for forces where there is spin: it resolves the patch, at any creepage. It can't meet the
+    moment of the linear theory nor, with spin, Tγ, because its flexibilities are chosen to meet Kalker's forces. The
+    theory of elliptic contact in the documentation has tables of its errors.
     """
 
     name: ClassVar[str] = "fastsim"

@@ -42,10 +42,11 @@ class Polach(wl.CreepForceModel):
 
     Notes
     -----
-    Pure creepages meet Kalker's linear theory where they are small; in combinations C stands in for C11 and C22, and ξ
-    weakens the part of the spin. Beside the half-space solution of CONTACT, the largest deviations are: on a curve of
-    pure longitudinal creepage at a = b/2, 6.1 % of μN, too low, where F = 0.98 μN; at a = b, for ξ and η up to 0.5 %,
-    φ√(ab) up to 0.3 % and combinations, 5.4 % of μN in the forces, and in Tγ from -13 % (η with φ) to +10 % (φ alone).
+    Prefer this at the limit of adhesion, on wet or dirty track, for which there are values of k_A and k_S. It can't
+    stand in for `fastsim` where the contact spins, because one term takes the spin, from the creepage at the leading
+    edge: it misses most on long patches where spin works against the lateral creepage. Pure creepages meet Kalker's
+    linear theory where they are small; in combinations C stands in for C11 and C22, and ξ weakens the part of the spin.
+    The theory of elliptic contact in the documentation has tables of its errors.
     """
 
     name: ClassVar[str] = "polach"

@@ -24,10 +24,11 @@ class ShenHedrickElkins(wl.CreepForceModel):
 
     Notes
     -----
-    It holds for small spin: under a large spin alone the true Fy falls to zero, but this one rises to μN. Beside the
-    half-space solution of CONTACT, the largest deviations are: on a curve of pure longitudinal creepage at a = b/2,
-    3.8 % of μN, too low, where F = 0.88 μN; at a = b, for ξ and η up to 0.5 %, φ√(ab) up to 0.3 % and combinations,
-    3.0 % of μN in the forces, and in Tγ from -12 % (η with φ) to +25 % (φ alone).
+    Prefer this for vehicle dynamics on the tread: with little spin its forces are on average nearer to the half-space
+    theory than those of `polach`. It can't take much spin, because it counts it as if all of the patch stuck: under a
+    large spin alone the true Fy falls to zero, but this one rises to μN, and where spin works against a lateral
+    creepage the linear forces cancel where the true ones do not. Mz is a guess wherever the patch slips. The theory of
+    elliptic contact in the documentation has tables of its errors.
     """
 
     name: ClassVar[str] = "shen_hedrick_elkins"

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from tests.half_spaces import HalfSpaces
 from wearlaw import kalker
 from wearlaw.arrays import Array
 
@@ -16,41 +17,12 @@ def values(axis_ratio: float, poisson_ratio: float) -> list[float]:
     return [float(value) for value in (found.c11, found.c22, found.c23, found.c33)]
 
 
-def influence(x: Array, y: Array, dx: float, dy: float, nu: float) -> tuple[Array, Array, Array]:
-    """πG times the relative displacement by unit traction on a rectangle: along x by x, along y by y, and mixed.
-
-    Cerruti's solution for two like half-spaces (K. L. Johnson, Contact Mechanics, 1985, section 3.6). The mixed one
-    has the sign of tractions along the rolling direction at positions against it.
-    """
-    along, across, mixed = (np.zeros_like(x) for _ in range(3))
-    for i, sign_i in ((x + dx / 2, 1), (x - dx / 2, -1)):
-        for j, sign_j in ((y + dy / 2, 1), (y - dy / 2, -1)):
-            sign, first, second = sign_i * sign_j, i * np.arcsinh(j / abs(i)), j * np.arcsinh(i / abs(j))
-            along += sign * ((1.0 - nu) * first + second)
-            across += sign * (first + (1.0 - nu) * second)
-            mixed += sign * nu * np.hypot(i, j)
-    return along, across, mixed
-
-
 def half_spaces(ratio: float, nu: float, cells: int) -> Array:
-    """C11, C22, C23 from spin, C23 from lateral creepage, and C33, with square-topped elements in an ellipse ab = 1.
-
-    Every element sticks: what a point is displaced on its way from one element to the next is the rigid slip there.
-    """
-    a, b = math.sqrt(ratio), 1.0 / math.sqrt(ratio)
-    dx, dy = 2.0 * a / cells, 2.0 * b / cells
-    middles = (2.0 * np.arange(cells) + 1.0) / cells - 1.0
-    x, y = (v.ravel() for v in np.meshgrid(a * middles, b * middles))
-    inside = (x / a) ** 2 + (y / b) ** 2 < 1.0
-    x, y = x[inside], y[inside]
-    here, one_before = (influence(x[:, None] - x - back, y[:, None] - y, dx, dy, nu) for back in (0.0, dx))
-    along, across, mixed = (first - second for first, second in zip(here, one_before, strict=True))
-    zero, one = np.zeros_like(x), np.ones_like(x)
-    slip = np.array([[one, zero], [zero, one], [-y, dx / 2.0 - x]]).reshape(3, -1).T * dx * math.pi
-    qx, qy = np.split(np.linalg.solve(np.block([[along, mixed], [mixed, across]]), slip), 2)
-    moment = -(x @ qy + y @ qx)
-    area = len(x) * dx * dy  # of the staircase; the ellipse of that area is what was solved
-    found = np.array([qx[:, 0].sum(), qy[:, 1].sum(), qy[:, 2].sum(), -moment[1], moment[2]]) * dx * dy
+    """C11, C22, C23 from spin, C23 from lateral creepage, and C33, where every element sticks."""
+    patch = HalfSpaces(ratio, nu, cells)
+    along, across, turning = (patch.forces(patch.stuck(*creepage)) for creepage in np.eye(3))
+    found = np.array([along[0], across[1], turning[1], -across[2], turning[2]])
+    area = patch.x.size * patch.element  # of the staircase; the ellipse of that area is what was solved
     return found / (area / math.pi) ** np.array([1.0, 1.0, 1.5, 1.5, 2.0])
 
 
