@@ -151,7 +151,9 @@ def enter_folder(namespace: dict[str, Any]) -> None:
     sys.path.insert(0, namespace["_folder"].name)
     namespace["_installed"] = tempfile.TemporaryDirectory()
     in_shells = Path(namespace["_installed"].name) / "sitecustomize.py"
-    in_shells.write_text(f"import site; site.addsitedir({namespace['_installed'].name!r})")  # for `pip install -e`
+    # What `pip install -e` installs is found; dask, which most do not have, would be imported in every process.
+    without_dask = "import sys; sys.modules['dask'] = None"
+    in_shells.write_text(f"import site; site.addsitedir({namespace['_installed'].name!r}); {without_dask}")
 
 
 def leave_folder(namespace: dict[str, Any]) -> None:

@@ -33,12 +33,16 @@ class Environment:
         (Path(inside) / "dependencies.pth").write_text(str(self._dependencies()))
 
     def _dependencies(self) -> Path:
-        """Make a folder with all that is installed in the running environment, except wearlaw and its plugins."""
+        """Make a folder with all that is installed in the running environment, except wearlaw, its plugins and dask.
+
+        Most who install wearlaw have no dask, and pint and xarray would import it in every process.
+        """
         folder = self.folder / "dependencies" / "site-packages"  # hypothesis reads all that is in no such folder
         folder.mkdir(parents=True)
         for site in {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}:
             for path in Path(site).iterdir():
-                if not (path.suffix == ".pth" or path.name.lstrip("_").startswith("wearlaw")):
+                left_out = ("wearlaw", "dask", "distributed")
+                if not (path.suffix == ".pth" or path.name.lstrip("_").startswith(left_out)):
                     (folder / path.name).symlink_to(path)
         return folder
 

@@ -19,6 +19,8 @@ from tests.core.sweeps import contents, interrupted_after, overwrite
 from wearlaw import output
 from wearlaw.sweeping import checkpoint, space
 
+pytestmark = pytest.mark.usefixtures("blank_figures")
+
 LONG = {**POINT, "creepage": {"from": "0.1 %", "to": "10 %", "points": 100, "spacing": "log"}}
 """Four blocks."""
 

@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import Table, case, table
-from wearlaw.case import Case, case_schema
+from wearlaw.case import Case
 
 WEAR = {"sweep": "creepage", "x": "wear_index", "y": "wear_rate"}
 PATCH = {"profile": "partial_slip", "y": "slip"}
@@ -126,12 +126,12 @@ def test_composing_the_pairs_of_figures_gives_no_warning_of_its_own() -> None:
      {**WEAR, "pairs": ["usfd on exact"], "title": "t", "caption": "c"},
      {**WEAR, "y": "traction_coefficient", "y_range": [0, 0.5], "contact_models": ["exact"]}],
 )  # fmt: skip
-def test_a_figure_written_with_its_case_reads_back_as_the_same_and_fits_the_schema(spec: Table) -> None:
+def test_a_figure_written_with_its_case_reads_back_as_the_same_and_fits_the_schema(spec: Table, validator: Any) -> None:
     first = case(figures={"one": spec})
     written = first.model_dump(mode="json", by_alias=True, exclude_none=True)
     assert Case(**written) == first
     for fields in (table(figures={"one": spec}), written):
-        jsonschema.validate(fields, case_schema())
+        validator.validate(fields)
 
 
 @pytest.mark.parametrize(
@@ -139,7 +139,7 @@ def test_a_figure_written_with_its_case_reads_back_as_the_same_and_fits_the_sche
     [{"x": "wear_indx"}, {"y": "wear_rat"}, {"y": []}, {"y": ["slip", 1]}, {"x_range": ["0 N"]}, {"x_scale": "lin"},
      {"panels": [{"sweep": "creepage"}]}, {"measured": "yes please"}],
 )  # fmt: skip
-def test_the_schema_refuses_what_the_loader_refuses(changes: Table) -> None:
+def test_the_schema_refuses_what_the_loader_refuses(changes: Table, validator: Any) -> None:
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate(table(figures={"one": {**WEAR, **changes}}), case_schema())
+        validator.validate(table(figures={"one": {**WEAR, **changes}}))
     refusal({**WEAR, **changes})

@@ -12,7 +12,7 @@ import wearlaw as wl
 
 HEAVY = {
     *("matplotlib", "plotly", "jinja2", "xarray", "pandas", "click", "rich", "h5netcdf", "h5py", "tomli_w", "dask"),
-    *("numba", "distributed", "zarr"),
+    *("numba", "distributed", "zarr", "hypothesis", "pytest", "wearlaw.testing"),
 }
 
 

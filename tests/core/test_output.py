@@ -10,6 +10,7 @@ from typing import Any
 import pandas as pd
 import pytest
 import xarray
+from matplotlib.figure import Figure
 from packaging.version import Version
 
 import wearlaw as wl
@@ -34,8 +35,11 @@ def study() -> Study:
 
 @pytest.fixture(scope="module")
 def written(study: Study, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]]:
+    """Write the results, with blank figures, whose drawing takes most of the time."""
     folder = tmp_path_factory.mktemp("results")
-    return folder, write(study, folder)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("wearlaw.figures.drawing.draw", lambda _: Figure())
+        return folder, write(study, folder)
 
 
 @pytest.fixture(scope="module")
@@ -60,6 +64,7 @@ def test_the_names_returned_are_the_files_written(study: Study, written: tuple[P
     assert [Path(name).stem for name in names if name.startswith("tables")] == [one.name for one in tables(study)]
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_figures_and_tables_of_sections_are_written_too(tmp_path: Path, point: Study) -> None:
     names = write(replace(point, sections=(report_data.SECTION,)), tmp_path)
     assert {"figures/odd.png", "tables/table_4.csv"} <= set(names)
@@ -104,6 +109,7 @@ def test_a_table_of_a_name_that_is_taken_or_no_file_name_is_refused(
         write(replace(point, sections=(section,)), tmp_path, ())
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_what_is_written_next_is_said(tmp_path: Path, point: Study) -> None:
     stages: list[str] = []
     write(point, tmp_path, on_stage=stages.append)

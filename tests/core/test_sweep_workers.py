@@ -78,7 +78,7 @@ def test_a_block_at_which_every_worker_dies_is_given_up(tmp_path: Path, monkeypa
     with pytest.raises(
         wl.SweepError, match=r"block \d was given up, since the worker processes died in all 2 attempts"
     ):
-        predict.sweep(**CONDITIONS, workers=2)
+        predict.sweep(**{**CONDITIONS, "normal_force": Q([2.0, 5.0], "kN"), "friction_coefficient": 0.3}, workers=2)
 
 
 def test_what_a_model_raises_in_a_worker_is_raised_here_and_the_worker_lives_on() -> None:

@@ -43,9 +43,9 @@ class RoundTrip:
     def _same(self, way: str) -> None:
         for model, answer in zip(self.models, self._answers, strict=True):
             error, computed = answer[way]
-            assert not error, f"the model cannot be made again from {way}: {error}"
+            assert not error, f"{type(model).__name__} cannot be made again from {way}: {error}"
             for found, due in zip(computed, fresh.computed(model, _arguments(model)), strict=True):
-                assert_close(found, due, f"what the model computes after {way}")
+                assert_close(found, due, f"what {type(model).__name__} computes after {way}")
 
     @cached_property
     def _answers(self) -> list[dict[str, tuple[str, Any]]]:
