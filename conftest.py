@@ -157,8 +157,11 @@ def enter_folder(namespace: dict[str, Any]) -> None:
 
 
 def leave_folder(namespace: dict[str, Any]) -> None:
-    """Go back and remove the folders."""
+    """Go back and remove the folders, and with them the modules that were imported from there."""
     sys.path.remove(namespace["_folder"].name)
+    for name, module in list(sys.modules.items()):
+        if (getattr(module, "__file__", None) or "").startswith(namespace["_folder"].name + os.sep):
+            del sys.modules[name]
     os.chdir(namespace["_home"])
     namespace["_folder"].cleanup()
     namespace["_installed"].cleanup()
