@@ -157,7 +157,10 @@ def enter_folder(namespace: dict[str, Any]) -> None:
 
 
 def leave_folder(namespace: dict[str, Any]) -> None:
-    """Go back and remove the folders."""
+    """Go back, forget the modules that the page wrote, and remove the folders."""
+    for name, module in [*sys.modules.items()]:
+        if Path(namespace["_folder"].name) in Path(getattr(module, "__file__", None) or os.sep).parents:
+            del sys.modules[name]
     sys.path.remove(namespace["_folder"].name)
     os.chdir(namespace["_home"])
     namespace["_folder"].cleanup()
