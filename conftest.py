@@ -157,7 +157,7 @@ def enter_folder(namespace: dict[str, Any]) -> None:
 
 
 def leave_folder(namespace: dict[str, Any]) -> None:
-    """Go back and remove the folders, and with them the modules that were imported from there."""
+    """Go back, forget the modules that the page wrote, and remove the folders."""
     sys.path.remove(namespace["_folder"].name)
     for name, module in list(sys.modules.items()):
         if (getattr(module, "__file__", None) or "").startswith(namespace["_folder"].name + os.sep):

@@ -7,9 +7,15 @@ import subprocess
 import sys
 import sysconfig
 import venv
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TypeAlias
 
 ROOT = Path(__file__).parents[1]
+
+Variables: TypeAlias = Mapping[str, str]
+"""Variables of the environment, beside those that are the same in all runs."""
+Done: TypeAlias = subprocess.CompletedProcess[str]
 
 
 def build(project: Path, folder: Path) -> Path:
@@ -55,18 +61,18 @@ class Environment:
         pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "--python", self.python)
         _run(*pip, *arguments, cwd=self.folder)
 
-    def run(self, *arguments: str, cwd: Path | None = None, **environment: str) -> str:
+    def run(self, *arguments: str, cwd: Path | None = None, variables: Variables | None = None) -> str:
         """Run Python with arguments, away from the checkout, and return what it prints."""
-        return _run(self.python, *arguments, cwd=cwd or self.folder, **environment).stdout
+        return _run(self.python, *arguments, cwd=cwd or self.folder, variables=variables).stdout
 
-    def wearlaw(self, *arguments: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+    def wearlaw(self, *arguments: str, cwd: Path | None = None, variables: Variables | None = None) -> Done:
         """Run the program as a user does, whatever its exit code."""
-        return _run(str(self._bin / "wearlaw"), *arguments, cwd=cwd or self.folder, check=False, **environment)
+        return _run(str(self._bin / "wearlaw"), *arguments, cwd=cwd or self.folder, check=False, variables=variables)
 
 
-def _run(*command: str, cwd: Path, check: bool = True, **environment: str) -> subprocess.CompletedProcess[str]:
+def _run(*command: str, cwd: Path, check: bool = True, variables: Variables | None = None) -> Done:
     clean = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "PYTEST", "PIP_"))}
-    clean |= {"COLUMNS": "100", "PYTHONUTF8": "1", **environment}
+    clean |= {"COLUMNS": "100", "PYTHONUTF8": "1", **(variables or {})}
     done = subprocess.run(command, cwd=cwd, env=clean, capture_output=True, text=True, encoding="utf-8", check=False)
     assert done.returncode == 0 or not check, f"{command}\n{done.stdout}\n{done.stderr}"
     return done

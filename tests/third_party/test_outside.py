@@ -97,7 +97,7 @@ def generated(environment: Environment, tmp_path_factory: pytest.TempPathFactory
     folder = tmp_path_factory.mktemp("generated")
     for kind, option in NEW.items():
         assert environment.wearlaw("new-plugin", f"my_{kind}", option, cwd=folder).returncode == 0
-    plugins = {kind: folder / f"wearlaw-my_{kind}" for kind in NEW}
+    plugins: dict[Kind, Path] = {kind: folder / f"wearlaw-my_{kind}" for kind in NEW}
     environment.install(*(argument for plugin in plugins.values() for argument in ("-e", plugin)))
     return plugins
 
@@ -189,7 +189,7 @@ def test_new_and_outside_models_are_listed_with_their_distributions_until_they_a
 def test_broken_distributions_are_named_each_with_its_cause_and_the_others_listed(
     environment: Environment, troubles: dict[str, str]
 ) -> None:
-    done = environment.wearlaw("plugins", **troubles)
+    done = environment.wearlaw("plugins", variables=troubles)
     said = done.stderr.splitlines()
     assert len(said) == len(BROKEN)
     for name, (_, cause) in BROKEN.items():
@@ -202,12 +202,12 @@ def test_broken_distributions_are_named_each_with_its_cause_and_the_others_liste
 def test_beside_broken_distributions_the_others_go_on_working(
     environment: Environment, troubles: dict[str, str]
 ) -> None:
-    force, _ = json.loads(environment.run("-c", PREDICT, **troubles))
+    force, _ = json.loads(environment.run("-c", PREDICT, variables=troubles))
     assert force == pytest.approx(2000.0, rel=1e-12)  # μN, to rounding
 
 
 def test_a_taken_name_is_refused_with_both_distributions(environment: Environment, troubles: dict[str, str]) -> None:
-    shown = environment.wearlaw("show", "usfd", **troubles)
+    shown = environment.wearlaw("show", "usfd", variables=troubles)
     assert shown.returncode == 1
     assert "wear law 'usfd' is provided more than once" in shown.stderr
     assert "usurper 9.9 (plugin 'usurper')" in shown.stderr

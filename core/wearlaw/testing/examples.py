@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable
-from functools import cache
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from hypothesis import HealthCheck, Phase, given, settings
@@ -39,7 +38,7 @@ _SETTINGS = settings(
 
 def for_each(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> None:
     """Run a function on examples; a counter-example is shrunk and named in a note of the error."""
-    for example in _drawn(strategy):
+    for example in _examples(strategy):
         try:
             examine(copy.deepcopy(example))
         except Exception as error:
@@ -51,12 +50,16 @@ def for_each(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> No
     raise failure  # which the search did not meet again: the model does not do the same twice
 
 
-@cache
-def _drawn(strategy: st.SearchStrategy[T]) -> list[T]:
+def _examples(strategy: st.SearchStrategy[T]) -> list[T]:
     """Return the examples of a strategy; once, since hypothesis takes longer to draw them than most checks do."""
-    examples: list[T] = []
-    _search(strategy, examples.append)
-    return examples
+    if strategy not in _drawn:
+        examples: list[T] = []
+        _search(strategy, examples.append)
+        _drawn[strategy] = examples
+    return _drawn[strategy]
+
+
+_drawn: dict[st.SearchStrategy[Any], list[Any]] = {}
 
 
 def _search(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> None:
