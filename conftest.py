@@ -1,6 +1,6 @@
 """Runs the code blocks of README.md and docs/ as tests and compares their output.
 
-Blocks of ``python`` run in one namespace a page, blocks of ``console`` in a shell, both in an empty folder. A
+Blocks of ``python`` run in one namespace a page, blocks of ``console`` as in a shell, both in an empty folder. A
 block with a caption is a file of that name, which the blocks after it find there. What a page installs is there for
 its own shells only. Blocks of ``toml`` are tables of a case file. Of blocks of ``matlab`` the names are looked up in
 the files that they read. `tests/test_blocks.py` holds that no block is left out.
@@ -12,6 +12,7 @@ import doctest
 import gc
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -19,12 +20,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 from coverage import Coverage
 from hypothesis import is_hypothesis_test
 from sybil import Example, Sybil
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 from sybil.parsers.myst.lexers import DirectiveLexer
 from sybil.region import Region
+
+# Where this is set, as in many containers, each of the many processes that tests start would compile wearlaw again.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 MATLAB_READS = re.compile(r'(\w*read\w*)\("([^"]+)"(?:, "([^"]+)")?(?:, "([^"]+)")?')
@@ -80,21 +86,31 @@ def run_console(example: Example) -> None:
     """Run each line that starts with "$ " and compare what it prints with the lines that follow it."""
     for block in ("\n" + example.parsed).split("\n$ ")[1:]:
         command, _, expected = block.partition("\n")
-        printed = subprocess.run(
-            command,
-            shell=True,
-            env=environment(example.namespace["_installed"].name) | strict(command),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        ).stdout
+        installed = Path(example.namespace["_installed"].name)
+        here = command.startswith("wearlaw ") and not [*installed.glob("*.dist-info")]
+        printed = run_here(command) if here else run_in_shell(command, installed)
         if not doctest.OutputChecker().check_output(expected, printed, OPTIONS):
             raise AssertionError(f"$ {command}\nexpected:\n{expected}\nprinted:\n{printed}")
 
 
-def strict(command: str) -> dict[str, str]:
-    """Return the variables with which a warning is an error, but for what pip and the plugins of pytest warn of."""
-    return {"PYTHONWARNINGS": "error"} if command.startswith("wearlaw ") else {}
+def run_here(command: str) -> str:
+    """Run a command of wearlaw in this process, which has imported what a new one takes longer to import than to run.
+
+    `tests/third_party` and `.ci/run` run the program itself.
+    """
+    from wearlaw.cli import main
+
+    result = CliRunner(env={"COLUMNS": "80"}).invoke(main, shlex.split(command)[1:])
+    if result.exception and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    return result.output
+
+
+def run_in_shell(command: str, installed: Path) -> str:
+    """Run a command in a shell, which finds what the page has installed."""
+    variables, output = environment(str(installed)), subprocess.PIPE
+    done = subprocess.run(command, shell=True, env=variables, stdout=output, stderr=subprocess.STDOUT, text=True)
+    return done.stdout
 
 
 def environment(installed: str) -> dict[str, str]:

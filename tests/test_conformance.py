@@ -11,6 +11,9 @@ import pytest
 import wearlaw as wl
 from tests.testing.cells import Cells
 from tests.testing.strips import Means, Strips
+from tests.testing.wrong_contacts import Wrapped
+from tests.testing.wrong_declarations import Ramps, Smooth
+from tests.testing.wrong_laws import Linear, Varies
 from wearlaw.tangential import Model
 from wearlaw.testing import Check, checks
 from wearlaw.testing.roundtrip import RoundTrip
@@ -62,10 +65,12 @@ def named(model: Model) -> str:
         if isinstance(value, (str, float, wl.ContactModel))
     )
     own = ["own"] if getattr(model, "coefficient", "") not in ("", *PUBLISHED) else []
-    return "-".join([model.name, *options, *own])
+    name = type(model).__name__ if model in RIGHT else model.name  # of which some share one
+    return "-".join([name, *options, *own])
 
 
-MODELS: list[Model] = [*CONTACT_MODELS, *WEAR_LAWS, Cells(), Strips(), Means()]
+RIGHT: list[Model] = [Cells(), Strips(), Means(), Wrapped(), Linear(), Varies(), Smooth(), Ramps()]
+MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *RIGHT]
 
 CASES = [
     pytest.param(check, id=f"{named(model)}-{check.name}")

@@ -72,31 +72,6 @@ def test_every_check_of_an_invariant_catches_a_mutant() -> None:
     assert names == set(WRONG.values())
 
 
-@conformance(wrong_laws.Linear())
-def test_a_minimal_law_passes(check: Check) -> None:
-    check()
-
-
-@conformance(wrong_laws.Varies())
-def test_a_law_with_a_parameter_for_each_point_passes(check: Check) -> None:
-    check()
-
-
-@conformance(wrong_declarations.Smooth())
-def test_a_smooth_law_passes(check: Check) -> None:
-    check()
-
-
-@conformance(wrong_declarations.Ramps())
-def test_a_law_of_ramps_passes(check: Check) -> None:
-    check()
-
-
-@conformance(wrong_contacts.Wrapped())
-def test_a_contact_model_with_only_solve_passes(check: Check) -> None:
-    check()
-
-
 @wl.as_wear_law(
     inputs={"wear_index_density": "N/mm^2"},
     returns="ug/m/mm^2",

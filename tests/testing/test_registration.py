@@ -24,16 +24,18 @@ def run(code: str) -> str:
     return done.stdout.strip()
 
 
-def test_importing_hypothesis_does_not_import_wearlaw() -> None:
-    assert run("import hypothesis, sys; print('wearlaw' in sys.modules, '_wearlaw_hypothesis' in sys.modules)") == (
-        "False True"
+@pytest.mark.parametrize(("order", "imported_before"), [("wearlaw, hypothesis", True), ("hypothesis, wearlaw", False)])
+def test_types_are_registered_in_either_order_of_imports_and_hypothesis_does_not_import_wearlaw(
+    order: str, imported_before: bool
+) -> None:
+    first, second = order.split(", ")
+    code = (
+        f"import {first}, hypothesis, sys; print('wearlaw' in sys.modules, '_wearlaw_hypothesis' in sys.modules)\n"
+        f"import {second}; from hypothesis import strategies as st; print(st.from_type(wearlaw.Contact))"
     )
-
-
-@pytest.mark.parametrize("order", ["wearlaw, hypothesis", "hypothesis, wearlaw"])
-def test_types_are_registered_in_either_order_of_imports(order: str) -> None:
-    code = f"import {order}; from hypothesis import strategies as st; print(st.from_type(wearlaw.Contact))"
-    assert "contacts" in run(code)
+    imported, strategy = run(code).splitlines()
+    assert imported == f"{imported_before} True"
+    assert "contacts" in strategy
 
 
 def test_a_missing_hypothesis_is_an_error_that_says_what_to_install() -> None:
@@ -72,17 +74,17 @@ def test_conditions_pose_a_problem(drawn: dict[str, object], problem: LineProble
     assert float(problem.max_pressure) == pytest.approx(float(expected), rel=1e-14)
 
 
-def extent(strategy: st.SearchStrategy[T], measure: Callable[[T], float]) -> tuple[float, float]:
-    """Return the least and the largest of what 200 drawn examples measure."""
-    found: list[float] = []
+def extent(strategy: st.SearchStrategy[T], *measures: Callable[[T], float]) -> list[tuple[float, float]]:
+    """Return the least and the largest of each of the numbers that are measured on 200 drawn examples."""
+    found: list[list[float]] = []
 
     @settings(max_examples=200, derandomize=True, database=None)
     @given(strategy)
     def draw(example: T) -> None:
-        found.append(measure(example))
+        found.append([measure(example) for measure in measures])
 
     draw()
-    return min(found), max(found)
+    return [(min(numbers), max(numbers)) for numbers in zip(*found, strict=True)]
 
 
 def axis_ratio(problem: EllipticProblem) -> float:
@@ -90,10 +92,9 @@ def axis_ratio(problem: EllipticProblem) -> float:
 
 
 def test_drawn_ellipses_have_slender_patches_and_spin_of_both_signs() -> None:
-    low, high = extent(elliptic_problems(), axis_ratio)
+    (low, high), signs = extent(elliptic_problems(), axis_ratio, lambda problem: float(np.sign(problem.spin)))
     assert low < 0.1
     assert high > 10.0
-    signs = extent(elliptic_problems(), lambda problem: float(np.sign(problem.spin)))
     assert signs == (-1.0, 1.0)
 
 
@@ -102,7 +103,7 @@ def test_no_point_of_a_drawn_ellipse_slips_more_than_it_rolls() -> None:
         creepage = np.hypot(problem.longitudinal_creepage, problem.lateral_creepage)
         return float(creepage + np.abs(problem.spin) * max(problem.a, problem.b))
 
-    _, high = extent(elliptic_problems(crowded=(1e4,)), fastest)
+    ((_, high),) = extent(elliptic_problems(crowded=(1e4,)), fastest)
     assert 0.9 < high <= 1.0 + 1e-15
 
 
@@ -111,8 +112,9 @@ def test_drawn_wheels_and_rails_touch_in_ellipses_of_all_shapes() -> None:
         problem = rig.problem(normal_force="1 N", longitudinal_creepage="1 %", friction_coefficient=0.3)
         return axis_ratio(problem)
 
-    low, high = extent(wheel_rails(), pressed)
+    (low, high), (hollow, _) = extent(
+        wheel_rails(), pressed, lambda rig: min(rig.wheel_profile_radius.m, rig.rail_head_radius.m)
+    )
     assert low < 0.1
     assert high > 10.0
-    hollow, _ = extent(wheel_rails(), lambda rig: min(rig.wheel_profile_radius.m, rig.rail_head_radius.m))
     assert hollow < 0.0

@@ -6,6 +6,7 @@ import json
 import shutil
 import textwrap
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
@@ -69,9 +70,6 @@ r = predict(normal_force="5 kN", creepage="1 %", friction_coefficient=0.4)
 print(json.dumps([r.tangential_force.to("N").magnitude, r.wear_rate.to("ug/m/mm^2").magnitude]))
 """
 
-NEW: dict[Kind, str] = {"wear_law": "--wear-law", "contact_model": "--contact-model"}
-"""The kinds of plugins that wearlaw writes, with the options of `wearlaw new-plugin`."""
-
 
 @pytest.fixture(scope="module")
 def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
@@ -93,11 +91,13 @@ def troubles(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def generated(environment: Environment, tmp_path_factory: pytest.TempPathFactory) -> dict[Kind, Path]:
-    """Return the folders of new plugins that the program wrote, installed as their author would."""
+    """Return the folders of new plugins, installed as their author would; the program wrote that with a wear law."""
     folder = tmp_path_factory.mktemp("generated")
-    for kind, option in NEW.items():
-        assert environment.wearlaw("new-plugin", f"my_{kind}", option, cwd=folder).returncode == 0
-    plugins: dict[Kind, Path] = {kind: folder / f"wearlaw-my_{kind}" for kind in NEW}
+    assert environment.wearlaw("new-plugin", "my_wear_law", "--wear-law", cwd=folder).returncode == 0
+    plugins: dict[Kind, Path] = {
+        "wear_law": folder / "wearlaw-my_wear_law",
+        "contact_model": write_plugin("my_contact_model", "contact_model", folder),
+    }
     environment.install(*(argument for plugin in plugins.values() for argument in ("-e", plugin)))
     return plugins
 
@@ -114,15 +114,16 @@ def test_the_wheels_are_what_is_imported_and_nothing_of_the_running_environment(
         "for module in (wearlaw, wearlaw_exact, wearlaw_outside):\n    print(module.__file__)\n"
         "print(*(one.name for one in importlib.metadata.distributions() if 'wearlaw' in one.name))"
     )
-    *files, distributions = environment.run("-W", "error", "-c", code).splitlines()
+    *files, distributions, predicted = environment.run("-W", "error", "-c", f"{code}\n{PREDICT}").splitlines()
     assert len(files) == 3
     assert all(Path(file).is_relative_to(environment.folder) for file in files), files
     assert {"wearlaw", "wearlaw-outside"} <= {*distributions.split()}
     assert distributions.split().count("wearlaw") == 1
+    assert_predicted(predicted)
 
 
-def test_they_work_in_a_pipeline(environment: Environment) -> None:
-    force, rate = json.loads(environment.run("-W", "error", "-c", PREDICT))
+def assert_predicted(printed: str) -> None:
+    force, rate = json.loads(printed)
     assert force == pytest.approx(2000.0, rel=1e-12)  # μN, to rounding
     assert rate > 0
 
@@ -149,14 +150,13 @@ def test_the_outside_distribution_passes_its_own_tests(environment: Environment,
     assert " passed in " in environment.run("-m", "pytest", "-W", "error", cwd=tmp_path)
 
 
-@pytest.mark.parametrize("kind", NEW)
-def test_the_wheel_holds_the_templates(generated: dict[Kind, Path], kind: Kind, tmp_path: Path) -> None:
-    here = write_plugin(f"my_{kind}", kind, tmp_path)
+def test_the_wheel_holds_the_templates(generated: dict[Kind, Path], tmp_path: Path) -> None:
+    here = write_plugin("my_wear_law", "wear_law", tmp_path)
     written = {path.relative_to(here): path.read_bytes() for path in here.rglob("*") if path.is_file()}
-    assert {path: (generated[kind] / path).read_bytes() for path in written} == written
+    assert {path: (generated["wear_law"] / path).read_bytes() for path in written} == written
 
 
-@pytest.mark.parametrize("kind", NEW)
+@pytest.mark.parametrize("kind", get_args(Kind))
 def test_a_new_plugin_passes_its_own_tests_as_generated(
     generated: dict[Kind, Path], kind: Kind, environment: Environment
 ) -> None:
@@ -169,7 +169,7 @@ def test_the_examples_in_the_readmes_of_new_plugins_run(generated: dict[Kind, Pa
     pages = [(plugin / "README.md").read_text(encoding="utf-8") for plugin in generated.values()]
     examples = [page.partition("```python\n")[2].partition("```")[0] for page in pages]
     printed = environment.run("-c", "\n".join(examples))
-    assert printed.count("Prediction of 1 operating point") == len(NEW)
+    assert printed.count("Prediction of 1 operating point") == len(generated)
 
 
 def test_new_and_outside_models_are_listed_with_their_distributions_until_they_are_uninstalled(
@@ -202,8 +202,7 @@ def test_broken_distributions_are_named_each_with_its_cause_and_the_others_liste
 def test_beside_broken_distributions_the_others_go_on_working(
     environment: Environment, troubles: dict[str, str]
 ) -> None:
-    force, _ = json.loads(environment.run("-c", PREDICT, variables=troubles))
-    assert force == pytest.approx(2000.0, rel=1e-12)  # μN, to rounding
+    assert_predicted(environment.run("-c", PREDICT, variables=troubles))
 
 
 def test_a_taken_name_is_refused_with_both_distributions(environment: Environment, troubles: dict[str, str]) -> None:
