@@ -15,6 +15,7 @@ from tests.testing.cells import Cells
 from tests.testing.strips import Strips
 from wearlaw import Array, Q
 from wearlaw.solving import EVERY, Solver
+from wearlaw.tangential import QUADRATURE
 
 RIG = wl.TwinDisc.suros()
 RAIL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
@@ -313,7 +314,10 @@ def test_models_of_few_cells_are_held_to_what_they_declare() -> None:
         """Cells that claim the accuracy of quadrature."""
 
         name: ClassVar[str] = "undeclared"
-        accuracy = wl.ContactModel.accuracy
+
+        @property
+        def accuracy(self) -> float:
+            return QUADRATURE
 
     with pytest.raises(wl.ModelError, match=r"'undeclared' gave a normal force .* twice its `accuracy`, 5e-08,"):
         (RIG | Undeclared(cells=20) | PerEnergy())(**ON_DISCS)
