@@ -91,7 +91,6 @@ def test_a_law_from_one_function_passes(check: Check) -> None:
     check()
 
 
-@pytest.mark.no_cover  # as for the models that come with wearlaw
 @pytest.mark.parametrize(
     ("module", "cls"),
     [
