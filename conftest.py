@@ -21,8 +21,6 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
-from coverage import Coverage
-from hypothesis import is_hypothesis_test
 from sybil import Example, Sybil
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 from sybil.parsers.myst.lexers import DirectiveLexer
@@ -35,17 +33,6 @@ sys.dont_write_bytecode = False
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 MATLAB_READS = re.compile(r'(\w*read\w*)\("([^"]+)"(?:, "([^"]+)")?(?:, "([^"]+)")?')
 """A function of MATLAB, its file, and the variable and attribute that it reads there."""
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_sessionstart(session: pytest.Session) -> None:
-    """Let the mark `no_cover` stop all measuring in a worker of xdist.
-
-    There pytest-cov 7.1 begins to measure twice, and pauses what it begins here, not what it began before.
-    """
-    first = Coverage.current()
-    if first and hasattr(session.config, "workerinput"):
-        first.stop()
 
 
 @pytest.hookimpl(optionalhook=True)  # without xdist there is no such hook
@@ -66,14 +53,8 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put files that take long first, or one worker would be left with them at the end.
-
-    Property tests and pages are left out of the coverage: they run lines that others run, and twice as long with it.
-    """
+    """Put files that take long first, or one worker would be left with them at the end."""
     items.sort(key=lambda item: (item.path.parent.name != "third_party", item.path.suffix != ".md"))
-    for item in items:
-        if item.path.suffix == ".md" or is_hypothesis_test(getattr(item, "obj", None)):
-            item.add_marker(pytest.mark.no_cover)
 
 
 def pytest_collection_finish() -> None:

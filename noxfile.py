@@ -20,9 +20,10 @@ def tests(session: nox.Session) -> None:
 
 @nox.session(python="3.11", default=False)
 def deep(session: nox.Session) -> None:
-    """Test with ten times the examples in each property and in the conformance kit, before a release."""
+    """Measure the coverage, and let property tests and the conformance kit draw ten times the examples."""
     session.install("-e", ".[test]")
-    session.run("pytest", "-n", "auto", "--hypothesis-profile=deep", *session.posargs)
+    session.run("pytest", "-n", "auto", "--cov")
+    session.run("pytest", "-n", "auto", "--hypothesis-profile=deep", "-m", "hypothesis")
 
 
 @nox.session(python="3.11", default=False)

@@ -89,7 +89,7 @@ CASES = [
     source="what must hold of any model (see the page on the kit)",
     held_to="the bounds that each check states",
 )
-@pytest.mark.no_cover  # measuring takes as long again, and adds no line to what the kit's own tests run
+@pytest.mark.hypothesis  # `nox -s deep` takes it with the tests that hypothesis marks itself
 @pytest.mark.parametrize("check", CASES)
 def test_the_model_conforms(check: Check) -> None:
     check()
@@ -101,7 +101,6 @@ def trip() -> RoundTrip:
     return RoundTrip(*MODELS)
 
 
-@pytest.mark.no_cover
 @pytest.mark.parametrize("way", [RoundTrip.through_toml, RoundTrip.through_json, RoundTrip.through_pickle])
 def test_all_models_make_the_round_trip(way: Callable[[RoundTrip], None], trip: RoundTrip) -> None:
     way(trip)

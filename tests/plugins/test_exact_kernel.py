@@ -50,9 +50,6 @@ def apply(copy: str, reduced: Array, level: Array) -> Array:
     return COPIES[copy](reduced, *[np.ones_like(reduced)] * 4, level)
 
 
-unmeasured = pytest.mark.no_cover  # of these, nearly all time goes into fifty digits, and thrice as much when measured
-
-
 @functools.cache
 def integrals() -> tuple[Array, Array, Array]:
     """Return reduced creepages, thresholds, and the energy above these."""
@@ -70,7 +67,6 @@ def integrals() -> tuple[Array, Array, Array]:
     held_to="{share:.1e} of the whole dissipation",
     share=ROUNDINGS,
 )
-@unmeasured
 @every_copy
 def test_the_energy_above_a_threshold_is_its_integral(copy: str, share: float) -> None:
     reduced, level, expected = integrals()
@@ -105,7 +101,6 @@ def test_a_threshold_next_to_nothing_leaves_the_whole_dissipation(copy: str) -> 
         assert (error <= (ROUNDINGS + 2 * EPS) * whole(reduced)).all()  # that of the test has four roundings
 
 
-@unmeasured
 def test_values_in_si_are_reduced_as_in_the_literature() -> None:
     random = np.random.default_rng(44)
     size = 40

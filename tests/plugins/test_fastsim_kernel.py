@@ -97,9 +97,6 @@ def in_si(bound: str) -> tuple[tuple[Array, ...], Array, Array]:
     return arguments, np.array(expected), np.array(most)
 
 
-unmeasured = pytest.mark.no_cover  # of these, nearly all time goes into fifty digits, and thrice as much when measured
-
-
 @pytest.mark.validates(
     "integration",
     "The closed forms of the energy that `fastsim` dissipates above a threshold",
@@ -108,7 +105,6 @@ unmeasured = pytest.mark.no_cover  # of these, nearly all time goes into fifty d
     parabolic=ROUNDINGS["parabolic"],
     elliptic=ROUNDINGS["elliptic"],
 )
-@unmeasured
 @every_bound
 def test_the_energy_above_a_threshold_is_its_integral(bound: str, parabolic: float, elliptic: float) -> None:
     reduced, level, densities = sample(bound, 51, 90)
@@ -155,7 +151,6 @@ def test_a_threshold_below_the_ends_of_the_slip_zone_takes_its_whole_length(copy
     assert (error <= (ROUNDINGS["elliptic"] + 4 * EPS) * whole("elliptic", reduced)).all()
 
 
-@unmeasured
 @every_copy
 def test_values_in_si_are_reduced_by_the_slope_of_the_bound(bound: str, copy: str) -> None:
     arguments, expected, most = in_si(bound)

@@ -91,6 +91,7 @@ def test_a_law_from_one_function_passes(check: Check) -> None:
     check()
 
 
+<<<<<<< HEAD
 def test_what_would_end_the_fresh_process_is_the_reason_why_a_model_cannot_be_made_again() -> None:
     def ends() -> None:
         raise SystemExit(0)
@@ -99,6 +100,8 @@ def test_what_would_end_the_fresh_process_is_the_reason_why_a_model_cannot_be_ma
 
 
 @pytest.mark.no_cover  # as for the models that come with wearlaw
+=======
+>>>>>>> h-speed
 @pytest.mark.parametrize(
     ("module", "cls"),
     [
