@@ -91,7 +91,6 @@ def test_a_law_from_one_function_passes(check: Check) -> None:
     check()
 
 
-<<<<<<< HEAD
 def test_what_would_end_the_fresh_process_is_the_reason_why_a_model_cannot_be_made_again() -> None:
     def ends() -> None:
         raise SystemExit(0)
@@ -99,9 +98,6 @@ def test_what_would_end_the_fresh_process_is_the_reason_why_a_model_cannot_be_ma
     assert fresh.made_again(ends, []) == ("SystemExit: 0", None)
 
 
-@pytest.mark.no_cover  # as for the models that come with wearlaw
-=======
->>>>>>> h-speed
 @pytest.mark.parametrize(
     ("module", "cls"),
     [
