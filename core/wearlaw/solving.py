@@ -158,12 +158,17 @@ def _check_types(model: ContactModel, contact: Contact, problem: LineProblem | E
     if len(nodes) != axes or nodes[: len(batch)] != batch or 0 in nodes:
         wanted = ", ".join([*map(str, batch), "nodes", *(["strips"] if ellipse else [])])
         raise ModelError(f"contact model '{model.name}' gave a pressure of shape {nodes}; it must be ({wanted})")
-    for name in (*FIELDS, *VECTORS) if ellipse else FIELDS:
-        check_type(model, name, getattr(contact, name), nodes)
-    for name in TOTALS if ellipse else LINE_TOTALS:
-        check_type(model, name, getattr(contact, name), batch)
-    if isinstance(contact, EllipticContact):
-        check_type(model, "strip_width", contact.strip_width, (*batch, nodes[-1]))
+    _check_fields(model, contact, (*FIELDS, *VECTORS) if ellipse else FIELDS, nodes)
+    _check_fields(model, contact, TOTALS if ellipse else LINE_TOTALS, batch)
+    if ellipse:
+        _check_fields(model, contact, ("strip_width",), (*batch, nodes[-1]))
+
+
+def _check_fields(model: ContactModel, contact: Contact, names: tuple[str, ...], shape: tuple[int, ...]) -> None:
+    for name in names:
+        values = getattr(contact, name)
+        if values.__class__ is not np.ndarray or values.dtype is not FLOAT64 or values.shape != shape:
+            check_type(model, name, values, shape)
 
 
 def check_type(model: ContactModel, name: str, values: Any, shape: tuple[int, ...]) -> None:
@@ -184,19 +189,18 @@ def _check_values(
     """Check the values that laws read in few passes, and search for the first wrong one only if there is one.
 
     Components of vectors are checked by their magnitudes, and where sums are compared with totals. Areas are checked
-    where the model chose the nodes.
+    where the model chose the nodes; an infinite one is found by its sum.
     """
-    finite = math.isfinite(_product(contact.pressure, contact.slip))
-    if areas:
-        finite = finite and math.isfinite(_product(contact.area, contact.area))
-        if contact.area.min() < 0.0:
-            raise _error(model, "gave a negative area", problem, contact.area < 0.0)
-    traction = contact.traction if isinstance(contact, EllipticContact) else np.abs(contact.traction)
-    with np.errstate(invalid="ignore"):  # infinity less infinity is NaN
-        least = float((contact.traction_bound - traction).min())
-    if not finite or math.isnan(least) or least == -math.inf:
+    area, traction, bound = contact.area, contact.traction, contact.traction_bound
+    if areas and not area.min() >= 0.0:
         check_finite(model, contact, problem)
-    if least < 0.0 and least < -ROUNDINGS * float(traction.max()):
+        raise _error(model, "gave a negative area", problem, area < 0.0)
+    least = float(traction.min())
+    with np.errstate(invalid="ignore"):  # infinity less infinity is NaN
+        margin = float((bound - (traction if least >= 0.0 else np.abs(traction))).min())
+    if not (margin > -math.inf and math.isfinite(_product(contact.pressure, contact.slip))):
+        check_finite(model, contact, problem)
+    if margin < 0.0 and margin < -ROUNDINGS * max(-least, float(traction.max())):
         _check_bound(model, contact, problem)
 
 
@@ -206,10 +210,10 @@ def _product(one: Array, other: Array) -> float:
     This is the fastest way to look at them. The sum may overflow as well.
     """
     first, second = one.ravel(order="K"), other.ravel(order="K")
-    if first.size <= ONE_THREAD:
-        return float(np.vdot(first, second))
-    parts = (slice(start, start + ONE_THREAD) for start in range(0, first.size, ONE_THREAD))
-    return float(sum(np.vdot(first[part], second[part]) for part in parts))
+    total = 0.0
+    for start in range(0, first.size, ONE_THREAD):
+        total += float(np.vdot(first[start : start + ONE_THREAD], second[start : start + ONE_THREAD]))
+    return total
 
 
 def check_finite(model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem) -> None:
@@ -262,6 +266,7 @@ def _check_totals(model: ContactModel, contact: Contact, problem: LineProblem | 
         total, found = getattr(contact, name), contact.sum_over_nodes(values * area)
         wrong = ~(np.abs(found - total) <= error * size)
         if wrong.any():
+            check_finite(model, contact, problem)
             first = _first(wrong)
             raise _error(
                 model,
