@@ -20,9 +20,9 @@ from wearlaw.variables import NAMES, label
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
 CLASSES = (
-    *(wl.LineProblem, wl.Contact, TwinDiscConditions, wl.ContactSolution, wl.Prediction, wl.LocalWear),
+    *(wl.LineProblem, wl.Contact, TwinDiscConditions, wl.Prediction, wl.LocalWear),
     *(wl.EllipticProblem, wl.CreepForces, wl.EllipticContact, WheelRailConditions),
-    *(wl.WheelRailContact, wl.WheelRailPrediction),
+    wl.WheelRailPrediction,
 )
 SHOWN_AS = {"TwinDiscConditions": "conditions", "WheelRailConditions": "conditions"}
 

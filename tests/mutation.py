@@ -49,14 +49,12 @@ TESTS = {
     "wearlaw_usfd": "plugins/test_usfd.py",
     "wearlaw.composition": "core/test_composition.py core/test_pipeline.py core/test_wheel_rail.py"
     " core/test_wheel_rail_result.py",
-    "wearlaw.contact_pipeline": "core/test_composition.py core/test_pipeline.py core/test_inverse.py"
-    " core/test_wheel_rail.py test_interface.py",
     "wearlaw.hertz": "core/test_hertz.py",
     "wearlaw.hertz_ellipse": "core/test_hertz_ellipse.py",
     "wearlaw.parameters": "core/test_varying.py",
     "wearlaw.pipeline": "core/test_composition.py core/test_pipeline.py core/test_uncertainty.py"
-    " core/test_uncertainty_refusals.py core/test_wheel_rail.py core/test_wheel_rail_result.py core/test_models.py"
-    " test_interface.py",
+    " core/test_uncertainty_refusals.py core/test_inverse.py core/test_wheel_rail.py core/test_wheel_rail_result.py"
+    " core/test_models.py test_interface.py",
     "wearlaw.records": "core/test_records.py core/test_contact_from_arrays.py",
     "wearlaw.units": "core/test_units.py core/test_quantities.py core/test_unit_registries.py",
 }

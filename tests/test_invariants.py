@@ -226,12 +226,12 @@ LAWS: dict[str, wl.WearLaw] = {name: wl.wear_law(name) for name in ("usfd", "kth
 
 
 def prediction(model: wl.ContactModel, law: wl.WearLaw, problem: wl.LineProblem) -> wl.Prediction:
-    contact = wl.ContactPipeline(
-        rig=wl.TwinDisc.suros(), contact_model=model, use_patch_mean=law.scale != model.scale and law.scale == "patch"
-    )
+    contact = wl.TwinDisc.suros() | model
+    if law.scale == "patch" and model.scale != "patch":
+        contact = contact | wl.patch_mean()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.RangeWarning)  # the problems go as far as a law may be asked
-        return wl.Pipeline(contact=contact, wear_law=law).predict(problem)
+        return contact.with_law(law).predict(problem)
 
 
 @pytest.mark.validates(

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 from wearlaw import hertz, hertz_ellipse, kalker
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
-from wearlaw.contact_pipeline import ContactPipeline, PatchMean, patch_mean
 from wearlaw.creep_force_model import CreepForceModel
 from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
@@ -50,7 +49,7 @@ from wearlaw.line import LineFields, LineProblem
 from wearlaw.line_model import FieldVariable, LineContactModel
 from wearlaw.material import Material, steel
 from wearlaw.models import BreakpointMap, Calibration, LocalWear, WearLaw
-from wearlaw.pipeline import Pipeline
+from wearlaw.pipeline import PatchMean, Pipeline, patch_mean
 from wearlaw.plugins import (
     contact_model,
     contact_models,
@@ -62,18 +61,18 @@ from wearlaw.plugins import (
 )
 from wearlaw.quadrature import Nodes
 from wearlaw.records import Contact
-from wearlaw.result import ContactSolution, Prediction
+from wearlaw.result import Prediction
 from wearlaw.rig import Disc, TwinDisc
 from wearlaw.sections import CheckedClaim, Section
 from wearlaw.specification import ContactModelField, WearLawField
 from wearlaw.tangential import Claim, ContactModel, Geometry, Scale
-from wearlaw.uncertainty.distributions import lognormal, normal, published_range, uniform
+from wearlaw.uncertainties.distributions import lognormal, normal, published_range, uniform
 from wearlaw.units import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
 from wearlaw.version import __version__
 from wearlaw.wear_tests.reader import read_tests
 from wearlaw.wear_tests.tests import WearTests
 from wearlaw.wheel_rail import WheelRail
-from wearlaw.wheel_rail_result import WheelRailContact, WheelRailPrediction
+from wearlaw.wheel_rail_result import WheelRailPrediction
 
 __all__ = [
     "INTERFACE_VERSION",
@@ -93,8 +92,6 @@ __all__ = [
     "Contact",
     "ContactModel",
     "ContactModelField",
-    "ContactPipeline",
-    "ContactSolution",
     "CreepForceModel",
     "CreepForces",
     "Curve",
@@ -149,7 +146,6 @@ __all__ = [
     "WearlawError",
     "WearlawWarning",
     "WheelRail",
-    "WheelRailContact",
     "WheelRailPrediction",
     "WorkerWarning",
     "__version__",
@@ -160,6 +156,7 @@ __all__ = [
     "compiled_loop",
     "contact_model",
     "contact_models",
+    "creepage_for",
     "fit",
     "hertz",
     "hertz_ellipse",
@@ -180,6 +177,8 @@ __all__ = [
     "run",
     "scalar_si",
     "steel",
+    "sweep",
+    "uncertainty",
     "uniform",
     "wear_law",
     "wear_laws",
@@ -192,15 +191,20 @@ if _TYPE_CHECKING:
     from wearlaw.fitting.fit import fit
     from wearlaw.fitting.law_files import read_wear_law
     from wearlaw.fitting.result import Fit
+    from wearlaw.inverse import creepage_for
     from wearlaw.study import Study, run
-    from wearlaw.uncertainty.result import Uncertainty
+    from wearlaw.sweeping.sweep import sweep
+    from wearlaw.uncertainties.result import Uncertainty, uncertainty
 
 _LATER = {
     "Case": "wearlaw.case",
     "load_case": "wearlaw.case",
     "Study": "wearlaw.study",
     "run": "wearlaw.study",
-    "Uncertainty": "wearlaw.uncertainty.result",
+    "Uncertainty": "wearlaw.uncertainties.result",
+    "uncertainty": "wearlaw.uncertainties.result",
+    "sweep": "wearlaw.sweeping.sweep",
+    "creepage_for": "wearlaw.inverse",
     "Comparison": "wearlaw.comparison.result",
     "compare": "wearlaw.comparison.compare",
     "Fit": "wearlaw.fitting.result",

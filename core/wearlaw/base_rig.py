@@ -18,7 +18,7 @@ from wearlaw.tangential import ContactModel, Geometry
 from wearlaw.units import from_si, scalar_si
 
 if TYPE_CHECKING:
-    from wearlaw.contact_pipeline import ContactPipeline
+    from wearlaw.pipeline import Pipeline
 
 TINY = float(np.sqrt(np.finfo(np.float64).tiny))
 """The least length or pressure in SI whose square is a float of full precision."""
@@ -37,16 +37,16 @@ class Rig(Configuration, ABC):
     def materials(self) -> tuple[Material, ...]:
         """Return what the bodies are made of."""
 
-    def __or__(self, model: ContactModel) -> ContactPipeline[Any]:
+    def __or__(self, model: ContactModel) -> Pipeline[Any]:
         """Return the pipeline that solves this rig's contact with a contact model."""
-        from wearlaw.contact_pipeline import ContactPipeline
+        from wearlaw.pipeline import Pipeline
 
         if not isinstance(model, ContactModel):
             raise CompositionError(
                 f"a rig is followed by a contact model, not by {model!r};"
                 ' for example rig | wl.contact_model("fastsim") | wl.wear_law("usfd")'
             )
-        return ContactPipeline(rig=self, contact_model=model)
+        return Pipeline(rig=self, contact_model=model)
 
     def warn_of_plasticity(self, max_pressure: Array, stacklevel: int) -> None:
         """Warn once if the maximum pressure [Pa] is beyond the elastic limit of a body's material."""

@@ -35,7 +35,7 @@ from wearlaw.shelf import Shelf
 from wearlaw.specification import ContactModelField, MaterialField, WearLawField
 from wearlaw.tangential import Model
 from wearlaw.text_files import read_text
-from wearlaw.uncertainty.specification import UncertainPoint
+from wearlaw.uncertainties.specification import UncertainPoint
 from wearlaw.units import Length, Quantity, Speed, Unit, shown
 
 ModelT = TypeVar("ModelT", bound=Model)

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.composition import needs_discs
 from wearlaw.conditions import is_friction_law
 from wearlaw.errors import ConditionsError, UnitError
 from wearlaw.integrate import integrate_contact
-from wearlaw.units import Quantity, Unit, from_si, real_array
+from wearlaw.units import Quantity, QuantityLike, Unit, from_si, real_array
 
 if TYPE_CHECKING:
-    from wearlaw.contact_pipeline import ContactPipeline
+    from numpy.typing import ArrayLike
+
+    from wearlaw.pipeline import Pipeline
     from wearlaw.rig import TwinDisc
 
 SMALLEST = 1e-30
@@ -23,12 +25,33 @@ SMALLEST = 1e-30
 
 
 def creepage_for(
-    contact: ContactPipeline[TwinDisc],
-    tangential_force: object,
-    traction_coefficient: object,
-    conditions: Mapping[str, Any],
+    predict: Pipeline[TwinDisc],
+    /,
+    *,
+    tangential_force: QuantityLike | None = None,
+    traction_coefficient: ArrayLike | None = None,
+    **conditions: Any,
 ) -> Quantity:
-    """Return the creepage [-] with which a contact transmits a traction; see `ContactPipeline.creepage_for`."""
+    """Return the creepage at which a contact transmits a traction [-], of its sign and of the broadcast shape.
+
+    Parameters
+    ----------
+    predict : Pipeline
+        A rig and a contact model.
+    tangential_force : Quantity or str, optional
+        T [N].
+    traction_coefficient : array_like of float, optional
+        T/N [-], in place of `tangential_force`.
+    **conditions
+        The load and the friction coefficient, as in `TwinDisc.problem`.
+
+    Raises
+    ------
+    ConditionsError
+        If no creepage, or more than one, transmits so much: at μN and above; or if friction falls with the creep
+        speed.
+    """
+    needs_discs(predict.rig, "creepage_for")
     if (tangential_force is None) == (traction_coefficient is None):
         raise ConditionsError("give either tangential_force or traction_coefficient")
     if is_friction_law(conditions.get("friction_coefficient")):
@@ -36,7 +59,7 @@ def creepage_for(
             "friction_coefficient: must be a number here; where friction falls with the creep speed, two creepages can"
             " transmit one force"
         )
-    problem = contact.rig.problem(**conditions, creepage=from_si(0.0, ""))
+    problem = predict.rig.problem(**conditions, creepage=from_si(0.0, ""))
     if tangential_force is None:
         target = _finite(traction_coefficient)
     else:
@@ -49,12 +72,12 @@ def creepage_for(
         """Return by how much T/N falls short, for points as floats, as `find_root` hands them on."""
         index = point.astype(np.intp)
         at = dataclasses.replace(flat[index], creepage=np.exp(log_creepage))
-        return due[index] - integrate_contact(contact.contact_model, at) / at.normal_force
+        return due[index] - integrate_contact(predict.contact_model, at) / at.normal_force
 
     points = np.arange(due.size, dtype=np.float64)
     short = lacking(np.zeros(due.size), points)
     if (short >= 0.0).any():
-        raise _beyond_reach(contact, due, due - short, np.flatnonzero(short >= 0.0)[0], shape)
+        raise _beyond_reach(predict, due, due - short, np.flatnonzero(short >= 0.0)[0], shape)
     creepage = np.zeros(due.size)
     start = np.full(due.size, np.log(SMALLEST))
     search = np.flatnonzero(lacking(start, points) > 0.0)
@@ -86,10 +109,10 @@ def _finite(traction_coefficient: object) -> Array:
 
 
 def _beyond_reach(
-    contact: ContactPipeline[TwinDisc], due: Array, reached: Array, first: int, shape: tuple[int, ...]
+    predict: Pipeline[TwinDisc], due: Array, reached: Array, first: int, shape: tuple[int, ...]
 ) -> ConditionsError:
     where = f" at index {[int(i) for i in np.unravel_index(first, shape)]}" if shape else ""
     return ConditionsError(
         f"a traction coefficient of {due[first]:.6g}{where} belongs to no creepage: with contact model"
-        f" '{contact.contact_model.name}' it stays below {reached[first]:.6g}, at full slip; ask for less"
+        f" '{predict.contact_model.name}' it stays below {reached[first]:.6g}, at full slip; ask for less"
     )

@@ -1,67 +1,133 @@
-"""Composition of a contact with a wear law: rig | contact model | wear law."""
+"""Composition: rig | contact model | patch mean, where it is needed, | wear law."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Generic, Self, Unpack, overload
+from typing import TYPE_CHECKING, Any, Generic, Literal, Self, TypeVar, Unpack, overload
 
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
 from wearlaw.blocks import Columns
-from wearlaw.composition import check_scale, check_traction, needs_discs
+from wearlaw.composition import check_geometry, check_scale, check_traction, warn_of_calibration
 from wearlaw.conditions import TwinDiscConditions, WheelRailConditions
 from wearlaw.configuration import Configuration
-from wearlaw.contact_pipeline import ORDER, ContactPipeline, RigT
 from wearlaw.ellipse import EllipticProblem
-from wearlaw.elliptic_wear import elliptic_wear
+from wearlaw.elliptic_wear import creep_forces, elliptic_wear
 from wearlaw.errors import CompositionError, InputError
-from wearlaw.integrate import integrate_wear
+from wearlaw.integrate import integrate_contact, integrate_wear
 from wearlaw.line import LineProblem
+from wearlaw.models import WearLaw
 from wearlaw.ranges import RangeWatch, elliptic_mean, line_mean
 from wearlaw.result import Prediction
 from wearlaw.rig import TwinDisc
-from wearlaw.specification import WearLawField
-from wearlaw.uncertainty.distributions import Distribution, PublishedRange
-from wearlaw.units import QuantityLike
+from wearlaw.specification import ContactModelField, WearLawField
+from wearlaw.tangential import Scale
+from wearlaw.units import shortened
 from wearlaw.wheel_rail import WheelRail
 from wearlaw.wheel_rail_result import WheelRailPrediction
 
-if TYPE_CHECKING:
-    import os
+RigT = TypeVar("RigT", bound=TwinDisc | WheelRail)
 
-    import pandas
-    import xarray
-    from numpy.typing import ArrayLike
+ORDER = 'the order is rig | wl.contact_model("exact") | wl.patch_mean(), where it is needed, | wl.wear_law("usfd")'
 
-    from wearlaw.conditions import FrictionLaw
-    from wearlaw.uncertainty.result import Uncertainty
+
+class PatchMean(Configuration):
+    """The stage that replaces a resolved contact by its patch means."""
+
+    stage: Literal["patch_mean"] = "patch_mean"
+    """Its name, by which files tell stages apart."""
+
+    def __repr__(self) -> str:
+        return "patch_mean()"
+
+    if not TYPE_CHECKING:  # checkers reject this order by themselves
+
+        def __or__(self, other: object) -> object:
+            raise CompositionError(f"wl.patch_mean() cannot start a pipeline; {ORDER}")
+
+
+def patch_mean() -> PatchMean:
+    """Return the stage that replaces a resolved contact by its patch means, for laws that are stated for them."""
+    return PatchMean()
 
 
 class Pipeline(Configuration, Generic[RigT]):
-    """A rig, a contact model and a wear law: predicts wear.
+    """A rig and a contact model, followed by stages and a wear law: predicts the contact, and with a law the wear.
 
     A pipeline is frozen: it prints, compares, hashes, pickles, and serialises with
     ``model_dump_json()`` to what ``Pipeline.model_validate_json(...)`` reads.
     """
 
-    contact: ContactPipeline[RigT]
-    """The rig with its contact model."""
-    wear_law: WearLawField
-    """The law of wear."""
+    rig: RigT
+    """The two bodies that roll on each other."""
+    contact_model: ContactModelField
+    """The theory of the tangential contact."""
+    stages: tuple[PatchMean, ...] = ()
+    """What changes the contact before a law sees it."""
+    laws: tuple[WearLawField, ...] = ()
+    """The law of wear; empty where only the contact is predicted."""
+
+    @field_validator("rig", mode="before")
+    @classmethod
+    def _of_its_fields(cls, value: Any) -> Any:
+        if isinstance(value, dict):
+            return (WheelRail if "wheel_radius" in value else TwinDisc)(**value)
+        if not isinstance(value, (TwinDisc, WheelRail)):
+            raise ValueError(f"must be a TwinDisc or a WheelRail, got {shortened(value)}")
+        return value
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        check_scale(self.contact.scale, self.contact.contact_model, self.wear_law)
+        check_geometry(self.rig, self.contact_model)
+        if len(self.laws) > 1:
+            raise CompositionError(f"a pipeline has one wear law, got {' and '.join(law.name for law in self.laws)}")
+        for law in self.laws:
+            check_scale(self.scale, self.contact_model, law)
         return self
 
+    @property
+    def scale(self) -> Scale:
+        """Whether a law sees the means of the patch or its cells."""
+        return "patch" if self.stages else self.contact_model.scale
+
+    def without_law(self) -> Pipeline[RigT]:
+        """Return the pipeline that predicts the contact alone."""
+        return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages) if self.laws else self
+
+    @property
+    def wear_law(self) -> WearLaw:
+        """The law of wear.
+
+        Raises
+        ------
+        CompositionError
+            If the pipeline has none.
+        """
+        if not self.laws:
+            raise CompositionError(
+                f"the pipeline has no wear law; give one, as in rig | {self.contact_model!r} | wl.wear_law('usfd')"
+            )
+        return self.laws[0]
+
+    def with_law(self, law: WearLaw) -> Pipeline[RigT]:
+        """Return the pipeline with this law in place of its own, without a warning of what it was fitted for."""
+        return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages, laws=(law,))
+
     def __repr__(self) -> str:
-        return f"{self.contact!r} | {self.wear_law!r}"
+        return " | ".join(map(repr, (self.rig, self.contact_model, *self.stages, *self.laws)))
 
-    if not TYPE_CHECKING:  # checkers reject this order by themselves
-
-        def __or__(self, other: object) -> object:
-            raise CompositionError(f"a pipeline ends with its wear law, nothing follows it, not {other!r}; {ORDER}")
+    def __or__(self, stage: WearLaw | PatchMean) -> Pipeline[RigT]:
+        """Return the pipeline with a wear law, or with the contact's patch means."""
+        if self.laws:
+            raise CompositionError(f"a pipeline ends with its wear law, nothing follows it, not {stage!r}; {ORDER}")
+        if isinstance(stage, PatchMean):
+            return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=(stage,))
+        if not isinstance(stage, WearLaw):
+            raise CompositionError(f"a contact model is followed by wl.patch_mean() or a wear law, not by {stage!r}")
+        pipeline = self.with_law(stage)
+        warn_of_calibration(self.rig, self.contact_model, self.scale, stage)
+        return pipeline
 
     @overload
     def __call__(self: Pipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> Prediction: ...
@@ -69,7 +135,7 @@ class Pipeline(Configuration, Generic[RigT]):
     def __call__(self: Pipeline[WheelRail], **conditions: Unpack[WheelRailConditions]) -> WheelRailPrediction: ...
     def __call__(self, **conditions: Any) -> Prediction | WheelRailPrediction:
         """Return the contact and the wear under the given conditions; see the `problem` of the rig for these."""
-        problem = self.contact.rig.problem(**conditions)
+        problem = self.rig.problem(**conditions)
         return self.predict(problem, stacklevel=3)
 
     @overload
@@ -98,7 +164,9 @@ class Pipeline(Configuration, Generic[RigT]):
         stacklevel : int
             Which caller warnings name; 2 is the caller of this method.
         """
-        self.contact.rig.warn_of_plasticity(problem.max_pressure, stacklevel=stacklevel)
+        self.rig.warn_of_plasticity(problem.max_pressure, stacklevel=stacklevel)
+        if not self.laws:
+            return self._without_wear(problem)
         watch = RangeWatch(self.wear_law)
         found = self.watched(problem, watch, on_block)
         watch.warn(stacklevel)
@@ -107,8 +175,8 @@ class Pipeline(Configuration, Generic[RigT]):
     def watched(
         self, problem: LineProblem | EllipticProblem, watch: RangeWatch, on_block: Callable[[int], None] | None = None
     ) -> Prediction | WheelRailPrediction:
-        """Return what `predict` does, without its warnings; `watch` sees the operating points."""
-        rig, model, scale, law = self.contact.rig, self.contact.contact_model, self.contact.scale, self.wear_law
+        """Return what `predict` does with a law, without its warnings; `watch` sees the operating points."""
+        model, scale, law = self.contact_model, self.scale, self.wear_law
 
         def see(part: LineProblem | EllipticProblem, columns: Columns) -> None:
             if isinstance(part, LineProblem):
@@ -118,111 +186,26 @@ class Pipeline(Configuration, Generic[RigT]):
             if on_block is not None:
                 on_block(part.size)
 
-        if isinstance(rig, WheelRail) and isinstance(problem, EllipticProblem):
+        if isinstance(self.rig, WheelRail) and isinstance(problem, EllipticProblem):
             rolled = elliptic_wear(model, law, problem, scale, see)
             law.check_not_negative(rolled.wear_rate)
-            return WheelRailPrediction(rig, model, scale, problem, law, rolled)
-        if isinstance(rig, TwinDisc) and isinstance(problem, LineProblem):
+            return WheelRailPrediction(self, problem, rolled.forces, rolled)
+        if isinstance(self.rig, TwinDisc) and isinstance(problem, LineProblem):
             check_traction(model, problem)
             wear = integrate_wear(model, law, problem, scale, see)
-            found = Prediction(rig, model, scale, problem, law, wear)
+            found = Prediction(self, problem, wear.tangential_force, wear)
             law.check_not_negative(wear.wear_rate, lambda: found.wear_rate_error.to("kg/m^3").magnitude)
             return found
-        raise InputError(f"problem: {type(problem).__name__} is not what a {type(rig).__name__} makes")
+        raise self._wrong(problem)
 
-    def sweep(
-        self,
-        table: pandas.DataFrame | xarray.Dataset | None = None,
-        *,
-        outputs: Sequence[str] = ("wear_rate",),
-        workers: int = 1,
-        client: Any = None,
-        store: str | os.PathLike[str] | None = None,
-        resume: bool = False,
-        progress: bool = False,
-        **conditions: Any,
-    ) -> xarray.Dataset:
-        """Return predictions at all combinations of the conditions that are arrays, or at the rows of a table.
+    def _without_wear(self, problem: LineProblem | EllipticProblem) -> Prediction | WheelRailPrediction:
+        model = self.contact_model
+        if isinstance(self.rig, WheelRail) and isinstance(problem, EllipticProblem):
+            return WheelRailPrediction(self, problem, creep_forces(model, problem))
+        if isinstance(self.rig, TwinDisc) and isinstance(problem, LineProblem):
+            check_traction(model, problem)
+            return Prediction(self, problem, integrate_contact(model, problem))
+        raise self._wrong(problem)
 
-        Parameters
-        ----------
-        table : pandas.DataFrame or xarray.Dataset, optional
-            Operating points row by row, a condition a column, with units by type (pint), `attrs["units"]` or heads
-            such as "creepage [%]"; the conditions that are given besides are the same in all rows.
-        outputs : sequence of str
-            What is kept: names of properties of a prediction, such as "wear_rate" or "tangential_force".
-        workers : int
-            How many processes of this machine take part; they are kept for later sweeps.
-        client : distributed.Client, optional
-            A cluster of dask.distributed, in place of `workers`.
-        store : path, optional
-            A folder for the results, in zarr format, where they are written block by block. An interrupted sweep leaves
-            there what is done. Without it the results are in memory.
-        resume : bool
-            Whether to go on with the sweep that `store` holds a part of, if it does. Blocks that are damaged there are
-            computed again, with a `ResumeWarning`.
-        progress : bool
-            Whether to show a progress bar with rate and time left.
-        **conditions
-            Those of a prediction; each array is an axis, with one value for each of its coordinates.
-
-        Returns
-        -------
-        xarray.Dataset
-            The outputs along the conditions, which are its coordinates; units are in `attrs["units"]`. With `store`
-            values are read from there when they are used.
-
-        Raises
-        ------
-        InputError
-            If conditions or outputs are not possible, or the results would not fit into memory or on the disk.
-        OutputError
-            If `store` holds anything else than an unfinished part of the same sweep.
-        SweepError
-            If workers die again and again.
-        """
-        from wearlaw.sweeping.sweep import sweep
-
-        return sweep(
-            self,
-            table,
-            conditions,
-            outputs=outputs,
-            workers=workers,
-            client=client,
-            store=store,
-            resume=resume,
-            progress=progress,
-        )
-
-    def uncertainty(
-        self: Pipeline[TwinDisc],
-        *,
-        law: Mapping[str, Distribution | PublishedRange] | None = None,
-        samples: int = 2**14,
-        seed: int = 0,
-        **conditions: QuantityLike | ArrayLike | Distribution | FrictionLaw | None,
-    ) -> Uncertainty:
-        """Return how uncertain the wear rate is where conditions and parameters are.
-
-        Parameters
-        ----------
-        law : mapping of str to distribution, optional
-            Parameters of the wear law by name, such as {"q_s": wl.normal("55 ug/m/mm^2", "5 ug/m/mm^2")} or
-            {"coefficient": wl.published_range()}.
-        samples : int
-            How many samples to take, rounded up to a power of two.
-        seed : int
-            The same seed gives the same samples.
-        **conditions
-            Those of a prediction, of which any may be a distribution: `uniform`, `normal` or `lognormal`.
-
-        Raises
-        ------
-        InputError
-            If nothing is distributed, or a distribution is not possible there.
-        """
-        from wearlaw.uncertainty.result import Uncertainty
-
-        needs_discs(self.contact.rig, "uncertainty")
-        return Uncertainty(self, conditions, law or {}, samples, seed)
+    def _wrong(self, problem: object) -> InputError:
+        return InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")

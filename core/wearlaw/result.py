@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -14,26 +14,27 @@ from wearlaw.errors import InputError
 from wearlaw.integrate import SlipTotals, WearTotals, integrate_contact, rounding
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
-from wearlaw.models import WearLaw
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import UNITS, Contact
-from wearlaw.rig import Disc, TwinDisc
 from wearlaw.solution import Solution
 from wearlaw.solving import Solver
-from wearlaw.tangential import ContactModel, Scale
 from wearlaw.units import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
 
 if TYPE_CHECKING:
     import xarray
 
+    from wearlaw.pipeline import Pipeline
+    from wearlaw.rig import Disc
+
 PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
 
 
-class ContactSolution(Solution[LineProblem]):
-    """The contact at one or many operating points.
+class Prediction(Solution[LineProblem, WearTotals]):
+    """The contact, and with a wear law the wear, at one or many operating points of a line contact.
 
-    Every property has the shape of the broadcast conditions; for one operating point it is a scalar.
+    Every property has the shape of the broadcast conditions; for one operating point it is a scalar. Those of the wear
+    raise a `CompositionError` where the pipeline has no wear law.
     """
 
     _summary: ClassVar[tuple[str, ...]] = (
@@ -41,13 +42,16 @@ class ContactSolution(Solution[LineProblem]):
     )  # fmt: skip
 
     def __init__(
-        self, rig: TwinDisc, model: ContactModel, scale: Scale, problem: LineProblem, force: Array | None = None
+        self,
+        pipeline: Pipeline[Any],
+        problem: LineProblem,
+        force: Array | None = None,
+        wear: WearTotals | None = None,
     ) -> None:
-        self.rig = rig
-        self.contact_model = model
-        self.scale: Scale = scale
+        self.pipeline = pipeline
         self.problem = problem
         self._given_force = force
+        self._given_wear = wear
 
     @property
     def tangential_force(self) -> Quantity:
@@ -97,7 +101,9 @@ class ContactSolution(Solution[LineProblem]):
 
     @cached_property
     def _force(self) -> Array:
-        return integrate_contact(self.contact_model, self.problem) if self._given_force is None else self._given_force
+        if self._given_force is not None:
+            return self._given_force
+        return integrate_contact(self.pipeline.contact_model, self.problem)
 
     @cached_property
     def _wear_index(self) -> Array:
@@ -105,27 +111,35 @@ class ContactSolution(Solution[LineProblem]):
 
     @cached_property
     def _slip(self) -> SlipTotals:
-        return integrate.integrate_slip(self.contact_model, self.problem, self.scale)
+        return integrate.integrate_slip(self.pipeline.contact_model, self.problem, self.pipeline.scale)
 
     @cached_property
     def _patch_area(self) -> Array:
-        return integrate.patch_area(self.contact_model, self.problem, self.scale)
+        if self._given_wear is None:
+            return integrate.patch_area(self.pipeline.contact_model, self.problem, self.pipeline.scale)
+        return self.problem.patch_area if self._given_wear.patch_area is None else self._given_wear.patch_area
 
     @cached_property
     def contact(self) -> Contact:
-        """The solved contact as SI arrays, on the nodes that the contact model chose."""
-        return integrate.solve(self.contact_model, self.problem, self.scale)
+        """The solved contact as SI arrays, on nodes that suit the wear law, or that the contact model chose."""
+        model, scale = self.pipeline.contact_model, self.pipeline.scale
+        if not self.pipeline.laws:
+            return integrate.solve(model, self.problem, scale)
+        contact = integrate.contact_for(model, self.pipeline.wear_law, self.problem.flatten(), scale)
+        return contact.with_batch(self.problem.batch_shape)
 
     @cached_property
     def profile(self) -> xarray.Dataset:
-        """Pressure, traction, traction bound and slip along the patch, labelled and with units."""
-        return self._profile({})
+        """Pressure, traction, traction bound, slip and the wear rate along the patch, labelled and with units."""
+        if not self.pipeline.laws:
+            return self._profile({})
+        return self._profile({"wear_rate": (self.pipeline.wear_law.checked_rate(self._cells()), WEAR_RATE)})
 
     def _cells(self) -> Contact:
         """Return the contact on uniform cells where the model can give them, else on its own nodes."""
-        if self.scale == "cells" and isinstance(self.contact_model, LineContactModel):
-            cells = uniform_cells(self.problem.half_width, PROFILE_CELLS)
-            return Solver(self.contact_model).at(self.problem, cells, totals=False)
+        model = self.pipeline.contact_model
+        if self.pipeline.scale == "cells" and isinstance(model, LineContactModel):
+            return Solver(model).at(self.problem, uniform_cells(self.problem.half_width, PROFILE_CELLS), totals=False)
         return self.contact
 
     def _profile(self, more: dict[str, tuple[Array, str]]) -> xarray.Dataset:
@@ -144,29 +158,6 @@ class ContactSolution(Solution[LineProblem]):
             return xarray.Dataset({k: v.rename(cell="x") for k, v in data.items()}, coords={"x": x.rename(cell="x")})
         return xarray.Dataset(data).set_coords("x")
 
-
-class Prediction(ContactSolution):
-    """The contact and the wear at one or many operating points."""
-
-    _summary = ("wear_rate", *ContactSolution._summary)
-
-    def __init__(
-        self,
-        rig: TwinDisc,
-        model: ContactModel,
-        scale: Scale,
-        problem: LineProblem,
-        law: WearLaw,
-        wear: WearTotals,
-    ) -> None:
-        super().__init__(rig, model, scale, problem, wear.tangential_force)
-        self.wear_law = law
-        self._wear = wear
-
-    @cached_property
-    def _patch_area(self) -> Array:
-        return self.problem.patch_area if self._wear.patch_area is None else self._wear.patch_area
-
     @property
     def wear_rate(self) -> Quantity:
         """Mass lost per metre rolled and contact area, mean over the patch [kg/m/m²].
@@ -179,20 +170,9 @@ class Prediction(ContactSolution):
     def wear_rate_error(self) -> Quantity:
         """Estimate of the numerical error in `wear_rate` [kg/m/m²]."""
         error = self._wear.wear_rate_error
-        return from_si(rounding(self.wear_law, self.problem, self._force) if error is None else error, WEAR_RATE)
-
-    @cached_property
-    def contact(self) -> Contact:
-        """The solved contact as SI arrays, on the nodes that suit the wear law."""
-        flat = self.problem.flatten()
-        contact = integrate.contact_for(self.contact_model, self.wear_law, flat, self.scale)
-        return contact.with_batch(self.problem.batch_shape)
-
-    @cached_property
-    def profile(self) -> xarray.Dataset:
-        """Pressure, traction, traction bound, slip and wear rate along the patch, labelled and with units."""
-        rate = self.wear_law.checked_rate(self._cells())
-        return self._profile({"wear_rate": (rate, WEAR_RATE)})
+        return from_si(
+            rounding(self.pipeline.wear_law, self.problem, self._force) if error is None else error, WEAR_RATE
+        )
 
     def depth_per_distance(self, body: str) -> Quantity:
         """Return the depth that a body's surface loses per distance rolled [m/m].
@@ -245,13 +225,15 @@ class Prediction(ContactSolution):
         if np.array_equal(density, self.problem.density):
             return self._wear.wear_rate
         of_body = dataclasses.replace(self.problem, density=density)
-        return integrate.integrate_wear(self.contact_model, self.wear_law, of_body, self.scale).wear_rate
+        predict = self.pipeline
+        return integrate.integrate_wear(predict.contact_model, predict.wear_law, of_body, predict.scale).wear_rate
 
     def _density(self, body: str) -> float:
         return scalar_si(self._disc(body).material.density, "kg/m^3")
 
     def _disc(self, body: str) -> Disc:
-        return self.rig.body(body)
+        disc: Disc = self.pipeline.rig.body(body)
+        return disc
 
     def _circumference(self, body: str) -> float:
         diameter = scalar_si(self._disc(body).diameter, "m")

@@ -30,7 +30,7 @@ from wearlaw.units import (
 )
 
 if TYPE_CHECKING:
-    from wearlaw.contact_pipeline import ContactPipeline
+    from wearlaw.pipeline import Pipeline
 
 
 class Disc(Configuration):
@@ -71,7 +71,7 @@ class TwinDisc(Rig):
             self, *, disc_1: Disc, disc_2: Disc, track_width: QuantityLike, rolling_speed: QuantityLike
         ) -> None: ...
 
-        def __or__(self, model: ContactModel) -> ContactPipeline[TwinDisc]: ...
+        def __or__(self, model: ContactModel) -> Pipeline[TwinDisc]: ...
 
     @model_validator(mode="after")
     def _not_both_flat(self) -> TwinDisc:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from functools import cached_property
-from typing import ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -14,14 +14,27 @@ from wearlaw.integrate import SlipTotals
 from wearlaw.line import LineProblem
 from wearlaw.units import Quantity, from_si
 
+if TYPE_CHECKING:
+    from wearlaw.pipeline import Pipeline
+
 P = TypeVar("P", LineProblem, EllipticProblem)
+W = TypeVar("W")
 
 
-class Solution(ABC, Generic[P]):
+class Solution(ABC, Generic[P, W]):
     """The contact at one or many operating points, which shows itself by some of its properties."""
 
     _summary: ClassVar[tuple[str, ...]]
+    pipeline: Pipeline[Any]
     problem: P
+    _given_wear: W | None
+
+    @cached_property
+    def _wear(self) -> W:
+        """The outcome of the wear law, or a `CompositionError` where there is none."""
+        self.pipeline.wear_law  # noqa: B018  raises where there is none
+        assert self._given_wear is not None
+        return self._given_wear
 
     @cached_property
     @abstractmethod
@@ -79,7 +92,8 @@ class Solution(ABC, Generic[P]):
         return from_si(self._slip.mean_slip, "%")
 
     def __repr__(self) -> str:
-        rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in self._summary)
+        names = ("wear_rate", *self._summary) if self.pipeline.laws else self._summary
+        rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in names)
         points = "1 operating point" if self.problem.size == 1 else f"{self.problem.size} operating points"
         return f"{type(self).__name__} of {points}{rows}"
 

@@ -219,7 +219,7 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
     """Leave out the pairs that have no use for a measured traction coefficient."""
     if grid.traction_coefficient is None:
         return pairs
-    usable = [pair for pair in pairs if pair.pipeline.contact.contact_model.uses_measured_traction]
+    usable = [pair for pair in pairs if pair.pipeline.contact_model.uses_measured_traction]
     for pair in pairs:
         if pair not in usable:
             notes.add(f"{subject}: {pair.contact_model} is left out, since it computes the traction itself")
@@ -243,7 +243,7 @@ def _with_band(
 def _band_ends(pipeline: Pipeline[TwinDisc]) -> list[Pipeline[TwinDisc]]:
     """Return the pipeline with the low and the high end of its law's published range, if there is one."""
     band = pipeline.wear_law.band()
-    return [] if band is None else [pipeline.model_copy(update={"wear_law": law}) for law in (band[0], band[2])]
+    return [] if band is None else [pipeline.with_law(law) for law in (band[0], band[2])]
 
 
 def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes) -> xarray.Dataset:
@@ -254,7 +254,7 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
     contacts: dict[str, xarray.Dataset] = {}
     rates: list[xarray.DataArray] = []
     usable = _usable(f"profile '{name}'", grid, pairs, notes)
-    resolved = [pair for pair in usable if pair.pipeline.contact.scale == "cells"]
+    resolved = [pair for pair in usable if pair.pipeline.scale == "cells"]
     for pair in resolved:
         with notes.of(f"profile '{name}'"):
             profile = pair.pipeline.predict(problem).profile

@@ -19,7 +19,7 @@ from wearlaw.tangential import ContactModel, Geometry
 from wearlaw.units import Length, Quantity, QuantityLike, Speed, Unit, scalar_si
 
 if TYPE_CHECKING:
-    from wearlaw.contact_pipeline import ContactPipeline
+    from wearlaw.pipeline import Pipeline
 
 Radius = Annotated[Quantity, Unit("mm", positive=False, infinite=True)]
 
@@ -67,7 +67,7 @@ class WheelRail(Rig):
             rolling_speed: QuantityLike,
         ) -> None: ...
 
-        def __or__(self, model: ContactModel) -> ContactPipeline[WheelRail]: ...
+        def __or__(self, model: ContactModel) -> Pipeline[WheelRail]: ...
 
     @model_validator(mode="after")
     def _touch_in_a_point(self) -> WheelRail:

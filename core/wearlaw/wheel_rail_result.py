@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -13,25 +13,26 @@ from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.elliptic_wear import EllipticSlip, EllipticWear
 from wearlaw.errors import CompositionError
-from wearlaw.models import WearLaw
 from wearlaw.solution import Solution
 from wearlaw.solving import Solver
-from wearlaw.tangential import Blame, ContactModel, Scale
+from wearlaw.tangential import Blame
 from wearlaw.units import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit
-from wearlaw.wheel_rail import WheelRail
 
 if TYPE_CHECKING:
     import xarray
+
+    from wearlaw.pipeline import Pipeline
 
 PROFILE_STRIPS = 101
 """Strips of a profile across the patch, where the contact model can choose them."""
 
 
-class WheelRailContact(Solution[EllipticProblem]):
-    """The contact of a wheel and a rail at one or many operating points.
+class WheelRailPrediction(Solution[EllipticProblem, EllipticWear]):
+    """The contact of a wheel and a rail, and with a wear law the wear, at one or many operating points.
 
     Every property has the shape of the broadcast conditions; for one operating point it is a scalar. Forces have the
-    signs of the creepages that cause them: they are those that the wheel exerts on the rail.
+    signs of the creepages that cause them: they are those that the wheel exerts on the rail. Properties of the wear
+    raise a `CompositionError` where the pipeline has no wear law.
     """
 
     _summary: ClassVar[tuple[str, ...]] = (
@@ -40,13 +41,16 @@ class WheelRailContact(Solution[EllipticProblem]):
     )  # fmt: skip
 
     def __init__(
-        self, rig: WheelRail, model: ContactModel, scale: Scale, problem: EllipticProblem, forces: CreepForces
+        self,
+        pipeline: Pipeline[Any],
+        problem: EllipticProblem,
+        forces: CreepForces,
+        wear: EllipticWear | None = None,
     ) -> None:
-        self.rig = rig
-        self.contact_model = model
-        self.scale: Scale = scale
+        self.pipeline = pipeline
         self.problem = problem
         self._forces = forces
+        self._given_wear = wear
 
     @property
     def longitudinal_force(self) -> Quantity:
@@ -102,12 +106,12 @@ class WheelRailContact(Solution[EllipticProblem]):
     @cached_property
     def contact(self) -> EllipticContact:
         """The solved contact as SI arrays, on the nodes that the contact model chose, or its patch means."""
-        of_patch = self.scale == "patch" and self.contact_model.scale != "patch"
+        of_patch = self.pipeline.scale == "patch" and self.pipeline.contact_model.scale != "patch"
         return self._solved.patch_mean() if of_patch else self._solved
 
     @cached_property
     def _solved(self) -> EllipticContact:
-        return Solver(self.contact_model).solve(self.problem)
+        return Solver(self.pipeline.contact_model).solve(self.problem)
 
     @cached_property
     def _force(self) -> Array:
@@ -119,30 +123,11 @@ class WheelRailContact(Solution[EllipticProblem]):
 
     @cached_property
     def _slip(self) -> EllipticSlip:
-        return elliptic_wear.elliptic_slip(self.contact_model, self.problem, self.scale)
-
-
-class WheelRailPrediction(WheelRailContact):
-    """The contact and the wear of a wheel and a rail at one or many operating points."""
-
-    _summary = ("wear_rate", *WheelRailContact._summary)
-
-    def __init__(
-        self,
-        rig: WheelRail,
-        model: ContactModel,
-        scale: Scale,
-        problem: EllipticProblem,
-        law: WearLaw,
-        wear: EllipticWear,
-    ) -> None:
-        super().__init__(rig, model, scale, problem, wear.forces)
-        self.wear_law = law
-        self._wear = wear
+        return elliptic_wear.elliptic_slip(self.pipeline.contact_model, self.problem, self.pipeline.scale)
 
     @cached_property
     def _patch_area(self) -> Array:
-        return self._wear.patch_area
+        return self._slip.patch_area if self._given_wear is None else self._given_wear.patch_area
 
     @property
     def wear_rate(self) -> Quantity:
@@ -152,8 +137,8 @@ class WheelRailPrediction(WheelRailContact):
     @cached_property
     def wear_rate_error(self) -> Quantity:
         """Estimate of the numerical error in `wear_rate` [kg/m/m²], from finer nodes; it takes a while."""
-        rate, scale = self._wear.wear_rate, self.scale
-        error = elliptic_wear.wear_rate_error(self.contact_model, self.wear_law, self.problem, scale, rate)
+        model, law, scale = self.pipeline.contact_model, self.pipeline.wear_law, self.pipeline.scale
+        error = elliptic_wear.wear_rate_error(model, law, self.problem, scale, self._wear.wear_rate)
         return from_si(error, WEAR_RATE)
 
     @property
@@ -171,7 +156,7 @@ class WheelRailPrediction(WheelRailContact):
         body : str
             "wheel" or "rail".
         """
-        self.rig.radius(body)
+        self.pipeline.rig.radius(body)
         return from_si(self._mass_per_distance * Unit("km").si(over, "over"), "g")
 
     def wear_profile(self, body: str) -> xarray.Dataset:
@@ -199,10 +184,10 @@ class WheelRailPrediction(WheelRailContact):
         CompositionError
             If the contact is not resolved across the patch.
         """
-        radius = self.rig.radius(body)
+        radius = self.pipeline.rig.radius(body)
         contact = self._across()
         density = contact.density[..., None]
-        depth = contact.over_strip(self.wear_law.checked_rate(contact)) / density
+        depth = contact.over_strip(self.pipeline.wear_law.checked_rate(contact)) / density
         slid = contact.over_strip(contact.slip)
         per_metre = {"depth": (depth, "um/km"), "sliding_distance": (slid, "mm/m")}
         per_passage = {"depth": (depth, "nm"), "sliding_distance": (slid, "um")}
@@ -217,17 +202,18 @@ class WheelRailPrediction(WheelRailContact):
 
     def _across(self) -> EllipticContact:
         """Return the contact on strips across the patch."""
-        if self.scale == "patch":
+        model = self.pipeline.contact_model
+        if self.pipeline.scale == "patch":
             raise CompositionError(
-                f"wear_profile: {self.contact_model!r} gives means of the whole patch; take a contact model that"
+                f"wear_profile: {model!r} gives means of the whole patch; take a contact model that"
                 ' resolves it, such as wl.contact_model("fastsim")'
             )
         edges = np.linspace(-1.0, 1.0, PROFILE_STRIPS + 1)
-        with Blame(self.contact_model):
-            chosen = self.contact_model.on_strips(self.problem, 0.5 * (edges[1:] + edges[:-1]))
+        with Blame(model):
+            chosen = model.on_strips(self.problem, 0.5 * (edges[1:] + edges[:-1]))
         if chosen is None:
             return self._solved
-        Solver(self.contact_model).check(chosen, self.problem, totals=False)
+        Solver(model).check(chosen, self.problem, totals=False)
         return chosen
 
 

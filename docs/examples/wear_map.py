@@ -11,7 +11,8 @@ from wearlaw import Q
 
 loads, creepages, frictions = map(int, sys.argv[1:] or (200, 500, 100))
 predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact")
-wear_map = predict.sweep(
+wear_map = wl.sweep(
+    predict,
     friction_coefficient=np.linspace(0.1, 0.6, frictions),
     normal_force=Q(np.linspace(1, 9, loads), "kN"),
     creepage=Q(np.geomspace(0.1, 13, creepages), "%"),

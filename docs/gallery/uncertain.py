@@ -5,7 +5,8 @@ import matplotlib.pyplot as plt
 import wearlaw as wl
 
 predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact")
-u = predict.uncertainty(
+u = wl.uncertainty(
+    predict,
     normal_force=wl.normal("7.4 kN", "0.2 kN"),
     creepage=wl.uniform("0.4 %", "0.6 %"),
     friction_coefficient=wl.normal(0.46, 0.05),

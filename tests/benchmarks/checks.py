@@ -46,8 +46,8 @@ def sweeps() -> dict[str, Callable[[], object]]:
         "spin": "0.1 1/m",
     }
     return {
-        "exact, kth": lambda: discs.sweep(**on_discs, friction_coefficient=0.4),
-        "fastsim on an ellipse, usfd": lambda: rail.sweep(**on_rail, friction_coefficient=0.3),
+        "exact, kth": lambda: wl.sweep(discs, **on_discs, friction_coefficient=0.4),
+        "fastsim on an ellipse, usfd": lambda: wl.sweep(rail, **on_rail, friction_coefficient=0.3),
     }
 
 

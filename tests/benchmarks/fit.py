@@ -48,7 +48,7 @@ def loop_seconds(predict: wl.Pipeline[wl.TwinDisc], tests: wl.WearTests, replica
     def predicted(theta: np.ndarray[Any, Any]) -> Any:
         values = zip(units.items(), best * np.exp(theta), strict=True)
         law = predict.wear_law.model_copy(update={name: Q(value, unit) for (name, unit), value in values})
-        again = wl.Pipeline(contact=predict.contact, wear_law=law)
+        again = predict.with_law(law)
         return np.log(again(**conditions).wear_rate.to("ug/m/mm^2").magnitude)
 
     fitted = predicted(np.zeros(len(FREE)))

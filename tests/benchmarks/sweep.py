@@ -71,12 +71,12 @@ def speed_up() -> float:
     small = {**given, "friction_coefficient": given["friction_coefficient"][:10]}
     best = {}
     for workers in (1, 2):
-        predict.sweep(**small, workers=workers)  # starts processes, loads kernels
+        wl.sweep(predict, **small, workers=workers)  # starts processes, loads kernels
         times = []
         for _ in range(ROUNDS):
             others = busy(1.0)
             start = time.perf_counter()
-            predict.sweep(**given, workers=workers)
+            wl.sweep(predict, **given, workers=workers)
             times.append(time.perf_counter() - start)
             state = "idle" if others < BUSY else f"NOT IDLE, {others:.0%} of it used by others"
             print(f"{np.prod(POINTS):.0e} points on {workers}: {times[-1]:.2f} s; before, the machine was {state}")

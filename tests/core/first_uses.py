@@ -36,7 +36,7 @@ def wheel_rail() -> str:
 def sweep() -> str:
     pipeline = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
     axis = wl.Q([0.5, 1.0, 2.0], "%")
-    swept = pipeline.sweep(creepage=axis, max_pressure="1500 MPa", friction_coefficient=0.4)
+    swept = wl.sweep(pipeline, creepage=axis, max_pressure="1500 MPa", friction_coefficient=0.4)
     return json.dumps(swept.to_dict())
 
 

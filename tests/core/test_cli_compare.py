@@ -92,17 +92,14 @@ def test_options_follow_the_name_of_a_model() -> None:
     assert result.exit_code == 0
     record = json.loads(Path("tests-comparison/comparison.json").read_text(encoding="utf-8"))
     (pipeline,) = record["predictors"].values()
-    assert (
-        pipeline["contact"]["contact_model"] | {"bound": "elliptic", "flexibility": "kalker"}
-        == (pipeline["contact"]["contact_model"])
-    )
+    assert pipeline["contact_model"] | {"bound": "elliptic", "flexibility": "kalker"} == (pipeline["contact_model"])
 
 
 def test_a_fit_that_the_tests_do_not_determine_on_one_contact_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     fit = wl.fit
 
     def refuse_global(predict: Any, *arguments: Any, **options: Any) -> wl.Fit:
-        if predict.contact.contact_model.name == "global":
+        if predict.contact_model.name == "global":
             raise wl.FitError("no test determines it")
         return fit(predict, *arguments, **options)
 

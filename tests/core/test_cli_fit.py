@@ -108,7 +108,7 @@ def test_friction_and_rig_can_be_given() -> None:
     assert result.exit_code == 0, result.stderr
     assert "SUROS" not in result.stderr
     record = json.loads(Path("tests-fit/fit.json").read_text(encoding="utf-8"))
-    assert record["predict"]["contact"]["rig"]["track_width"] == "8.0 mm"
+    assert record["predict"]["rig"]["track_width"] == "8.0 mm"
     assert wearlaw(*FIT, "--friction", "0.46", "-o", "other").exit_code == 0
     assert wl.read_wear_law("other/law.toml") != wl.read_wear_law("tests-fit/law.toml")
 

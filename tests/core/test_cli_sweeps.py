@@ -307,7 +307,8 @@ def test_uncertainty_of_a_case_is_that_of_its_pairs_with_samples_rounded_up_and_
     assert "Samples: 1000 rounded up to 1024, a power of two, as Sobol sequences need it" in result.stdout
     rates = pd.read_csv(folder / "out" / "wear_rates.csv")
     predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("kth")
-    u = predict.uncertainty(
+    u = wl.uncertainty(
+        predict,
         max_pressure="1500 MPa",
         creepage=wl.uniform("0.5 %", "1.5 %"),
         friction_coefficient=wl.normal(0.46, 0.03),
@@ -392,7 +393,7 @@ def test_a_wear_rate_that_does_not_vary_has_no_indices(folder: Path) -> None:
 def test_a_full_disk_is_one_clear_error_and_leaves_nothing_of_the_uncertainty(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw.uncertainty.written.save_figure", full_disk)  # after tables were written
+    monkeypatch.setattr("wearlaw.uncertainties.written.save_figure", full_disk)  # after tables were written
     result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--samples", "64", "-o", "out")
     assert_refused(result, "output: cannot write the results: No space left on device")
     assert [path.name for path in folder.iterdir()] == ["case.toml"]

@@ -18,7 +18,7 @@ from tests.core.stages import AS_PRINTED, BRR, CONDITIONS, ELLIPTIC, EXACT, FAST
     ("left", "right", "said"),
     [
         (RIG, FITTED["global"], "a rig is followed by a contact model, not by USFD"),
-        (RIG, wl.patch_mean(), "a rig is followed by a contact model, not by PatchMean()"),
+        (RIG, wl.patch_mean(), "a rig is followed by a contact model, not by patch_mean()"),
         (RIG, 3, "a rig is followed by a contact model, not by 3"),
         (RIG | EXACT, GLOBAL, "a contact model is followed by wl.patch_mean() or a wear law, not by Global"),
         (RIG | EXACT, "usfd", "a contact model is followed by wl.patch_mean() or a wear law, not by 'usfd'"),
@@ -26,7 +26,7 @@ from tests.core.stages import AS_PRINTED, BRR, CONDITIONS, ELLIPTIC, EXACT, FAST
         (KTH, EXACT, "'kth' cannot start a pipeline; begin with a rig"),
         (wl.patch_mean(), KTH, "wl.patch_mean() cannot start a pipeline; the order is rig | "),
         (RIG | EXACT | KTH, KTH, "a pipeline ends with its wear law, nothing follows it, not KTH"),
-        (RIG | EXACT | KTH, wl.patch_mean(), "a pipeline ends with its wear law, nothing follows it, not PatchMean()"),
+        (RIG | EXACT | KTH, wl.patch_mean(), "a pipeline ends with its wear law, nothing follows it, not patch_mean()"),
     ],
 )
 def test_stages_in_the_wrong_order_are_refused(left: Any, right: Any, said: str) -> None:
@@ -68,7 +68,7 @@ WARNED = [
 ]
 
 
-def contact_pipeline(model: wl.ContactModel, mean: wl.PatchMean | None) -> wl.ContactPipeline[wl.TwinDisc]:
+def contact_pipeline(model: wl.ContactModel, mean: wl.PatchMean | None) -> wl.Pipeline[wl.TwinDisc]:
     return RIG | model if mean is None else RIG | model | mean
 
 
@@ -110,7 +110,7 @@ def test_parameters_on_another_contact_give_one_warning_that_names_both(
 def test_what_is_no_rig_is_refused_with_what_rigs_there_are() -> None:
     wrong: Any = 3
     with pytest.raises(wl.ConfigurationError, match="rig: must be a TwinDisc or a WheelRail, got 3"):
-        wl.ContactPipeline(rig=wrong, contact_model=GLOBAL)
+        wl.Pipeline(rig=wrong, contact_model=GLOBAL)
 
 
 def test_a_pipeline_read_from_json_is_checked_like_one_composed_in_python() -> None:

@@ -14,8 +14,8 @@ import pytest
 from pydantic import Field
 
 import wearlaw as wl
-from wearlaw.contact_pipeline import ContactPipeline
 from wearlaw.docstrings import field_docstrings
+from wearlaw.pipeline import Pipeline
 
 CLASS = '''
 class Toy(wl.Configuration):
@@ -100,8 +100,8 @@ def test_the_schema_describes_the_fields_of_what_a_field_holds() -> None:
 
 
 def test_a_class_with_its_types_filled_in_is_described_like_the_generic_one() -> None:
-    assert field_docstrings(ContactPipeline[wl.TwinDisc]) == field_docstrings(ContactPipeline)
-    assert all(field_docstrings(ContactPipeline).values())
+    assert field_docstrings(Pipeline[wl.TwinDisc]) == field_docstrings(Pipeline)
+    assert all(field_docstrings(Pipeline).values())
 
 
 def test_nothing_is_read_until_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,7 +19,7 @@ KTH = GLOBAL | wl.wear_law("kth")
 def slow_tests(**more: Any) -> tuple[wl.WearTests, Any, Any]:
     """Return tests slower than 0.2 m/s, where KTH has one field, the rates that they measured and those predicted."""
     tests = made_up(KTH, 0.3, seed=1, creepage=np.linspace(1.0, 15.0, 9), **more)
-    predicted = KTH(**tests.conditions(KTH.contact.contact_model)).wear_rate
+    predicted = KTH(**tests.conditions(KTH.contact_model)).wear_rate
     return tests, in_microgram(tests.wear_rate), in_microgram(predicted)
 
 
@@ -38,7 +38,7 @@ def test_the_parameters_that_made_the_tests_are_found_again(contact: str, scatte
     wrong = predict.wear_law.model_copy(
         update={"m_m": Q(9.0, "ug/m/N"), "q_s": Q(30.0, "ug/m/mm^2"), "tr_sc": Q(200.0, "N/mm^2")}
     )
-    start = wl.Pipeline(contact=predict.contact, wear_law=wrong)
+    start = predict.with_law(wrong)
     fit = wl.fit(start, made_up(predict), free=ALL, scatter=scatter, bootstrap=0)
     for name in ALL:
         true = getattr(predict.wear_law, name)

@@ -207,7 +207,7 @@ def test_a_fit_no_better_than_without_its_parameters_is_refused() -> None:
     rate = tests.wear_rate * np.where(np.arange(20) >= 17, 1.15, 1.0)
     conditions: Any = {"creepage": tests.creepage, "max_pressure": PRESSURE, "friction_coefficient": FRICTION}
     tests = wl.WearTests.from_arrays(**conditions, wear_rate=rate)
-    refused("no worse than chance allows", wl.Pipeline(contact=predict.contact, wear_law=near), tests, ALL)
+    refused("no worse than chance allows", predict.with_law(near), tests, ALL)
 
 
 def test_a_fit_at_a_bound_is_warned_of_and_the_caller_is_named() -> None:

@@ -35,7 +35,7 @@ def plain(quantity: Any) -> Any:
 )
 @given(share=SHARES)
 def test_exact_inverts_carter(share: float, roundings: int) -> None:
-    found = plain((RIG | wl.contact_model("exact")).creepage_for(traction_coefficient=0.46 * share, **LOAD))
+    found = plain(wl.creepage_for(RIG | wl.contact_model("exact"), traction_coefficient=0.46 * share, **LOAD))
     # T/μN = d (2 - d). The root is as exact as T, whose error grows by dξ/dT · T/ξ <= 1/√(1 - share).
     due = share / (1.0 + np.sqrt(1.0 - share)) * SATURATION
     assert found == pytest.approx(due, rel=roundings * EPS / np.sqrt(1.0 - share))
@@ -50,7 +50,7 @@ def test_exact_inverts_carter(share: float, roundings: int) -> None:
 )
 @given(share=SHARES)
 def test_fastsim_inverts_the_cube(share: float, roundings: int) -> None:
-    found = plain((RIG | wl.contact_model("fastsim")).creepage_for(traction_coefficient=0.46 * share, **LOAD))
+    found = plain(wl.creepage_for(RIG | wl.contact_model("fastsim"), traction_coefficient=0.46 * share, **LOAD))
     # T/μN = 1 - (1-d)³, saturated at 1.5 times Carter's creepage.
     due = -np.expm1(np.log1p(-share) / 3.0) * 1.5 * SATURATION
     assert found == pytest.approx(due, rel=roundings * EPS / (1.0 - share) ** (2 / 3))
@@ -60,7 +60,7 @@ def test_fastsim_inverts_the_cube(share: float, roundings: int) -> None:
 def test_the_force_at_the_creepage_is_the_force_that_was_asked_for(name: str) -> None:
     contact = RIG | wl.contact_model(name)
     force = Q(np.array([[-3000.0, -10.0, 0.0], [1e-6, 500.0, 3300.0]]), "N")
-    creepage = contact.creepage_for(tangential_force=force, **LOAD)
+    creepage = wl.creepage_for(contact, tangential_force=force, **LOAD)
     assert creepage.shape == (2, 3)
     back = contact(creepage=creepage, **LOAD).tangential_force
     assert back.to("N").magnitude == pytest.approx(force.magnitude, rel=1e-13)
@@ -69,10 +69,13 @@ def test_the_force_at_the_creepage_is_the_force_that_was_asked_for(name: str) ->
 
 def test_conditions_and_tractions_broadcast() -> None:
     contact = RIG | wl.contact_model("exact")
-    found = contact.creepage_for(
-        traction_coefficient=[0.1, 0.2], max_pressure=Q([[1000.0], [1500.0], [2000.0]], "MPa"), friction_coefficient=0.3
+    found = wl.creepage_for(
+        contact,
+        traction_coefficient=[0.1, 0.2],
+        max_pressure=Q([[1000.0], [1500.0], [2000.0]], "MPa"),
+        friction_coefficient=0.3,
     )
-    one = contact.creepage_for(traction_coefficient=0.2, max_pressure="1500 MPa", friction_coefficient=0.3)
+    one = wl.creepage_for(contact, traction_coefficient=0.2, max_pressure="1500 MPa", friction_coefficient=0.3)
     assert found.shape == (3, 2)
     assert plain(found)[1, 1] == pytest.approx(plain(one), rel=64 * EPS)
 
@@ -80,19 +83,19 @@ def test_conditions_and_tractions_broadcast() -> None:
 @pytest.mark.parametrize("traction", [0.46, 0.5, -0.46])
 def test_full_slip_has_no_single_creepage(traction: float) -> None:
     with pytest.raises(wl.ConditionsError, match=r"belongs to no creepage: .* 'exact' it stays below 0\.46"):
-        (RIG | wl.contact_model("exact")).creepage_for(traction_coefficient=traction, **LOAD)
+        wl.creepage_for(RIG | wl.contact_model("exact"), traction_coefficient=traction, **LOAD)
 
 
 def test_the_first_traction_that_is_too_large_is_named() -> None:
     with pytest.raises(wl.ConditionsError, match=r"0\.6 at index \[1, 0\]"):
-        (RIG | wl.contact_model("exact")).creepage_for(traction_coefficient=[[0.1, 0.2], [0.6, 0.7]], **LOAD)
+        wl.creepage_for(RIG | wl.contact_model("exact"), traction_coefficient=[[0.1, 0.2], [0.6, 0.7]], **LOAD)
 
 
 def test_a_model_that_never_saturates_says_how_far_it_comes() -> None:
     contact = RIG | wl.contact_model("fastsim", bound="elliptic")
-    assert plain(contact.creepage_for(traction_coefficient=0.4599, **LOAD)) > 0.02
+    assert plain(wl.creepage_for(contact, traction_coefficient=0.4599, **LOAD)) > 0.02
     with pytest.raises(wl.ConditionsError, match=r"stays below 0\.46"):
-        contact.creepage_for(traction_coefficient=0.46, **LOAD)
+        wl.creepage_for(contact, traction_coefficient=0.46, **LOAD)
 
 
 @pytest.mark.parametrize(
@@ -101,26 +104,29 @@ def test_a_model_that_never_saturates_says_how_far_it_comes() -> None:
 )
 def test_exactly_one_traction_is_needed(given: Any) -> None:
     with pytest.raises(wl.ConditionsError, match="give either tangential_force or traction_coefficient"):
-        (RIG | wl.contact_model("exact")).creepage_for(**given, **LOAD)
+        wl.creepage_for(RIG | wl.contact_model("exact"), **given, **LOAD)
 
 
 def test_shapes_that_do_not_fit_are_refused() -> None:
     with pytest.raises(wl.ConditionsError, match="do not broadcast"):
-        (RIG | wl.contact_model("exact")).creepage_for(
-            traction_coefficient=[0.1, 0.2], max_pressure=Q([1e3, 2e3, 3e3], "MPa"), friction_coefficient=0.3
+        wl.creepage_for(
+            RIG | wl.contact_model("exact"),
+            traction_coefficient=[0.1, 0.2],
+            max_pressure=Q([1e3, 2e3, 3e3], "MPa"),
+            friction_coefficient=0.3,
         )
 
 
 def test_a_traction_that_is_no_number_is_refused() -> None:
     with pytest.raises(wl.WearlawError, match="traction_coefficient"):
-        (RIG | wl.contact_model("exact")).creepage_for(traction_coefficient=np.nan, **LOAD)
+        wl.creepage_for(RIG | wl.contact_model("exact"), traction_coefficient=np.nan, **LOAD)
 
 
 def test_friction_that_falls_is_refused_since_two_creepages_can_transmit_one_force() -> None:
     falling = wl.FallingFriction(static_coefficient=0.5, limit_ratio=0.4, decay="6 s/m")
     conditions: Any = {"max_pressure": "1500 MPa", "friction_coefficient": falling}
     with pytest.raises(wl.ConditionsError, match=r"friction_coefficient: must be a number here"):
-        (RIG | wl.contact_model("exact")).creepage_for(traction_coefficient=0.3, **conditions)
+        wl.creepage_for(RIG | wl.contact_model("exact"), traction_coefficient=0.3, **conditions)
 
 
 def test_a_model_whose_force_is_no_number_is_named() -> None:
@@ -136,6 +142,6 @@ def test_a_model_whose_force_is_no_number_is_named() -> None:
 
     contact = RIG | Nowhere()
     with pytest.raises(wl.ModelError, match="'nowhere' gave a tangential force that is not finite"):
-        contact.creepage_for(traction_coefficient=0.3, **LOAD)
+        wl.creepage_for(contact, traction_coefficient=0.3, **LOAD)
     with pytest.raises(wl.ModelError, match="'nowhere' gave a tangential force that is not finite"):
         contact(creepage="1 %", **LOAD)

@@ -175,7 +175,7 @@ def test_a_pipeline_is_frozen(predict: Any) -> None:
 
 def test_a_contact_pipeline_survives_json_too() -> None:
     contact = RIG | FASTSIM | wl.patch_mean()
-    assert wl.ContactPipeline.model_validate_json(contact.model_dump_json()) == contact
+    assert wl.Pipeline.model_validate_json(contact.model_dump_json()) == contact
 
 
 def test_wrong_json_is_an_error_of_the_package_with_the_path() -> None:
@@ -183,8 +183,8 @@ def test_wrong_json_is_an_error_of_the_package_with_the_path() -> None:
     with pytest.raises(wl.ConfigurationError) as caught:
         wl.Pipeline.model_validate_json(text)
     message = str(caught.value)
-    assert "contact.rig.track_width: got 10.00 kN, which is not of the dimension of 'mm'" in message
-    assert "wear_law: no wear law is called 'khh'; did you mean 'kth'?" in message
+    assert "rig.track_width: got 10.00 kN, which is not of the dimension of 'mm'" in message
+    assert "laws.0: no wear law is called 'khh'; did you mean 'kth'?" in message
 
 
 def test_a_pickled_pipeline_predicts_the_same_in_a_fresh_process() -> None:

@@ -152,7 +152,7 @@ def test_the_repr_of_one_point_shows_values_and_of_many_their_ranges() -> None:
         "  wear_rate            9.292 µg/m/mm² to 27.70 µg/m/mm²",
     ]
     alone = (RIG | wl.contact_model("exact"))(creepage="1 %", **CONDITIONS)
-    assert repr(alone).startswith("ContactSolution of 1 operating point\n  tangential_force ")
+    assert repr(alone).startswith("Prediction of 1 operating point\n  tangential_force ")
 
 
 @pytest.mark.parametrize("model", ["exact", "global", "fastsim"])

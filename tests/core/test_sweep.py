@@ -33,7 +33,7 @@ def points(*sizes: int) -> Points:
 @pytest.mark.usefixtures("small_blocks")
 def test_a_sweep_is_the_prediction_at_all_combinations() -> None:
     predict = predictor()
-    ds = predict.sweep(**CONDITIONS, outputs=OUTPUTS)
+    ds = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS)
     assert ds.sizes == {"creepage": 20, "normal_force": 3, "friction_coefficient": 4}
     for creepage, load, friction in ((0, 0, 0), (7, 2, 3), (19, 1, 2)):
         r = predict(
@@ -48,7 +48,7 @@ def test_a_sweep_is_the_prediction_at_all_combinations() -> None:
 
 
 def test_results_are_labelled_as_the_conditions_were_given_with_units() -> None:
-    ds = predictor().sweep(creepage=Q([1, 2], "%"), normal_force="7 kN", friction_coefficient=0.4, outputs=OUTPUTS)
+    ds = wl.sweep(predictor(), creepage=Q([1, 2], "%"), normal_force="7 kN", friction_coefficient=0.4, outputs=OUTPUTS)
     assert ds.creepage.to_numpy().tolist() == [1.0, 2.0]
     assert (ds.normal_force.item(), ds.friction_coefficient.item()) == (7.0, 0.4)
     units = {name: ds[name].attrs["units"] for name in ds.variables}
@@ -96,19 +96,19 @@ def test_a_wheel_on_a_rail_is_swept_as_well() -> None:
     rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="20 m/s")
     predict = rig | wl.contact_model("fastsim") | wl.wear_law("kth")
     given: Any = {"longitudinal_creepage": Q([0.1, 0.3], "%"), "normal_force": "80 kN", "friction_coefficient": 0.3}
-    ds = predict.sweep(**given, outputs=["wear_rate", "longitudinal_force"])
+    ds = wl.sweep(predict, **given, outputs=["wear_rate", "longitudinal_force"])
     assert ds.longitudinal_force.to_numpy() == pytest.approx(predict(**given).longitudinal_force.magnitude, rel=1e-14)
 
 
 def test_a_condition_that_is_none_is_not_given() -> None:
     nothing: dict[str, Any] = {"max_pressure": None, "traction_coefficient": None}
-    xr.testing.assert_identical(predictor().sweep(**CONDITIONS, **nothing), predictor().sweep(**CONDITIONS))
+    xr.testing.assert_identical(wl.sweep(predictor(), **CONDITIONS, **nothing), wl.sweep(predictor(), **CONDITIONS))
 
 
 def test_a_number_is_a_coordinate_also_as_an_array_without_axes() -> None:
     given: Any = {"creepage": Q([1, 2], "%"), "normal_force": "7 kN"}
-    due = predictor().sweep(**given, friction_coefficient=0.46)
-    xr.testing.assert_identical(predictor().sweep(**given, friction_coefficient=np.array(0.46)), due)
+    due = wl.sweep(predictor(), **given, friction_coefficient=0.46)
+    xr.testing.assert_identical(wl.sweep(predictor(), **given, friction_coefficient=np.array(0.46)), due)
     assert due.friction_coefficient.item() == 0.46
 
 
@@ -140,7 +140,7 @@ def of_quantities() -> xr.Dataset:
 @pytest.mark.parametrize("make", [lambda: pd.DataFrame(HEADS), of_xarray, typed, of_quantities])
 def test_a_table_is_taken_row_by_row(make: Any) -> None:
     predict = predictor()
-    ds = predict.sweep(make())
+    ds = wl.sweep(predict, make())
     r = predict(
         creepage=Q([1, 2, 5], "%"), max_pressure=Q([900, 1000, 1200], "MPa"), friction_coefficient=[0.3, 0.4, 0.5]
     )
@@ -150,7 +150,7 @@ def test_a_table_is_taken_row_by_row(make: Any) -> None:
 
 def test_a_table_keeps_the_names_of_its_rows_and_takes_conditions_for_all_of_them() -> None:
     table = pd.DataFrame(HEADS, index=pd.Index(["a", "b", "c"], name="test")).drop(columns="friction_coefficient")
-    ds = predictor().sweep(table, friction_coefficient=0.4)
+    ds = wl.sweep(predictor(), table, friction_coefficient=0.4)
     assert ds.test.to_numpy().tolist() == ["a", "b", "c"]
     assert ds.creepage.dims == ("test",)
     assert ds.friction_coefficient.item() == 0.4
@@ -170,14 +170,14 @@ def test_what_a_dataset_holds_once_is_the_same_in_all_rows() -> None:
     ds = of_xarray()
     ds["friction_coefficient"] = 0.4
     ds["max_pressure"] = ((), 1000, {"units": "MPa"})
-    due = predictor().sweep(ds[["creepage"]], max_pressure="1000 MPa", friction_coefficient=0.4)
-    found = predictor().sweep(ds)
+    due = wl.sweep(predictor(), ds[["creepage"]], max_pressure="1000 MPa", friction_coefficient=0.4)
+    found = wl.sweep(predictor(), ds)
     assert found.max_pressure.item() == 1000
     assert found.wear_rate.to_numpy().tolist() == due.wear_rate.to_numpy().tolist()
 
 
 def test_the_same_unit_in_the_head_and_beside_it_is_no_contradiction() -> None:
-    assert predictor().sweep(with_attribute("%")).creepage.to_numpy().tolist() == HEADS["creepage [%]"]
+    assert wl.sweep(predictor(), with_attribute("%")).creepage.to_numpy().tolist() == HEADS["creepage [%]"]
 
 
 @pytest.mark.parametrize(
@@ -201,7 +201,7 @@ def test_the_same_unit_in_the_head_and_beside_it_is_no_contradiction() -> None:
 )  # fmt: skip
 def test_wrong_tables_are_refused(table: Any, conditions: Any, message: str) -> None:
     with pytest.raises(wl.InputError, match=message):
-        predictor().sweep(table, **conditions)
+        wl.sweep(predictor(), table, **conditions)
 
 
 @pytest.mark.parametrize(
@@ -231,7 +231,7 @@ def test_wrong_tables_are_refused(table: Any, conditions: Any, message: str) -> 
 )
 def test_wrong_sweeps_are_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(wl.InputError, match=message):
-        predictor().sweep(**{**CONDITIONS, **changes})
+        wl.sweep(predictor(), **{**CONDITIONS, **changes})
 
 
 MANY: dict[str, Any] = {
@@ -243,13 +243,13 @@ MANY: dict[str, Any] = {
 
 def test_a_sweep_too_large_for_memory_says_what_it_needs_before_it_starts() -> None:
     with pytest.raises(wl.InputError, match=r"need 1.64e\+04 GiB of memory, but .* GiB are free; give a folder"):
-        predictor().sweep(**MANY, outputs=OUTPUTS)
+        wl.sweep(predictor(), **MANY, outputs=OUTPUTS)
 
 
 def test_a_sweep_too_large_for_the_disk_says_what_it_needs_and_leaves_nothing(tmp_path: Path) -> None:
     pytest.importorskip("zarr")
     with pytest.raises(wl.InputError, match=r"need 1.64e\+04 GiB on disk, but '.*' has .* GiB free"):
-        predictor().sweep(**MANY, outputs=OUTPUTS, store=tmp_path / "map.zarr")
+        wl.sweep(predictor(), **MANY, outputs=OUTPUTS, store=tmp_path / "map.zarr")
     assert not list(tmp_path.iterdir())
 
 
@@ -282,7 +282,7 @@ def test_warnings_are_those_of_one_prediction_of_all_points() -> None:
     wide: dict[str, Any] = {**CONDITIONS, "creepage": Q(np.linspace(1.0, 90.0, 20), "%"), "normal_force": "14 kN"}
     predict = predictor()
     with pytest.warns(wl.RangeWarning) as swept:
-        ds = predict.sweep(**wide)
+        ds = wl.sweep(predict, **wide)
     with pytest.warns(wl.RangeWarning) as predicted:
         predict(**{**wide, "creepage": wide["creepage"][:, None]})
     assert [str(one.message) for one in swept] == [str(one.message) for one in predicted]

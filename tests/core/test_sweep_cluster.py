@@ -37,16 +37,16 @@ def test_a_cluster_whose_worker_is_killed_in_mid_run_gives_the_same_bytes(client
     before = set(client.nthreads())
     predict = deadly(tmp_path / "marker")
     with pytest.warns(wl.WorkerWarning, match="worker tcp://.* left the cluster, and its blocks are evaluated again"):
-        predict.sweep(**CONDITIONS, outputs=OUTPUTS, client=client, store=tmp_path / "cluster.zarr")
+        wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, client=client, store=tmp_path / "cluster.zarr")
     assert not before <= set(client.nthreads())
-    predict.sweep(**CONDITIONS, outputs=OUTPUTS, store=tmp_path / "here.zarr")
+    wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, store=tmp_path / "here.zarr")
     assert contents(tmp_path / "cluster.zarr") == contents(tmp_path / "here.zarr")
 
 
 def test_a_cluster_can_also_hand_results_back(client: Any) -> None:
     predict = predictor()
-    swept = predict.sweep(**CONDITIONS, outputs=OUTPUTS, client=client)
-    xr.testing.assert_identical(swept, predict.sweep(**CONDITIONS, outputs=OUTPUTS))
+    swept = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, client=client)
+    xr.testing.assert_identical(swept, wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
 
 
 def test_the_tasks_of_a_stored_sweep_are_small_and_hand_nothing_back(
@@ -62,7 +62,7 @@ def test_the_tasks_of_a_stored_sweep_are_small_and_hand_nothing_back(
         return future
 
     monkeypatch.setattr(client, "submit", measured)
-    predictor().sweep(**CONDITIONS, outputs=OUTPUTS, client=client, store=tmp_path / "map.zarr")
+    wl.sweep(predictor(), **CONDITIONS, outputs=OUTPUTS, client=client, store=tmp_path / "map.zarr")
     assert len(tasks) == 20
     # 24 points of 3 conditions would take 576 bytes as they are; a task names 2 x 3 x 4 values, with their frame.
     assert max(tasks) < 2000
@@ -76,8 +76,8 @@ def test_the_threads_of_a_new_worker_may_all_begin_at_once(threads: int) -> None
         distributed.LocalCluster(n_workers=1, threads_per_worker=threads, dashboard_address=":0") as machine,
         distributed.Client(machine) as connected,
     ):
-        swept = predict.sweep(**CONDITIONS, outputs=OUTPUTS, client=connected)
-    xr.testing.assert_identical(swept, predict.sweep(**CONDITIONS, outputs=OUTPUTS))
+        swept = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, client=connected)
+    xr.testing.assert_identical(swept, wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
 
 
 @pytest.mark.parametrize("error", ["SystemExit", "KeyboardInterrupt"])
@@ -86,7 +86,7 @@ def test_what_would_end_a_worker_of_the_cluster_is_an_error_here_and_the_workers
 ) -> None:
     before = set(client.nthreads())
     with pytest.raises(wl.ModelError, match=f"{error}: 0"):
-        ending(error).sweep(**CONDITIONS, client=client)
+        wl.sweep(ending(error), **CONDITIONS, client=client)
     assert set(client.nthreads()) == before
 
 
@@ -101,4 +101,4 @@ def test_there_are_tasks_before_there_are_workers() -> None:
 def test_a_block_at_which_every_worker_of_the_cluster_dies_is_given_up(client: Any, tmp_path: Path) -> None:
     client.run_on_scheduler(lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0))
     with pytest.raises(wl.SweepError, match=r"block \d was given up by the cluster, since its workers died"):
-        deadly(tmp_path / "marker", always=True).sweep(**CONDITIONS, client=client)
+        wl.sweep(deadly(tmp_path / "marker", always=True), **CONDITIONS, client=client)

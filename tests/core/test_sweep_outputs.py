@@ -22,7 +22,7 @@ MEANS = RAILS | wl.contact_model("polach") | LAW
 def offered(predict: wl.Pipeline[Any], given: dict[str, Any], wrong: str = "none") -> tuple[str, list[str]]:
     """Return the message about an output that does not exist, and what it offers."""
     with pytest.raises(wl.InputError, match=f"outputs: there is no '{wrong}'") as refusal:
-        predict.sweep(**given, outputs=[wrong])
+        wl.sweep(predict, **given, outputs=[wrong])
     message, _, known = str(refusal.value).partition("There are: ")
     return message, known.split(", ")
 
@@ -30,7 +30,7 @@ def offered(predict: wl.Pipeline[Any], given: dict[str, Any], wrong: str = "none
 @pytest.mark.parametrize(("predict", "given"), [(ON_DISCS, LINE), (ON_RAILS, ELLIPSE), (MEANS, ELLIPSE)])
 def test_every_output_that_is_offered_is_taken(predict: wl.Pipeline[Any], given: dict[str, Any]) -> None:
     _, known = offered(predict, given)
-    ds = predict.sweep(**given, outputs=known)
+    ds = wl.sweep(predict, **given, outputs=known)
     assert list(ds.data_vars) == known
     assert {"wear_rate", "tangential_force", "wear_index_density", "patch_area"} <= set(known)
     assert not {"contact", "friction_coefficient", "normal_force"} & set(known)
@@ -49,11 +49,11 @@ def test_what_only_a_wheel_on_a_rail_has_is_offered_with_its_unit() -> None:
         "patch_area": "mm^2",
     }
     assert {*units, "spin_moment"} <= set(known)
-    ds = ON_RAILS.sweep(**ELLIPSE, outputs=list(units))
+    ds = wl.sweep(ON_RAILS, **ELLIPSE, outputs=list(units))
     assert {name: one.attrs["units"] for name, one in ds.data_vars.items()} == units
 
 
 @pytest.mark.parametrize("outputs", [["friction_coefficient"], ["longitudinal_creepage"]])
 def test_conditions_are_no_outputs(outputs: list[str]) -> None:
     with pytest.raises(wl.InputError, match=f"'{outputs[0]}' is one of the conditions"):
-        ON_RAILS.sweep(**ELLIPSE, outputs=outputs)
+        wl.sweep(ON_RAILS, **ELLIPSE, outputs=outputs)

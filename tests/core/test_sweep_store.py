@@ -35,13 +35,13 @@ def interrupted(store: Path, monkeypatch: pytest.MonkeyPatch, workers: int = 1, 
     with monkeypatch.context() as patched:
         interrupted_after(after, patched)
         with pytest.raises(KeyboardInterrupt):
-            predictor().sweep(**GIVEN, store=store, workers=workers)
+            wl.sweep(predictor(), **GIVEN, store=store, workers=workers)
 
 
 def test_a_store_holds_the_results_and_is_read_when_used(tmp_path: Path) -> None:
-    stored = predictor().sweep(**GIVEN, store=tmp_path / "map.zarr")
+    stored = wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr")
     assert not isinstance(stored.wear_rate.variable._data, np.ndarray)
-    xr.testing.assert_identical(stored.load(), predictor().sweep(**GIVEN))
+    xr.testing.assert_identical(stored.load(), wl.sweep(predictor(), **GIVEN))
     assert [path.name for path in tmp_path.iterdir()] == ["map.zarr"]
 
 
@@ -49,8 +49,8 @@ def test_a_table_can_be_stored(tmp_path: Path) -> None:
     table = pd.DataFrame(
         {"creepage [%]": np.linspace(1.0, 2.0, 50), "normal_force [kN]": 5.0, "friction_coefficient": 0.3}
     )
-    stored = predictor().sweep(table, store=tmp_path / "map.zarr")
-    xr.testing.assert_identical(stored.load(), predictor().sweep(table))
+    stored = wl.sweep(predictor(), table, store=tmp_path / "map.zarr")
+    xr.testing.assert_identical(stored.load(), wl.sweep(predictor(), table))
 
 
 @pytest.mark.parametrize("workers", [1, 2])
@@ -62,7 +62,7 @@ def test_an_interrupt_leaves_what_was_done_marked_as_incomplete(
     assert left.attrs["status"] == "incomplete"
     done = int(left.wear_rate.notnull().sum())
     assert 3 * 24 <= done < 240  # in one process the fourth block is interrupted itself
-    whole = predictor().sweep(**GIVEN)
+    whole = wl.sweep(predictor(), **GIVEN)
     assert int((left.wear_rate == whole.wear_rate).sum()) == done
 
 
@@ -79,8 +79,8 @@ def test_a_resumed_sweep_has_the_same_bytes_as_an_uninterrupted_one(
     interrupted(tmp_path / "resumed.zarr", monkeypatch, workers)
     seen: list[int] = []
     monkeypatch.setattr("wearlaw.sweeping.progress.Bar.__call__", lambda _, points: seen.append(points))
-    predictor().sweep(**GIVEN, store=tmp_path / "resumed.zarr", workers=workers, resume=True)
-    predictor().sweep(**GIVEN, store=tmp_path / "whole.zarr")
+    wl.sweep(predictor(), **GIVEN, store=tmp_path / "resumed.zarr", workers=workers, resume=True)
+    wl.sweep(predictor(), **GIVEN, store=tmp_path / "whole.zarr")
     assert contents(tmp_path / "resumed.zarr") == contents(tmp_path / "whole.zarr")
     assert seen[0] >= 3 * 24  # done before, and not again
     assert not (tmp_path / "resumed.zarr.journal").exists()
@@ -133,10 +133,10 @@ def test_damaged_blocks_are_computed_again_and_said(what: str, tmp_path: Path, m
     monkeypatch.setattr("wearlaw.sweeping.progress.Bar.__call__", lambda _, points: seen.append(points))
     message = f"^{count} of the 3 blocks kept in '.*map.zarr' were damaged, and are computed again$"
     with pytest.warns(wl.ResumeWarning, match=message) as said:
-        predictor().sweep(**GIVEN, store=store, resume=True)
+        wl.sweep(predictor(), **GIVEN, store=store, resume=True)
     assert {Path(one.filename).name for one in said} == {Path(__file__).name}
     assert seen[0] == 24 * (3 - count)
-    predictor().sweep(**GIVEN, store=tmp_path / "whole.zarr")
+    wl.sweep(predictor(), **GIVEN, store=tmp_path / "whole.zarr")
     assert contents(store) == contents(tmp_path / "whole.zarr")
 
 
@@ -150,8 +150,8 @@ def test_whatever_describes_the_results_is_written_anew(
         (tmp_path / "map.zarr" / name).unlink()
     else:
         (tmp_path / "map.zarr" / name).write_text(text)
-    predictor().sweep(**GIVEN, store=tmp_path / "map.zarr", resume=True)
-    predictor().sweep(**GIVEN, store=tmp_path / "whole.zarr")
+    wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=True)
+    wl.sweep(predictor(), **GIVEN, store=tmp_path / "whole.zarr")
     assert contents(tmp_path / "map.zarr") == contents(tmp_path / "whole.zarr")
 
 
@@ -183,7 +183,7 @@ def test_a_chunk_that_is_gone_before_it_is_synced_is_found_to_be_damaged(
         patched.setattr("wearlaw.sweeping.worker.write_block", written_and_gone)
         interrupted(tmp_path / "map.zarr", monkeypatch)
     with pytest.warns(wl.ResumeWarning, match="^1 of the 3 blocks"):
-        swept = predictor().sweep(**GIVEN, store=tmp_path / "map.zarr", resume=True)
+        swept = wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=True)
     assert swept.wear_rate.notnull().all()
 
 
@@ -192,8 +192,8 @@ def test_a_journal_that_was_cut_off_loses_only_its_last_line(tmp_path: Path, mon
     path = tmp_path / "map.zarr.journal"
     text = path.read_text(encoding="utf-8")
     path.write_text(text[:-20], encoding="utf-8")
-    predictor().sweep(**GIVEN, store=tmp_path / "map.zarr", resume=True)
-    predictor().sweep(**GIVEN, store=tmp_path / "whole.zarr")
+    wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=True)
+    wl.sweep(predictor(), **GIVEN, store=tmp_path / "whole.zarr")
     assert contents(tmp_path / "map.zarr") == contents(tmp_path / "whole.zarr")
 
 
@@ -201,14 +201,14 @@ def test_what_a_worker_left_that_died_as_it_wrote_is_removed(tmp_path: Path, mon
     interrupted(tmp_path / "map.zarr", monkeypatch)
     cut_off = tmp_path / "map.zarr" / "wear_rate" / "c" / "0.0123.partial"
     cut_off.touch()
-    predictor().sweep(**GIVEN, store=tmp_path / "map.zarr", resume=True)
+    wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=True)
     assert not cut_off.exists()
 
 
 def test_a_finished_sweep_is_not_done_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    first = predictor().sweep(**GIVEN, store=tmp_path / "map.zarr")
+    first = wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr")
     monkeypatch.setattr("wearlaw.sweeping.sweep.run", None)
-    again = predictor().sweep(**GIVEN, store=tmp_path / "map.zarr", resume=True)
+    again = wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=True)
     xr.testing.assert_identical(again.load(), first.load())
 
 
@@ -216,7 +216,7 @@ def test_an_unfinished_sweep_of_which_nothing_is_done_begins_anew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     interrupted(tmp_path / "map.zarr", monkeypatch, after=0)
-    ds = predictor().sweep(**GIVEN, store=tmp_path / "map.zarr", resume=True)
+    ds = wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=True)
     assert ds.wear_rate.notnull().all()
 
 
@@ -234,12 +234,12 @@ def test_a_changed_sweep_is_not_resumed_and_told_what_changed(
 ) -> None:
     store = tmp_path / "map.zarr"
     if finished:
-        predictor().sweep(**GIVEN, store=store)
+        wl.sweep(predictor(), **GIVEN, store=store)
     else:
         interrupted(store, monkeypatch)
     before = contents(tmp_path)
     with pytest.raises(wl.OutputError, match=message):
-        predictor().sweep(**{**GIVEN, **changes}, store=store, resume=True)
+        wl.sweep(predictor(), **{**GIVEN, **changes}, store=store, resume=True)
     assert contents(tmp_path) == before
 
 
@@ -247,19 +247,19 @@ def test_a_changed_law_or_version_is_not_resumed(tmp_path: Path, monkeypatch: py
     store = tmp_path / "map.zarr"
     interrupted(store, monkeypatch)
     other = predictor(wl.wear_law("usfd", fitted_for="exact", q_s="56 ug/m/mm^2"))
-    with pytest.raises(wl.OutputError, match=r"predict.wear_law.q_s: was .*, is 56"):
-        other.sweep(**GIVEN, store=store, resume=True)
+    with pytest.raises(wl.OutputError, match=r"predict.laws.0.q_s: was .*, is 56"):
+        wl.sweep(other, **GIVEN, store=store, resume=True)
     with monkeypatch.context() as patched:
         patched.setattr(journal, "__version__", "99.0")
         with pytest.raises(wl.OutputError, match=r"wearlaw: was .*, is 99\.0"):
-            predictor().sweep(**GIVEN, store=store, resume=True)
+            wl.sweep(predictor(), **GIVEN, store=store, resume=True)
     monkeypatch.setattr("wearlaw.shelf.Shelf.distribution", lambda *_: "another 1.2.3")
     with pytest.raises(wl.OutputError, match=r"plugins.wear law usfd: was wearlaw .*, is another 1.2.3"):
-        predictor().sweep(**GIVEN, store=store, resume=True)
+        wl.sweep(predictor(), **GIVEN, store=store, resume=True)
 
 
 def test_what_is_in_the_way_is_refused_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    predictor().sweep(**GIVEN, store=tmp_path / "finished.zarr")
+    wl.sweep(predictor(), **GIVEN, store=tmp_path / "finished.zarr")
     interrupted(tmp_path / "unfinished.zarr", monkeypatch)
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "thesis.txt").touch()
@@ -273,7 +273,7 @@ def test_what_is_in_the_way_is_refused_and_kept(tmp_path: Path, monkeypatch: pyt
         ("file", True, "is a file, not a folder"),
     ):
         with pytest.raises(wl.OutputError, match=message):
-            predictor().sweep(**GIVEN, store=tmp_path / name, resume=resume)
+            wl.sweep(predictor(), **GIVEN, store=tmp_path / name, resume=resume)
     assert contents(tmp_path) == before
 
 
@@ -281,13 +281,13 @@ def test_a_spoilt_journal_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyP
     interrupted(tmp_path / "map.zarr", monkeypatch)
     (tmp_path / "map.zarr.journal").write_text("spoilt\n", encoding="utf-8")
     with pytest.raises(wl.OutputError, match="is no record of a sweep"):
-        predictor().sweep(**GIVEN, store=tmp_path / "map.zarr", resume=True)
+        wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=True)
 
 
 def test_without_zarr_it_is_said_how_to_install_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "zarr", None)
     with pytest.raises(wl.InputError, match=r'zarr is not installed; python -m pip install "wearlaw\[dask\]"'):
-        predictor().sweep(**GIVEN, store=tmp_path / "map.zarr")
+        wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr")
 
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "wear_map.py"
@@ -317,7 +317,8 @@ points.BLOCK = 500
 journal.SYNC_S = 0.0  # a line for each block at once
 wl.accelerate(False)
 predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("kth")
-predict.sweep(
+wl.sweep(
+    predict,
     creepage=wl.Q(np.linspace(0.1, 5, 500), "%"), normal_force=wl.Q(np.linspace(1, 9, 1000), "kN"),
     friction_coefficient=0.3, store="map.zarr", workers=2,
 )

@@ -28,17 +28,17 @@ pytestmark = pytest.mark.usefixtures("small_blocks")
 )
 def test_several_processes_give_the_same_bytes_as_one() -> None:
     predict = predictor()
-    one = predict.sweep(**CONDITIONS, outputs=OUTPUTS)
-    two = predict.sweep(**CONDITIONS, outputs=OUTPUTS, workers=2)
+    one = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS)
+    two = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, workers=2)
     assert one.identical(two)
     assert one.wear_rate.to_numpy().tobytes() == two.wear_rate.to_numpy().tobytes()
 
 
 def test_the_processes_are_kept_for_the_next_sweep(monkeypatch: pytest.MonkeyPatch) -> None:
     predict = predictor()
-    predict.sweep(**CONDITIONS, workers=2)
+    wl.sweep(predict, **CONDITIONS, workers=2)
     monkeypatch.setattr(subprocess, "Popen", None)
-    predict.sweep(**CONDITIONS, workers=2)
+    wl.sweep(predict, **CONDITIONS, workers=2)
 
 
 def test_where_no_room_for_larger_pipes_is_left_workers_have_those_of_the_system(
@@ -56,11 +56,11 @@ def test_where_no_room_for_larger_pipes_is_left_workers_have_those_of_the_system
     monkeypatch.setattr(subprocess, "Popen", Refused)
     monkeypatch.setattr(processes, "_idle", queue.SimpleQueue())
     predict = predictor()
-    swept = predict.sweep(**CONDITIONS, outputs=OUTPUTS, workers=2)
+    swept = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, workers=2)
     processes._close()
     assert None in sizes
     assert processes.PIPE in sizes
-    assert swept.identical(predict.sweep(**CONDITIONS, outputs=OUTPUTS))
+    assert swept.identical(wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
 
 
 def test_a_worker_that_dies_is_reported_and_its_block_evaluated_again(tmp_path: Path) -> None:
@@ -68,8 +68,8 @@ def test_a_worker_that_dies_is_reported_and_its_block_evaluated_again(tmp_path: 
     with pytest.warns(
         wl.WorkerWarning, match=r"a worker process died \(exit code 9\) at block \d, which is evaluated again"
     ):
-        swept = predict.sweep(**CONDITIONS, outputs=OUTPUTS, workers=2)
-    xr.testing.assert_equal(swept, predict.sweep(**CONDITIONS, outputs=OUTPUTS))
+        swept = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, workers=2)
+    xr.testing.assert_equal(swept, wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
 
 
 def test_a_block_at_which_every_worker_dies_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -78,21 +78,21 @@ def test_a_block_at_which_every_worker_dies_is_given_up(tmp_path: Path, monkeypa
     with pytest.raises(
         wl.SweepError, match=r"block \d was given up, since the worker processes died in all 2 attempts"
     ):
-        predict.sweep(**{**CONDITIONS, "normal_force": Q([2.0, 5.0], "kN"), "friction_coefficient": 0.3}, workers=2)
+        wl.sweep(predict, **{**CONDITIONS, "normal_force": Q([2.0, 5.0], "kN"), "friction_coefficient": 0.3}, workers=2)
 
 
 def test_what_a_model_raises_in_a_worker_is_raised_here_and_the_worker_lives_on() -> None:
     failing = predictor(Failing(slope=Q(1.0, "mm")))
     with pytest.raises(wl.ModelError, match="wear law 'failing' failed: OverflowError: too much"):
-        failing.sweep(**CONDITIONS, workers=2)
+        wl.sweep(failing, **CONDITIONS, workers=2)
     assert processes._idle.qsize() > 0
-    assert predictor().sweep(**CONDITIONS, workers=2).wear_rate.notnull().all()
+    assert wl.sweep(predictor(), **CONDITIONS, workers=2).wear_rate.notnull().all()
 
 
 @pytest.mark.parametrize("error", ["SystemExit", "KeyboardInterrupt", "GeneratorExit"])
 def test_what_would_end_a_worker_is_an_error_here_and_the_worker_lives_on(error: str) -> None:
     with pytest.raises(wl.ModelError, match=f"{error}: 0"):
-        ending(error).sweep(**CONDITIONS, workers=2)
+        wl.sweep(ending(error), **CONDITIONS, workers=2)
     assert processes._idle.qsize() > 0
 
 
@@ -107,9 +107,9 @@ class Choosing(Failing):
 
 def test_compiled_kernels_are_turned_off_in_workers_where_they_are_here() -> None:
     turned_off = predictor(Choosing(slope=Q(1.0, "mm")))
-    assert (turned_off.sweep(**CONDITIONS, workers=2).wear_rate > 0).all()
+    assert (wl.sweep(turned_off, **CONDITIONS, workers=2).wear_rate > 0).all()
     wl.accelerate(None)
-    assert (turned_off.sweep(**CONDITIONS, workers=2).wear_rate == 0).all()
+    assert (wl.sweep(turned_off, **CONDITIONS, workers=2).wear_rate == 0).all()
 
 
 SCRIPT = """
@@ -127,9 +127,9 @@ def mine(slip):
 
 given = dict(creepage=wl.Q(np.linspace(1, 2, 9), "%"), normal_force="5 kN", friction_coefficient=0.3)
 predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
-print(predict.sweep(**given, workers=2).wear_rate.size)
+print(wl.sweep(predict, **given, workers=2).wear_rate.size)
 try:
-    (wl.TwinDisc.suros() | wl.contact_model("global") | mine).sweep(**given, workers=2)
+    wl.sweep(wl.TwinDisc.suros() | wl.contact_model("global") | mine, **given, workers=2)
 except wl.InputError as error:
     print(error)
 """
@@ -156,4 +156,4 @@ class Talking(Failing):
 
 
 def test_what_a_model_prints_in_a_worker_does_not_spoil_its_results() -> None:
-    assert (predictor(Talking(slope=Q(1.0, "mm"))).sweep(**CONDITIONS, workers=2).wear_rate == 0).all()
+    assert (wl.sweep(predictor(Talking(slope=Q(1.0, "mm"))), **CONDITIONS, workers=2).wear_rate == 0).all()

@@ -13,7 +13,7 @@ from tests.core.fits import GLOBAL, in_microgram
 from tests.core.uncertain import FULL_SLIP, USFD
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.uncertainty.specification import UncertainPoint
+from wearlaw.uncertainties.specification import UncertainPoint
 
 
 @wl.as_wear_law(
@@ -42,7 +42,7 @@ def kth_global(k: float) -> float:
     parts=2.0,
 )
 def test_a_uniform_parameter_of_a_linear_law_gives_a_uniform_rate(parts: float) -> None:
-    u = (GLOBAL | linear).uncertainty(**FULL_SLIP, law={"first": wl.uniform("2 ug/m/N", "6 ug/m/N")}, samples=1024)
+    u = wl.uncertainty(GLOBAL | linear, **FULL_SLIP, law={"first": wl.uniform("2 ug/m/N", "6 ug/m/N")}, samples=1024)
     at = [float(in_microgram((GLOBAL | linear.model_copy(update={"first": Q(f, "ug/m/N")}))(**FULL_SLIP).wear_rate))
           for f in (2.0, 6.0)]  # fmt: skip
     low, high = (in_microgram(end) for end in u.interval(0.9))
@@ -54,8 +54,8 @@ def test_a_uniform_parameter_of_a_linear_law_gives_a_uniform_rate(parts: float) 
 
 
 def test_each_sample_is_the_prediction_with_its_values() -> None:
-    u = USFD.uncertainty(
-        normal_force=wl.normal("7 kN", "0.2 kN"), creepage=Q(4, "%"), friction_coefficient=0.4, samples=8
+    u = wl.uncertainty(
+        USFD, normal_force=wl.normal("7 kN", "0.2 kN"), creepage=Q(4, "%"), friction_coefficient=0.4, samples=8
     )
     force = u.inputs[0].values(np.array([0.25]))["normal_force"][0]
     assert force == pytest.approx(stats.norm(7000.0, 200.0).ppf(0.25), rel=8 * EPS)
@@ -68,7 +68,7 @@ def test_each_sample_is_the_prediction_with_its_values() -> None:
 
 
 def test_a_lognormal_value_has_its_median_and_its_factor() -> None:
-    u = USFD.uncertainty(**{**FULL_SLIP, "friction_coefficient": wl.lognormal(0.3, 1.1)}, samples=8)
+    u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.lognormal(0.3, 1.1)}, samples=8)
     values = u.inputs[0].values(np.array([0.5, 0.9]))["friction_coefficient"]
     assert values == pytest.approx(stats.lognorm(np.log(1.1), scale=0.3).ppf([0.5, 0.9]), rel=16 * EPS)
 
@@ -82,7 +82,8 @@ def test_a_lognormal_value_has_its_median_and_its_factor() -> None:
     most=0.01,
 )
 def test_variances_of_a_linear_law_add_up(errors: float, most: float) -> None:
-    u = (GLOBAL | linear).uncertainty(
+    u = wl.uncertainty(
+        GLOBAL | linear,
         **FULL_SLIP,
         law={"first": wl.normal("4 ug/m/N", "0.3 ug/m/N"), "second": wl.normal("2 ug/m/N", "0.4 ug/m/N")},
         samples=2**12,
@@ -107,7 +108,8 @@ def test_variances_of_a_linear_law_add_up(errors: float, most: float) -> None:
 def test_inputs_of_a_product_share_a_part_of_the_variance(errors: float) -> None:
     # In full slip, in the mild regime, the rate is m_m times something: of two uniform factors on 1 ± h the variance
     # is v1 + v2 + v1 v2 with v = h²/3.
-    u = USFD.uncertainty(
+    u = wl.uncertainty(
+        USFD,
         max_pressure=Q(1500, "MPa"),
         creepage=Q(2, "%"),
         friction_coefficient=wl.uniform(0.2, 0.4),
@@ -123,7 +125,8 @@ def test_inputs_of_a_product_share_a_part_of_the_variance(errors: float) -> None
 
 def test_the_published_range_of_kth_spans_its_band() -> None:
     predict = GLOBAL | wl.wear_law("kth")
-    u = predict.uncertainty(
+    u = wl.uncertainty(
+        predict,
         max_pressure=Q(1500, "MPa"),
         creepage=Q(1, "%"),
         friction_coefficient=0.46,
@@ -138,7 +141,8 @@ def test_the_published_range_of_kth_spans_its_band() -> None:
 
 
 def test_known_conditions_keep_their_shape() -> None:
-    u = USFD.uncertainty(
+    u = wl.uncertainty(
+        USFD,
         max_pressure=Q([[1000.0], [1500.0]], "MPa"),
         creepage=Q([1.0, 2.0, 3.0], "%"),
         friction_coefficient=wl.uniform(0.3, 0.5),
@@ -146,8 +150,8 @@ def test_known_conditions_keep_their_shape() -> None:
     )
     assert u.wear_rate.shape == (2, 3, 16)
     assert u.median.shape == (2, 3)
-    one = USFD.uncertainty(
-        max_pressure=Q(1500, "MPa"), creepage=Q(2, "%"), friction_coefficient=wl.uniform(0.3, 0.5), samples=16
+    one = wl.uncertainty(
+        USFD, max_pressure=Q(1500, "MPa"), creepage=Q(2, "%"), friction_coefficient=wl.uniform(0.3, 0.5), samples=16
     )
     assert in_microgram(u.wear_rate)[1, 1] == pytest.approx(in_microgram(one.wear_rate), rel=64 * EPS)
 
@@ -161,7 +165,7 @@ def test_known_conditions_keep_their_shape() -> None:
 def test_the_same_seed_gives_the_same_samples() -> None:
     def rates(seed: int) -> Any:
         uncertain = {**FULL_SLIP, "creepage": wl.uniform("1 %", "1.5 %")}
-        return in_microgram(USFD.uncertainty(**uncertain, samples=64, seed=seed).wear_rate)
+        return in_microgram(wl.uncertainty(USFD, **uncertain, samples=64, seed=seed).wear_rate)
 
     assert np.array_equal(rates(1), rates(1))
     assert not np.array_equal(rates(1), rates(2))
@@ -169,13 +173,13 @@ def test_the_same_seed_gives_the_same_samples() -> None:
 
 @pytest.mark.parametrize(("asked", "taken"), [(2, 2), (3, 4), (1000, 1024), (1024, 1024)])
 def test_samples_are_rounded_up_to_a_power_of_two(asked: int, taken: int) -> None:
-    u = USFD.uncertainty(**{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=asked)
+    u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=asked)
     assert u.samples == u.wear_rate.size == taken
     assert f"{taken} samples" in repr(u)
 
 
 def test_the_figure_shows_median_and_interval() -> None:
-    u = USFD.uncertainty(**{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=64)
+    u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=64)
     (panel,) = u.figure_data().panels
     distribution, marks = panel.curves
     assert np.all(np.diff(distribution.x) >= 0)
@@ -187,7 +191,8 @@ def test_the_figure_shows_median_and_interval() -> None:
 
 
 def test_the_figure_of_several_points_is_a_band_in_their_order() -> None:
-    u = USFD.uncertainty(
+    u = wl.uncertainty(
+        USFD,
         max_pressure=Q(1500, "MPa"),
         creepage=Q([1.5, 0.5, 1.0], "%"),
         friction_coefficient=wl.uniform(0.3, 0.5),
@@ -201,8 +206,8 @@ def test_the_figure_of_several_points_is_a_band_in_their_order() -> None:
 
 def test_the_figure_of_one_point_is_the_same_whatever_its_shape() -> None:
     def curves(pressure: wl.Quantity) -> list[Any]:
-        u = USFD.uncertainty(
-            max_pressure=pressure, creepage="1 %", friction_coefficient=wl.uniform(0.3, 0.5), samples=64
+        u = wl.uncertainty(
+            USFD, max_pressure=pressure, creepage="1 %", friction_coefficient=wl.uniform(0.3, 0.5), samples=64
         )
         (panel,) = u.figure_data().panels
         return [(curve.x.tolist(), curve.y.tolist()) for curve in panel.curves]
@@ -212,7 +217,8 @@ def test_the_figure_of_one_point_is_the_same_whatever_its_shape() -> None:
 
 def test_the_figure_of_a_band_is_the_same_whatever_the_shape_of_its_axis() -> None:
     def band(creepage: list[Any], pressure: list[Any]) -> Any:
-        u = USFD.uncertainty(
+        u = wl.uncertainty(
+            USFD,
             max_pressure=Q(pressure, "MPa"),
             creepage=Q(creepage, "%"),
             friction_coefficient=wl.uniform(0.3, 0.5),
@@ -229,7 +235,7 @@ def test_friction_that_falls_is_evaluated_at_each_sample_of_the_creepage() -> No
     friction = wl.FallingFriction(static_coefficient=0.55, limit_ratio=0.4, decay="6 s/m")
     given: Any = {"max_pressure": Q([1000.0, 1500.0], "MPa"), "friction_coefficient": friction}
     predict = GLOBAL | linear
-    u = predict.uncertainty(**given, creepage=wl.uniform("2 %", "4 %"), samples=8)
+    u = wl.uncertainty(predict, **given, creepage=wl.uniform("2 %", "4 %"), samples=8)
     probability = stats.qmc.Sobol(1, rng=np.random.default_rng(0)).random_base2(3)[:, 0]
     given["max_pressure"] = given["max_pressure"][:, None]
     each = predict(**given, creepage=Q(2.0 + 2.0 * probability, "%"))
@@ -240,8 +246,8 @@ def test_friction_that_falls_is_evaluated_at_each_sample_of_the_creepage() -> No
 def test_a_condition_that_is_none_is_not_given() -> None:
     uncertain: Any = {**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5), "samples": 8}
     nothing: Any = {"normal_force": None, "traction_coefficient": None}
-    u = USFD.uncertainty(**uncertain, **nothing)
-    assert np.array_equal(in_microgram(u.wear_rate), in_microgram(USFD.uncertainty(**uncertain).wear_rate))
+    u = wl.uncertainty(USFD, **uncertain, **nothing)
+    assert np.array_equal(in_microgram(u.wear_rate), in_microgram(wl.uncertainty(USFD, **uncertain).wear_rate))
 
 
 def test_distributions_are_shown_with_units_as_everything_is() -> None:
@@ -250,8 +256,8 @@ def test_distributions_are_shown_with_units_as_everything_is() -> None:
 
 
 def test_the_only_input_explains_all_of_the_variance() -> None:
-    u = USFD.uncertainty(
-        **{**FULL_SLIP, "creepage": Q(0.5, "%"), "friction_coefficient": wl.uniform(0.3, 0.4)}, samples=64
+    u = wl.uncertainty(
+        USFD, **{**FULL_SLIP, "creepage": Q(0.5, "%"), "friction_coefficient": wl.uniform(0.3, 0.4)}, samples=64
     )
     assert u.sobol().loc["friction_coefficient"].to_dict() == {
         "first_order": 1.0,

@@ -12,12 +12,12 @@ import wearlaw as wl
 from tests.core.fits import GLOBAL
 from tests.core.uncertain import FULL_SLIP, USFD
 from wearlaw import Q
-from wearlaw.uncertainty.inputs import check_samples
+from wearlaw.uncertainties.inputs import check_samples
 
 
 def test_samples_outside_the_range_of_the_law_are_warned_of() -> None:
-    u = USFD.uncertainty(
-        max_pressure=Q(1500, "MPa"), creepage=wl.uniform("15 %", "25 %"), friction_coefficient=0.46, samples=64
+    u = wl.uncertainty(
+        USFD, max_pressure=Q(1500, "MPa"), creepage=wl.uniform("15 %", "25 %"), friction_coefficient=0.46, samples=64
     )
     with pytest.warns(wl.RangeWarning, match="usfd"):
         u.median  # noqa: B018
@@ -73,7 +73,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
 @pytest.mark.parametrize(("given", "message"), WRONG)
 def test_what_cannot_be_is_refused(given: dict[str, Any], message: str) -> None:
     with pytest.raises(wl.WearlawError, match=message):
-        USFD.uncertainty(**{**FULL_SLIP, **given}).median  # noqa: B018
+        wl.uncertainty(USFD, **{**FULL_SLIP, **given}).median  # noqa: B018
 
 
 def test_samples_may_have_extremes_that_do_not_go_together() -> None:
@@ -87,7 +87,7 @@ def test_samples_may_have_extremes_that_do_not_go_together() -> None:
 def test_a_range_that_is_not_published_is_named() -> None:
     predict = GLOBAL | wl.wear_law("kth")
     with pytest.raises(wl.InputError, match=r"hardness: .* no published range of it; there are: coefficient"):
-        predict.uncertainty(**FULL_SLIP, law={"hardness": wl.published_range()})
+        wl.uncertainty(predict, **FULL_SLIP, law={"hardness": wl.published_range()})
 
 
 @pytest.mark.parametrize("factor", [1.0, 0.5, np.inf, np.nan, "1.2", [1.2, 1.3], Q(1.2, "mm"), None])
@@ -121,27 +121,32 @@ def test_what_is_no_value_is_refused_where_a_distribution_is_made(value: Any, me
 
 @pytest.mark.parametrize("confidence", [0.0, 1.0, 95])
 def test_a_confidence_that_is_none_is_refused(confidence: float) -> None:
-    u = USFD.uncertainty(**{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=4)
+    u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=4)
     with pytest.raises(wl.InputError, match="confidence"):
         u.interval(confidence)
 
 
 def test_sobol_needs_one_operating_point() -> None:
-    u = USFD.uncertainty(
-        max_pressure=Q(1500, "MPa"), creepage=Q([1.0, 2.0], "%"), friction_coefficient=wl.uniform(0.3, 0.5), samples=4
+    u = wl.uncertainty(
+        USFD,
+        max_pressure=Q(1500, "MPa"),
+        creepage=Q([1.0, 2.0], "%"),
+        friction_coefficient=wl.uniform(0.3, 0.5),
+        samples=4,
     )
     with pytest.raises(wl.InputError, match="one operating point"):
         u.sobol()
 
 
 def test_sobol_needs_a_rate_that_varies() -> None:
-    u = USFD.uncertainty(**{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=4)  # all severe
+    u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=4)  # all severe
     with pytest.raises(wl.InputError, match="the same in all samples"):
         u.sobol()
 
 
 def test_known_conditions_whose_shapes_do_not_fit_are_named_with_the_shapes_they_were_given_in() -> None:
-    u = USFD.uncertainty(
+    u = wl.uncertainty(
+        USFD,
         max_pressure=Q([1000.0, 1500.0], "MPa"),
         creepage=Q([1.0, 2.0, 3.0], "%"),
         friction_coefficient=wl.uniform(0.3, 0.5),
@@ -154,12 +159,13 @@ def test_known_conditions_whose_shapes_do_not_fit_are_named_with_the_shapes_they
 def test_a_wrong_known_condition_is_not_laid_to_the_samples() -> None:
     uncertain: Any = {"law": {"m_m": wl.uniform("4 ug/m/N", "6 ug/m/N")}}
     with pytest.raises(wl.UnitError, match=r"creepage: must not exceed 1 in magnitude, got 200\.0 %") as refusal:
-        USFD.uncertainty(**{**FULL_SLIP, "creepage": "200 %"}, **uncertain).median  # noqa: B018
+        wl.uncertainty(USFD, **{**FULL_SLIP, "creepage": "200 %"}, **uncertain).median  # noqa: B018
     assert "samples" not in str(refusal.value)
 
 
 def test_a_figure_along_two_axes_is_refused_with_their_names() -> None:
-    u = USFD.uncertainty(
+    u = wl.uncertainty(
+        USFD,
         max_pressure=Q([[1000.0], [1500.0]], "MPa"),
         creepage=Q([1.0, 2.0, 3.0], "%"),
         friction_coefficient=wl.uniform(0.3, 0.5),

@@ -134,7 +134,7 @@ def test_wrong_conditions_are_named(changes: dict[str, Any], message: str) -> No
 
 def test_a_rig_survives_json_in_a_pipeline() -> None:
     contact = rig(wheel_profile_radius=Q(-500, "mm")) | wl.contact_model("fastsim")
-    assert wl.ContactPipeline.model_validate_json(contact.model_dump_json()) == contact
+    assert wl.Pipeline.model_validate_json(contact.model_dump_json()) == contact
 
 
 def test_only_models_of_elliptic_contact_follow_it() -> None:
@@ -162,8 +162,8 @@ def test_what_only_knows_discs_says_so() -> None:
     contact: Any = rig() | wl.contact_model("fastsim")
     predict = contact | wl.wear_law("kth")
     calls: dict[str, Any] = {
-        "creepage_for": lambda: contact.creepage_for(traction_coefficient=0.1, **CONDITIONS),
-        "uncertainty": lambda: predict.uncertainty(law={"coefficient": wl.published_range()}, **CONDITIONS),
+        "creepage_for": lambda: wl.creepage_for(contact, traction_coefficient=0.1, **CONDITIONS),
+        "uncertainty": lambda: wl.uncertainty(predict, law={"coefficient": wl.published_range()}, **CONDITIONS),
         "fit": lambda: wl.fit(contact, wl.read_tests("lewis2004"), free=["friction_coefficient"]),
         "compare": lambda: wl.compare([predict, predict], TESTS, friction_coefficient=0.3),
     }

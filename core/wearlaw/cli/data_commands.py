@@ -16,7 +16,6 @@ from wearlaw.sweeping.progress import Bar
 if TYPE_CHECKING:
     from wearlaw.comparison.compare import Predictor
     from wearlaw.comparison.result import Comparison
-    from wearlaw.contact_pipeline import ContactPipeline
     from wearlaw.figures.formats import FigureFormat
     from wearlaw.fitting.result import Fit
     from wearlaw.pairs import Pair
@@ -131,18 +130,17 @@ def _fit(
 
 
 def _with_law(
-    stage: ContactPipeline[TwinDisc], text: str, given: dict[str, str], free: list[str], notes: Notes
+    stage: Pipeline[TwinDisc], text: str, given: dict[str, str], free: list[str], notes: Notes
 ) -> Pipeline[TwinDisc]:
     """Return the pipeline with the law to fit; what it was fitted for does not matter, but what it keeps does."""
     from wearlaw.cli.parsing import wear_law
     from wearlaw.parameters import numbers
-    from wearlaw.pipeline import Pipeline
 
     law = wear_law(text, given)
     kept = [f"{name} = {value!r}" for name, value in numbers(law.explicit()).items() if name not in free]
     if kept:
         notes.add(f"fit: not fitted, {', '.join(kept)}")
-    return Pipeline(contact=stage, wear_law=law)
+    return stage.with_law(law)
 
 
 @click.command()

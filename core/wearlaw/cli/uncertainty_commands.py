@@ -40,8 +40,8 @@ def uncertainty(
     """
     from wearlaw.case import load_case
     from wearlaw.output_folder import fresh_folder
-    from wearlaw.uncertainty.of_case import uncertainty_of
-    from wearlaw.uncertainty.written import UNCERTAINTY, write_uncertainty
+    from wearlaw.uncertainties.of_case import uncertainty_of
+    from wearlaw.uncertainties.written import UNCERTAINTY, write_uncertainty
 
     loaded = load_case(case)
     folder = output if output is not None else Path(f"{Path(case).stem}-uncertainty")

@@ -93,7 +93,7 @@ def _named(predictors: Mapping[str, Predictor] | Sequence[Predictor]) -> list[tu
     if not given:
         raise InputError("give at least one predictor, such as rig | contact_model | law")
     for one in given:
-        if not isinstance(one.predict if isinstance(one, Fit) else one, Pipeline):
+        if not _predicts_wear(one.predict if isinstance(one, Fit) else one):
             raise InputError(
                 f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {one!r}"
             )
@@ -103,13 +103,17 @@ def _named(predictors: Mapping[str, Predictor] | Sequence[Predictor]) -> list[tu
     return list(zip(names, given, strict=True))
 
 
+def _predicts_wear(one: object) -> bool:
+    return isinstance(one, Pipeline) and bool(one.laws)
+
+
 def _names(predictors: Sequence[Predictor]) -> list[Names]:
     """Return what predictors are called after their models, as in a study."""
-    models = _labels([_pipeline(one).contact.contact_model for one in predictors])
+    models = _labels([_pipeline(one).contact_model for one in predictors])
     laws = iter(_labels([one.wear_law for one in predictors if isinstance(one, Pipeline)]))
     names = []
     for one, model in zip(predictors, models, strict=True):
-        contact = model + (", patch means" if _pipeline(one).contact.use_patch_mean else "")
+        contact = model + (", patch means" if _pipeline(one).stages else "")
         law = next(laws) if isinstance(one, Pipeline) else f"{_pipeline(one).wear_law.name} fitted"
         names.append(Names(f"{law} on {contact}", law, contact))
     return names
@@ -128,7 +132,7 @@ def _labels(models: Sequence[Model]) -> list[str]:
 def _pipeline(predictor: Predictor) -> Pipeline[TwinDisc]:
     found = predictor.predict if isinstance(predictor, Fit) else predictor
     assert isinstance(found, Pipeline)
-    needs_discs(found.contact.rig, "compare")
+    needs_discs(found.rig, "compare")
     return found
 
 
@@ -162,7 +166,7 @@ def _compared(names: Names, predictor: Predictor, tests: WearTests, friction: An
 def _predicted(name: str, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Array:
     """Return the wear rates that are predicted for tests [kg/m/m²]."""
     pipeline = _pipeline(predictor)
-    conditions = tests.conditions(pipeline.contact.contact_model, friction)
+    conditions = tests.conditions(pipeline.contact_model, friction)
     if isinstance(predictor, Fit) and FRICTION in predictor.parameters:
         conditions[FRICTION] = float(predictor.parameters[FRICTION].magnitude)
         conditions.pop("traction_coefficient", None)
@@ -170,9 +174,9 @@ def _predicted(name: str, predictor: Predictor, tests: WearTests, friction: Any,
     if "traction_coefficient" in conditions:
         notes.add(f"{name}: takes the traction that was measured in the tests")
     with notes.of(name):
-        pipeline = pipeline.contact | pipeline.wear_law  # warns of parameters fitted for another contact
+        pipeline = pipeline.without_law() | pipeline.wear_law  # warns of parameters fitted for another contact
     with notes.of("tests"):
-        prediction = pipeline.predict(pipeline.contact.rig.problem(**conditions))
+        prediction = pipeline.predict(pipeline.rig.problem(**conditions))
     return np.asarray(prediction.wear_rate.to_base_units().magnitude)
 
 

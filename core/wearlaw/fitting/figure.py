@@ -8,7 +8,7 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
-from wearlaw.fitting.observations import Observations, contact_of, predictions, wear_index_density
+from wearlaw.fitting.observations import Observations, predictions, wear_index_density
 from wearlaw.line import LineProblem
 from wearlaw.units import Q, in_unit
 from wearlaw.variables import UNITS, label
@@ -96,7 +96,7 @@ def _between(fit: Fit, one: Observations) -> LineProblem:
     }
     if problem.traction_coefficient is not None:
         conditions["traction_coefficient"] = filled(problem.traction_coefficient)
-    return contact_of(fit.predict).rig.problem(**conditions)
+    return fit.predict.rig.problem(**conditions)
 
 
 def _along(fit: Fit, problem: LineProblem, x: str) -> Array:

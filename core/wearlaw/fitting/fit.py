@@ -13,10 +13,12 @@ import numpy as np
 from wearlaw.errors import ConfigurationError, FitError, FitWarning
 from wearlaw.fitting.intervals import DECIDED_ALONE, Replicates, leverage, replicate
 from wearlaw.fitting.least_squares import Solutions
-from wearlaw.fitting.observations import AnyPipeline, contact_of, named
+from wearlaw.fitting.observations import named
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.summary import summarise
 from wearlaw.fitting.task import Task
+from wearlaw.pipeline import Pipeline
+from wearlaw.rig import TwinDisc
 from wearlaw.units import QuantityLike
 from wearlaw.wear_tests.tests import WearTests
 
@@ -28,7 +30,7 @@ USABLE = 0.95
 
 
 def fit(
-    predict: AnyPipeline,
+    predict: Pipeline[TwinDisc],
     tests: WearTests,
     free: Sequence[str],
     *,
@@ -45,7 +47,7 @@ def fit(
 
     Parameters
     ----------
-    predict : Pipeline or ContactPipeline
+    predict : Pipeline
         What predicts the tests. Parameters that are not free stay those of its law. Without a law, the friction
         coefficient is fitted to the measured traction.
     tests : WearTests
@@ -93,7 +95,7 @@ def fit(
             replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
     except ConfigurationError as error:
         raise FitError(f"on the way to a fit, a law was refused: {error}; give bounds that keep clear of it") from None
-    contact_of(predict).rig.warn_of_plasticity(task.observations[0].problem.max_pressure, stacklevel=2)
+    predict.rig.warn_of_plasticity(task.observations[0].problem.max_pressure, stacklevel=2)
     found = summarise(task, best, replicates, confidence, seed)
     _warn(task, best, replicates)
     return found

@@ -11,8 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
-from wearlaw.composition import needs_discs
-from wearlaw.contact_pipeline import ContactPipeline
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.integrate import integrate_contact, integrate_wear, patch_area
@@ -29,8 +27,6 @@ Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
 
 Observable: TypeAlias = Literal["wear_rate", "traction_coefficient"]
 
-AnyPipeline: TypeAlias = Pipeline[TwinDisc] | ContactPipeline[TwinDisc]
-
 FLOOR = 1e-300
 """In place of a prediction of zero, whose logarithm no step could leave."""
 
@@ -43,7 +39,7 @@ class Observations:
     ----------
     observable : str
         "wear_rate" [kg/m/m²] or "traction_coefficient" [-].
-    pipeline : Pipeline or ContactPipeline
+    pipeline : Pipeline
         What predicts it.
     tests : WearTests
         Those in which it was measured, each with a label.
@@ -58,7 +54,7 @@ class Observations:
     """
 
     observable: Observable
-    pipeline: AnyPipeline
+    pipeline: Pipeline[TwinDisc]
     tests: WearTests
     measured: Array
     problem: LineProblem
@@ -87,7 +83,7 @@ class Observations:
 
 
 def predictions(
-    observable: Observable, pipeline: AnyPipeline, problem: LineProblem, values: Mapping[str, Array]
+    observable: Observable, pipeline: Pipeline[TwinDisc], problem: LineProblem, values: Mapping[str, Array]
 ) -> Array:
     """Return wear rates [kg/m/m²] or traction coefficients at n operating points for many parameter sets.
 
@@ -95,7 +91,7 @@ def predictions(
     ----------
     observable : str
         Which of the two.
-    pipeline : Pipeline or ContactPipeline
+    pipeline : Pipeline
     problem : LineProblem
         With a batch of one axis, (n,).
     values : mapping of str to ndarray, (sets,)
@@ -110,34 +106,26 @@ def predictions(
     if FRICTION in values:
         problem = dataclasses.replace(problem, friction_coefficient=np.repeat(values[FRICTION], points))
     of_law = {name: np.repeat(value, points) for name, value in values.items() if name != FRICTION}
-    contact = contact_of(pipeline)
-    model = contact.contact_model
-    if observable == "traction_coefficient" or not isinstance(pipeline, Pipeline):
+    model = pipeline.contact_model
+    if observable == "traction_coefficient":
         predicted = np.abs(integrate_contact(model, problem)) / problem.normal_force
     elif of_law:
-        predicted = integrate_varying(model, pipeline.wear_law, of_law, problem, contact.scale)
+        predicted = integrate_varying(model, pipeline.wear_law, of_law, problem, pipeline.scale)
     else:
-        predicted = integrate_wear(model, pipeline.wear_law, problem, contact.scale).wear_rate
+        predicted = integrate_wear(model, pipeline.wear_law, problem, pipeline.scale).wear_rate
     return predicted.reshape(sets, points)
 
 
-def wear_index_density(pipeline: AnyPipeline, problem: LineProblem) -> Array:
+def wear_index_density(pipeline: Pipeline[TwinDisc], problem: LineProblem) -> Array:
     """Return the patch mean of Tγ/A [N/m²], of the batch shape."""
-    contact = contact_of(pipeline)
-    force = integrate_contact(contact.contact_model, problem)
-    density: Array = np.abs(force * problem.creepage) / patch_area(contact.contact_model, problem, contact.scale)
+    model = pipeline.contact_model
+    force = integrate_contact(model, problem)
+    density: Array = np.abs(force * problem.creepage) / patch_area(model, problem, pipeline.scale)
     return density
 
 
-def contact_of(pipeline: AnyPipeline) -> ContactPipeline[TwinDisc]:
-    """Return the rig with its contact model."""
-    contact = pipeline.contact if isinstance(pipeline, Pipeline) else pipeline
-    needs_discs(contact.rig, "fit")
-    return contact
-
-
 def observe(
-    pipeline: AnyPipeline, tests: WearTests, friction: float | None, fits_friction: bool, scatter: Scatter
+    pipeline: Pipeline[TwinDisc], tests: WearTests, friction: float | None, fits_friction: bool, scatter: Scatter
 ) -> list[Observations]:
     """Return what is fitted: wear rates, where there is a law, and tractions, where they tell the friction.
 
@@ -147,7 +135,7 @@ def observe(
         If the tests do not hold what is needed.
     """
     found = []
-    if isinstance(pipeline, Pipeline):
+    if pipeline.laws:
         found.append(_observe("wear_rate", pipeline, tests, friction, fits_friction, scatter))
     if fits_friction:
         of_traction: Scatter = "absolute" if scatter == "absolute" else "relative"
@@ -157,7 +145,7 @@ def observe(
 
 def _observe(
     observable: Observable,
-    pipeline: AnyPipeline,
+    pipeline: Pipeline[TwinDisc],
     tests: WearTests,
     friction: float | None,
     fits_friction: bool,
@@ -171,12 +159,11 @@ def _observe(
     selected, measured = dataclasses.replace(tests, labels=labels)[there], values[there]
     if scatter == "relative":
         _refuse_zeros(observable, selected, measured)
-    contact = contact_of(pipeline)
-    conditions = selected.conditions(contact.contact_model, friction)
+    conditions = selected.conditions(pipeline.contact_model, friction)
     if fits_friction:  # a measured traction would take the place of the one that the friction coefficient gives
         conditions = {**conditions, FRICTION: friction}
         conditions.pop("traction_coefficient", None)
-    problem = contact.rig.problem(**conditions)
+    problem = pipeline.rig.problem(**conditions)
     unit = _unit(selected, measured, scatter)
     return Observations(observable, pipeline, selected, measured, problem, scatter, unit)
 

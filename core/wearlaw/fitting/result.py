@@ -12,7 +12,7 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.errors import FitError
 from wearlaw.fitting.law_files import write_wear_law
-from wearlaw.fitting.observations import AnyPipeline, Observations, Scatter
+from wearlaw.fitting.observations import Observations, Scatter
 from wearlaw.models import WearLaw
 from wearlaw.registry import si_factor
 from wearlaw.units import Quantity, from_si
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from wearlaw.figures.curves import FigureData
+    from wearlaw.pipeline import Pipeline
+    from wearlaw.rig import TwinDisc
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,7 +49,7 @@ class Fit:
         Of the values in SI, in the order of `parameters`, from the linearised model.
     law : WearLaw or None
         The law with the fitted parameters; None where no law was given.
-    predict : Pipeline or ContactPipeline
+    predict : Pipeline
         The pipeline with the fitted law.
     tests : WearTests
         All tests that were given.
@@ -73,7 +75,7 @@ class Fit:
     confidence: float
     covariance: Array
     law: WearLaw | None
-    predict: AnyPipeline
+    predict: Pipeline[TwinDisc]
     tests: WearTests
     scatter: Scatter
     chi2: float

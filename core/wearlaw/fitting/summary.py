@@ -16,12 +16,11 @@ from wearlaw.errors import ConfigurationError, FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
 from wearlaw.fitting.intervals import Replicates, covariance, student_intervals, studentised_intervals
 from wearlaw.fitting.least_squares import Solutions
-from wearlaw.fitting.observations import FLOOR, Observations, contact_of, named, wear_index_density
+from wearlaw.fitting.observations import FLOOR, Observations, named, wear_index_density
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.task import Task
 from wearlaw.models import Calibration, WearLaw
 from wearlaw.parameters import changed
-from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
 from wearlaw.tangential import Model
 from wearlaw.units import Quantity, in_unit
@@ -58,7 +57,7 @@ def summarise(task: Task, best: Solutions, replicates: Replicates | None, confid
         confidence=confidence,
         covariance=covariance(best)[0] * np.outer(slopes, slopes),
         law=law,
-        predict=task.predict if law is None else Pipeline(contact=contact_of(task.predict), wear_law=law),
+        predict=task.predict if law is None else task.predict.with_law(law),
         tests=task.tests,
         scatter=task.scatter,
         chi2=chi2,
@@ -87,7 +86,7 @@ def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observatio
 def _fitted_law(
     task: Task, parameters: Mapping[str, Quantity], values: Mapping[str, Array], observations: Sequence[Observations]
 ) -> WearLaw | None:
-    if not isinstance(task.predict, Pipeline):
+    if not task.predict.laws:
         return None
     law = task.predict.wear_law
     one = observations[0]
@@ -107,15 +106,15 @@ def _fitted_law(
 
 def _calibration(task: Task, one: Observations) -> Calibration:
     """Return what the parameters were fitted to."""
-    contact = contact_of(task.predict)
-    density = in_unit(wear_index_density(task.predict, one.problem), "N/mm^2")
+    predict = task.predict
+    density = in_unit(wear_index_density(predict, one.problem), "N/mm^2")
     low, high = _rounded(float(density.min()), math.floor), _rounded(float(density.max()), math.ceil)
     of = f" of {task.tests.source}" if task.tests.source else ""
     return Calibration(
-        contact_model=contact.contact_model.name,
-        scale=contact.scale,
-        options=_options(contact.contact_model),
-        materials=_materials(contact.rig),
+        contact_model=predict.contact_model.name,
+        scale=predict.scale,
+        options=_options(predict.contact_model),
+        materials=_materials(predict.rig),
         stated_range=(("wear_index_density", f"{low!r} N/mm^2", f"{high!r} N/mm^2"),),
         source=f"fitted to {one.measured.size} tests{of}",
     )
@@ -156,7 +155,7 @@ def _provenance(
     task: Task, law: WearLaw | None, replicates: Replicates | None, seed: int, chi2: float, confidence: float
 ) -> dict[str, Any]:
     """Return where a fit comes from, as a table that TOML can hold."""
-    model = contact_of(task.predict).contact_model
+    model = task.predict.contact_model
     found = plugins.installed()
     origin = {} if law is None else {"wear_law": found.wear_laws.distribution(law.name, type(law))}
     return {

@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
-from wearlaw.contact_pipeline import ContactPipeline
+from wearlaw.composition import needs_discs
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, named
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
-from wearlaw.fitting.observations import AnyPipeline, Observations, Scatter, observe
+from wearlaw.fitting.observations import Observations, Scatter, observe
 from wearlaw.pipeline import Pipeline
+from wearlaw.rig import TwinDisc
 from wearlaw.units import QuantityLike, coefficient
 from wearlaw.wear_tests.tests import WearTests
 
@@ -35,7 +36,7 @@ LEAST_GROUP = 4
 class Task:
     """What is fitted to what, and the weights of the residuals."""
 
-    predict: AnyPipeline
+    predict: Pipeline[TwinDisc]
     tests: WearTests
     scatter: Scatter
     free: FreeParameters
@@ -45,7 +46,7 @@ class Task:
     @classmethod
     def of(
         cls,
-        predict: AnyPipeline,
+        predict: Pipeline[TwinDisc],
         tests: WearTests,
         free: Sequence[str],
         friction: float | None,
@@ -60,11 +61,12 @@ class Task:
             If the tests do not hold what is needed, or a parameter is not known.
         """
         law, friction = None, _one_value(friction)
-        if isinstance(predict, Pipeline):
-            law = predict.wear_law.explicit()
-            predict = Pipeline(contact=predict.contact, wear_law=law)
-        elif not isinstance(predict, ContactPipeline):
+        if not isinstance(predict, Pipeline):
             raise FitError(f"predict: give a rig with a contact model, and a wear law or none, not {predict!r}")
+        needs_discs(predict.rig, "fit")
+        if predict.laws:
+            law = predict.wear_law.explicit()
+            predict = predict.with_law(law)
         free = named(free)
         fits_friction = FRICTION in free
         first = _first_friction(tests, friction) if fits_friction else friction

@@ -132,7 +132,7 @@ def models(study: Study) -> NamedTable:
 
 def _contact_models(study: Study) -> list[tuple[str, Model]]:
     """Return the contact models that are used in any pair, with their labels."""
-    return list({pair.contact_model: pair.pipeline.contact.contact_model for pair in study.pairs}.items())
+    return list({pair.contact_model: pair.pipeline.contact_model for pair in study.pairs}.items())
 
 
 def _wear_laws(study: Study) -> list[tuple[str, Model]]:

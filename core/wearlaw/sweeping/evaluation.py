@@ -74,7 +74,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     `on_block` is called with the number of points done, several times where that takes long.
     """
     kernels.accelerate(job.accelerate)
-    problem = job.pipeline.contact.rig.problem(**part.conditions())
+    problem = job.pipeline.rig.problem(**part.conditions())
     watch = RangeWatch(job.pipeline.wear_law)
     prediction = job.pipeline.watched(problem, watch, on_block)
     outputs = {name: _in_unit(getattr(prediction, name), unit) for name, unit in job.units.items()}
@@ -106,7 +106,7 @@ def notes(pipeline: Pipeline[Any], blocks: Iterable[Seen]) -> list[str]:
     highest_pressure: Any = np.float64(max(one.max_pressure for one in every))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        pipeline.contact.rig.warn_of_plasticity(highest_pressure, stacklevel=1)
+        pipeline.rig.warn_of_plasticity(highest_pressure, stacklevel=1)
         watch.warn(stacklevel=1)
     return [str(one.message) for one in caught]
 
@@ -119,7 +119,7 @@ def output_units(pipeline: Pipeline[Any], points: Points, outputs: list[str]) ->
     InputError
         If there is no such output, or it is a condition.
     """
-    problem = pipeline.contact.rig.problem(**points.part([slice(0, 1)] * len(points.dims)).conditions())
+    problem = pipeline.rig.problem(**points.part([slice(0, 1)] * len(points.dims)).conditions())
     prediction = pipeline.watched(problem, RangeWatch(pipeline.wear_law))
     given = {*points.varying, *points.fixed}
     units = {}

@@ -85,6 +85,8 @@ def check_same(where: Path, before: Run, now: Run) -> None:
 
 
 def _changes(path: str, before: Any, now: Any) -> Iterator[str]:
+    if isinstance(before, list) and isinstance(now, list):
+        before, now = ({str(number): one for number, one in enumerate(each)} for each in (before, now))
     if isinstance(before, dict) and isinstance(now, dict):
         for key in dict.fromkeys([*before, *now]):
             yield from _changes(f"{path}.{key}" if path else key, before.get(key, "nothing"), now.get(key, "nothing"))

@@ -25,29 +25,71 @@ from wearlaw.sweeping.worker import evaluated
 from wearlaw.units import shortened
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
 
 def sweep(
-    pipeline: Pipeline[Any],
-    table: Any,
-    conditions: Mapping[str, Any],
+    predict: Pipeline[Any],
+    /,
+    table: pandas.DataFrame | xarray.Dataset | None = None,
     *,
-    outputs: Sequence[str],
-    workers: int,
-    client: Any,
-    store: str | os.PathLike[str] | None,
-    resume: bool,
-    progress: bool,
+    outputs: Sequence[str] = ("wear_rate",),
+    workers: int = 1,
+    client: Any = None,
+    store: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    progress: bool = False,
+    **conditions: Any,
 ) -> xarray.Dataset:
-    """Return predictions at all points of a sweep; see `Pipeline.sweep`."""
+    """Return predictions at all combinations of the conditions that are arrays, or at the rows of a table.
+
+    Parameters
+    ----------
+    predict : Pipeline
+        A rig, a contact model and a wear law.
+    table : pandas.DataFrame or xarray.Dataset, optional
+        Operating points row by row, a condition a column, with units by type (pint), `attrs["units"]` or heads such as
+        "creepage [%]"; the conditions that are given besides are the same in all rows.
+    outputs : sequence of str
+        What is kept: names of properties of a prediction, such as "wear_rate" or "tangential_force".
+    workers : int
+        How many processes of this machine take part; they are kept for later sweeps.
+    client : distributed.Client, optional
+        A cluster of dask.distributed, in place of `workers`.
+    store : path, optional
+        A folder for the results, in zarr format, where they are written block by block. An interrupted sweep leaves
+        there what is done. Without it the results are in memory.
+    resume : bool
+        Whether to go on with the sweep that `store` holds a part of, if it does. Blocks that are damaged there are
+        computed again, with a `ResumeWarning`.
+    progress : bool
+        Whether to show a progress bar with rate and time left.
+    **conditions
+        Those of a prediction; each array is an axis, with one value for each of its coordinates.
+
+    Returns
+    -------
+    xarray.Dataset
+        The outputs along the conditions, which are its coordinates; units are in `attrs["units"]`. With `store`
+        values are read from there when they are used.
+
+    Raises
+    ------
+    InputError
+        If conditions or outputs are not possible, or the results would not fit into memory or on the disk.
+    OutputError
+        If `store` holds anything else than an unfinished part of the same sweep.
+    SweepError
+        If workers die again and again.
+    """
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise InputError(f"workers: must be the number of processes, at least 1; got {workers!r}")
     if not isinstance(store, str | os.PathLike | None):
         raise InputError(f'store: must be the path of a folder, such as "map.zarr"; got {shortened(store)}')
     points = outer_product(conditions) if table is None else from_table(table, conditions)
-    _check_conditions(pipeline, points, {name: None for name, value in conditions.items() if value is None})
-    job = _checked_job(pipeline, points, outputs, workers > 1 or client is not None)
+    _check_conditions(predict, points, {name: None for name, value in conditions.items() if value is None})
+    job = _checked_job(predict, points, outputs, workers > 1 or client is not None)
     if store is None:
         if resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
@@ -59,11 +101,11 @@ def sweep(
             return there
         target = Store(job, points, path, resume)
         if target.damaged:
-            warnings.warn(damage(target.damaged, target.listed, path), ResumeWarning, stacklevel=3)
+            warnings.warn(damage(target.damaged, target.listed, path), ResumeWarning, stacklevel=2)
     with closing(target), Bar(points.size, progress) as bar:
         texts = run(target, bar, workers, client)
         for text in texts:
-            warnings.warn(text, RangeWarning, stacklevel=3)
+            warnings.warn(text, RangeWarning, stacklevel=2)
         return target.finish(texts)
 
 
@@ -103,7 +145,7 @@ def _check_conditions(pipeline: Pipeline[Any], points: Points, not_given: Mappin
     """Find what cannot be before anything is evaluated: each dimension at the first values of the others."""
     for dim in points.dims:
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
-        pipeline.contact.rig.problem(**{**not_given, **line.conditions()})
+        pipeline.rig.problem(**{**not_given, **line.conditions()})
 
 
 def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:
@@ -116,7 +158,7 @@ def run(target: Target, on_block: Callable[[int], None], workers: int = 1, clien
     on_block : callable
         Called with the number of points done, for each block; first of all for those that were done before.
     workers, client
-        As in `Pipeline.sweep`.
+        As in `sweep`.
     """
     left = [block for block in target.points.blocks() if block.number not in target.done]
     on_block(sum(seen.points for seen in target.done.values()))
@@ -125,7 +167,7 @@ def run(target: Target, on_block: Callable[[int], None], workers: int = 1, clien
         for block, seen, deaths in every:
             target.add(block.number, seen)
             for death in deaths:
-                warnings.warn(death, WorkerWarning, stacklevel=4)
+                warnings.warn(death, WorkerWarning, stacklevel=3)
             if several:
                 on_block(seen.points)
     return notes(target.job.pipeline, target.done.values())

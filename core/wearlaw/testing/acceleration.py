@@ -10,7 +10,6 @@ from wearlaw.arrays import Array
 from wearlaw.errors import InputError
 from wearlaw.kernels import accelerate
 from wearlaw.models import BreakpointMap, WearLaw
-from wearlaw.pipeline import Pipeline
 from wearlaw.records import Contact
 from wearlaw.rig import TwinDisc
 from wearlaw.tangential import ContactModel, Model
@@ -76,7 +75,7 @@ def _results(model: Model, part: slice | int) -> tuple[Array, Array]:
 
 
 def _of_line(model: ContactModel, part: slice | int) -> tuple[Array, Array]:
-    predict = Pipeline(contact=TwinDisc.suros() | model, wear_law=Ramps())
+    predict = (TwinDisc.suros() | model).with_law(Ramps())
     pressure, creepage = np.tile([0.3e9, 1.5e9], POINTS // 2), np.geomspace(1e-5, 0.5, POINTS)
     found = predict(max_pressure=Q(pressure[part], "Pa"), creepage=Q(creepage[part], ""), friction_coefficient=0.46)
     force, index, slip, rate = (
@@ -88,7 +87,7 @@ def _of_line(model: ContactModel, part: slice | int) -> tuple[Array, Array]:
 
 
 def _of_ellipse(model: ContactModel, part: slice | int) -> tuple[Array, Array]:
-    predict = Pipeline(contact=WHEEL_RAIL | model, wear_law=Ramps())
+    predict = (WHEEL_RAIL | model).with_law(Ramps())
     pressure, creepage = np.tile([0.3e9, 0.6e9], POINTS // 2), np.geomspace(1e-5, 0.1, POINTS)
     found = predict(
         max_pressure=Q(pressure[part], "Pa"),

@@ -16,7 +16,6 @@ from wearlaw.arrays import Array
 from wearlaw.conditions import WheelRailConditions
 from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import TOTALS, EllipticContact
-from wearlaw.pipeline import Pipeline
 from wearlaw.records import NODE_VARIABLES
 from wearlaw.tangential import ContactModel
 from wearlaw.testing.acceleration import Ramps
@@ -239,7 +238,7 @@ def wear_laws_run_on_the_ellipse(model: ContactModel) -> None:
         assert found == contact.pressure.shape, f"{variable} has the shape {found}, not {contact.pressure.shape}"
     law = Ramps()
     due = contact.mean(law.rate(contact))
-    found = Pipeline(contact=WHEEL_RAIL | model, wear_law=law)(**conditions).wear_rate.m_as("kg/m/m^2")
+    found = (WHEEL_RAIL | model).with_law(law)(**conditions).wear_rate.m_as("kg/m/m^2")
     assert (due > 0).all(), f"the wear rates are {due!r}"
     assert_close(found, due, "the wear rate of a pipeline", SUM)
 

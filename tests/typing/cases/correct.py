@@ -13,8 +13,8 @@ rig = wl.TwinDisc.suros()
 assert_type(rig, wl.TwinDisc)
 assert_type(wl.contact_model("fastsim", bound="elliptic"), wl.ContactModel)
 assert_type(wl.wear_law("usfd", fitted_for="exact"), wl.WearLaw)
-assert_type(rig | wl.contact_model("exact"), wl.ContactPipeline[wl.TwinDisc])
-assert_type(rig | wl.contact_model("exact") | wl.patch_mean(), wl.ContactPipeline[wl.TwinDisc])
+assert_type(rig | wl.contact_model("exact"), wl.Pipeline[wl.TwinDisc])
+assert_type(rig | wl.contact_model("exact") | wl.patch_mean(), wl.Pipeline[wl.TwinDisc])
 assert_type(rig | wl.contact_model("exact") | wl.patch_mean() | wl.wear_law("brr"), wl.Pipeline[wl.TwinDisc])
 
 predict = rig | wl.contact_model("exact") | wl.wear_law("usfd")
@@ -37,7 +37,7 @@ predict(normal_force_per_width="741 kN/m", creepage="1 %", friction_coefficient=
 predict(normal_force="7 kN", creepage="1 %", friction_coefficient=[0.3, 0.4], traction_coefficient=0.45)
 
 contact = rig | wl.contact_model("exact")
-assert_type(contact(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4), wl.ContactSolution)
+assert_type(contact(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4), wl.Prediction)
 
 wl.TwinDisc(
     disc_1=wl.Disc(diameter=Q(47, "mm"), material=wl.steel()),

@@ -19,8 +19,6 @@ law | model  # expect-error
 wl.patch_mean() | law  # expect-error
 rig | model | model  # expect-error
 rig | model | "usfd"  # expect-error
-predict | law  # expect-error
-predict | wl.patch_mean()  # expect-error
 
 wl.Disc(diameter=0.047, material=wl.steel())  # expect-error
 wl.Disc(diameter="47 mm")  # expect-error
@@ -42,10 +40,9 @@ result = predict(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4)
 result.wear  # expect-error
 result.mass_lost(over=10, body="disc_1")  # expect-error
 result.depth_per_distance()  # expect-error
-(rig | model)(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4).wear_rate  # expect-error
 
 wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 on_rail = wheel | model | law
 on_rail(normal_force="80 kN", creepage="1 %", friction_coefficient=0.3)  # expect-error
 on_rail(normal_force="80 kN", longitudinal_creepage=0.01, friction_coefficient=0.3)  # expect-error
-on_rail.uncertainty(normal_force="80 kN")  # expect-error
+wl.uncertainty(on_rail, normal_force="80 kN")  # expect-error

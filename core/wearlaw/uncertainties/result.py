@@ -9,22 +9,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.composition import check_traction
+from wearlaw.composition import check_traction, needs_discs
 from wearlaw.conditions import TWIN_DISC, broadcast, is_friction_law
 from wearlaw.errors import InputError, UnitError
 from wearlaw.grid import with_units
 from wearlaw.integrate import integrate_contact, patch_area
 from wearlaw.ranges import RangeWatch, line_mean
-from wearlaw.uncertainty.distributions import Distribution, PublishedRange
-from wearlaw.uncertainty.figure import CONFIDENCE, figure_data
-from wearlaw.uncertainty.inputs import OTHERS, Uncertain, check_samples, parameter, split
-from wearlaw.units import WEAR_RATE, Q, Quantity, from_si, shortened
+from wearlaw.uncertainties.distributions import Distribution, PublishedRange
+from wearlaw.uncertainties.figure import CONFIDENCE, figure_data
+from wearlaw.uncertainties.inputs import OTHERS, Uncertain, check_samples, parameter, split
+from wearlaw.units import WEAR_RATE, Q, Quantity, QuantityLike, from_si, shortened
 from wearlaw.varying import integrate_varying
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike
 
+    from wearlaw.conditions import FrictionLaw
     from wearlaw.figures.curves import FigureData
     from wearlaw.line import LineProblem
     from wearlaw.pipeline import Pipeline
@@ -40,8 +42,42 @@ INSIDE = 2.0**-54
 """The least distance of a probability from 0 and 1, where a normal distribution is infinite."""
 
 
+def uncertainty(
+    predict: Pipeline[TwinDisc],
+    /,
+    *,
+    law: Mapping[str, Distribution | PublishedRange] | None = None,
+    samples: int = 2**14,
+    seed: int = 0,
+    **conditions: QuantityLike | ArrayLike | Distribution | FrictionLaw | None,
+) -> Uncertainty:
+    """Return how uncertain the wear rate is where conditions and parameters are.
+
+    Parameters
+    ----------
+    predict : Pipeline
+        A rig, a contact model and a wear law.
+    law : mapping of str to distribution, optional
+        Parameters of the wear law by name, such as {"q_s": wl.normal("55 ug/m/mm^2", "5 ug/m/mm^2")} or
+        {"coefficient": wl.published_range()}.
+    samples : int
+        How many samples to take, rounded up to a power of two.
+    seed : int
+        The same seed gives the same samples.
+    **conditions
+        Those of a prediction, of which any may be a distribution: `uniform`, `normal` or `lognormal`.
+
+    Raises
+    ------
+    InputError
+        If nothing is distributed, or a distribution is not possible there.
+    """
+    needs_discs(predict.rig, "uncertainty")
+    return Uncertainty(predict, conditions, law or {}, samples, seed)
+
+
 class Uncertainty:
-    """The wear rate where some conditions and parameters are distributed; made by `Pipeline.uncertainty`.
+    """The wear rate where some conditions and parameters are distributed; made by `uncertainty`.
 
     What it returns has the shape of the conditions that are not distributed.
 
@@ -161,7 +197,7 @@ class Uncertainty:
     @property
     def title(self) -> str:
         """What is predicted, in words."""
-        return f"Wear rate by {self._law.name} on {self._predict.contact.contact_model.name}"
+        return f"Wear rate by {self._law.name} on {self._predict.contact_model.name}"
 
     @cached_property
     def known(self) -> dict[str, Array]:
@@ -178,7 +214,7 @@ class Uncertainty:
         known = {name: array[..., None] for name, array in self.known.items()}
         given: Any = with_units(known | sampled) | self._friction_law
         try:
-            return self._predict.contact.rig.problem(**given)
+            return self._predict.rig.problem(**given)
         except UnitError as error:
             raise InputError(f"{error}{OTHERS}") from None
 
@@ -197,18 +233,18 @@ class Uncertainty:
         problem = self._problem(conditions)
         flat = problem.broadcast_to(shape).flatten()
         varied = {name: np.broadcast_to(values, shape).reshape(-1) for name, values in of_law.items()}
-        contact = self._predict.contact
-        check_traction(contact.contact_model, flat)
+        predict = self._predict
+        check_traction(predict.contact_model, flat)
         if stacklevel is not None:
-            contact.rig.warn_of_plasticity(flat.max_pressure, stacklevel=stacklevel)
+            predict.rig.warn_of_plasticity(flat.max_pressure, stacklevel=stacklevel)
             watch = RangeWatch(self._law)
             columns = {
-                "tangential_force": integrate_contact(contact.contact_model, flat),
-                "patch_area": patch_area(contact.contact_model, flat, contact.scale),
+                "tangential_force": integrate_contact(predict.contact_model, flat),
+                "patch_area": patch_area(predict.contact_model, flat, predict.scale),
             }
             watch.see(flat.size, partial(line_mean, flat, columns))
             watch.warn(stacklevel)
-        rates = integrate_varying(contact.contact_model, self._law, varied, flat, contact.scale)
+        rates = integrate_varying(predict.contact_model, self._law, varied, flat, predict.scale)
         return rates.reshape(shape)
 
     def __repr__(self) -> str:

@@ -15,7 +15,7 @@ from wearlaw.conditions import TWIN_DISC
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.models import WearLaw
 from wearlaw.parameters import changed, number_in_si, number_like, numbers
-from wearlaw.uncertainty.distributions import Distribution, PublishedRange, uniform
+from wearlaw.uncertainties.distributions import Distribution, PublishedRange, uniform
 from wearlaw.units import Unit, coefficient, shortened
 
 

@@ -11,7 +11,7 @@ from wearlaw.case import Case, written
 from wearlaw.errors import OutputError
 from wearlaw.output import FigureFormat, save_figure, save_table
 from wearlaw.study import provenance
-from wearlaw.uncertainty.of_case import CaseUncertainty
+from wearlaw.uncertainties.of_case import CaseUncertainty
 
 UNCERTAINTY = "uncertainty.json"
 

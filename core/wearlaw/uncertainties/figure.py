@@ -14,7 +14,7 @@ from wearlaw.units import Quantity, from_si
 from wearlaw.variables import UNITS, label
 
 if TYPE_CHECKING:
-    from wearlaw.uncertainty.result import Uncertainty
+    from wearlaw.uncertainties.result import Uncertainty
 
 CONFIDENCE = 0.95
 """The share of the samples in an interval, where none is given."""

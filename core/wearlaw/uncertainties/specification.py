@@ -13,8 +13,15 @@ from wearlaw.errors import InputError, did_you_mean
 from wearlaw.grid import Value
 from wearlaw.models import WearLaw
 from wearlaw.rig import TwinDisc
-from wearlaw.uncertainty.distributions import Distribution, PublishedRange, lognormal, normal, published_range, uniform
-from wearlaw.uncertainty.inputs import parameter, split
+from wearlaw.uncertainties.distributions import (
+    Distribution,
+    PublishedRange,
+    lognormal,
+    normal,
+    published_range,
+    uniform,
+)
+from wearlaw.uncertainties.inputs import parameter, split
 
 
 class Spread(Configuration):
@@ -89,7 +96,7 @@ class UncertainPoint(Configuration):
         return self
 
     def conditions(self) -> dict[str, Any]:
-        """Return the conditions as `Pipeline.uncertainty` takes them."""
+        """Return the conditions as `uncertainty` takes them."""
         given = {name: getattr(self, name) for name in TWIN_DISC.names}
         return {name: _distribution(value) for name, value in given.items() if value is not None}
 

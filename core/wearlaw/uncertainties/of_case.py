@@ -12,8 +12,8 @@ from wearlaw.case import Case, labelled
 from wearlaw.errors import InputError
 from wearlaw.notes import Notes
 from wearlaw.pairs import Pair, compose
-from wearlaw.uncertainty.figure import CONFIDENCE
-from wearlaw.uncertainty.result import Uncertainty
+from wearlaw.uncertainties.figure import CONFIDENCE
+from wearlaw.uncertainties.result import Uncertainty
 from wearlaw.units import WEAR_RATE
 
 if TYPE_CHECKING:
