@@ -40,7 +40,7 @@ def test_pyproject_names_every_package_wherever_packages_are_named() -> None:
     assert [
         Path(path).name for path in tools["hatch"]["build"]["targets"]["wheel"]["packages"] if path[-3:] != ".py"
     ] == names
-    assert sorted(PYPROJECT["project"]["entry-points"]["wearlaw"].values()) == names[1:]
+    assert sorted(PYPROJECT["project"]["entry-points"]["wearlaw"].values()) == ["wearlaw.rigs", *names[1:]]
     assert tools["importlinter"]["root_packages"] == names
     assert [one.get("modules") or one["forbidden_modules"] for one in contracts[:2]] == [names[1:]] * 2
     assert contracts[2]["source_modules"] == names[1:]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 from wearlaw import hertz, hertz_ellipse, kalker
 from wearlaw.arrays import Array
+from wearlaw.base_rig import Body, Rig
 from wearlaw.configuration import Configuration
 from wearlaw.creep_force_model import CreepForceModel
 from wearlaw.ellipse import CreepForces, EllipticProblem
@@ -56,13 +57,16 @@ from wearlaw.plugins import (
     material,
     materials,
     parameter_sets,
+    rig,
+    rigs,
     wear_law,
     wear_laws,
 )
 from wearlaw.quadrature import Nodes
 from wearlaw.records import Contact
 from wearlaw.result import Prediction
-from wearlaw.rig import Disc, TwinDisc
+from wearlaw.rigs.twin_disc import Disc, TwinDisc
+from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.sections import CheckedClaim, Section
 from wearlaw.specification import ContactModelField, WearLawField
 from wearlaw.tangential import Claim, ContactModel, Geometry, Scale
@@ -71,12 +75,12 @@ from wearlaw.units import Density, Length, Q, Quantity, QuantityLike, Speed, Str
 from wearlaw.version import __version__
 from wearlaw.wear_tests.reader import read_tests
 from wearlaw.wear_tests.tests import WearTests
-from wearlaw.wheel_rail import WheelRail
 from wearlaw.wheel_rail_result import WheelRailPrediction
 
 __all__ = [
     "INTERFACE_VERSION",
     "Array",
+    "Body",
     "BreakpointMap",
     "Calibration",
     "CalibrationWarning",
@@ -129,6 +133,7 @@ __all__ = [
     "QuantityLike",
     "RangeWarning",
     "ResumeWarning",
+    "Rig",
     "Scale",
     "Section",
     "Speed",
@@ -174,6 +179,8 @@ __all__ = [
     "published_range",
     "read_tests",
     "read_wear_law",
+    "rig",
+    "rigs",
     "run",
     "scalar_si",
     "steel",

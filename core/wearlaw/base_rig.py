@@ -1,24 +1,32 @@
-"""What rigs have in common: they begin a pipeline, and know the elastic limit of their bodies."""
+"""What a plugin implements that sets two bodies rolling: `Rig`. It turns the conditions of a test into a problem."""
 
 from __future__ import annotations
 
+import inspect
 import warnings
-from abc import ABC, abstractmethod
+from abc import abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, Protocol, TypeVar
 
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.configuration import Configuration
-from wearlaw.errors import CompositionError, ConditionsError, RangeWarning
+from wearlaw.ellipse import EllipticProblem
+from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, RangeWarning, did_you_mean
 from wearlaw.extremes import extremes
+from wearlaw.line import LineProblem
 from wearlaw.material import Material
-from wearlaw.tangential import ContactModel, Geometry
+from wearlaw.tangential import Blame, ContactModel, Geometry, Model
 from wearlaw.units import from_si, scalar_si
 
 if TYPE_CHECKING:
     from wearlaw.pipeline import Pipeline
+
+P = ParamSpec("P")
+ProblemT = TypeVar("ProblemT", bound=LineProblem | EllipticProblem)
+ProblemT_co = TypeVar("ProblemT_co", bound=LineProblem | EllipticProblem, covariant=True)
 
 TINY = float(np.sqrt(np.finfo(np.float64).tiny))
 """The least length or pressure in SI whose square is a float of full precision."""
@@ -27,17 +35,112 @@ LEAST_FRICTION = 1e-12
 """The least friction coefficient; below it creepage over that of full slip overflows in formulas of fourth order."""
 
 
-class Rig(Configuration, ABC):
-    """Two bodies that roll on each other."""
+@dataclass(frozen=True)
+class Body:
+    """One of the two bodies of a rig.
 
-    geometry: ClassVar[Geometry]
-    """The shape of the patch in which they touch."""
+    Attributes
+    ----------
+    material : Material
+        What it is made of.
+    rolling_radius : float
+        Radius of the surface that rolls [m]; infinite where the body is flat or straight, as a rail is.
+    """
+
+    material: Material
+    rolling_radius: float
+
+
+class Poses(Protocol[P, ProblemT_co]):
+    """What type checkers see of a rig: the conditions that it takes, and the kind of problem that they pose."""
+
+    def problem(self, *args: P.args, **conditions: P.kwargs) -> ProblemT_co:
+        """Return the problem that the conditions pose."""
+        ...
+
+
+class Rig(Model):
+    """Two bodies that roll on each other under given conditions.
+
+    A rig of your own implements `problem`, with the conditions as keyword arguments. Its fields are what stays the same
+    from test to test.
+    """
+
+    kind: ClassVar[str] = "rig"
+
+    geometry: ClassVar[Geometry | None] = None
+    """The shape of the patch, by which a contact model that cannot solve it is refused at once; None where only the
+    problem tells."""
+
+    creepage: ClassVar[str] = "creepage"
+    """The condition that `creepage_for` looks for."""
+
+    @classmethod
+    def subject(cls) -> str:
+        """Return what messages call this rig."""
+        return cls.__name__
 
     @abstractmethod
-    def materials(self) -> tuple[Material, ...]:
-        """Return what the bodies are made of."""
+    def problem(self, *args: Any, **conditions: Any) -> LineProblem | EllipticProblem:
+        """Return the contact problem that the conditions pose; arrays broadcast against each other."""
 
-    def __or__(self, model: ContactModel) -> Pipeline[Any]:
+    @property
+    def bodies(self) -> Mapping[str, Body]:
+        """The two bodies by name, of which the first is the one whose wear is predicted; {} where they are unknown."""
+        return {}
+
+    def body(self, name: str) -> Body:
+        """Return the body of a name.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        known = self.bodies
+        if name not in known:
+            names = " and ".join(repr(one) for one in known) or "not named"
+            raise InputError(f"body: this rig has no '{name}'; its bodies are {names}")
+        return known[name]
+
+    @classmethod
+    def conditions(cls) -> tuple[str, ...]:
+        """Return the names of the conditions that `problem` takes."""
+        return tuple(inspect.signature(cls.problem).parameters)[1:]
+
+    def checked_problem(self, conditions: Mapping[str, Any]) -> Any:
+        """Return `problem` of the conditions, or raise an error that says whether they or the rig are wrong.
+
+        Raises
+        ------
+        ConditionsError
+            If a condition is missing or unknown.
+        ModelError
+            If the rig fails, or returns no problem.
+        """
+        try:
+            with Blame(self):
+                problem = self.problem(**conditions)
+        except ModelError:
+            self._check_names(conditions)
+            raise
+        if not isinstance(problem, LineProblem | EllipticProblem):
+            raise ModelError(f"rig '{self.name}' returned {problem!r}, not a wearlaw.LineProblem or EllipticProblem")
+        return problem
+
+    def _check_names(self, conditions: Mapping[str, Any]) -> None:
+        """Refuse conditions that are not those that `problem` takes."""
+        known = self.conditions()
+        for name in conditions:
+            if name not in known:
+                raise ConditionsError(
+                    f"{name}: unknown condition{did_you_mean(name, known)} The conditions are: {', '.join(known)}"
+                )
+        for name, parameter in inspect.signature(self.problem).parameters.items():
+            if parameter.default is parameter.empty and name in known and name not in conditions:
+                raise ConditionsError(f"{name}: is missing; rig '{self.name}' takes {', '.join(known)}")
+
+    def __or__(self: Poses[P, ProblemT], model: ContactModel) -> Pipeline[P, ProblemT]:
         """Return the pipeline that solves this rig's contact with a contact model."""
         from wearlaw.pipeline import Pipeline
 
@@ -46,6 +149,7 @@ class Rig(Configuration, ABC):
                 f"a rig is followed by a contact model, not by {model!r};"
                 ' for example rig | wl.contact_model("fastsim") | wl.wear_law("usfd")'
             )
+        assert isinstance(self, Rig)
         return Pipeline(rig=self, contact_model=model)
 
     def warn_of_plasticity(self, max_pressure: Array, stacklevel: int) -> None:
@@ -63,7 +167,7 @@ class Rig(Configuration, ABC):
     @cached_property
     def _elastic_limit(self) -> float:
         """The lowest of the bodies' elastic limits [Pa]; infinite where none is known."""
-        limits = (material.elastic_limit for material in self.materials())
+        limits = (body.material.elastic_limit for body in self.bodies.values())
         return min((scalar_si(limit, "Pa") for limit in limits if limit is not None), default=np.inf)
 
 

@@ -30,7 +30,7 @@ from wearlaw.figures.measured_points import known_variables
 from wearlaw.figures.spec import FigureSpec
 from wearlaw.grid import Grid
 from wearlaw.measurement import Measurement
-from wearlaw.rig import Disc, TwinDisc
+from wearlaw.rigs.twin_disc import Disc, TwinDisc
 from wearlaw.shelf import Shelf
 from wearlaw.specification import ContactModelField, MaterialField, WearLawField
 from wearlaw.tangential import Model

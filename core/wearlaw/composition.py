@@ -9,7 +9,7 @@ from wearlaw.base_rig import Rig
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
 from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
-from wearlaw.rig import TwinDisc
+from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.tangential import PATCHES, ContactModel, Scale
 
 PEAKS = (
@@ -30,7 +30,7 @@ def check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
 
 def check_geometry(rig: Rig, model: ContactModel) -> None:
     """Refuse a contact model of another geometry than the rig's."""
-    if rig.geometry not in model.geometries():
+    if rig.geometry is not None and rig.geometry not in model.geometries():
         able = [name for name, one in plugins.contact_models().items() if rig.geometry in one.geometries()]
         raise CompositionError(
             f"contact model '{model.name}' solves {' and '.join(PATCHES[known] for known in model.geometries())} only,"
@@ -41,7 +41,9 @@ def check_geometry(rig: Rig, model: ContactModel) -> None:
 def warn_of_calibration(rig: Rig, model: ContactModel, scale: Scale, law: WearLaw) -> None:
     """Warn of parameters that were fitted for another contact; the caller's caller is named."""
     calibration, geometry = law.calibration, rig.geometry
-    if calibration is None or calibration.covers(model, scale, geometry):
+    if geometry is None and calibration is not None:  # the shape of the patch is not known yet
+        geometry = calibration.geometry
+    if calibration is None or geometry is None or calibration.covers(model, scale, geometry):
         return
     if calibration.geometry != geometry:
         warnings.warn(

@@ -10,6 +10,7 @@ from typing import Any
 import pint
 
 from wearlaw import plugins
+from wearlaw.base_rig import Rig
 from wearlaw.docstrings import field_docstrings
 from wearlaw.errors import InputError
 from wearlaw.models import WearLaw
@@ -27,14 +28,15 @@ def describe(model: type[Model]) -> str:
     for name, text in field_docstrings(model).items():
         lines += _field(name, default, _choices(schema[name]), text)
     lines += [] if schema else ["  none"]
+    if issubclass(model, Rig):
+        return "\n".join([*lines, "", "conditions:", *(f"  {name}" for name in model.conditions())])
     lines += ["", "declares:", *(f"  {text}" for text in _declared(default))]
     return "\n".join(lines)
 
 
 def _headline(model: type[Model]) -> str:
     found = plugins.installed()
-    shelf = found.wear_laws if issubclass(model, WearLaw) else found.contact_models
-    return f"{model.name}: a {shelf.kind} of {shelf.origin(model.name)}"
+    return f"{model.name}: a {model.kind} of {found.of_kind(model.kind).origin(model.name)}"
 
 
 def _default(model: type[Model]) -> Model | None:

@@ -14,7 +14,7 @@ from wearlaw.conditions import TWIN_DISC
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError
 from wearlaw.line import LineProblem
-from wearlaw.rig import TwinDisc
+from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.units import Q
 
 SI_UNITS = {"normal_force": "N", "normal_force_per_width": "N/m", "max_pressure": "Pa", "creepage": ""}

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
+    from wearlaw.base_rig import Rig
     from wearlaw.material import Material
     from wearlaw.models import WearLaw
     from wearlaw.sections import Section
@@ -29,6 +30,11 @@ loaded by a wearlaw whose version is at least N.
 
 hookspec = pluggy.HookspecMarker(PROJECT)
 hookimpl = pluggy.HookimplMarker(PROJECT)
+
+
+@hookspec
+def wearlaw_rigs() -> Iterable[type[Rig]]:  # type: ignore[empty-body]
+    """Return the rigs that the plugin provides."""
 
 
 @hookspec

@@ -8,24 +8,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.composition import needs_discs
 from wearlaw.conditions import is_friction_law
-from wearlaw.errors import ConditionsError, UnitError
+from wearlaw.errors import CompositionError, ConditionsError, UnitError
 from wearlaw.integrate import integrate_contact
+from wearlaw.line import LineProblem
 from wearlaw.units import Quantity, QuantityLike, Unit, from_si, real_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from wearlaw.pipeline import Pipeline
-    from wearlaw.rig import TwinDisc
 
 SMALLEST = 1e-30
 """The least creepage that is searched; what is below counts as none."""
 
 
 def creepage_for(
-    predict: Pipeline[TwinDisc],
+    predict: Pipeline[..., LineProblem],
     /,
     *,
     tangential_force: QuantityLike | None = None,
@@ -43,7 +42,7 @@ def creepage_for(
     traction_coefficient : array_like of float, optional
         T/N [-], in place of `tangential_force`.
     **conditions
-        The load and the friction coefficient, as in `TwinDisc.problem`.
+        All conditions of the rig but the creepage: for discs the load and the friction coefficient.
 
     Raises
     ------
@@ -51,7 +50,6 @@ def creepage_for(
         If no creepage, or more than one, transmits so much: at μN and above; or if friction falls with the creep
         speed.
     """
-    needs_discs(predict.rig, "creepage_for")
     if (tangential_force is None) == (traction_coefficient is None):
         raise ConditionsError("give either tangential_force or traction_coefficient")
     if is_friction_law(conditions.get("friction_coefficient")):
@@ -59,7 +57,10 @@ def creepage_for(
             "friction_coefficient: must be a number here; where friction falls with the creep speed, two creepages can"
             " transmit one force"
         )
-    problem = predict.rig.problem(**conditions, creepage=from_si(0.0, ""))
+    rig = predict.rig
+    problem = rig.checked_problem({**conditions, rig.creepage: from_si(0.0, "")})
+    if not isinstance(problem, LineProblem):
+        raise CompositionError(f"creepage_for: is for line contacts, which rig '{rig.name}' does not make")
     if tangential_force is None:
         target = _finite(traction_coefficient)
     else:
@@ -109,7 +110,7 @@ def _finite(traction_coefficient: object) -> Array:
 
 
 def _beyond_reach(
-    predict: Pipeline[TwinDisc], due: Array, reached: Array, first: int, shape: tuple[int, ...]
+    predict: Pipeline[..., LineProblem], due: Array, reached: Array, first: int, shape: tuple[int, ...]
 ) -> ConditionsError:
     where = f" at index {[int(i) for i in np.unravel_index(first, shape)]}" if shape else ""
     return ConditionsError(

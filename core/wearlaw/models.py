@@ -123,6 +123,8 @@ class LocalWear:
 class WearLaw(Model):
     """A law of wear: from a solved contact to the wear rate at each of its nodes."""
 
+    kind: ClassVar[str] = "wear law"
+
     scale: ClassVar[Literal["patch", "any"]] = "any"
     """"patch" where the law is stated for the means of the whole patch only."""
 

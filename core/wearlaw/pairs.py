@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from wearlaw.errors import CompositionError, InputError
+from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
 from wearlaw.notes import Notes
 from wearlaw.pipeline import Pipeline
-from wearlaw.rig import TwinDisc
+from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.tangential import ContactModel
 
 
@@ -19,7 +20,7 @@ class Pair:
 
     contact_model: str
     wear_law: str
-    pipeline: Pipeline[TwinDisc]
+    pipeline: Pipeline[..., LineProblem]
 
     @property
     def label(self) -> str:

@@ -4,30 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Generic, Literal, Self, TypeVar, Unpack, overload
+from typing import TYPE_CHECKING, Any, Generic, Literal, Self, overload
 
-from pydantic import field_validator, model_validator
+from pydantic import model_validator
 
+from wearlaw.base_rig import P, ProblemT
 from wearlaw.blocks import Columns
 from wearlaw.composition import check_geometry, check_scale, check_traction, warn_of_calibration
-from wearlaw.conditions import TwinDiscConditions, WheelRailConditions
 from wearlaw.configuration import Configuration
 from wearlaw.ellipse import EllipticProblem
 from wearlaw.elliptic_wear import creep_forces, elliptic_wear
-from wearlaw.errors import CompositionError, InputError
+from wearlaw.errors import CompositionError, ConditionsError, InputError
 from wearlaw.integrate import integrate_contact, integrate_wear
 from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
 from wearlaw.ranges import RangeWatch, elliptic_mean, line_mean
 from wearlaw.result import Prediction
-from wearlaw.rig import TwinDisc
-from wearlaw.specification import ContactModelField, WearLawField
+from wearlaw.specification import ContactModelField, RigField, WearLawField
 from wearlaw.tangential import Scale
-from wearlaw.units import shortened
-from wearlaw.wheel_rail import WheelRail
 from wearlaw.wheel_rail_result import WheelRailPrediction
-
-RigT = TypeVar("RigT", bound=TwinDisc | WheelRail)
 
 ORDER = 'the order is rig | wl.contact_model("exact") | wl.patch_mean(), where it is needed, | wl.wear_law("usfd")'
 
@@ -52,14 +47,14 @@ def patch_mean() -> PatchMean:
     return PatchMean()
 
 
-class Pipeline(Configuration, Generic[RigT]):
+class Pipeline(Configuration, Generic[P, ProblemT]):
     """A rig and a contact model, followed by stages and a wear law: predicts the contact, and with a law the wear.
 
     A pipeline is frozen: it prints, compares, hashes, pickles, and serialises with
     ``model_dump_json()`` to what ``Pipeline.model_validate_json(...)`` reads.
     """
 
-    rig: RigT
+    rig: RigField
     """The two bodies that roll on each other."""
     contact_model: ContactModelField
     """The theory of the tangential contact."""
@@ -67,15 +62,6 @@ class Pipeline(Configuration, Generic[RigT]):
     """What changes the contact before a law sees it."""
     laws: tuple[WearLawField, ...] = ()
     """The law of wear; empty where only the contact is predicted."""
-
-    @field_validator("rig", mode="before")
-    @classmethod
-    def _of_its_fields(cls, value: Any) -> Any:
-        if isinstance(value, dict):
-            return (WheelRail if "wheel_radius" in value else TwinDisc)(**value)
-        if not isinstance(value, (TwinDisc, WheelRail)):
-            raise ValueError(f"must be a TwinDisc or a WheelRail, got {shortened(value)}")
-        return value
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -91,7 +77,7 @@ class Pipeline(Configuration, Generic[RigT]):
         """Whether a law sees the means of the patch or its cells."""
         return "patch" if self.stages else self.contact_model.scale
 
-    def without_law(self) -> Pipeline[RigT]:
+    def without_law(self) -> Pipeline[P, ProblemT]:
         """Return the pipeline that predicts the contact alone."""
         return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages) if self.laws else self
 
@@ -110,14 +96,14 @@ class Pipeline(Configuration, Generic[RigT]):
             )
         return self.laws[0]
 
-    def with_law(self, law: WearLaw) -> Pipeline[RigT]:
+    def with_law(self, law: WearLaw) -> Pipeline[P, ProblemT]:
         """Return the pipeline with this law in place of its own, without a warning of what it was fitted for."""
         return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages, laws=(law,))
 
     def __repr__(self) -> str:
         return " | ".join(map(repr, (self.rig, self.contact_model, *self.stages, *self.laws)))
 
-    def __or__(self, stage: WearLaw | PatchMean) -> Pipeline[RigT]:
+    def __or__(self, stage: WearLaw | PatchMean) -> Pipeline[P, ProblemT]:
         """Return the pipeline with a wear law, or with the contact's patch means."""
         if self.laws:
             raise CompositionError(f"a pipeline ends with its wear law, nothing follows it, not {stage!r}; {ORDER}")
@@ -130,12 +116,14 @@ class Pipeline(Configuration, Generic[RigT]):
         return pipeline
 
     @overload
-    def __call__(self: Pipeline[TwinDisc], **conditions: Unpack[TwinDiscConditions]) -> Prediction: ...
+    def __call__(self: Pipeline[P, LineProblem], *_: P.args, **conditions: P.kwargs) -> Prediction: ...
     @overload
-    def __call__(self: Pipeline[WheelRail], **conditions: Unpack[WheelRailConditions]) -> WheelRailPrediction: ...
-    def __call__(self, **conditions: Any) -> Prediction | WheelRailPrediction:
+    def __call__(self: Pipeline[P, EllipticProblem], *_: P.args, **conditions: P.kwargs) -> WheelRailPrediction: ...
+    def __call__(self, *positional: Any, **conditions: Any) -> Prediction | WheelRailPrediction:
         """Return the contact and the wear under the given conditions; see the `problem` of the rig for these."""
-        problem = self.rig.problem(**conditions)
+        if positional:
+            raise ConditionsError(f"{positional[0]!r}: is given without a name; write creepage=..., for example")
+        problem: LineProblem | EllipticProblem = self.rig.checked_problem(conditions)
         return self.predict(problem, stacklevel=3)
 
     @overload
@@ -158,12 +146,14 @@ class Pipeline(Configuration, Generic[RigT]):
         Parameters
         ----------
         problem : LineProblem or EllipticProblem
-            From `TwinDisc.problem` or `WheelRail.problem`.
+            From the `problem` of the rig.
         on_block : callable, optional
             Called with the number of operating points done after each block of them, to show progress.
         stacklevel : int
             Which caller warnings name; 2 is the caller of this method.
         """
+        if self.rig.geometry not in (None, "ellipse" if isinstance(problem, EllipticProblem) else "line"):
+            raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
         self.rig.warn_of_plasticity(problem.max_pressure, stacklevel=stacklevel)
         if not self.laws:
             return self._without_wear(problem)
@@ -186,26 +176,19 @@ class Pipeline(Configuration, Generic[RigT]):
             if on_block is not None:
                 on_block(part.size)
 
-        if isinstance(self.rig, WheelRail) and isinstance(problem, EllipticProblem):
+        if isinstance(problem, EllipticProblem):
             rolled = elliptic_wear(model, law, problem, scale, see)
             law.check_not_negative(rolled.wear_rate)
             return WheelRailPrediction(self, problem, rolled.forces, rolled)
-        if isinstance(self.rig, TwinDisc) and isinstance(problem, LineProblem):
-            check_traction(model, problem)
-            wear = integrate_wear(model, law, problem, scale, see)
-            found = Prediction(self, problem, wear.tangential_force, wear)
-            law.check_not_negative(wear.wear_rate, lambda: found.wear_rate_error.to("kg/m^3").magnitude)
-            return found
-        raise self._wrong(problem)
+        check_traction(model, problem)
+        wear = integrate_wear(model, law, problem, scale, see)
+        found = Prediction(self, problem, wear.tangential_force, wear)
+        law.check_not_negative(wear.wear_rate, lambda: found.wear_rate_error.to("kg/m^3").magnitude)
+        return found
 
     def _without_wear(self, problem: LineProblem | EllipticProblem) -> Prediction | WheelRailPrediction:
         model = self.contact_model
-        if isinstance(self.rig, WheelRail) and isinstance(problem, EllipticProblem):
+        if isinstance(problem, EllipticProblem):
             return WheelRailPrediction(self, problem, creep_forces(model, problem))
-        if isinstance(self.rig, TwinDisc) and isinstance(problem, LineProblem):
-            check_traction(model, problem)
-            return Prediction(self, problem, integrate_contact(model, problem))
-        raise self._wrong(problem)
-
-    def _wrong(self, problem: object) -> InputError:
-        return InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
+        check_traction(model, problem)
+        return Prediction(self, problem, integrate_contact(model, problem))

@@ -20,6 +20,7 @@ import pluggy
 from packaging.utils import canonicalize_name
 
 from wearlaw import hookspecs
+from wearlaw.base_rig import Rig
 from wearlaw.configuration import Configuration, known_as
 from wearlaw.errors import InputError, PluginWarning, described
 from wearlaw.material import Material
@@ -32,6 +33,7 @@ from wearlaw.tangential import ContactModel
 class Installed:
     """Everything that discovery found."""
 
+    rigs: Shelf[type[Rig]] = field(default_factory=lambda: Shelf("rig", type))
     contact_models: Shelf[type[ContactModel]] = field(default_factory=lambda: Shelf("contact model", type))
     wear_laws: Shelf[type[WearLaw]] = field(default_factory=lambda: Shelf("wear law", type))
     parameter_sets: Shelf[WearLaw] = field(default_factory=lambda: Shelf("parameter set", WearLaw))  # type: ignore[type-abstract]
@@ -44,8 +46,12 @@ class Installed:
 
     def shelves(self) -> tuple[Shelf[Any], ...]:
         """Return what there is of each kind."""
-        models = (self.contact_models, self.wear_laws, self.parameter_sets)
+        models = (self.rigs, self.contact_models, self.wear_laws, self.parameter_sets)
         return *models, self.materials, self.cases, self.test_sets, self.sections
+
+    def of_kind(self, kind: str) -> Shelf[Any]:
+        """Return what there is of a kind, such as "wear law"."""
+        return next(shelf for shelf in self.shelves() if shelf.kind == kind)
 
     def listing(self) -> list[tuple[str, str, Origin]]:
         """Return kind, name and origin of everything that plugins provide."""
@@ -105,6 +111,11 @@ def _isolated(found: Installed, origin: Origin) -> Iterator[None]:
         found.broken.append(Broken(origin, described(error)))
 
 
+def rigs() -> Mapping[str, type[Rig]]:
+    """Return the installed rigs by name."""
+    return installed().rigs.items()
+
+
 def contact_models() -> Mapping[str, type[ContactModel]]:
     """Return the installed contact models by name."""
     return installed().contact_models.items()
@@ -113,6 +124,15 @@ def contact_models() -> Mapping[str, type[ContactModel]]:
 def wear_laws() -> Mapping[str, type[WearLaw]]:
     """Return the installed wear laws by name."""
     return installed().wear_laws.items()
+
+
+def rig(name: str, /, **options: Any) -> Any:
+    """Return the installed rig of a name, such as "twin_disc", with its fields.
+
+    Parameters, errors: as for `contact_model`. Type checkers know the conditions of a rig only by its class.
+    """
+    found = installed()
+    return found.rigs.find(name, found.broken)(**options)
 
 
 def contact_model(name: str, /, **options: Any) -> ContactModel:
@@ -271,6 +291,8 @@ class _Plugin:
 
 
 def _add_models(plugin: _Plugin, origin: Origin, found: Installed) -> None:
+    for rig_class in chain.from_iterable(plugin.answers("wearlaw_rigs")):
+        add_model(found.rigs, Rig, rig_class, origin)
     for model in chain.from_iterable(plugin.answers("wearlaw_contact_models")):
         add_model(found.contact_models, ContactModel, model, origin)
     for law in chain.from_iterable(plugin.answers("wearlaw_wear_laws")):

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     import xarray
 
     from wearlaw.pipeline import Pipeline
-    from wearlaw.rig import Disc
 
 PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
@@ -43,7 +42,7 @@ class Prediction(Solution[LineProblem, WearTotals]):
 
     def __init__(
         self,
-        pipeline: Pipeline[Any],
+        pipeline: Pipeline[..., Any],
         problem: LineProblem,
         force: Array | None = None,
         wear: WearTotals | None = None,
@@ -229,14 +228,10 @@ class Prediction(Solution[LineProblem, WearTotals]):
         return integrate.integrate_wear(predict.contact_model, predict.wear_law, of_body, predict.scale).wear_rate
 
     def _density(self, body: str) -> float:
-        return scalar_si(self._disc(body).material.density, "kg/m^3")
-
-    def _disc(self, body: str) -> Disc:
-        disc: Disc = self.pipeline.rig.body(body)
-        return disc
+        return scalar_si(self.pipeline.rig.body(body).material.density, "kg/m^3")
 
     def _circumference(self, body: str) -> float:
-        diameter = scalar_si(self._disc(body).diameter, "m")
-        if np.isinf(diameter):
+        radius = self.pipeline.rig.body(body).rolling_radius
+        if np.isinf(radius):
             raise InputError(f"body: {body} is flat and makes no revolutions; name the other body")
-        return np.pi * diameter
+        return 2.0 * np.pi * radius

@@ -25,7 +25,7 @@ class Solution(ABC, Generic[P, W]):
     """The contact at one or many operating points, which shows itself by some of its properties."""
 
     _summary: ClassVar[tuple[str, ...]]
-    pipeline: Pipeline[Any]
+    pipeline: Pipeline[..., Any]
     problem: P
     _given_wear: W | None
 

@@ -24,12 +24,12 @@ from wearlaw.errors import (
     did_you_mean,
     message_of,
 )
+from wearlaw.line import LineProblem
 from wearlaw.material import Material
 from wearlaw.models import WearLaw
 from wearlaw.notes import Notes
 from wearlaw.pairs import Pair, compose
 from wearlaw.pipeline import Pipeline
-from wearlaw.rig import TwinDisc
 from wearlaw.sections import Section
 from wearlaw.sweeping.checkpoint import Checkpoint
 from wearlaw.sweeping.evaluator import Evaluator, points_of
@@ -170,8 +170,7 @@ def used(case: Case) -> dict[str, dict[str, str]]:
     origins: dict[str, dict[str, str]] = {shelf.kind: {} for shelf in found.shelves()}
     for part in parts(case):
         if isinstance(part, Model):
-            models: Shelf[Any] = found.wear_laws if isinstance(part, WearLaw) else found.contact_models
-            origins[models.kind][part.name] = models.distribution(part.name, type(part))
+            origins[part.kind][part.name] = found.of_kind(part.kind).distribution(part.name, type(part))
         name = known_name(part)
         if name is not None:
             (shelf,) = (shelf for kind, shelf in named.items() if isinstance(part, kind))
@@ -229,7 +228,7 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
 
 
 def _with_band(
-    key: str, pipeline: Pipeline[TwinDisc], points: Points, found: dict[str, Array], evaluator: Evaluator
+    key: str, pipeline: Pipeline[..., LineProblem], points: Points, found: dict[str, Array], evaluator: Evaluator
 ) -> dict[str, Array]:
     """Return results with the ends of the wear rate over the published range of the law's parameters."""
     ends = []
@@ -240,7 +239,7 @@ def _with_band(
     return {**found, **dict(zip(BAND, ends or [found["wear_rate"]] * 2, strict=True))}
 
 
-def _band_ends(pipeline: Pipeline[TwinDisc]) -> list[Pipeline[TwinDisc]]:
+def _band_ends(pipeline: Pipeline[..., LineProblem]) -> list[Pipeline[..., LineProblem]]:
     """Return the pipeline with the low and the high end of its law's published range, if there is one."""
     band = pipeline.wear_law.band()
     return [] if band is None else [pipeline.with_law(law) for law in (band[0], band[2])]

@@ -35,7 +35,10 @@ PATCHES: dict[Geometry, str] = {"line": "line contacts", "ellipse": "elliptic co
 
 
 class Model(Configuration, ABC):
-    """What contact models and wear laws have in common."""
+    """What rigs, contact models and wear laws have in common."""
+
+    kind: ClassVar[str]
+    """What messages call a model of this kind."""
 
     name: ClassVar[str]
     """The name under which the model is looked up."""
@@ -74,8 +77,7 @@ class Blame:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
         if error is None or isinstance(error, WearlawError | KeyboardInterrupt | MemoryError):
             return
-        what = "contact model" if isinstance(self._model, ContactModel) else "wear law"
-        raise ModelError(f"{what} '{self._model.name}' failed: {described(error)}") from error
+        raise ModelError(f"{self._model.kind} '{self._model.name}' failed: {described(error)}") from error
 
 
 class ContactModel(Model):
@@ -84,6 +86,8 @@ class ContactModel(Model):
     A subclass that knows its fields at any point in closed form derives from `LineContactModel` instead,
     which lets the wear be integrated to rounding error.
     """
+
+    kind: ClassVar[str] = "contact model"
 
     scale: ClassVar[Scale] = "cells"
     """"patch" where the model gives the means of the whole patch only."""

@@ -42,7 +42,7 @@ class WheelRailPrediction(Solution[EllipticProblem, EllipticWear]):
 
     def __init__(
         self,
-        pipeline: Pipeline[Any],
+        pipeline: Pipeline[..., Any],
         problem: EllipticProblem,
         forces: CreepForces,
         wear: EllipticWear | None = None,
@@ -156,7 +156,7 @@ class WheelRailPrediction(Solution[EllipticProblem, EllipticWear]):
         body : str
             "wheel" or "rail".
         """
-        self.pipeline.rig.radius(body)
+        self.pipeline.rig.body(body)
         return from_si(self._mass_per_distance * Unit("km").si(over, "over"), "g")
 
     def wear_profile(self, body: str) -> xarray.Dataset:
@@ -184,7 +184,7 @@ class WheelRailPrediction(Solution[EllipticProblem, EllipticWear]):
         CompositionError
             If the contact is not resolved across the patch.
         """
-        radius = self.pipeline.rig.radius(body)
+        radius = self.pipeline.rig.body(body).rolling_radius
         contact = self._across()
         density = contact.density[..., None]
         depth = contact.over_strip(self.pipeline.wear_law.checked_rate(contact)) / density

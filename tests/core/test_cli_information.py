@@ -84,6 +84,7 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
     assert head == ["kind", "name", "distribution", "version"]
     ours = [row for row in rows if row[-2] == "wearlaw"]
     assert ours == [
+        *(["rig", name, "wearlaw", wl.__version__] for name in ("twin_disc", "wheel_rail")),
         *(
             ["contact", "model", name, "wearlaw", wl.__version__]
             for name in ("exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins")

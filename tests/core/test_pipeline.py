@@ -141,8 +141,8 @@ def test_a_measured_traction_is_used_by_the_global_model_only() -> None:
 
 
 @pytest.mark.parametrize("predict", PIPELINES, ids=lambda predict: repr(predict).partition(" | ")[2][:80])
-def test_a_pipeline_survives_pickle_copy_and_json(predict: wl.Pipeline[wl.TwinDisc]) -> None:
-    read: wl.Pipeline[wl.TwinDisc] = wl.Pipeline.model_validate_json(predict.model_dump_json())
+def test_a_pipeline_survives_pickle_copy_and_json(predict: wl.Pipeline[..., wl.LineProblem]) -> None:
+    read: wl.Pipeline[..., wl.LineProblem] = wl.Pipeline.model_validate_json(predict.model_dump_json())
     copies = [pickle.loads(pickle.dumps(predict)), copy.copy(predict), copy.deepcopy(predict), read]
     rate = predict(**CONDITIONS).wear_rate
     for other in copies:
@@ -209,7 +209,7 @@ def test_negative_creepage_mirrors_the_force_and_leaves_the_wear() -> None:
 
 
 @pytest.mark.parametrize("predict", PIPELINES, ids=lambda predict: repr(predict).partition(" | ")[2][:80])
-def test_zero_creepage_gives_zero_wear(predict: wl.Pipeline[wl.TwinDisc]) -> None:
+def test_zero_creepage_gives_zero_wear(predict: wl.Pipeline[..., wl.LineProblem]) -> None:
     result = predict(**{**CONDITIONS, "creepage": Q(0, "%")})
     assert result.wear_rate.magnitude == 0.0
     assert result.tangential_force.magnitude == 0.0

@@ -19,7 +19,7 @@ ON_DISCS, ON_RAILS = (rig | wl.contact_model("fastsim") | LAW for rig in (wl.Twi
 MEANS = RAILS | wl.contact_model("polach") | LAW
 
 
-def offered(predict: wl.Pipeline[Any], given: dict[str, Any], wrong: str = "none") -> tuple[str, list[str]]:
+def offered(predict: wl.Pipeline[..., Any], given: dict[str, Any], wrong: str = "none") -> tuple[str, list[str]]:
     """Return the message about an output that does not exist, and what it offers."""
     with pytest.raises(wl.InputError, match=f"outputs: there is no '{wrong}'") as refusal:
         wl.sweep(predict, **given, outputs=[wrong])
@@ -28,7 +28,7 @@ def offered(predict: wl.Pipeline[Any], given: dict[str, Any], wrong: str = "none
 
 
 @pytest.mark.parametrize(("predict", "given"), [(ON_DISCS, LINE), (ON_RAILS, ELLIPSE), (MEANS, ELLIPSE)])
-def test_every_output_that_is_offered_is_taken(predict: wl.Pipeline[Any], given: dict[str, Any]) -> None:
+def test_every_output_that_is_offered_is_taken(predict: wl.Pipeline[..., Any], given: dict[str, Any]) -> None:
     _, known = offered(predict, given)
     ds = wl.sweep(predict, **given, outputs=known)
     assert list(ds.data_vars) == known

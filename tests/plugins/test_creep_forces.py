@@ -40,7 +40,7 @@ STILL: dict[str, Any] = {
 }
 
 
-def usfd(model: wl.ContactModel) -> wl.Pipeline[wl.WheelRail]:
+def usfd(model: wl.ContactModel) -> wl.Pipeline[..., wl.EllipticProblem]:
     with pytest.warns(wl.CalibrationWarning, match="fitted for line contacts"):
         return RIG | model | wl.wear_law("usfd")
 

@@ -60,7 +60,7 @@ def test_typed_arguments_are_drawn(
     assert contact.pressure.shape[0] == contact.rolling_speed.size
     assert problem.batch_shape == ellipse.batch_shape == ()
     assert rig.disc_1.material is not None
-    assert wheel_rail.materials()
+    assert wheel_rail.bodies
     assert material.density.check("[mass] / [length] ** 3")
 
 

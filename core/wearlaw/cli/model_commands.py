@@ -39,7 +39,7 @@ def list_plugins() -> None:
 @click.command()
 @click.argument("name")
 def show(name: str) -> None:
-    """Explain a model: its fields with units, defaults and sources, its range, and what it declares."""
+    """Explain a rig, a contact model or a wear law: its fields with units and defaults, its source and its range."""
     from wearlaw.describe import describe
 
     click.echo(describe(_model_class(name)))
@@ -130,13 +130,14 @@ def _outcome(check: Check) -> bool:
 
 
 def _model_class(name: str) -> type[Model]:
-    """Return the contact model or the wear law of a name."""
+    """Return the rig, the contact model or the wear law of a name."""
     found = plugins.installed()
-    if name in found.wear_laws.providers:
-        return found.wear_laws.find(name, found.broken)
-    if name in found.contact_models.providers:
-        return found.contact_models.find(name, found.broken)
-    known = [*found.contact_models.items(), *found.wear_laws.items()]
+    shelves = (found.wear_laws, found.contact_models, found.rigs)
+    for shelf in shelves:
+        if name in shelf.providers:
+            model: type[Model] = shelf.find(name, found.broken)
+            return model
+    known = [one for shelf in shelves for one in shelf.items()]
     raise UnknownModelError(unknown("model", name, known, found.broken))
 
 

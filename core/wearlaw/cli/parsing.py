@@ -12,7 +12,7 @@ from wearlaw.configuration import Configuration
 from wearlaw.errors import ConfigurationError, InputError, with_problems
 from wearlaw.fitting.law_files import read_toml, read_wear_law
 from wearlaw.models import WearLaw
-from wearlaw.rig import TwinDisc
+from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.tangential import ContactModel
 
 

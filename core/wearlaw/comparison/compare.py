@@ -16,16 +16,16 @@ from wearlaw.composition import needs_discs
 from wearlaw.errors import InputError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.fitting.result import Fit
+from wearlaw.line import LineProblem
 from wearlaw.notes import Notes
 from wearlaw.pipeline import Pipeline
-from wearlaw.rig import TwinDisc
 from wearlaw.tangential import Model
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-Predictor: TypeAlias = Pipeline[TwinDisc] | Fit
+Predictor: TypeAlias = Pipeline[..., LineProblem] | Fit
 """What predicts a wear rate."""
 
 
@@ -129,7 +129,7 @@ def _labels(models: Sequence[Model]) -> list[str]:
     return [found[distinct.index(model)] for model in models]
 
 
-def _pipeline(predictor: Predictor) -> Pipeline[TwinDisc]:
+def _pipeline(predictor: Predictor) -> Pipeline[..., LineProblem]:
     found = predictor.predict if isinstance(predictor, Fit) else predictor
     assert isinstance(found, Pipeline)
     needs_discs(found.rig, "compare")
@@ -176,7 +176,7 @@ def _predicted(name: str, predictor: Predictor, tests: WearTests, friction: Any,
     with notes.of(name):
         pipeline = pipeline.without_law() | pipeline.wear_law  # warns of parameters fitted for another contact
     with notes.of("tests"):
-        prediction = pipeline.predict(pipeline.rig.problem(**conditions))
+        prediction = pipeline.predict(pipeline.rig.checked_problem(conditions))
     return np.asarray(prediction.wear_rate.to_base_units().magnitude)
 
 

@@ -11,7 +11,6 @@ from wearlaw.arrays import Array
 from wearlaw.comparison.agreement import Agreement, Information
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.pipeline import Pipeline
-from wearlaw.rig import TwinDisc
 from wearlaw.units import WEAR_RATE, in_unit
 from wearlaw.variables import label
 from wearlaw.wear_tests.tests import WearTests
@@ -19,6 +18,8 @@ from wearlaw.wear_tests.tests import WearTests
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
+
+    from wearlaw.line import LineProblem
 
 COUNTS = ("tests", "without_ratio", "fitted")
 """The columns of a table that hold whole numbers."""
@@ -51,7 +52,7 @@ class Compared:
     """
 
     names: Names
-    pipeline: Pipeline[TwinDisc]
+    pipeline: Pipeline[..., LineProblem]
     predicted: Array
     agreement: Agreement
     information: Information | None = None

@@ -11,7 +11,7 @@ from wearlaw.errors import CompositionError, Problem, WearlawWarning, did_you_me
 from wearlaw.figures.spec import OF_LOAD, FigureSpec, axis_along
 from wearlaw.grid import Grid
 from wearlaw.models import WearLaw
-from wearlaw.rig import TwinDisc
+from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.tangential import ContactModel
 from wearlaw.variables import OF_POINT
 

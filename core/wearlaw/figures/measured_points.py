@@ -8,7 +8,7 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.conditions import LOADS
-from wearlaw.rig import TwinDisc
+from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.units import from_si, in_unit
 from wearlaw.variables import OF_POINT, UNITS
 from wearlaw.wear_tests.columns import COLUMNS

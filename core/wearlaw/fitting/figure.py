@@ -96,7 +96,8 @@ def _between(fit: Fit, one: Observations) -> LineProblem:
     }
     if problem.traction_coefficient is not None:
         conditions["traction_coefficient"] = filled(problem.traction_coefficient)
-    return fit.predict.rig.problem(**conditions)
+    found: LineProblem = fit.predict.rig.checked_problem(conditions)
+    return found
 
 
 def _along(fit: Fit, problem: LineProblem, x: str) -> Array:

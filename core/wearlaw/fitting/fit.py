@@ -17,8 +17,8 @@ from wearlaw.fitting.observations import named
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.summary import summarise
 from wearlaw.fitting.task import Task
+from wearlaw.line import LineProblem
 from wearlaw.pipeline import Pipeline
-from wearlaw.rig import TwinDisc
 from wearlaw.units import QuantityLike
 from wearlaw.wear_tests.tests import WearTests
 
@@ -30,7 +30,7 @@ USABLE = 0.95
 
 
 def fit(
-    predict: Pipeline[TwinDisc],
+    predict: Pipeline[..., LineProblem],
     tests: WearTests,
     free: Sequence[str],
     *,

@@ -16,7 +16,6 @@ from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.integrate import integrate_contact, integrate_wear, patch_area
 from wearlaw.line import LineProblem
 from wearlaw.pipeline import Pipeline
-from wearlaw.rig import TwinDisc
 from wearlaw.units import in_unit
 from wearlaw.variables import UNITS
 from wearlaw.varying import integrate_varying
@@ -54,7 +53,7 @@ class Observations:
     """
 
     observable: Observable
-    pipeline: Pipeline[TwinDisc]
+    pipeline: Pipeline[..., LineProblem]
     tests: WearTests
     measured: Array
     problem: LineProblem
@@ -83,7 +82,7 @@ class Observations:
 
 
 def predictions(
-    observable: Observable, pipeline: Pipeline[TwinDisc], problem: LineProblem, values: Mapping[str, Array]
+    observable: Observable, pipeline: Pipeline[..., LineProblem], problem: LineProblem, values: Mapping[str, Array]
 ) -> Array:
     """Return wear rates [kg/m/m²] or traction coefficients at n operating points for many parameter sets.
 
@@ -116,7 +115,7 @@ def predictions(
     return predicted.reshape(sets, points)
 
 
-def wear_index_density(pipeline: Pipeline[TwinDisc], problem: LineProblem) -> Array:
+def wear_index_density(pipeline: Pipeline[..., LineProblem], problem: LineProblem) -> Array:
     """Return the patch mean of Tγ/A [N/m²], of the batch shape."""
     model = pipeline.contact_model
     force = integrate_contact(model, problem)
@@ -125,7 +124,11 @@ def wear_index_density(pipeline: Pipeline[TwinDisc], problem: LineProblem) -> Ar
 
 
 def observe(
-    pipeline: Pipeline[TwinDisc], tests: WearTests, friction: float | None, fits_friction: bool, scatter: Scatter
+    pipeline: Pipeline[..., LineProblem],
+    tests: WearTests,
+    friction: float | None,
+    fits_friction: bool,
+    scatter: Scatter,
 ) -> list[Observations]:
     """Return what is fitted: wear rates, where there is a law, and tractions, where they tell the friction.
 
@@ -145,7 +148,7 @@ def observe(
 
 def _observe(
     observable: Observable,
-    pipeline: Pipeline[TwinDisc],
+    pipeline: Pipeline[..., LineProblem],
     tests: WearTests,
     friction: float | None,
     fits_friction: bool,
@@ -163,7 +166,7 @@ def _observe(
     if fits_friction:  # a measured traction would take the place of the one that the friction coefficient gives
         conditions = {**conditions, FRICTION: friction}
         conditions.pop("traction_coefficient", None)
-    problem = pipeline.rig.problem(**conditions)
+    problem = pipeline.rig.checked_problem(conditions)
     unit = _unit(selected, measured, scatter)
     return Observations(observable, pipeline, selected, measured, problem, scatter, unit)
 

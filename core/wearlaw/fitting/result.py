@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from wearlaw.figures.curves import FigureData
+    from wearlaw.line import LineProblem
     from wearlaw.pipeline import Pipeline
-    from wearlaw.rig import TwinDisc
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,7 +75,7 @@ class Fit:
     confidence: float
     covariance: Array
     law: WearLaw | None
-    predict: Pipeline[TwinDisc]
+    predict: Pipeline[..., LineProblem]
     tests: WearTests
     scatter: Scatter
     chi2: float

@@ -11,6 +11,7 @@ import numpy as np
 
 from wearlaw import plugins
 from wearlaw.arrays import Array
+from wearlaw.base_rig import Rig
 from wearlaw.configuration import known_name
 from wearlaw.errors import ConfigurationError, FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
@@ -21,7 +22,6 @@ from wearlaw.fitting.result import Fit
 from wearlaw.fitting.task import Task
 from wearlaw.models import Calibration, WearLaw
 from wearlaw.parameters import changed
-from wearlaw.rig import TwinDisc
 from wearlaw.tangential import Model
 from wearlaw.units import Quantity, in_unit
 from wearlaw.version import __version__
@@ -126,9 +126,11 @@ def _options(model: Model) -> tuple[tuple[str, str], ...]:
     return tuple((name, value) for name, value in fields if isinstance(value, str))
 
 
-def _materials(rig: TwinDisc) -> str:
-    names = [known_name(disc.material) or repr(disc.material) for disc in (rig.disc_1, rig.disc_2)]
-    return f"{names[0]} on {names[1]}" if names[0] != names[1] else f"both discs {names[0]}"
+def _materials(rig: Rig) -> str:
+    names = [known_name(body.material) or repr(body.material) for body in rig.bodies.values()]
+    if len(set(names)) == 1:
+        return f"both bodies {names[0]}"
+    return " on ".join(names) or "unknown"
 
 
 def _rounded(value: float, rounding: Callable[[float], int]) -> float:

@@ -17,8 +17,8 @@ from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, named
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
 from wearlaw.fitting.observations import Observations, Scatter, observe
+from wearlaw.line import LineProblem
 from wearlaw.pipeline import Pipeline
-from wearlaw.rig import TwinDisc
 from wearlaw.units import QuantityLike, coefficient
 from wearlaw.wear_tests.tests import WearTests
 
@@ -36,7 +36,7 @@ LEAST_GROUP = 4
 class Task:
     """What is fitted to what, and the weights of the residuals."""
 
-    predict: Pipeline[TwinDisc]
+    predict: Pipeline[..., LineProblem]
     tests: WearTests
     scatter: Scatter
     free: FreeParameters
@@ -46,7 +46,7 @@ class Task:
     @classmethod
     def of(
         cls,
-        predict: Pipeline[TwinDisc],
+        predict: Pipeline[..., LineProblem],
         tests: WearTests,
         free: Sequence[str],
         friction: float | None,

@@ -40,7 +40,7 @@ class Job:
         As in `wearlaw.accelerate`, which is set in one process only.
     """
 
-    pipeline: Pipeline[Any]
+    pipeline: Pipeline[..., Any]
     units: Mapping[str, str]
     accelerate: bool | None = field(default_factory=kernels.chosen)
 
@@ -74,7 +74,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     `on_block` is called with the number of points done, several times where that takes long.
     """
     kernels.accelerate(job.accelerate)
-    problem = job.pipeline.rig.problem(**part.conditions())
+    problem = job.pipeline.rig.checked_problem(part.conditions())
     watch = RangeWatch(job.pipeline.wear_law)
     prediction = job.pipeline.watched(problem, watch, on_block)
     outputs = {name: _in_unit(getattr(prediction, name), unit) for name, unit in job.units.items()}
@@ -95,7 +95,7 @@ def checksum(seen: Seen, outputs: Iterable[Array]) -> int:
     return found
 
 
-def notes(pipeline: Pipeline[Any], blocks: Iterable[Seen]) -> list[str]:
+def notes(pipeline: Pipeline[..., Any], blocks: Iterable[Seen]) -> list[str]:
     """Return what a prediction of all blocks together would warn of."""
     every = list(blocks)
     watch = RangeWatch(pipeline.wear_law)
@@ -111,7 +111,7 @@ def notes(pipeline: Pipeline[Any], blocks: Iterable[Seen]) -> list[str]:
     return [str(one.message) for one in caught]
 
 
-def output_units(pipeline: Pipeline[Any], points: Points, outputs: list[str]) -> dict[str, str]:
+def output_units(pipeline: Pipeline[..., Any], points: Points, outputs: list[str]) -> dict[str, str]:
     """Return the unit in which each output is written, found by evaluating the first operating point.
 
     Raises
@@ -119,7 +119,7 @@ def output_units(pipeline: Pipeline[Any], points: Points, outputs: list[str]) ->
     InputError
         If there is no such output, or it is a condition.
     """
-    problem = pipeline.rig.problem(**points.part([slice(0, 1)] * len(points.dims)).conditions())
+    problem = pipeline.rig.checked_problem(points.part([slice(0, 1)] * len(points.dims)).conditions())
     prediction = pipeline.watched(problem, RangeWatch(pipeline.wear_law))
     given = {*points.varying, *points.fixed}
     units = {}

@@ -46,7 +46,9 @@ class Evaluator:
         self._workers = workers
         self._checkpoint = checkpoint
 
-    def __call__(self, key: str, pipeline: Pipeline[Any], points: Points, outputs: Sequence[str]) -> dict[str, Array]:
+    def __call__(
+        self, key: str, pipeline: Pipeline[..., Any], points: Points, outputs: Sequence[str]
+    ) -> dict[str, Array]:
         """Return outputs in the units of `variables.UNITS`, of the shape of the points; `key` names them in the run."""
         job = Job(pipeline, {name: UNITS[name] for name in outputs})
         workers = min(self._workers, len(points.blocks()))

@@ -19,8 +19,6 @@ from wearlaw import plugins
 from wearlaw.configuration import parts
 from wearlaw.errors import OutputError
 from wearlaw.kernels import WORTHWHILE, accelerated
-from wearlaw.models import WearLaw
-from wearlaw.shelf import Shelf
 from wearlaw.sweeping.evaluation import Job, Seen
 from wearlaw.sweeping.points import Points, Varying
 from wearlaw.tangential import Model
@@ -40,8 +38,7 @@ def run_of(job: Job, points: Points) -> Run:
     provided = {}
     for part in parts(job.pipeline):
         if isinstance(part, Model):
-            shelf: Shelf[Any] = found.wear_laws if isinstance(part, WearLaw) else found.contact_models
-            provided[f"{shelf.kind} {part.name}"] = shelf.distribution(part.name, type(part))
+            provided[f"{part.kind} {part.name}"] = found.of_kind(part.kind).distribution(part.name, type(part))
     varying = {name: _summary(one) for name, one in points.varying.items()}
     run = {
         "wearlaw": __version__,

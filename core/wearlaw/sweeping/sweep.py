@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def sweep(
-    predict: Pipeline[Any],
+    predict: Pipeline[..., Any],
     /,
     table: pandas.DataFrame | xarray.Dataset | None = None,
     *,
@@ -109,7 +109,7 @@ def sweep(
         return target.finish(texts)
 
 
-def _checked_job(pipeline: Pipeline[Any], points: Points, outputs: Sequence[str], elsewhere: bool) -> Job:
+def _checked_job(pipeline: Pipeline[..., Any], points: Points, outputs: Sequence[str], elsewhere: bool) -> Job:
     """Return what is done at every point, once the outputs are found to be possible.
 
     Raises
@@ -125,7 +125,7 @@ def _checked_job(pipeline: Pipeline[Any], points: Points, outputs: Sequence[str]
     return Job(pipeline, output_units(pipeline, points, list(dict.fromkeys(names))))
 
 
-def check_importable(pipeline: Pipeline[Any]) -> None:
+def check_importable(pipeline: Pipeline[..., Any]) -> None:
     """Refuse models that other processes could not find.
 
     Raises
@@ -141,11 +141,11 @@ def check_importable(pipeline: Pipeline[Any]) -> None:
             )
 
 
-def _check_conditions(pipeline: Pipeline[Any], points: Points, not_given: Mapping[str, None]) -> None:
+def _check_conditions(pipeline: Pipeline[..., Any], points: Points, not_given: Mapping[str, None]) -> None:
     """Find what cannot be before anything is evaluated: each dimension at the first values of the others."""
     for dim in points.dims:
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
-        pipeline.rig.problem(**{**not_given, **line.conditions()})
+        pipeline.rig.checked_problem({**not_given, **line.conditions()})
 
 
 def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:

@@ -11,7 +11,7 @@ from wearlaw.errors import InputError
 from wearlaw.kernels import accelerate
 from wearlaw.models import BreakpointMap, WearLaw
 from wearlaw.records import Contact
-from wearlaw.rig import TwinDisc
+from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.tangential import ContactModel, Model
 from wearlaw.testing.ellipses import WHEEL_RAIL
 from wearlaw.testing.examples import SAME, SUM, assert_close

@@ -16,10 +16,10 @@ from wearlaw import kalker
 from wearlaw.arrays import Array
 from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.material import steel
+from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.tangential import ContactModel
 from wearlaw.testing.examples import SAME, SUM, assert_close
 from wearlaw.testing.shared_checks import friction_limit
-from wearlaw.wheel_rail import WheelRail
 
 SATURATION = (3.0, 32.0 / (3.0 * np.pi))
 """Reduced creepages at which a theory may saturate."""

@@ -12,7 +12,7 @@ import numpy as np
 import tomli_w
 
 from wearlaw.models import WearLaw
-from wearlaw.rig import TwinDisc
+from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.tangential import ContactModel, Geometry, Model
 from wearlaw.testing import fresh
 from wearlaw.testing.ellipses import random_ellipses

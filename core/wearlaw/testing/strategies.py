@@ -20,11 +20,11 @@ from wearlaw.ellipse import EllipticProblem
 from wearlaw.line import LineProblem
 from wearlaw.material import Material
 from wearlaw.records import Contact
-from wearlaw.rig import Disc, TwinDisc
+from wearlaw.rigs.twin_disc import Disc, TwinDisc
+from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.testing.ellipses import SATURATION, Creepages, at_reduced
 from wearlaw.testing.sampling import CONDITIONS_DRAWN, NODE_VALUES_DRAWN, aimed, contact_from_shares
 from wearlaw.units import Q
-from wearlaw.wheel_rail import WheelRail
 
 
 @cache  # hypothesis validates each new strategy, which costs more than drawing from it

@@ -19,7 +19,7 @@ from wearlaw.errors import WearlawError
 from wearlaw.models import WearLaw
 from wearlaw.records import Contact
 from wearlaw.registry import application_registry
-from wearlaw.rig import TwinDisc
+from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.tangential import ContactModel, Geometry, Model
 from wearlaw.testing.contact_checks import random_problems
 from wearlaw.testing.ellipses import WHEEL_RAIL, random_ellipses

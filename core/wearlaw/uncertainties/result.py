@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from wearlaw.figures.curves import FigureData
     from wearlaw.line import LineProblem
     from wearlaw.pipeline import Pipeline
-    from wearlaw.rig import TwinDisc
 
 MOST_SAMPLES = 2**22
 """The most samples that are taken on."""
@@ -43,7 +42,7 @@ INSIDE = 2.0**-54
 
 
 def uncertainty(
-    predict: Pipeline[TwinDisc],
+    predict: Pipeline[..., LineProblem],
     /,
     *,
     law: Mapping[str, Distribution | PublishedRange] | None = None,
@@ -91,7 +90,7 @@ class Uncertainty:
 
     def __init__(
         self,
-        predict: Pipeline[TwinDisc],
+        predict: Pipeline[..., LineProblem],
         conditions: Mapping[str, Any],
         law: Mapping[str, Distribution | PublishedRange],
         samples: int,
@@ -214,7 +213,8 @@ class Uncertainty:
         known = {name: array[..., None] for name, array in self.known.items()}
         given: Any = with_units(known | sampled) | self._friction_law
         try:
-            return self._predict.rig.problem(**given)
+            problem: LineProblem = self._predict.rig.checked_problem(given)
+            return problem
         except UnitError as error:
             raise InputError(f"{error}{OTHERS}") from None
 

@@ -12,7 +12,7 @@ from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.grid import Value
 from wearlaw.models import WearLaw
-from wearlaw.rig import TwinDisc
+from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.uncertainties.distributions import (
     Distribution,
     PublishedRange,

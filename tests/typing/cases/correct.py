@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import assert_type
+from typing import ClassVar, assert_type
 
 import numpy as np
 
@@ -13,12 +13,10 @@ rig = wl.TwinDisc.suros()
 assert_type(rig, wl.TwinDisc)
 assert_type(wl.contact_model("fastsim", bound="elliptic"), wl.ContactModel)
 assert_type(wl.wear_law("usfd", fitted_for="exact"), wl.WearLaw)
-assert_type(rig | wl.contact_model("exact"), wl.Pipeline[wl.TwinDisc])
-assert_type(rig | wl.contact_model("exact") | wl.patch_mean(), wl.Pipeline[wl.TwinDisc])
-assert_type(rig | wl.contact_model("exact") | wl.patch_mean() | wl.wear_law("brr"), wl.Pipeline[wl.TwinDisc])
+on_lines: wl.Pipeline[..., wl.LineProblem] = rig | wl.contact_model("exact") | wl.patch_mean() | wl.wear_law("brr")
 
 predict = rig | wl.contact_model("exact") | wl.wear_law("usfd")
-assert_type(predict, wl.Pipeline[wl.TwinDisc])
+assert_type(predict.laws, tuple[wl.WearLaw, ...])
 
 result = predict(normal_force=Q(7.4143, "kN"), creepage=Q(1, "%"), friction_coefficient=0.46)
 assert_type(result, wl.Prediction)
@@ -50,7 +48,7 @@ assert_type(wl.parse("47 mm"), wl.Quantity)
 
 wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius=Q(300, "mm"), material=wl.steel(), rolling_speed="30 m/s")
 on_rail = wheel | wl.contact_model("fastsim") | wl.wear_law("usfd")
-assert_type(on_rail, wl.Pipeline[wl.WheelRail])
+on_ellipses: wl.Pipeline[..., wl.EllipticProblem] = on_rail
 worn = on_rail(normal_force="80 kN", longitudinal_creepage="0.2 %", spin="0.3 1/m", friction_coefficient=0.3)
 assert_type(worn, wl.WheelRailPrediction)
 assert_type(worn.spin_moment, wl.Quantity)
@@ -70,3 +68,17 @@ ellipse = wl.EllipticProblem(
 solved = wl.contact_model("fastsim", bound="elliptic").solve(ellipse)
 assert_type(solved, wl.EllipticContact)
 assert_type(solved.longitudinal_force, wl.Quantity)
+
+
+class Roller(wl.Rig):
+    """A rig of one's own."""
+
+    name: ClassVar[str] = "roller"
+    source: ClassVar[str] = "made up"
+
+    def problem(self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.LineProblem:  # noqa: ARG002
+        return rig.problem(max_pressure="1 GPa", creepage=creepage, friction_coefficient=0.4)
+
+
+rolled = Roller() | wl.contact_model("fastsim") | wl.wear_law("kth")
+assert_type(rolled(mass="20 kg", creepage="1 %"), wl.Prediction)

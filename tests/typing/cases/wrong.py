@@ -46,3 +46,16 @@ on_rail = wheel | model | law
 on_rail(normal_force="80 kN", creepage="1 %", friction_coefficient=0.3)  # expect-error
 on_rail(normal_force="80 kN", longitudinal_creepage=0.01, friction_coefficient=0.3)  # expect-error
 wl.uncertainty(on_rail, normal_force="80 kN")  # expect-error
+
+
+class Roller(wl.Rig):
+    """A rig of one's own."""
+
+    def problem(self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.LineProblem:  # noqa: ARG002
+        return rig.problem(max_pressure="1 GPa", creepage=creepage, friction_coefficient=0.4)
+
+
+rolled = Roller() | model | law
+rolled(mass=20, creepage="1 %")  # expect-error
+rolled(mass="20 kg")  # expect-error
+rolled(mas="20 kg", creepage="1 %")  # expect-error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Unpack
 
@@ -10,14 +11,14 @@ from pydantic import model_validator
 
 from wearlaw import hertz
 from wearlaw.arrays import Array
-from wearlaw.base_rig import Rig, check_sizes
+from wearlaw.base_rig import Body, Rig, check_sizes
 from wearlaw.conditions import TWIN_DISC, TwinDiscConditions, condition_arrays
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError, UnitError
 from wearlaw.line import LineProblem
 from wearlaw.material import Material, steel
 from wearlaw.specification import MaterialField
-from wearlaw.tangential import ContactModel, Geometry
+from wearlaw.tangential import Geometry
 from wearlaw.units import (
     Length,
     Q,
@@ -28,9 +29,6 @@ from wearlaw.units import (
     parse,
     scalar_si,
 )
-
-if TYPE_CHECKING:
-    from wearlaw.pipeline import Pipeline
 
 
 class Disc(Configuration):
@@ -54,7 +52,9 @@ class TwinDisc(Rig):
     unlike materials is neglected.
     """
 
-    geometry: ClassVar[Geometry] = "line"
+    name: ClassVar[str] = "twin_disc"
+    source: ClassVar[str] = "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(c)"
+    geometry: ClassVar[Geometry | None] = "line"
 
     disc_1: Disc
     """The wheel disc."""
@@ -70,8 +70,6 @@ class TwinDisc(Rig):
         def __init__(
             self, *, disc_1: Disc, disc_2: Disc, track_width: QuantityLike, rolling_speed: QuantityLike
         ) -> None: ...
-
-        def __or__(self, model: ContactModel) -> Pipeline[TwinDisc]: ...
 
     @model_validator(mode="after")
     def _not_both_flat(self) -> TwinDisc:
@@ -123,6 +121,11 @@ class TwinDisc(Rig):
             rolling_speed=rolling_speed,
         )
 
+    @classmethod
+    def conditions(cls) -> tuple[str, ...]:
+        """Return the names of the conditions, of which some exclude each other."""
+        return TWIN_DISC.names
+
     def problem(self, **conditions: Unpack[TwinDiscConditions]) -> LineProblem:
         """Return the contact problem that the conditions of a test pose.
 
@@ -163,16 +166,11 @@ class TwinDisc(Rig):
             **same,
         )
 
-    def materials(self) -> tuple[Material, ...]:
-        """Return what the two discs are made of."""
-        return self.disc_1.material, self.disc_2.material
-
-    def body(self, name: str) -> Disc:
-        """Return the disc of a name, "disc_1" or "disc_2"."""
-        if name not in ("disc_1", "disc_2"):
-            raise InputError(f"body: this rig has no '{name}'; its bodies are 'disc_1' and 'disc_2'")
-        disc: Disc = getattr(self, name)
-        return disc
+    @cached_property
+    def bodies(self) -> Mapping[str, Body]:
+        """The two discs, "disc_1" and "disc_2"."""
+        discs = {"disc_1": self.disc_1, "disc_2": self.disc_2}
+        return {name: Body(disc.material, 0.5 * scalar_si(disc.diameter, "m")) for name, disc in discs.items()}
 
     def _normal_force_per_width(self, arrays: dict[str, Array]) -> Array:
         constants = self._constants

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, ClassVar, NamedTuple, Unpack
 
@@ -9,17 +10,13 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from wearlaw import hertz, hertz_ellipse
-from wearlaw.base_rig import Rig, check_sizes
+from wearlaw.base_rig import Body, Rig, check_sizes
 from wearlaw.conditions import WHEEL_RAIL, WheelRailConditions, condition_arrays
 from wearlaw.ellipse import EllipticProblem
-from wearlaw.errors import InputError
 from wearlaw.material import Material
 from wearlaw.specification import MaterialField
-from wearlaw.tangential import ContactModel, Geometry
+from wearlaw.tangential import Geometry
 from wearlaw.units import Length, Quantity, QuantityLike, Speed, Unit, scalar_si
-
-if TYPE_CHECKING:
-    from wearlaw.pipeline import Pipeline
 
 Radius = Annotated[Quantity, Unit("mm", positive=False, infinite=True)]
 
@@ -42,7 +39,10 @@ class WheelRail(Rig):
     rail are of the same material.
     """
 
-    geometry: ClassVar[Geometry] = "ellipse"
+    name: ClassVar[str] = "wheel_rail"
+    source: ClassVar[str] = "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(b)"
+    geometry: ClassVar[Geometry | None] = "ellipse"
+    creepage: ClassVar[str] = "longitudinal_creepage"
 
     wheel_radius: Length
     """Rolling radius of the wheel [m]."""
@@ -67,8 +67,6 @@ class WheelRail(Rig):
             rolling_speed: QuantityLike,
         ) -> None: ...
 
-        def __or__(self, model: ContactModel) -> Pipeline[WheelRail]: ...
-
     @model_validator(mode="after")
     def _touch_in_a_point(self) -> WheelRail:
         if 0.0 in (self.rail_head_radius.magnitude, self.wheel_profile_radius.magnitude):
@@ -82,9 +80,18 @@ class WheelRail(Rig):
             )
         return self
 
-    def materials(self) -> tuple[Material, ...]:
-        """Return what wheel and rail are made of."""
-        return (self.material,)
+    @cached_property
+    def bodies(self) -> Mapping[str, Body]:
+        """The "wheel" and the "rail"."""
+        return {
+            "wheel": Body(self.material, scalar_si(self.wheel_radius, "m")),
+            "rail": Body(self.material, np.inf),
+        }
+
+    @classmethod
+    def conditions(cls) -> tuple[str, ...]:
+        """Return the names of the conditions, of which some exclude each other."""
+        return WHEEL_RAIL.names
 
     def problem(self, **conditions: Unpack[WheelRailConditions]) -> EllipticProblem:
         """Return the contact problem that the conditions pose.
@@ -134,12 +141,6 @@ class WheelRail(Rig):
         return EllipticProblem.from_si(
             a=a, b=b, **arrays, **{name: np.broadcast_to(np.float64(value), shape) for name, value in same.items()}
         )
-
-    def radius(self, body: str) -> float:
-        """Return the rolling radius of a body, "wheel" or "rail" [m]; that of the rail is infinite."""
-        if body not in ("wheel", "rail"):
-            raise InputError(f"body: this rig has no '{body}'; its bodies are 'wheel' and 'rail'")
-        return scalar_si(self.wheel_radius, "m") if body == "wheel" else np.inf
 
     @cached_property
     def _patch(self) -> _Patch:

@@ -1,0 +1,186 @@
+"""Rigs of one's own: in a script, and from a plugin by name."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+from numpy.typing import ArrayLike
+
+import wearlaw as wl
+from tests.core.cases import wearlaw
+from tests.core.distributions import Install
+from wearlaw import Q
+
+SUROS = wl.TwinDisc.suros()
+EPS = np.finfo(np.float64).eps
+MODEL = wl.contact_model("exact")
+KTH = wl.wear_law("kth")
+
+ROLLER = '''
+    from typing import ClassVar
+
+    import wearlaw as wl
+
+    class Roller(wl.Rig):
+        """A roller that a weight presses on a flat."""
+
+        name: ClassVar[str] = "roller"
+        source: ClassVar[str] = "a test"
+
+        width: wl.Length
+        """Width of the track [m]."""
+
+        def problem(self, *, mass, creepage, friction_coefficient=0.4):
+            load = wl.Q(wl.Unit("kg").si(mass, "mass") * 9.81, "N")
+            discs = wl.TwinDisc.suros(track_width=self.width)
+            return discs.problem(normal_force=load, creepage=creepage, friction_coefficient=friction_coefficient)
+
+    @wl.hookimpl
+    def wearlaw_rigs():
+        return [Roller]
+'''
+
+
+class Roller(wl.Rig):
+    """A roller that a weight presses on another."""
+
+    name: ClassVar[str] = "roller"
+    source: ClassVar[str] = "a test"
+
+    def problem(
+        self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike, friction_coefficient: ArrayLike = 0.4
+    ) -> wl.LineProblem:
+        """Return the problem of a weight."""
+        load = Q(wl.Unit("kg").si(mass, "mass") * 9.81, "N")
+        return SUROS.problem(normal_force=load, creepage=creepage, friction_coefficient=friction_coefficient)
+
+
+class Returning(wl.Rig):
+    """A rig that returns, or raises, what it is told to."""
+
+    name: ClassVar[str] = "returning"
+    source: ClassVar[str] = "a test"
+    what: ClassVar[Any] = None
+
+    def problem(self, *, creepage: wl.QuantityLike) -> Any:  # noqa: ARG002
+        """Return it."""
+        if isinstance(self.what, BaseException):
+            raise self.what
+        return self.what
+
+
+class OnRail(wl.Rig):
+    """A wheel under a weight."""
+
+    name: ClassVar[str] = "on_rail"
+    source: ClassVar[str] = "a test"
+    creepage: ClassVar[str] = "longitudinal_creepage"
+
+    def problem(self, *, mass: wl.QuantityLike, longitudinal_creepage: wl.QuantityLike) -> wl.EllipticProblem:
+        """Return the problem of a weight."""
+        wheel = wl.WheelRail(
+            wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s"
+        )
+        load = Q(wl.Unit("kg").si(mass, "mass") * 9.81, "N")
+        return wheel.problem(normal_force=load, longitudinal_creepage=longitudinal_creepage, friction_coefficient=0.3)
+
+
+@pytest.mark.parametrize("law", ["kth", "usfd"])
+def test_a_rig_of_ones_own_predicts_what_the_discs_do(law: str) -> None:
+    own = Roller() | wl.contact_model("global") | wl.wear_law(law)
+    discs = SUROS | wl.contact_model("global") | wl.wear_law(law)
+    found = own(mass=Q([20.0, 40.0], "kg"), creepage="1 %")
+    expected = discs(normal_force=Q([196.2, 392.4], "N"), creepage="1 %", friction_coefficient=0.4)
+    # The load is a product, rounded once.
+    np.testing.assert_allclose(found.wear_rate.magnitude, expected.wear_rate.magnitude, rtol=8 * EPS)
+
+
+def test_a_sweep_runs_along_the_conditions_of_the_rig() -> None:
+    swept = wl.sweep(Roller() | MODEL | KTH, mass=Q([20.0, 40.0], "kg"), creepage=Q([1.0, 2.0, 3.0], "%"))
+    assert dict(swept.wear_rate.sizes) == {"mass": 2, "creepage": 3}
+    alone = (Roller() | MODEL | KTH)(mass="40 kg", creepage="3 %").wear_rate.to("ug/m/mm^2").magnitude
+    assert float(swept.wear_rate[1, 2]) == alone
+
+
+def test_the_creepage_for_a_traction_is_found() -> None:
+    creepage = wl.creepage_for(Roller() | MODEL, traction_coefficient=0.2, mass="20 kg")
+    r = (Roller() | MODEL)(mass="20 kg", creepage=creepage)
+    # `find_root` stops within a few roundings of the logarithm of the creepage, of which T/N is a power below 1.
+    assert float(r.traction_coefficient.magnitude) == pytest.approx(0.2, rel=1e-12)
+
+
+def test_a_rig_that_makes_ellipses_gives_their_results() -> None:
+    r = (OnRail() | wl.contact_model("fastsim") | KTH)(mass="8000 kg", longitudinal_creepage="0.2 %")
+    assert isinstance(r, wl.WheelRailPrediction)
+    assert r.wear_rate.magnitude > 0.0
+    with pytest.raises(wl.CompositionError, match="'exact' does not solve elliptic contacts"):
+        (OnRail() | MODEL)(mass="8000 kg", longitudinal_creepage="0.2 %")
+    on_rail: Any = OnRail() | wl.contact_model("fastsim")
+    with pytest.raises(wl.CompositionError, match="creepage_for: is for line contacts, which rig 'on_rail'"):
+        wl.creepage_for(on_rail, traction_coefficient=0.1, mass="1 t")
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"mass": "20 kg"}, "creepage: is missing; rig 'roller' takes mass, creepage, friction_coefficient"),
+        ({"mas": "20 kg", "creepage": "1 %"}, "mas: unknown condition; did you mean 'mass'?"),
+        ({"mass": "20 N", "creepage": "1 %"}, "mass: got 20.00 N, which is not of the dimension of 'kg'"),
+    ],
+)
+def test_wrong_conditions_are_named(given: dict[str, Any], said: str) -> None:
+    predict: Any = Roller() | MODEL | KTH
+    with pytest.raises(wl.InputError, match=said):
+        predict(**given)
+
+
+def test_conditions_are_given_by_name() -> None:
+    predict: Any = Roller() | MODEL | KTH
+    with pytest.raises(wl.ConditionsError, match="'20 kg': is given without a name"):
+        predict("20 kg", creepage="1 %")
+
+
+@pytest.mark.parametrize(
+    ("what", "said"),
+    [
+        (None, "rig 'returning' returned None, not a wearlaw.LineProblem"),
+        (KeyError("lost"), "rig 'returning' failed: KeyError: 'lost'"),
+        (SystemExit(0), "rig 'returning' failed: SystemExit: 0"),
+    ],
+)
+def test_a_broken_rig_is_named(what: Any, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Returning, "what", what)
+    with pytest.raises(wl.ModelError, match=said):
+        (Returning() | MODEL | KTH)(creepage="1 %")
+
+
+def test_bodies_that_are_not_named_lose_no_mass() -> None:
+    r = (Roller() | MODEL | KTH)(mass="20 kg", creepage="1 %")
+    with pytest.raises(wl.InputError, match="body: this rig has no 'disc_1'; its bodies are not named"):
+        r.mass_lost(over="1 km", body="disc_1")
+
+
+def test_a_rig_of_a_plugin_is_found_by_name(install: Install) -> None:
+    install("rollers", ROLLER)
+    rig = wl.rig("roller", width="8 mm")
+    predict = rig | MODEL | KTH
+    again: Any = wl.Pipeline.model_validate_json(predict.model_dump_json())
+    assert again == predict
+    given: Any = {"mass": "20 kg", "creepage": "1 %"}
+    discs = wl.TwinDisc.suros(track_width="8 mm") | MODEL | KTH
+    expected = discs(normal_force="196.2 N", creepage="1 %", friction_coefficient=0.4).wear_rate.magnitude
+    assert predict(**given).wear_rate.magnitude == pytest.approx(expected, rel=8 * EPS)
+    assert wl.rigs()["roller"] is type(rig)
+    shown = wearlaw("show", "roller").stdout
+    assert "roller: a rig of rollers 1.0 (plugin 'rollers')" in shown
+    assert "width (must be given)\n      Width of the track [m]." in shown
+    assert "conditions:\n  mass\n  creepage\n  friction_coefficient\n" in shown
+
+
+def test_the_shipped_rigs_come_from_a_plugin_like_any_other() -> None:
+    assert list(wl.rigs()) == ["twin_disc", "wheel_rail"]
+    assert wl.rig("twin_disc", **SUROS.model_dump(mode="json")) == SUROS
+    with pytest.raises(wl.UnknownModelError, match="no rig is called 'twin_discs'; did you mean 'twin_disc'"):
+        wl.rig("twin_discs")
