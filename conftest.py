@@ -29,6 +29,8 @@ from sybil.region import Region
 # Where this is set, as in many containers, each of the many processes that tests start would compile wearlaw again.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+# As many processes test as there are processors: threads of linear algebra would only wait for each other.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 MATLAB_READS = re.compile(r'(\w*read\w*)\("([^"]+)"(?:, "([^"]+)")?(?:, "([^"]+)")?')
@@ -40,16 +42,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     """Give each file to one worker, as `--dist=loadfile` does, and each model to be held to the conformance kit."""
     from xdist.scheduler import LoadFileScheduling
 
-    scheduler = LoadFileScheduling(config, log)
-    file_of = scheduler._split_scope
+    class Scheduling(LoadFileScheduling):  # type: ignore[misc]
+        def _split_scope(self, nodeid: str) -> str:
+            file: str = super()._split_scope(nodeid)
+            return nodeid.rpartition("-")[0] if file == "tests/test_conformance.py" else file
 
-    def share_of(nodeid: str) -> str:
-        file: str = file_of(nodeid)
-        return nodeid.rpartition("-")[0] if file == "tests/test_conformance.py" else file
-
-    scheduler._split_scope = share_of
     config.option.loadscopereorder = False  # keep the order below, where xdist since 3.8 puts many tests first
-    return scheduler
+    return Scheduling(config, log)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
