@@ -20,6 +20,7 @@ settings.load_profile("default")
 
 # A relative tolerance is one: pytest's own floor of 1e-12 would let any value below that pass, as flexibilities in SI.
 type(pytest.approx(1.0)).DEFAULT_ABSOLUTE_TOLERANCE = 0.0  # type: ignore[attr-defined]
+assert pytest.approx(0.0) != 1e-13, "pytest calls its floor another name now"
 
 
 def pytest_configure(config: pytest.Config) -> None:

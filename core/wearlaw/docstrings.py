@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import inspect
 import linecache
+from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -38,24 +39,27 @@ def field_docstrings(model: type[BaseModel]) -> dict[str, str]:
     return {name: field.description or found.get(name, "") for name, field in model.model_fields.items()}
 
 
-def _literals(cls: type) -> Iterator[tuple[str, str]]:
-    """Give the names annotated in the body of a class, each with the string literal below it."""
-    for statement, below in pairwise([*_body(cls), ast.Pass()]):
+def _literals(cls: type) -> tuple[tuple[str, str], ...]:
+    """Return the names annotated in the body of a class, each with the string literal below it."""
+    file, line = vars(cls).get("_place") or ("", 0)
+    return _of_classes("".join(linecache.getlines(file))).get((cls.__name__, line), ())
+
+
+@cache  # parsing a module takes milliseconds, and a report asks for its classes several times
+def _of_classes(source: str) -> dict[tuple[str, int], tuple[tuple[str, str], ...]]:
+    """Return what `_literals` says of each class in a module, by name and line."""
+    try:
+        module = ast.parse(source)
+    except SyntaxError:
+        return {}
+    classes = [node for node in ast.walk(module) if isinstance(node, ast.ClassDef)]
+    return {(node.name, node.lineno): tuple(_of_body(node.body)) for node in classes}
+
+
+def _of_body(body: list[ast.stmt]) -> Iterator[tuple[str, str]]:
+    for statement, below in pairwise([*body, ast.Pass()]):
         match statement, below:
             case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
                 yield name, inspect.cleandoc(text)
             case ast.AnnAssign(target=ast.Name(id=name)), _:
                 yield name, ""
-
-
-def _body(cls: type) -> list[ast.stmt]:
-    """Return the statements in the body of a class."""
-    file, line = vars(cls).get("_place") or ("", 0)
-    try:
-        module = ast.parse("".join(linecache.getlines(file)))
-    except SyntaxError:
-        return []
-    for node in ast.walk(module):
-        if isinstance(node, ast.ClassDef) and node.name == cls.__name__ and node.lineno == line:
-            return node.body
-    return []

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +10,12 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray
+from click.testing import Result
 
 import wearlaw as wl
 from tests.core import cases
-from tests.core.cases import files, table, wearlaw, write
+from tests.core.cases import assert_refused, files, table, wearlaw, write
+from wearlaw import output
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 
@@ -112,32 +112,32 @@ def test_files_of_others_survive_a_second_run_into_the_same_folder(folder: Path)
 
 
 @pytest.mark.parametrize("overwrite", [False, True])
-def test_of_two_programs_that_run_two_cases_into_one_folder_one_says_where_its_results_are(
-    folder: Path, overwrite: bool
+def test_of_two_runs_of_two_cases_into_one_folder_one_says_where_its_results_are(
+    folder: Path, overwrite: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    names = ("usfd", "kth")
-    for name in names:
+    """The second begins and ends while the first writes; `test_output_folder.py` lets processes race for a folder."""
+    for name in ("usfd", "kth"):
         write(folder / f"{name}.toml", table(contact_models=["global"], wear_laws=[name], profiles={}))
     if overwrite:
         assert wearlaw("run", "usfd.toml", "-o", "out").exit_code == 0
-    program = "from wearlaw.cli import main; main()"
     options = ["-o", "out", "--figure-format", "svg", *(["--overwrite"] if overwrite else [])]
-    both = {
-        name: subprocess.Popen(
-            [sys.executable, "-c", program, "run", f"{name}.toml", *options],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        )
-        for name in names
-    }  # fmt: skip
-    said = {name: one.communicate() for name, one in both.items()}
-    assert sorted(one.returncode for one in both.values()) == [0, 1], said
-    (winner, loser) = sorted(names, key=lambda name: both[name].returncode)
-    assert f"{winner} on global" in (folder / "out" / "report.html").read_text(encoding="utf-8")
-    assert "Results in out:" in said[winner][0]
-    assert said[loser][0] == ""
-    assert "Error: output: 'out' was taken by another run or program meanwhile" in said[loser][1]
-    assert str(folder / "out-2") in said[loser][1]
-    assert f"{loser} on global" in (folder / "out-2" / "report.html").read_text(encoding="utf-8")
+    write_results = output.write
+    winners: list[Result] = []
+
+    def late(*arguments: Any) -> list[str]:
+        monkeypatch.setattr(output, "write", write_results)
+        winners.append(wearlaw("run", "kth.toml", *options))
+        return write_results(*arguments)
+
+    monkeypatch.setattr(output, "write", late)
+    loser = wearlaw("run", "usfd.toml", *options)
+    (winner,) = winners
+    assert (winner.exit_code, loser.exit_code) == (0, 1), (winner.output, loser.output)
+    assert "kth on global" in (folder / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Results in out:" in winner.stdout
+    assert_refused(loser, "Error: output: 'out' was taken by another run or program meanwhile")
+    assert str(folder / "out-2") in loser.stderr
+    assert "usfd on global" in (folder / "out-2" / "report.html").read_text(encoding="utf-8")
 
 
 def test_units_that_look_like_markup_are_printed(folder: Path) -> None:

@@ -6,7 +6,9 @@ import json
 import os
 import shutil
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -40,6 +42,16 @@ def interrupted(case: str, monkeypatch: pytest.MonkeyPatch, blocks: int = 6) -> 
     assert not Path("out").exists()
 
 
+@cache
+def whole() -> dict[str, bytes]:
+    """Return the files of an uninterrupted run, for which all who ask have small blocks."""
+    with TemporaryDirectory() as folder:
+        result = wearlaw("run", long_case(Path(folder) / "big.toml"), "-o", f"{folder}/whole")
+        assert result.exit_code == 0, result.output
+        assert "damaged" not in result.stderr
+        return contents(Path(folder) / "whole")
+
+
 @pytest.mark.usefixtures("small_blocks")
 def test_a_resumed_run_writes_the_same_bytes_as_an_uninterrupted_one_on_any_number_of_workers(
     folder: Path, monkeypatch: pytest.MonkeyPatch
@@ -50,8 +62,7 @@ def test_a_resumed_run_writes_the_same_bytes_as_an_uninterrupted_one_on_any_numb
     resumed = wearlaw("run", case, "-o", "out", "--workers", "2", "--resume")
     assert resumed.exit_code == 0, resumed.output
     assert not (folder / "out.partial").exists()
-    wearlaw("run", case, "-o", "whole")
-    assert contents(folder / "out") == contents(folder / "whole")
+    assert contents(folder / "out") == whole()
 
 
 @pytest.mark.usefixtures("small_blocks")
@@ -104,8 +115,7 @@ def test_damaged_blocks_are_computed_again_and_said(what: str, folder: Path, mon
     assert resumed.exit_code == 0, resumed.output
     note = f"note: {count} of the {listed} blocks kept in 'out.partial' were damaged, and are computed again\n"
     assert note in resumed.stderr
-    assert "damaged" not in wearlaw("run", case, "-o", "whole").stderr
-    assert contents(folder / "out") == contents(folder / "whole")
+    assert contents(folder / "out") == whole()
 
 
 @pytest.mark.usefixtures("small_blocks", "blank_figures")
@@ -115,8 +125,7 @@ def test_longer_files_lose_what_is_too_much_and_no_block(folder: Path, monkeypat
     with (folder / "out.partial" / RATE).open("ab") as file:
         file.write(b"more")
     assert "damaged" not in wearlaw("run", case, "-o", "out", "--resume").stderr
-    wearlaw("run", case, "-o", "whole")
-    assert contents(folder / "out") == contents(folder / "whole")
+    assert contents(folder / "out") == whole()
 
 
 @pytest.mark.usefixtures("small_blocks")
@@ -258,8 +267,7 @@ def test_a_run_whose_folder_was_taken_keeps_its_results_beside_and_no_checkpoint
         patched.setattr(output, "write", late)
         assert_refused(wearlaw("run", case, "-o", "out"), f"The results are in '{folder / 'out-2'}'")
     assert sorted(path.name for path in folder.iterdir()) == ["big.toml", "out", "out-2"]
-    wearlaw("run", case, "-o", "whole")
-    assert contents(folder / "out-2") == contents(folder / "whole")
+    assert contents(folder / "out-2") == whole()
 
 
 @pytest.mark.usefixtures("small_blocks")

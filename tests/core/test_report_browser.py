@@ -66,12 +66,31 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.fixture
-def page(browser: webdriver.Chrome, file: Path) -> webdriver.Chrome:
+def open_page(browser: webdriver.Chrome, file: Path) -> None:
     scheme(browser, "light")
     browser.get_log("browser")  # type: ignore[no-untyped-call]  # empties it
     browser.get(file.as_uri())
+
+
+@pytest.fixture(scope="module")
+def opened(browser: webdriver.Chrome, file: Path) -> webdriver.Chrome:
+    """Open the page once, since that takes longer than most tests."""
+    open_page(browser, file)
     return browser
+
+
+@pytest.fixture
+def page(opened: webdriver.Chrome) -> webdriver.Chrome:
+    """Give the page to a test that leaves it as it was, but for its colours."""
+    scheme(opened, "light")
+    return opened
+
+
+@pytest.fixture
+def page_to_change(page: webdriver.Chrome, file: Path) -> Iterator[webdriver.Chrome]:
+    """Give the page to a test that changes it."""
+    yield page
+    open_page(page, file)
 
 
 def scheme(browser: webdriver.Chrome, wanted: str) -> None:
@@ -125,13 +144,13 @@ def test_the_page_opens_without_a_complaint_and_without_a_request(page: webdrive
     assert page.execute_script("return performance.getEntriesByType('resource')") == []
 
 
-def test_the_page_could_not_make_a_request_if_it_tried(page: webdriver.Chrome) -> None:
+def test_the_page_could_not_make_a_request_if_it_tried(page_to_change: webdriver.Chrome) -> None:
     script = """
         const done = arguments[0];
         document.addEventListener("securitypolicyviolation", event => done(event.effectiveDirective));
         fetch("http://127.0.0.1:9/").catch(() => {});
     """
-    assert page.execute_async_script(script) == "connect-src"
+    assert page_to_change.execute_async_script(script) == "connect-src"
 
 
 @pytest.mark.parametrize("figure", [ONE, THREE, ODD], ids=lambda figure: figure.name)
@@ -235,21 +254,26 @@ def test_text_and_measured_points_can_be_read_in_both_colour_schemes(page: webdr
     paper = page.find_element("tag name", "body").value_of_css_property("background-color")
     assert (luminance(paper) < 0.5) == (wanted == "dark")
 
-    def readable(selector: str, of: str, least: float) -> bool:
-        found = element.find_elements("css selector", selector)
-        return bool(found) and all(contrast(one.value_of_css_property(of), paper) >= least for one in found)
+    def styles(within: Any, selector: str, of: str) -> list[str]:
+        script = "return [...arguments[0].querySelectorAll(arguments[1])].map(e => getComputedStyle(e)[arguments[2]])"
+        return list(page.execute_script(script, within, selector, of))
 
-    wait(page, lambda: readable(".legendtext, .xtick text, .xtitle, .ytitle", "fill", 4.5))
+    def readable(selector: str) -> bool:
+        found = styles(element, selector, "fill")
+        return bool(found) and all(contrast(colour, paper) >= 4.5 for colour in found)
+
+    wait(page, lambda: readable(".legendtext, .xtick text, .xtitle, .ytitle"))
+    body = page.find_element("tag name", "body")
     for tag in ("h1", "h2", "td", "figcaption", "a", ".verdict", ".where"):
-        for one in page.find_elements("css selector", tag):
-            assert contrast(one.value_of_css_property("color"), paper) >= 4.5
+        assert all(contrast(colour, paper) >= 4.5 for colour in styles(body, tag, "color"))
     marker = "return arguments[0]._fullData.find(t => t.name === 'tests').marker.color"
     colour = page.execute_script(marker, element)
     rgb = f"rgb({', '.join(str(part) for part in bytes.fromhex(colour[1:]))})"
     assert contrast(rgb, paper) >= 4.5
 
 
-def test_what_was_hidden_stays_hidden_when_the_colours_change(page: webdriver.Chrome) -> None:
+def test_what_was_hidden_stays_hidden_when_the_colours_change(page_to_change: webdriver.Chrome) -> None:
+    page = page_to_change
     element = plot(page, ONE.name)
     legend_entry(element, "falling").find_element("css selector", ".legendtoggle").click()
     wait(page, lambda: visible(page, element, "falling") == ["legendonly"])

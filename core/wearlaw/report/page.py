@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from functools import cache
 from typing import TYPE_CHECKING
 
 from wearlaw.figures.curves import FigureData
@@ -17,6 +18,7 @@ from wearlaw.version import __version__
 
 if TYPE_CHECKING:
     import pandas as pd
+    from jinja2 import Template
 
 
 def report(study: Study, case_text: str) -> str:
@@ -29,21 +31,10 @@ def report(study: Study, case_text: str) -> str:
     case_text : str
         The case, as TOML.
     """
-    from jinja2 import Environment, PackageLoader, StrictUndefined
     from plotly.offline import get_plotlyjs
 
-    environment = Environment(
-        autoescape=True,
-        loader=PackageLoader("wearlaw.report"),
-        lstrip_blocks=True,
-        trim_blocks=True,
-        undefined=StrictUndefined,
-    )
-    environment.filters.update(
-        cells=cells, heading=_heading, paragraphs=paragraphs, plotly=plotly_figure, spaced=spaced
-    )
     claims = [claim for section in study.sections for claim in section.claims]
-    return environment.get_template("report.html.j2").render(
+    return _template().render(
         study=study,
         case_text=case_text,
         claims=claims,
@@ -55,6 +46,24 @@ def report(study: Study, case_text: str) -> str:
         version=__version__,
         plotlyjs=get_plotlyjs(),
     )
+
+
+@cache
+def _template() -> Template:
+    """Return the template of the page; compiling it takes longer than filling it in."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        autoescape=True,
+        loader=PackageLoader("wearlaw.report"),
+        lstrip_blocks=True,
+        trim_blocks=True,
+        undefined=StrictUndefined,
+    )
+    environment.filters.update(
+        cells=cells, heading=_heading, paragraphs=paragraphs, plotly=plotly_figure, spaced=spaced
+    )
+    return environment.get_template("report.html.j2")
 
 
 def cells(frame: pd.DataFrame) -> tuple[list[Cell], list[list[Cell]]]:
