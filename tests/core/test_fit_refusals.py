@@ -53,7 +53,7 @@ class Narrow(wl.WearLaw):
     source: ClassVar[str] = "made up"
     k: Annotated[wl.Quantity, wl.Unit("ug/m/N", limit=8.0)]
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return wl.scalar_si(self.k, "kg/m/N") * contact.wear_index_density
 
 

@@ -21,7 +21,6 @@ from wearlaw.pipeline import Pipeline
 from wearlaw.rig import TwinDisc
 from wearlaw.units import in_unit
 from wearlaw.variables import UNITS
-from wearlaw.varying import integrate_varying
 from wearlaw.wear_tests.tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
@@ -109,15 +108,14 @@ def predictions(
     problem = problem[np.tile(np.arange(points), sets)]
     if FRICTION in values:
         problem = dataclasses.replace(problem, friction_coefficient=np.repeat(values[FRICTION], points))
-    of_law = {name: np.repeat(value, points) for name, value in values.items() if name != FRICTION}
+    of_law = {name: np.repeat(value, points)[:, None] for name, value in values.items() if name != FRICTION}
     contact = contact_of(pipeline)
     model = contact.contact_model
     if observable == "traction_coefficient" or not isinstance(pipeline, Pipeline):
         predicted = np.abs(integrate_contact(model, problem)) / problem.normal_force
-    elif of_law:
-        predicted = integrate_varying(model, pipeline.wear_law, of_law, problem, contact.scale)
     else:
-        predicted = integrate_wear(model, pipeline.wear_law, problem, contact.scale).wear_rate
+        law = pipeline.wear_law
+        predicted = integrate_wear(model, law, problem, contact.scale, p={**law.numbers, **of_law}).wear_rate
     return predicted.reshape(sets, points)
 
 

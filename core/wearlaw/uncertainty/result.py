@@ -13,13 +13,12 @@ from wearlaw.composition import check_traction
 from wearlaw.conditions import TWIN_DISC, broadcast, is_friction_law
 from wearlaw.errors import InputError, UnitError
 from wearlaw.grid import with_units
-from wearlaw.integrate import integrate_contact, patch_area
+from wearlaw.integrate import integrate_contact, integrate_wear, patch_area
 from wearlaw.ranges import RangeWatch, line_mean
 from wearlaw.uncertainty.distributions import Distribution, PublishedRange
 from wearlaw.uncertainty.figure import CONFIDENCE, figure_data
 from wearlaw.uncertainty.inputs import OTHERS, Uncertain, check_samples, parameter, split
 from wearlaw.units import WEAR_RATE, Q, Quantity, from_si, shortened
-from wearlaw.varying import integrate_varying
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -196,7 +195,7 @@ class Uncertainty:
         shape = (*self.shape, probability.shape[-1])
         problem = self._problem(conditions)
         flat = problem.broadcast_to(shape).flatten()
-        varied = {name: np.broadcast_to(values, shape).reshape(-1) for name, values in of_law.items()}
+        varied = {name: np.broadcast_to(values, shape).reshape(-1, 1) for name, values in of_law.items()}
         contact = self._predict.contact
         check_traction(contact.contact_model, flat)
         if stacklevel is not None:
@@ -208,8 +207,9 @@ class Uncertainty:
             }
             watch.see(flat.size, partial(line_mean, flat, columns))
             watch.warn(stacklevel)
-        rates = integrate_varying(contact.contact_model, self._law, varied, flat, contact.scale)
-        return rates.reshape(shape)
+        numbers = {**self._law.numbers, **varied}
+        wear = integrate_wear(contact.contact_model, self._law, flat, contact.scale, p=numbers)
+        return wear.wear_rate.reshape(shape)
 
     def __repr__(self) -> str:
         lines = [f"Uncertainty of the wear rate, {self.samples} samples"]
