@@ -50,7 +50,7 @@ class Law{number}(wl.WearLaw):
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
         """Return the wear rate [kg/m/m²]."""
         density = contact.per_node(contact.density)
-        return density * self.coefficient * contact.pressure * abs(contact.slip) / wl.scalar_si(self.hardness, "Pa")
+        return density * p["coefficient"] * contact.pressure * abs(contact.slip) / p["hardness"]
 
 
 @wl.hookimpl

@@ -85,7 +85,7 @@ class Linear(wl.WearLaw):
     """Wear rate over p s [m], of no meaning."""
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-        return wl.scalar_si(self.slope, "m") * 1e-12 * contact.pressure * np.abs(contact.slip)
+        return p["slope"] * 1e-12 * contact.pressure * np.abs(contact.slip)
 
 
 class Coarse(wl.ContactModel):

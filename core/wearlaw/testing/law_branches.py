@@ -49,10 +49,10 @@ class _Paths:
 
 def rate_jumps_only_where_declared(law: WearLaw) -> None:
     """Between any two contacts the rate is continuous, except where a variable passes a value in `jumps`."""
-    paths = _Paths()
+    paths, jumps = _Paths(), law.jumps(law.numbers)
     for path, share, before, behind in find_jumps(paths.rate(law), PATHS):
         values, _ = paths.ends(path, share, share)
-        assert _declared(law.jumps(law.numbers), values, values), (
+        assert _declared(jumps, values, values), (
             f"the rate jumps from {before:.6g} to {behind:.6g} kg/m/m², not declared in `jumps`, at {_at(values)}"
         )
 
@@ -64,10 +64,10 @@ def rate_has_kinks_only_where_declared(law: WearLaw) -> None:
     many paths that variable has more than a fifth of the e-folds of all values, and half of the change shows. What
     turns smoothly over less than a ten-thousandth of a variable counts as a kink too.
     """
-    paths = _Paths()
+    paths, breakpoints = _Paths(), law.breakpoints(law.numbers) or {}
     for path, low, high, change in find_kinks(paths.rate(law), KINK * e_folds(paths.first, paths.second)):
         start, end = paths.ends(path, low, high)
-        assert _declared(law.breakpoints(law.numbers) or {}, start, end), (
+        assert _declared(breakpoints, start, end), (
             f"the slope of the rate jumps by {change:.2g} of the rate, over the length of a path between two contacts,"
             f" not declared in `breakpoints`, at {_at(start)}"
         )
