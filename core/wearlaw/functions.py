@@ -44,7 +44,7 @@ class FunctionLaw(WearLaw):
     def rate(self, contact: Contact, p: Numbers) -> Array:
         """Return the function's value at the nodes [kg/m/m²]."""
         arguments = [in_unit(self._at_nodes(contact, name), unit) for name, unit in self.inputs.items()]
-        parameters = {name: in_unit(p[name], unit) for name, unit in self.units.items()}
+        parameters = {name: p[name] / unit_in_si(unit) for name, unit in self.units.items()}
         value = np.asarray(type(self).function(*arguments, **parameters), dtype=np.float64)
         return np.broadcast_to(value * unit_in_si(self.returns), contact.pressure.shape)
 

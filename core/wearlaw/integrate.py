@@ -241,7 +241,7 @@ def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:
 
 def rounding(law: WearLaw, problem: LineProblem, tangential_force: Array) -> Array:
     """Return the error of a closed form: some roundings of what each ramp would give without its threshold."""
-    slopes = sum(abs(slope) for _, slope in law.ramps(law.numbers) or ())
+    slopes: float = sum(abs(slope) for _, slope in law.ramps(law.numbers) or ())
     return (ROUNDINGS * EPS * slopes) * tangential_force * problem.creepage / problem.patch_area
 
 

@@ -22,7 +22,7 @@ from wearlaw.records import UNITS, Contact
 from wearlaw.tangential import Blame, ContactModel, Geometry, Model, Scale
 from wearlaw.units import WEAR_RATE, Quantity, Unit, from_si
 
-Numbers: TypeAlias = Mapping[str, Any]
+Numbers: TypeAlias = Mapping[str, float | Array]
 """A law's numbers in SI, by the names of its fields; those of a record within a law as "coefficient.low_speed".
 
 Each is a float, or, where it differs from operating point to operating point, an array of shape (points, 1), on an
@@ -167,7 +167,7 @@ class WearLaw(Model):
         """
 
     @cached_property
-    def numbers(self) -> Numbers:
+    def numbers(self) -> Mapping[str, float]:
         """The law's own numbers in SI, as floats, with those that a name such as "mid" stands for."""
         with Blame(self):
             return numbers_in_si(self.explicit())

@@ -88,15 +88,15 @@ def test_a_law_whose_methods_do_not_take_its_numbers_is_refused_where_it_is_defi
         type("Law", (wl.WearLaw,), {"__module__": __name__, "name": "law", name: method})
 
 
-def test_methods_that_take_the_numbers_by_any_name_and_more_besides_are_taken() -> None:
+def test_a_method_that_takes_more_than_the_numbers_is_taken() -> None:
     class Law(Proportional):
-        def rate(self, contact: wl.Contact, numbers: wl.Numbers, *, warm: bool = False) -> Array:
-            return numbers.get("slope", 1.0) * contact.wear_index_density * (2.0 if warm else 1.0)
+        def rate(self, contact: wl.Contact, p: wl.Numbers, *, warm: bool = False) -> Array:
+            return p.get("slope", 1.0) * contact.wear_index_density * (2.0 if warm else 1.0)
 
-        def ramps(self, *_: Any) -> None:
-            return None
+        def ramps(self, p: wl.Numbers, *more: Any) -> tuple[tuple[float, float], ...]:
+            return ((0.0, 1.0), *more)
 
-    assert Law().ramps({}) is None
+    assert Law().ramps({}) == ((0.0, 1.0),)
 
 
 @pytest.mark.parametrize("base", [wl.ContactModel, wl.LineContactModel, wl.CreepForceModel, wl.WearLaw])

@@ -30,7 +30,7 @@ def parameters_may_vary(law: WearLaw) -> None:
         batch = rows(contact, [0] * len(STEPS))
         for name, number in numbers(law).items():
             values = law.numbers[name] * np.array(STEPS)
-            p = {**law.numbers, name: values[:, None]}
+            p: Numbers = {**law.numbers, name: values[:, None]}
             rate = law.rate(batch, p)
             assert np.shape(rate) == batch.pressure.shape, f"rates of shape {np.shape(rate)} when {name} varies"
             for point, value in enumerate(values):

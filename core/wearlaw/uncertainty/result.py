@@ -14,6 +14,7 @@ from wearlaw.conditions import TWIN_DISC, broadcast, is_friction_law
 from wearlaw.errors import InputError, UnitError
 from wearlaw.grid import with_units
 from wearlaw.integrate import integrate_contact, integrate_wear, patch_area
+from wearlaw.models import Numbers
 from wearlaw.ranges import RangeWatch, line_mean
 from wearlaw.uncertainty.distributions import Distribution, PublishedRange
 from wearlaw.uncertainty.figure import CONFIDENCE, figure_data
@@ -207,8 +208,8 @@ class Uncertainty:
             }
             watch.see(flat.size, partial(line_mean, flat, columns))
             watch.warn(stacklevel)
-        numbers = {**self._law.numbers, **varied}
-        wear = integrate_wear(contact.contact_model, self._law, flat, contact.scale, p=numbers)
+        p: Numbers = {**self._law.numbers, **varied}
+        wear = integrate_wear(contact.contact_model, self._law, flat, contact.scale, p=p)
         return wear.wear_rate.reshape(shape)
 
     def __repr__(self) -> str:
