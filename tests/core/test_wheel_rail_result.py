@@ -34,7 +34,7 @@ class PerEnergy(wl.WearLaw):
     slope: float = 1e-12
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
-        return self.slope * contact.wear_index_density
+        return p["slope"] * contact.wear_index_density
 
 
 PER_ENERGY = PerEnergy()
