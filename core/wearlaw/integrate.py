@@ -212,9 +212,8 @@ def closed_form(
     force = model.tangential_force_per_width(forward)
     check_type(model, "tangential_force_per_width", force, problem.batch_shape)
     total: Array | float = 0.0
-    for threshold, slope in (
-        (_per_point(of_start, points), _per_point(of_rise, points)) for of_start, of_rise in ramps
-    ):
+    for ramp in ramps:
+        threshold, slope = (_per_point(number, points) for number in ramp)
         above = np.any(threshold > 0.0) if isinstance(threshold, np.ndarray) else threshold > 0.0
         excess = model.excess_dissipation(forward, threshold) if above else force * forward.creepage
         if excess is None:
