@@ -78,7 +78,12 @@ def test_each_point_gets_the_rate_of_its_own_law(law: wl.WearLaw, contact: str) 
 
 
 @pytest.mark.parametrize("law", [wl.wear_law("usfd"), Stepped()], ids=lambda x: x.name)
-@pytest.mark.parametrize("model", [wl.contact_model("exact"), wl.contact_model("global")], ids=lambda x: x.name)
+@pytest.mark.parametrize(
+    "model",
+    # the second has no closed form, for want of which the nodes of a block are solved in smaller blocks
+    [wl.contact_model("exact"), wl.contact_model("exact", slip="as_printed"), wl.contact_model("global")],
+    ids=repr,
+)
 def test_blocks_do_not_matter(model: wl.ContactModel, law: wl.WearLaw) -> None:
     count = BLOCK + 3
     problem, rng = points(count)
