@@ -13,7 +13,7 @@ from tests.testing.cells import Cells
 from tests.testing.strips import Means, Strips
 from tests.testing.wrong_contacts import Wrapped
 from tests.testing.wrong_declarations import Ramps, Smooth
-from tests.testing.wrong_laws import Linear, Varies
+from tests.testing.wrong_laws import Linear
 from wearlaw.tangential import Model
 from wearlaw.testing import Check, checks
 from wearlaw.testing.roundtrip import RoundTrip
@@ -69,7 +69,7 @@ def named(model: Model) -> str:
     return "-".join([name, *options, *own])
 
 
-RIGHT: list[Model] = [Cells(), Strips(), Means(), Wrapped(), Linear(), Varies(), Smooth(), Ramps()]
+RIGHT: list[Model] = [Cells(), Strips(), Means(), Wrapped(), Linear(), Smooth(), Ramps()]
 MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *RIGHT]
 
 CASES = [

@@ -38,8 +38,8 @@ def test_the_interface_holds_every_public_name() -> None:
 
 def test_a_method_that_goes_or_comes_or_takes_other_arguments_changes_the_interface() -> None:
     class Law(wl.WearLaw):
-        def rate(self, contact: wl.Contact, *, warm: bool = False) -> wl.Array:
-            return contact.slip if warm else contact.traction
+        def rate(self, contact: wl.Contact, p: wl.Numbers, *, warm: bool = False) -> wl.Array:
+            return contact.slip if warm else p["slope"] * contact.traction
 
         def cooled(self) -> Law:
             return self
@@ -48,9 +48,9 @@ def test_a_method_that_goes_or_comes_or_takes_other_arguments_changes_the_interf
     assert lines_of("WearLaw", Law) == {
         "WearLaw() < WearLaw < Configuration",
         "WearLaw.cooled(self)",
-        "WearLaw.rate(self, contact, *, warm=False)",
+        "WearLaw.rate(self, contact, p, *, warm=False)",
     }
-    assert {"WearLaw.rate(self, contact) required", "WearLaw.band(self)"} <= lines_of("WearLaw", wl.WearLaw)
+    assert {"WearLaw.rate(self, contact, p) required", "WearLaw.band(self)"} <= lines_of("WearLaw", wl.WearLaw)
 
 
 def test_a_field_that_a_record_needs_and_a_default_change_the_interface() -> None:

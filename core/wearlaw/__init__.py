@@ -49,7 +49,7 @@ from wearlaw.kernels import accelerate, accelerated, compiled_loop, kernel
 from wearlaw.line import LineFields, LineProblem
 from wearlaw.line_model import FieldVariable, LineContactModel
 from wearlaw.material import Material, steel
-from wearlaw.models import BreakpointMap, Calibration, LocalWear, WearLaw
+from wearlaw.models import BreakpointMap, Calibration, LocalWear, Numbers, WearLaw
 from wearlaw.pipeline import PatchMean, Pipeline, patch_mean
 from wearlaw.plugins import (
     contact_model,
@@ -121,6 +121,7 @@ __all__ = [
     "Material",
     "ModelError",
     "Nodes",
+    "Numbers",
     "OutputError",
     "Panel",
     "PatchMean",

@@ -16,6 +16,9 @@ Columns: TypeAlias = dict[str, Array]
 
 ProblemT = TypeVar("ProblemT", bound=Batch)
 
+OfBlock: TypeAlias = Callable[[ProblemT, slice], Columns]
+"""A function of a block of operating points, and of where in the whole problem they lie."""
+
 OnBlock: TypeAlias = Callable[[ProblemT, Columns], None]
 """What is called with a block of operating points and what was computed for them."""
 
@@ -28,7 +31,7 @@ as long as the arithmetic."""
 def by_block(
     problem: ProblemT,
     block: int,
-    function: Callable[[ProblemT], Columns],
+    function: OfBlock[ProblemT],
     on_block: OnBlock[ProblemT] | None = None,
     drop_force: bool = False,
 ) -> Columns:
@@ -44,7 +47,7 @@ def by_block(
         np.empty(KEPT, dtype=np.uint8)
     for part in blocks(points, block):
         within = problem if points <= block else problem[part]
-        columns = function(within)
+        columns = function(within, part)
         if on_block is not None:
             on_block(within, columns)
         if drop_force:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TypeAlias, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +34,7 @@ What lies beyond them is 2.5e-13 of the zone.
 
 
 def crossings(
-    model: LineContactModel, problem: LineProblem, zone: Zone, breakpoints: Mapping[str, tuple[float, ...]]
+    model: LineContactModel, problem: LineProblem, zone: Zone, breakpoints: Mapping[str, tuple[Any, ...]]
 ) -> Array:
     """Return the ψ at which variables cross their breakpoints, in ascending order.
 
@@ -46,9 +46,8 @@ def crossings(
         With a batch of one axis, (points,), and creepage ≥ 0.
     zone : Zone
         The slip zone.
-    breakpoints : mapping of str to tuple of float
-        Names of node variables of `Contact` with SI values; an array (points, 1) in place of a value holds one for
-        each operating point.
+    breakpoints : mapping of str to tuple of float or ndarray
+        Names of node variables of `Contact` with SI values, each a float or one for each operating point, (points, 1).
 
     Returns
     -------
@@ -68,7 +67,7 @@ def crossings(
     return np.sort(np.concatenate(columns, axis=-1), axis=-1)
 
 
-def _in_closed_form(model: LineContactModel, problem: LineProblem, zone: Zone, name: str, value: float) -> Array | None:
+def _in_closed_form(model: LineContactModel, problem: LineProblem, zone: Zone, name: str, value: Any) -> Array | None:
     level = np.broadcast_to(value, (problem.creepage.size, 1))[:, 0]
     if name == "slip_speed":
         name, level = "slip", level / problem.rolling_speed

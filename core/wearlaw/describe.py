@@ -84,11 +84,12 @@ def _of_law(law: WearLaw) -> Iterator[str]:
         yield f"fitted for: {law.calibration}; {law.calibration.materials}; {law.calibration.source}"
     if law.monotone_in:
         yield f"never falls with: {', '.join(law.monotone_in)}"
-    if law.breakpoints is None:
+    breakpoints = law.breakpoints(law.numbers)
+    if breakpoints is None:
         yield "branches: not declared"
-    for variable, values in (law.breakpoints or {}).items():
+    for variable, values in (breakpoints or {}).items():
         yield f"branches in {variable} at {', '.join(_si(variable, value) for value in values)}"
-    for variable, values in law.jumps.items():
+    for variable, values in law.jumps(law.numbers).items():
         yield f"jumps in {variable} at {', '.join(_si(variable, value) for value in values)}"
     for variable, (low, high) in law.valid_range.items():
         yield f"stated for a mean {variable} from {_si(variable, low)} to {_si(variable, high)}"

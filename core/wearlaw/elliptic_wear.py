@@ -5,13 +5,12 @@ A contact model chooses the nodes of an ellipse; a law is evaluated there, and i
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.blocks import Columns, OnBlock
+from wearlaw.blocks import Columns, OfBlock, OnBlock
 from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.integrate import EPS, SlipTotals, seen_by_law, thinning_error
 from wearlaw.models import WearLaw
@@ -64,7 +63,7 @@ class EllipticSlip(SlipTotals):
 def creep_forces(model: ContactModel, problem: EllipticProblem) -> CreepForces:
     """Return the forces and the moment."""
 
-    def columns(part: EllipticProblem) -> Columns:
+    def columns(part: EllipticProblem, _: slice) -> Columns:
         forces = model.creep_forces(part)
         return {name: getattr(forces, name) for name in FORCES}
 
@@ -75,7 +74,7 @@ def elliptic_slip(model: ContactModel, problem: EllipticProblem, scale: Scale) -
     """Return how the patch slips."""
     solver = Solver(model)
 
-    def columns(part: EllipticProblem) -> Columns:
+    def columns(part: EllipticProblem, _: slice) -> Columns:
         contact = solver.solve(part)
         seen = seen_by_law(model, contact, scale)
         return {
@@ -104,7 +103,7 @@ def elliptic_wear(
     """
     solver = Solver(model)
 
-    def columns(part: EllipticProblem) -> Columns:
+    def columns(part: EllipticProblem, _: slice) -> Columns:
         contact = solver.solve(part)
         seen = seen_by_law(model, contact, scale)
         forces = {name: getattr(contact, field) for name, field in FORCES.items()}
@@ -136,7 +135,7 @@ def wear_rate_error(
 
     solver = Solver(model)
 
-    def columns(part: EllipticProblem) -> Columns:
+    def columns(part: EllipticProblem, _: slice) -> Columns:
         contact = solver.solve(part)
         return {"error": thinning_error(contact, solver.rate(law, contact, part))}
 
@@ -146,7 +145,7 @@ def wear_rate_error(
 def _by_block(
     solver: Solver,
     problem: EllipticProblem,
-    columns: Callable[[EllipticProblem], Columns],
+    columns: OfBlock[EllipticProblem],
     on_block: OnBlock[EllipticProblem] | None = None,
 ) -> Columns:
     """Return columns over blocks of as many operating points as the model's nodes allow."""

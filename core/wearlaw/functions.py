@@ -13,7 +13,7 @@ from pydantic import Field, create_model
 
 from wearlaw.arrays import Array
 from wearlaw.errors import ConfigurationError, Problem, UnitError, did_you_mean
-from wearlaw.models import BreakpointMap, WearLaw
+from wearlaw.models import BreakpointMap, Numbers, WearLaw
 from wearlaw.records import NODE_VARIABLES, UNITS, Contact
 from wearlaw.registry import unit_in_si
 from wearlaw.units import WEAR_RATE, Q, Quantity, Unit, in_unit, text_of
@@ -33,20 +33,18 @@ class FunctionLaw(WearLaw):
     units: ClassVar[Mapping[str, str]]
     declared: ClassVar[tuple[BreakpointMap | None, BreakpointMap]]
 
-    @property
-    def breakpoints(self) -> BreakpointMap | None:
-        """The breakpoints that were declared, in SI."""
+    def breakpoints(self, p: Numbers) -> BreakpointMap | None:  # noqa: ARG002
+        """Return the breakpoints that were declared, in SI."""
         return self.declared[0]
 
-    @property
-    def jumps(self) -> BreakpointMap:
-        """The jumps that were declared, in SI."""
+    def jumps(self, p: Numbers) -> BreakpointMap:  # noqa: ARG002
+        """Return the jumps that were declared, in SI."""
         return self.declared[1]
 
-    def rate(self, contact: Contact) -> Array:
+    def rate(self, contact: Contact, p: Numbers) -> Array:
         """Return the function's value at the nodes [kg/m/m²]."""
         arguments = [in_unit(self._at_nodes(contact, name), unit) for name, unit in self.inputs.items()]
-        parameters = {name: getattr(self, name).to(unit).magnitude for name, unit in self.units.items()}
+        parameters = {name: p[name] / unit_in_si(unit) for name, unit in self.units.items()}
         value = np.asarray(type(self).function(*arguments, **parameters), dtype=np.float64)
         return np.broadcast_to(value * unit_in_si(self.returns), contact.pressure.shape)
 
@@ -77,7 +75,6 @@ def as_wear_law(
     jumps: Sequence[float] | Mapping[str, Sequence[float]] = (),
     parameters: Mapping[str, str] | None = None,
     monotone_in: Sequence[str] = (),
-    varies: bool = False,
     source: str,
 ) -> Callable[[Function], FunctionLaw]:
     """Return a decorator that makes a wear law of a function of plain numbers.
@@ -94,12 +91,11 @@ def as_wear_law(
     jumps : sequence of float, or mapping of str to sequence of float
         Those of the breakpoints at which its value jumps.
     parameters : mapping of str to str, optional
-        Its keyword arguments with their units; their defaults are the defaults of the law's fields.
+        Its keyword arguments with their units; their defaults are the defaults of the law's fields. Fits and
+        uncertainties pass arrays of shape (points, 1) for them, so write the function with NumPy functions that
+        broadcast, such as ``np.where`` instead of ``if``.
     monotone_in : sequence of str
         Inputs in which it never falls.
-    varies : bool
-        Whether it also takes arrays (points, 1) for its parameters, as NumPy's functions do and `if` does not; see
-        `WearLaw.varies`.
     source : str
         The literature that it is taken from.
 
@@ -126,7 +122,7 @@ def as_wear_law(
         law: Any = create_model(function.__name__, __base__=FunctionLaw, __module__=function.__module__, **fields)
         law.__qualname__ = function.__qualname__
         law.__doc__ = inspect.getdoc(function) or f"The function {function.__name__} as a wear law."
-        law.name, law.source, law.monotone_in, law.varies = function.__name__, source, tuple(monotone_in), varies
+        law.name, law.source, law.monotone_in = function.__name__, source, tuple(monotone_in)
         law.function, law.inputs, law.returns = staticmethod(function), dict(inputs), returns
         law.units, law.declared = units, declared
         made: FunctionLaw = law()

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 PROJECT = "wearlaw"
 
-INTERFACE_VERSION = 1
+INTERFACE_VERSION = 2
 """The version of what a plugin can rely on: these hooks and the public names of `wearlaw`.
 
 It rises when a plugin that worked would no longer do. A plugin module that sets ``wearlaw_interface = N`` is only
-loaded by a wearlaw whose version is at least N.
+loaded by a wearlaw whose version is N.
 """
 
 hookspec = pluggy.HookspecMarker(PROJECT)

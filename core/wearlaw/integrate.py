@@ -12,8 +12,8 @@ The last two come with an error estimate. The number of cells of a plot has no p
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ from wearlaw.extremes import extremes
 from wearlaw.kernels import accelerated
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
-from wearlaw.models import WearLaw
+from wearlaw.models import Numbers, WearLaw
 from wearlaw.quadrature import join, remainder
 from wearlaw.records import NODE_VARIABLES, Contact
 from wearlaw.solving import Solver, check_columns, check_type
@@ -47,6 +47,9 @@ ROUNDINGS = 32.0
 """Roundings of the largest term in a closed form."""
 
 EPS = float(np.finfo(np.float64).eps)
+
+ALL = slice(None)
+"""All operating points."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,7 +101,7 @@ def integrate_contact(model: ContactModel, problem: LineProblem) -> Array:
         check_columns(model, {"tangential_force": force}, problem)
         return force
 
-    def columns(part: LineProblem) -> Columns:
+    def columns(part: LineProblem, _: slice) -> Columns:
         return {"tangential_force": model.tangential_force(part)}
 
     return Solver(model).by_block(problem, NODE_BLOCK, columns)["tangential_force"]
@@ -108,7 +111,7 @@ def integrate_slip(model: ContactModel, problem: LineProblem, scale: Scale) -> S
     """Return how the patch slips."""
     solver = Solver(model)
 
-    def columns(part: LineProblem) -> Columns:
+    def columns(part: LineProblem, _: slice) -> Columns:
         contact = seen_by_law(model, solver.solve(part), scale)
         slip_area, patch_area = contact.slip_area, contact.patch_area
         if scale == "cells" and isinstance(model, LineContactModel):
@@ -131,10 +134,21 @@ def integrate_wear(
     problem: LineProblem,
     scale: Scale,
     on_block: OnBlock[LineProblem] | None = None,
+    p: Numbers | None = None,
 ) -> WearTotals:
     """Return the wear in a contact, block by block.
 
-    `on_block` is called with each block of operating points, and the tangential forces [N] among its columns.
+    Parameters
+    ----------
+    model : ContactModel
+    law : WearLaw
+    problem : LineProblem
+    scale : str
+        Whether the law sees the patch means or the cells.
+    on_block : callable, optional
+        Called with each block of operating points, and the tangential forces [N] among its columns.
+    p : mapping of str to float or ndarray, optional
+        The law's numbers in SI, by default its own. Arrays of shape (points, 1) need a batch of one axis, (points,).
 
     Raises
     ------
@@ -142,12 +156,14 @@ def integrate_wear(
         If the model or the law breaks its contract.
     """
     solver = Solver(model)
-    with Blame(law):
-        ramps = law.ramps if scale == "cells" else None
+    p = law.numbers if p is None else p
+    with Blame(law, p):
+        ramps = law.ramps(p) if scale == "cells" else None
     closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
 
-    def columns(part: LineProblem) -> Columns:
-        return (closed and closed_form(*closed, part)) or _from_nodes(solver, law, part, scale)
+    def columns(part: LineProblem, points: slice) -> Columns:
+        found = closed and closed_form(*closed, part, points)
+        return found or _from_nodes(solver, law, _at_points(p, points), part, scale)
 
     if closed and problem.batch_shape == ():  # scalars are computed as scalars
         with Blame(model):
@@ -180,26 +196,30 @@ def contact_for(model: ContactModel, law: WearLaw, problem: LineProblem, scale: 
         return solve(model, problem, scale)
     with Blame(model):
         slip, stick = model.slip_zone(problem), model.stick_zone(problem)
-        splits = splits_of(model, law, problem)
+        splits = splits_of(model, law, law.numbers, problem)
         nodes = slip.nodes(panels=PANELS_UNDECLARED) if splits is None else slip.nodes(splits)
     return Solver(model).at(problem, join(stick.nodes().reversed(), nodes), totals=True)
 
 
 def closed_form(
-    model: LineContactModel, ramps: tuple[tuple[float, float], ...], problem: LineProblem
+    model: LineContactModel, ramps: tuple[tuple[Any, Any], ...], problem: LineProblem, points: slice = ALL
 ) -> Columns | None:
-    """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form."""
+    """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form.
+
+    `points` says where the problem lies in arrays of thresholds and slopes, (points, 1).
+    """
     forward = problem.forward()
     force = model.tangential_force_per_width(forward)
     check_type(model, "tangential_force_per_width", force, problem.batch_shape)
     total: Array | float = 0.0
-    for threshold, slope in ramps:
-        above = _any_positive(threshold)
-        excess = model.excess_dissipation(forward, _of_points(threshold)) if above else force * forward.creepage
+    for ramp in ramps:
+        threshold, slope = (_per_point(number, points) for number in ramp)
+        above = np.any(threshold > 0.0) if isinstance(threshold, np.ndarray) else threshold > 0.0
+        excess = model.excess_dissipation(forward, threshold) if above else force * forward.creepage
         if excess is None:
             return None
         check_type(model, "excess_dissipation", excess, problem.batch_shape)
-        total += 0.5 * _of_points(slope) * excess
+        total += 0.5 * slope * excess
     force = force * problem.track_width
     rate = total / problem.half_width
     if extremes(rate)[0] < 0.0:  # ramps that cancel leave their rounding
@@ -208,30 +228,32 @@ def closed_form(
     return {"wear_rate": rate, "tangential_force": signed}
 
 
-def _of_points(number: float | Array) -> float | Array:
-    """Return a number, or one for each operating point, without the axis of the nodes."""
-    return number[:, 0] if isinstance(number, np.ndarray) and number.ndim == 2 else number
+def _per_point(number: float | Array, points: slice) -> float | Array:
+    """Return a number, or one for each of some operating points without the axis of the nodes."""
+    return number[points, 0] if isinstance(number, np.ndarray) and number.ndim else number
 
 
-def _any_positive(number: float | Array) -> bool:
-    return bool((number > 0.0).any()) if isinstance(number, np.ndarray) else number > 0.0
+def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:
+    """Return the numbers of a law at some operating points."""
+    return {name: value[points] if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
 
 def rounding(law: WearLaw, problem: LineProblem, tangential_force: Array) -> Array:
     """Return the error of a closed form: some roundings of what each ramp would give without its threshold."""
-    slopes = sum(abs(slope) for _, slope in law.ramps or ())
+    slopes: float = sum(abs(slope) for _, slope in law.ramps(law.numbers) or ())
     return (ROUNDINGS * EPS * slopes) * tangential_force * problem.creepage / problem.patch_area
 
 
-def _from_nodes(solver: Solver, law: WearLaw, problem: LineProblem, scale: Scale) -> Columns:
+def _from_nodes(solver: Solver, law: WearLaw, p: Numbers, problem: LineProblem, scale: Scale) -> Columns:
     """Return the mean of a law's rate at nodes."""
     model = solver.model
 
-    def columns(part: LineProblem) -> Columns:
+    def columns(part: LineProblem, points: slice) -> Columns:
+        own = _at_points(p, points)
         if scale == "cells" and isinstance(model, LineContactModel):
-            return over_slip_zone(solver, model, law, part)
+            return _over_slip_zone(solver, model, law, own, part)
         contact = seen_by_law(model, solver.solve(part), scale)
-        rate = solver.rate(law, contact, part)
+        rate = solver.rate(law, contact, part, own)
         mean, force = contact.mean(rate), contact.tangential_force
         error = thinning_error(contact, rate) if scale == "cells" else EPS * np.abs(mean)
         found = {"wear_rate": mean, "wear_rate_error": error, "tangential_force": force}
@@ -240,22 +262,13 @@ def _from_nodes(solver: Solver, law: WearLaw, problem: LineProblem, scale: Scale
     return by_block(problem.flatten(), NODE_BLOCK, columns)
 
 
-def over_slip_zone(
-    solver: Solver,
-    model: LineContactModel,
-    law: WearLaw,
-    problem: LineProblem,
-    law_at: Callable[[NDArray[np.intp]], WearLaw] | None = None,
-) -> Columns:
-    """Return the mean of a law's rate, with as many panels as each operating point needs.
-
-    `law_at` gives the law at some of the operating points, where its parameters differ from one to the other.
-    """
-    splits = splits_of(model, law, problem)
+def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Numbers, problem: LineProblem) -> Columns:
+    """Return the mean of a law's rate, with as many panels as each operating point needs."""
+    splits = splits_of(model, law, p, problem)
     totals = solver.block_is_summed()
     rate, error = np.empty(problem.creepage.shape), np.empty(problem.creepage.shape)
     if splits is None:
-        rate, error = _over_panels(solver, model, law, problem, None, totals)
+        rate, error = _over_panels(solver, model, law, p, problem, None, totals)
     else:
         end = model.slip_zone(problem).angle[:, None]
         needed = np.sum((splits > 0.0) & (splits < end), axis=-1)
@@ -263,16 +276,15 @@ def over_slip_zone(
         for count in np.unique(needed):
             points = np.flatnonzero(needed == count)
             columns = first[points, None] + np.arange(count)
-            own = law if law_at is None else law_at(points)
-            own_splits = splits[points[:, None], columns]
-            rate[points], error[points] = _over_panels(solver, model, own, problem[points], own_splits, totals)
+            own, own_splits = _at_points(p, points), splits[points[:, None], columns]
+            rate[points], error[points] = _over_panels(solver, model, law, own, problem[points], own_splits, totals)
     return {"wear_rate": rate, "wear_rate_error": error, "tangential_force": model.tangential_force(problem)}
 
 
-def splits_of(model: LineContactModel, law: WearLaw, problem: LineProblem) -> Array | None:
+def splits_of(model: LineContactModel, law: WearLaw, p: Numbers, problem: LineProblem) -> Array | None:
     """Return ψ where a law branches in the slip zone, (points, k), or None if nothing is known of that."""
-    with Blame(law):
-        breakpoints = law.breakpoints
+    with Blame(law, p):
+        breakpoints = law.breakpoints(p)
     if breakpoints is None:
         return None
     per_node = {name: values for name, values in breakpoints.items() if name in NODE_VARIABLES}
@@ -280,7 +292,13 @@ def splits_of(model: LineContactModel, law: WearLaw, problem: LineProblem) -> Ar
 
 
 def _over_panels(
-    solver: Solver, model: LineContactModel, law: WearLaw, problem: LineProblem, splits: Array | None, totals: bool
+    solver: Solver,
+    model: LineContactModel,
+    law: WearLaw,
+    p: Numbers,
+    problem: LineProblem,
+    splits: Array | None,
+    totals: bool,
 ) -> tuple[Array, Array]:
     """Return the mean of a law's rate over the patch and its error estimate, by panels of the slip zone.
 
@@ -290,7 +308,7 @@ def _over_panels(
     nodes = zone.nodes(panels=PANELS_UNDECLARED) if splits is None else zone.nodes(splits)
     sticking = (stick.nodes() if totals else stick.middle()).reversed()
     contact = solver.at(problem, join(sticking, nodes), totals=totals)
-    weighted = solver.rate(law, contact, problem) * contact.area
+    weighted = solver.rate(law, contact, problem, p) * contact.area
     total = weighted.sum(axis=-1)
     slipping = weighted[..., sticking.length.shape[-1] :]
     error = ROUNDINGS * EPS * np.abs(weighted).sum(axis=-1) + remainder(slipping)

@@ -1,12 +1,13 @@
 """What a plugin implements that predicts wear, `WearLaw`, and what its parameters were fitted to."""
 
+import inspect
 import math
 import warnings
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
 import numpy as np
 from pydantic import model_validator
@@ -16,12 +17,23 @@ from wearlaw.configuration import Configuration
 from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, did_you_mean
 from wearlaw.extremes import extremes
+from wearlaw.parameters import numbers_in_si
 from wearlaw.records import UNITS, Contact
 from wearlaw.tangential import Blame, ContactModel, Geometry, Model, Scale
 from wearlaw.units import WEAR_RATE, Quantity, Unit, from_si
 
-BreakpointMap: TypeAlias = Mapping[str, tuple[float, ...]]
-"""Variables of a `Contact` with the SI values at which a law branches."""
+Numbers: TypeAlias = Mapping[str, float | Array]
+"""A law's numbers in SI, by the names of its fields; those of a record within a law as "coefficient.low_speed".
+
+Each is a float, or, where it differs from operating point to operating point, an array of shape (points, 1), on an
+ellipse (points, 1, 1), which broadcasts over the nodes.
+"""
+
+BreakpointMap: TypeAlias = Mapping[str, tuple[Any, ...]]
+"""Variables of a `Contact` with the SI values at which a law branches, each a float or an array as in `Numbers`."""
+
+TAKE_NUMBERS = {"rate": ("self", "contact", "p"), **dict.fromkeys(("breakpoints", "ramps", "jumps"), ("self", "p"))}
+"""The methods of a law that take its numbers, with their arguments."""
 
 
 class Calibration(Configuration):
@@ -131,21 +143,48 @@ class WearLaw(Model):
     monotone_in: ClassVar[tuple[str, ...]] = ()
     """Variables of a `Contact` in which the rate never falls while the others stay as they are."""
 
-    varies: ClassVar[bool] = False
-    """Whether the formulas also hold where a field holds an array of shape (points, 1), one value for each operating
-    point of a batch. Fits and uncertainties then evaluate thousands of parameter sets at once; else one by one."""
+    if not TYPE_CHECKING:  # checkers compare the methods with those of this class by themselves
+
+        @classmethod
+        def __pydantic_init_subclass__(cls, **options: Any) -> None:
+            """Refuse methods that do not take the law's numbers."""
+            super().__pydantic_init_subclass__(**options)
+            for name, arguments in TAKE_NUMBERS.items():
+                _check_arguments(cls, name, arguments)
 
     @abstractmethod
-    def rate(self, contact: Contact) -> Array:
+    def rate(self, contact: Contact, p: Numbers) -> Array:
         """Return the mass lost per metre rolled and contact area [kg/m/m²], of the shape of the nodes.
 
         It is not negative, and zero where nothing slips.
+
+        Parameters
+        ----------
+        contact : Contact
+            The solved contact.
+        p : mapping of str to float or ndarray
+            The law's numbers in SI; read them here and not from `self`. Fits and uncertainties pass arrays, which hold
+            one value for each operating point, so write the rate with NumPy functions that broadcast: ``np.where``
+            instead of ``if``, ``np.exp`` instead of ``math.exp``.
         """
 
-    def checked_rate(self, contact: Contact) -> Array:
-        """Return `rate`, or raise a `ModelError` if that is not what a rate must be."""
+    @cached_property
+    def numbers(self) -> Mapping[str, float]:
+        """The law's own numbers in SI, as floats, with those that a name such as "mid" stands for."""
         with Blame(self):
-            rate = self.rate(contact)
+            return numbers_in_si(self.explicit())
+
+    def checked_rate(self, contact: Contact, p: Numbers | None = None) -> Array:
+        """Return `rate` with the given numbers, by default the law's own.
+
+        Raises
+        ------
+        ModelError
+            If it is not what a rate must be, or `rate` fails.
+        """
+        p = self.numbers if p is None else p
+        with Blame(self, p):
+            rate = self.rate(contact, p)
         if type(rate) is not np.ndarray or rate.dtype != np.float64:
             raise ModelError(
                 f"wear law '{self.name}' returned rates of type {type_name(rate)}; it must return a float64 array"
@@ -210,26 +249,23 @@ class WearLaw(Model):
             stacklevel=3,
         )
 
-    @property
-    def breakpoints(self) -> BreakpointMap | None:
-        """The variables in which the law branches, with the SI values where it does.
+    def breakpoints(self, p: Numbers) -> BreakpointMap | None:  # noqa: ARG002
+        """Return the variables in which the law branches, with the SI values where it does.
 
         {} declares a law that is smooth everywhere; None, the default, that nothing is known.
         """
         return None
 
-    @property
-    def ramps(self) -> tuple[tuple[float, float], ...] | None:
-        """The law as a sum of ramps in q·s, where that is what it is: pairs of threshold [N/m²] and slope [kg/m/N].
+    def ramps(self, p: Numbers) -> tuple[tuple[Any, Any], ...] | None:  # noqa: ARG002
+        """Return the law as pairs of threshold [N/m²] and slope [kg/m/N], if it is a sum of ramps in q·s.
 
         The rate is Σ slope · max(q·s - threshold, 0). Contact models with a closed form of the energy above a
         threshold then give the mean over the patch without nodes.
         """
         return None
 
-    @property
-    def jumps(self) -> BreakpointMap:
-        """Those of the breakpoints at which the rate jumps."""
+    def jumps(self, p: Numbers) -> BreakpointMap:  # noqa: ARG002
+        """Return those of the breakpoints at which the rate jumps."""
         return {}
 
     @property
@@ -253,3 +289,16 @@ class WearLaw(Model):
     def band(self) -> "tuple[WearLaw, WearLaw, WearLaw] | None":
         """Return the laws at the low, middle and high end of published parameter ranges, where there are any."""
         return None
+
+
+def _check_arguments(law: type[WearLaw], name: str, arguments: tuple[str, ...]) -> None:
+    """Raise a `TypeError` if a method of a law does not take these arguments."""
+    method = inspect.getattr_static(law, name)
+    rule = f"{law.__name__}.{name} must take ({', '.join(arguments)}): p holds the law's numbers in SI"
+    if isinstance(method, property | cached_property):
+        raise TypeError(f"{rule}; it is a property, make it a method")
+    if inspect.isfunction(method):
+        try:
+            inspect.signature(method).bind(*arguments)
+        except TypeError:
+            raise TypeError(f"{rule}; it takes {inspect.signature(method)}") from None

@@ -1,4 +1,4 @@
-"""The numbers among a model's fields: by name, changed, and with one value for each operating point."""
+"""The numbers among a model's fields, by name: read, in SI, and changed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import Any, TypeVar
 
 import pint
 
-from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.registry import si_factor
@@ -35,6 +34,11 @@ def number_in_si(value: Quantity | float) -> float:
     return float(value.magnitude) * si_factor(value, str(value.units))
 
 
+def numbers_in_si(record: Configuration) -> dict[str, float]:
+    """Return the `numbers` of a record in SI."""
+    return {name: number_in_si(value) for name, value in numbers(record).items()}
+
+
 def number_like(number: Quantity | float, si: Any) -> Any:
     """Return SI floats in the unit of one of `numbers`."""
     return from_si(si, str(number.units)) if isinstance(number, pint.Quantity) else si
@@ -42,37 +46,6 @@ def number_like(number: Quantity | float, si: Any) -> Any:
 
 def changed(record: ConfigurationT, values: Mapping[str, Quantity | float]) -> ConfigurationT:
     """Return a copy with some of its `numbers` changed, checked like a new record."""
-    return record.model_copy(update=_by_field(record, values, changed))
-
-
-def per_point(record: ConfigurationT, values: Mapping[str, Array]) -> ConfigurationT:
-    """Return a copy in which some of the `numbers` hold one value for each operating point.
-
-    Parameters
-    ----------
-    record : Configuration
-        The model.
-    values : mapping of str to ndarray, (points,)
-        By the names of `numbers`, in SI.
-
-    Returns
-    -------
-    Configuration
-        Its fields hold arrays of shape (points, 1), which broadcast over the nodes of a contact. It is not checked,
-        and good for nothing but computing with it.
-    """
-    units = numbers(record)
-    columns = {name: number_like(units[name], si[:, None]) for name, si in values.items()}
-    return _unchecked(record, columns)
-
-
-def _unchecked(record: ConfigurationT, values: Mapping[str, Any]) -> ConfigurationT:
-    fields = {name: getattr(record, name) for name in type(record).model_fields}
-    return type(record).model_construct(**fields | _by_field(record, values, _unchecked))
-
-
-def _by_field(record: Configuration, values: Mapping[str, Any], change: Any) -> dict[str, Any]:
-    """Return the new values of the record's own fields, of which some are changed records themselves."""
     known = numbers(record)
     fields: dict[str, Any] = {}
     nested: dict[str, dict[str, Any]] = {}
@@ -87,4 +60,5 @@ def _by_field(record: Configuration, values: Mapping[str, Any], change: Any) -> 
             nested.setdefault(outer, {})[inner] = value
         else:
             fields[outer] = value
-    return fields | {outer: change(getattr(record, outer), inner) for outer, inner in nested.items()}
+    records = {outer: changed(getattr(record, outer), inner) for outer, inner in nested.items()}
+    return record.model_copy(update=fields | records)

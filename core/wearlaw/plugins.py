@@ -243,10 +243,11 @@ def _name_and_version(distribution: Distribution) -> tuple[str, str]:
 def _check_interface(needed: object) -> None:
     if not isinstance(needed, int) or isinstance(needed, bool):
         raise TypeError(f"wearlaw_interface must be a whole number, got {needed!r}")
-    if needed > hookspecs.INTERFACE_VERSION:
+    if needed != hookspecs.INTERFACE_VERSION:
+        behind = "wearlaw" if needed > hookspecs.INTERFACE_VERSION else "the plugin"
         raise TypeError(
             f"it is built for version {needed} of the plugin interface, this wearlaw has version"
-            f" {hookspecs.INTERFACE_VERSION}; upgrade wearlaw"
+            f" {hookspecs.INTERFACE_VERSION}; upgrade {behind}"
         )
 
 

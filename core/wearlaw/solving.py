@@ -8,21 +8,21 @@ block and in every 64th one after it. A breach is a `ModelError` that names the 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array, type_name
-from wearlaw.blocks import Columns, OnBlock, by_block
+from wearlaw.blocks import Columns, OfBlock, OnBlock, by_block
 from wearlaw.ellipse import EllipticProblem
 from wearlaw.elliptic_contact import TOTALS, EllipticContact
 from wearlaw.errors import ModelError
 from wearlaw.extremes import extremes
 from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
-from wearlaw.models import WearLaw
+from wearlaw.models import Numbers, WearLaw
 from wearlaw.quadrature import Nodes
 from wearlaw.records import Contact
 from wearlaw.tangential import QUADRATURE, Blame, ContactModel
@@ -73,7 +73,7 @@ class Solver:
         self,
         problem: ProblemT,
         block: int,
-        columns: Callable[[ProblemT], Columns],
+        columns: OfBlock[ProblemT],
         on_block: OnBlock[ProblemT] | None = None,
         drop_force: bool = False,
     ) -> Columns:
@@ -85,9 +85,9 @@ class Solver:
             If the model or the law fails, or a column is not one finite float64 for each operating point.
         """
 
-        def checked(part: ProblemT) -> Columns:
+        def checked(part: ProblemT, points: slice) -> Columns:
             with Blame(self.model):
-                found = columns(part)
+                found = columns(part, points)
             check_columns(self.model, found, part)
             return found
 
@@ -130,10 +130,12 @@ class Solver:
         if totals:
             _check_totals(self.model, contact, problem)
 
-    def rate(self, law: WearLaw, contact: Contact, problem: LineProblem | EllipticProblem) -> Array:
-        """Return the rates of a law, or blame the contact for them if that is what is wrong."""
+    def rate(
+        self, law: WearLaw, contact: Contact, problem: LineProblem | EllipticProblem, p: Numbers | None = None
+    ) -> Array:
+        """Return the rates of a law with its numbers, or blame the contact for them if that is what is wrong."""
         try:
-            return law.checked_rate(contact)
+            return law.checked_rate(contact, p)
         except ModelError:
             check_finite(self.model, contact, problem)
             raise

@@ -7,6 +7,8 @@ from abc import ABC
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeAlias, final, overload
 
+import numpy as np
+
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.ellipse import CreepForces, EllipticProblem
@@ -29,6 +31,12 @@ QUADRATURE = 5e-8
 
 ELLIPTIC = 5e-3
 """Error of sums over an ellipse that a model is held to unless it declares another."""
+
+OF_ARRAYS = (
+    "\nIn a fit or an uncertainty its numbers are arrays of shape (points, 1), one value for each operating point."
+    " Write its formulas with NumPy functions that broadcast: np.where instead of if, np.exp instead of math.exp"
+)
+"""Hint for a law that fails with arrays in place of numbers."""
 
 PATCHES: dict[Geometry, str] = {"line": "line contacts", "ellipse": "elliptic contacts"}
 """What messages call the contacts of a geometry."""
@@ -64,12 +72,19 @@ class Blame:
     """A context in which whatever a model's code raises becomes a `ModelError` that names the model.
 
     wearlaw's own errors pass, as they say what is wrong; so do a person's interrupt and a lack of memory.
+
+    Parameters
+    ----------
+    model : Model
+        The model that is named.
+    p : mapping of str to float or ndarray, optional
+        The numbers that a wear law was given. If there are arrays among them, the message says how to take them.
     """
 
-    __slots__ = ("_model",)
+    __slots__ = ("_model", "_p")
 
-    def __init__(self, model: Model) -> None:
-        self._model = model
+    def __init__(self, model: Model, p: Mapping[str, object] | None = None) -> None:
+        self._model, self._p = model, p
 
     def __enter__(self) -> None:
         return None
@@ -77,7 +92,10 @@ class Blame:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
         if error is None or isinstance(error, WearlawError | KeyboardInterrupt | MemoryError):
             return
-        raise ModelError(f"{self._model.kind} '{self._model.name}' failed: {described(error)}") from error
+        arrays = any(isinstance(number, np.ndarray) for number in (self._p or {}).values())
+        raise ModelError(
+            f"{self._model.kind} '{self._model.name}' failed: {described(error)}{OF_ARRAYS if arrays else ''}"
+        ) from error
 
 
 class ContactModel(Model):

@@ -259,10 +259,7 @@ def coefficient(value: object, name: str) -> NDArray[np.float64]:
 
 
 def scalar_si(quantity: Quantity, unit: str) -> float:
-    """Return the SI value of a scalar quantity that has been validated before.
-
-    In a law with parameters for each operating point (`WearLaw.varies`) it is an array that stands for a float.
-    """
+    """Return the SI value of a scalar quantity that has been validated before."""
     return quantity.magnitude * si_factor(quantity, unit)  # type: ignore[no-any-return]
 
 

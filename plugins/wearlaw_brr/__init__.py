@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -34,7 +33,6 @@ class BRR(wl.WearLaw):
     )
     scale: ClassVar[Literal["patch", "any"]] = "patch"
     monotone_in: ClassVar[tuple[str, ...]] = ("wear_index",)
-    varies: ClassVar[bool] = True
 
     mild_slope: SectionPerForce = Field(default="0.25 mm^3/km/N", validate_default=True)
     """Slope of the mild regime, section × D over Tγ [mm³/km/N]."""
@@ -51,7 +49,7 @@ class BRR(wl.WearLaw):
 
     @model_validator(mode="after")
     def _never_falls(self) -> BRR:
-        mild_end, plateau, severe_start = self._at_borders
+        mild_end, plateau, severe_start = _at_borders(self.numbers)
         if self.severe_limit < self.mild_limit:
             raise ValueError(
                 f"severe_limit must not lie below mild_limit = {self.mild_limit!r}; got {self.severe_limit!r}"
@@ -60,48 +58,31 @@ class BRR(wl.WearLaw):
             raise ValueError("the wear must not fall where a regime begins; check its slope, offset and limit")
         return self
 
-    @property
-    def _at_borders(self) -> tuple[float, float, float]:
-        """Section × D at the end of the mild regime, on the plateau, and at the start of the severe regime."""
-        mild_slope, plateau, severe_slope, severe_offset, mild_limit, severe_limit = self._si
-        return mild_slope * mild_limit, plateau, severe_slope * severe_limit - severe_offset
-
-    @cached_property
-    def _si(self) -> tuple[float, float, float, float, float, float]:
-        return (
-            wl.scalar_si(self.mild_slope, "m^2/N"),
-            wl.scalar_si(self.plateau, "m^2"),
-            wl.scalar_si(self.severe_slope, "m^2/N"),
-            wl.scalar_si(self.severe_offset, "m^2"),
-            wl.scalar_si(self.mild_limit, "N"),
-            wl.scalar_si(self.severe_limit, "N"),
-        )
-
-    @property
-    def breakpoints(self) -> wl.BreakpointMap:
-        """The borders of the regimes."""
-        *_, mild, severe = self._si
-        return {"wear_index": (mild, severe)}
-
-    @property
-    def jumps(self) -> wl.BreakpointMap:
-        """Where the severe regime begins, as published; with other parameters, wherever two regimes do not meet."""
-        mild_end, plateau, severe_start = self._at_borders
-        *_, mild_limit, severe_limit = self._si
-        steps = ((mild_limit, plateau - mild_end), (severe_limit, severe_start - plateau))
-        return {"wear_index": tuple(limit for limit, step in steps if step > ROUNDING * plateau)}
-
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         """Return the wear rate of the one node [kg/m/m²]."""
-        mild_slope, plateau, severe_slope, severe_offset, mild_limit, severe_limit = self._si
         index = contact.per_node(contact.wear_index)
         section_times_diameter = np.select(
-            [index < mild_limit, index < severe_limit],
-            [mild_slope * index, plateau],
-            severe_slope * index - severe_offset,
+            [index < p["mild_limit"], index < p["severe_limit"]],
+            [p["mild_slope"] * index, p["plateau"]],
+            p["severe_slope"] * index - p["severe_offset"],
         )
         density, area = contact.per_node(contact.density), contact.per_node(contact.patch_area)
         return np.broadcast_to(density * np.pi * section_times_diameter / area, contact.pressure.shape)
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        """Return the borders of the regimes."""
+        return {"wear_index": (p["mild_limit"], p["severe_limit"])}
+
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        """Return where the severe regime begins, as published, or wherever two regimes do not meet."""
+        mild_end, plateau, severe_start = _at_borders(p)
+        steps = ((p["mild_limit"], plateau - mild_end), (p["severe_limit"], severe_start - plateau))
+        return {"wear_index": tuple(limit for limit, step in steps if np.any(step > ROUNDING * plateau))}
+
+
+def _at_borders(p: wl.Numbers) -> tuple[Any, Any, Any]:
+    """Return section × D at the end of the mild regime, on the plateau, and at the start of the severe regime."""
+    return p["mild_slope"] * p["mild_limit"], p["plateau"], p["severe_slope"] * p["severe_limit"] - p["severe_offset"]
 
 
 @wl.hookimpl

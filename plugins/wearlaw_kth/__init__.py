@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -51,8 +50,6 @@ class KTH(wl.WearLaw):
         "T. Jendel, Wear 253 (2002) 89-99; Tassini et al., Wear 268 (2010) 660-667, Table 2 and eq. (15)"
     )
 
-    varies: ClassVar[bool] = True
-
     coefficient: Literal["low", "mid", "high"] | Coefficients = "mid"
     """The published k are ranges: take their low end, middle or high end, or your own values."""
     hardness: wl.Stress = Field(default="2.625 GPa", validate_default=True)
@@ -83,34 +80,34 @@ class KTH(wl.WearLaw):
             )
         return self
 
-    @cached_property
-    def _k(self) -> Coefficients:
-        own = self.coefficient
-        return own if isinstance(own, Coefficients) else Coefficients(**PUBLISHED[own])
-
-    @cached_property
-    def _si(self) -> tuple[float, float, float, float]:
-        return (
-            wl.scalar_si(self.hardness, "Pa"),
-            wl.scalar_si(self.pressure_threshold, "Pa"),
-            wl.scalar_si(self.lower_slip_speed, "m/s"),
-            wl.scalar_si(self.upper_slip_speed, "m/s"),
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        """Return the wear rate at the nodes [kg/m/m²]."""
+        speed = contact.slip_speed
+        k = np.select(
+            [contact.pressure >= p["pressure_threshold"], speed < p["lower_slip_speed"], speed < p["upper_slip_speed"]],
+            [p["coefficient.high_pressure"], p["coefficient.low_speed"], p["coefficient.mid_speed"]],
+            p["coefficient.high_speed"],
         )
+        density = contact.per_node(contact.density)
+        rate: Array = density * k * contact.pressure * np.abs(contact.slip) / p["hardness"]
+        return rate
 
-    @property
-    def breakpoints(self) -> wl.BreakpointMap:
-        """The borders of the wear map."""
-        _, threshold, lower, upper = self._si
-        return {"pressure": (threshold,), "slip_speed": (lower, upper)}
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        """Return the borders of the wear map."""
+        return {
+            "pressure": (p["pressure_threshold"],),
+            "slip_speed": (p["lower_slip_speed"], p["upper_slip_speed"]),
+        }
 
-    @property
-    def jumps(self) -> wl.BreakpointMap:
-        """The rate jumps at every border of the map."""
-        return self.breakpoints
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        """Return every border of the map: the rate jumps there."""
+        return self.breakpoints(p)
 
     def explicit(self) -> KTH:
         """Return this law with its values of k as numbers."""
-        return self.model_copy(update={"coefficient": self._k})
+        if isinstance(self.coefficient, Coefficients):
+            return self
+        return self.model_copy(update={"coefficient": Coefficients(**PUBLISHED[self.coefficient])})
 
     def band(self) -> tuple[KTH, KTH, KTH]:
         """Return this law at the low end, middle and high end of k; own values of k have no width."""
@@ -118,19 +115,6 @@ class KTH(wl.WearLaw):
             return self, self, self
         low, mid, high = (self.model_copy(update={"coefficient": end}) for end in ("low", "mid", "high"))
         return low, mid, high
-
-    def rate(self, contact: wl.Contact) -> Array:
-        """Return the wear rate at the nodes [kg/m/m²]."""
-        hardness, threshold, lower, upper = self._si
-        k, speed = self._k, contact.slip_speed
-        coefficient = np.select(
-            [contact.pressure >= threshold, speed < lower, speed < upper],
-            [k.high_pressure, k.low_speed, k.mid_speed],
-            k.high_speed,
-        )
-        density = contact.per_node(contact.density)
-        rate: Array = density * coefficient * contact.pressure * np.abs(contact.slip) / hardness
-        return rate
 
 
 @wl.hookimpl

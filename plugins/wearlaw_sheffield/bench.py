@@ -26,7 +26,8 @@ PARTIAL = np.array([0.1, 0.5, 1.0])
 
 def borders(law: str, variable: str) -> tuple[float, ...]:
     """Return the values of a variable, in SI, at which a law branches."""
-    return (wl.wear_law(law).breakpoints or {})[variable]
+    of = wl.wear_law(law)
+    return (of.breakpoints(of.numbers) or {})[variable]
 
 
 @dataclass(frozen=True)

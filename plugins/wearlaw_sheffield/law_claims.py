@@ -90,7 +90,8 @@ def brr_above_in_severe(bench: Bench) -> wl.CheckedClaim:
     severe = _severe(bench)
     index = bench.wear_index[severe]
     ratio = (_brr(bench) / _usfd(bench))[severe]
-    (border,) = wl.wear_law("brr").jumps["wear_index"]
+    law = wl.wear_law("brr")
+    (border,) = law.jumps(law.numbers)["wear_index"]
     before = ratio[index < border]
     at_jump = f" {before.max():.3g} times before its jump at {border:g} N," if before.size else ""
     return wl.CheckedClaim(

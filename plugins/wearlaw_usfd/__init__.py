@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache, cached_property
+from functools import cache
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -68,7 +68,6 @@ class USFD(wl.WearLaw):
     name: ClassVar[str] = "usfd"
     source: ClassVar[str] = f"{TASSINI}, Tables 3 and 4"
     monotone_in: ClassVar[tuple[str, ...]] = ("wear_index_density",)
-    varies: ClassVar[bool] = True
 
     fitted_for: Literal["global", "exact", "fastsim"] | wl.Calibration = "global"
     """The contact solution to which the parameters were fitted. A name also chooses the published set that gives the
@@ -109,26 +108,18 @@ class USFD(wl.WearLaw):
             )
         return self
 
-    @cached_property
-    def _si(self) -> tuple[float, float, float, float]:
-        return (
-            wl.scalar_si(self.m_m, "kg/m/N"),
-            wl.scalar_si(self.q_s, "kg/m^3"),
-            wl.scalar_si(self.m_c, "kg/m/N"),
-            wl.scalar_si(self.tr_sc, "N/m^2"),
-        )
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        """Return the wear rate at the nodes [kg/m/m²]."""
+        w = contact.wear_index_density
+        return np.minimum(p["m_m"] * w, p["q_s"]) + p["m_c"] * np.maximum(w - p["tr_sc"], 0.0)
 
-    @property
-    def breakpoints(self) -> wl.BreakpointMap:
-        """The mild/severe and the severe/catastrophic border."""
-        m_m, q_s, _, tr_sc = self._si
-        return {"wear_index_density": (q_s / m_m, tr_sc)}
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        """Return the mild/severe and the severe/catastrophic border."""
+        return {"wear_index_density": (p["q_s"] / p["m_m"], p["tr_sc"])}
 
-    @property
-    def ramps(self) -> tuple[tuple[float, float], ...]:
-        """The rise of the mild regime, which ends at its border, and that of the catastrophic one."""
-        m_m, q_s, m_c, tr_sc = self._si
-        return (0.0, m_m), (q_s / m_m, -m_m), (tr_sc, m_c)
+    def ramps(self, p: wl.Numbers) -> tuple[tuple[Any, Any], ...]:
+        """Return the rise of the mild regime, which ends at its border, and that of the catastrophic one."""
+        return (0.0, p["m_m"]), (p["q_s"] / p["m_m"], -p["m_m"]), (p["tr_sc"], p["m_c"])
 
     @property
     def valid_range(self) -> Mapping[str, tuple[float, float]]:
@@ -143,12 +134,6 @@ class USFD(wl.WearLaw):
     def fitted(self, calibration: wl.Calibration) -> USFD:
         """Return the law with what its parameters were fitted to."""
         return self.model_copy(update={"fitted_for": calibration})
-
-    def rate(self, contact: wl.Contact) -> Array:
-        """Return the wear rate at the nodes [kg/m/m²]."""
-        m_m, q_s, m_c, tr_sc = self._si
-        w = contact.wear_index_density
-        return np.minimum(m_m * w, q_s) + m_c * np.maximum(w - tr_sc, 0.0)
 
 
 @wl.hookimpl

@@ -47,10 +47,10 @@ class Law{number}(wl.WearLaw):
     hardness: wl.Stress = Field(default="2.6 GPa", validate_default=True)
     """Hardness H of the worn body [Pa]."""
 
-    def rate(self, contact: wl.Contact) -> wl.Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
         """Return the wear rate [kg/m/m²]."""
         density = contact.per_node(contact.density)
-        return density * self.coefficient * contact.pressure * abs(contact.slip) / wl.scalar_si(self.hardness, "Pa")
+        return density * p["coefficient"] * contact.pressure * abs(contact.slip) / p["hardness"]
 
 
 @wl.hookimpl

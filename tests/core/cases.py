@@ -84,8 +84,8 @@ class Linear(wl.WearLaw):
     slope: wl.Length
     """Wear rate over p s [m], of no meaning."""
 
-    def rate(self, contact: wl.Contact) -> Array:
-        return wl.scalar_si(self.slope, "m") * 1e-12 * contact.pressure * np.abs(contact.slip)
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return p["slope"] * 1e-12 * contact.pressure * np.abs(contact.slip)
 
 
 class Coarse(wl.ContactModel):

@@ -16,7 +16,7 @@ LAW = """
         name = "{name}"
         source = "a test"
 
-        def rate(self, contact):
+        def rate(self, contact, p):
             return 0.0 * contact.pressure
 
     @wl.hookimpl

@@ -40,13 +40,13 @@ class Deadly(Linear):
     spared: int
     """The process of the test."""
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         marker = Path(self.marker)
         if os.getpid() != self.spared and marker.exists():
             if not self.always:
                 marker.unlink()
             os._exit(9)
-        return super().rate(contact)
+        return super().rate(contact, p)
 
 
 class Failing(Linear):
@@ -54,10 +54,10 @@ class Failing(Linear):
 
     name = "failing"
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         if contact.normal_force.max() > 8e3:
             raise OverflowError("too much")
-        return super().rate(contact)
+        return super().rate(contact, p)
 
 
 class Ending(Linear):
@@ -70,10 +70,10 @@ class Ending(Linear):
     error: str
     """What it raises, an exception of Python."""
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         if os.getpid() != self.spared:
             raise getattr(builtins, self.error)(0)
-        return super().rate(contact)
+        return super().rate(contact, p)
 
 
 def ending(error: str) -> wl.Pipeline[..., wl.LineProblem]:

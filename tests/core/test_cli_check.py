@@ -121,7 +121,7 @@ def test_a_law_that_ends_the_program_fails_the_checks(
     class Ending(cases.Linear):
         name = "ending"
 
-        def rate(self, contact: wl.Contact) -> wl.Array:
+        def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
             if contact.pressure.size:
                 raise error
             return contact.pressure
@@ -141,8 +141,8 @@ def test_a_law_that_breaks_its_contract_fails_the_checks(
     class Negative(cases.Linear):
         name = "negative"
 
-        def rate(self, contact: wl.Contact) -> wl.Array:
-            return -super().rate(contact)
+        def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+            return -super().rate(contact, p)
 
     install_model(Negative)
     # Two checks of the kit: hypothesis takes seconds to find the smallest example of each failure.

@@ -139,7 +139,7 @@ UNDESCRIBED = """
         name: ClassVar[str] = "mute"
         source: ClassVar[str] = "a test"
 
-        def rate(self, contact):
+        def rate(self, contact, p):
             return 0.0 * contact.pressure
 
         @classmethod

@@ -109,7 +109,7 @@ class Tabled(wl.WearLaw):
     source: ClassVar[str] = "made up"
     slopes: dict[str, float]
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return self.slopes["mild"] * 1e-9 * contact.wear_index_density
 
 

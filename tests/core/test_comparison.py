@@ -19,7 +19,7 @@ class Above(wl.WearLaw):
     source = "A test, 3. ed., 2026"
     scale = "patch"
 
-    def rate(self, contact: wl.Contact) -> wl.Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
         density = contact.wear_index_density
         return np.where(density < 20e6, 0.0, 5e-9 * density)
 

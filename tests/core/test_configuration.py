@@ -150,9 +150,9 @@ def test_the_schema_describes_a_quantity_as_text_with_its_unit() -> None:
 
 def test_a_changed_copy_is_checked_and_keeps_nothing_computed_before() -> None:
     law = wl.wear_law("usfd")
-    assert law.breakpoints  # computes and keeps SI values
+    assert law.numbers  # computes and keeps SI values
     changed = law.model_copy(update={"tr_sc": wl.Q(100, "N/mm^2")})
-    assert changed.breakpoints == wl.wear_law("usfd", tr_sc=wl.Q(100, "N/mm^2")).breakpoints != law.breakpoints
+    assert changed.numbers == wl.wear_law("usfd", tr_sc=wl.Q(100, "N/mm^2")).numbers != law.numbers
     with pytest.raises(wl.ConfigurationError, match="usfd: tr_sc: got the bare number 100"):
         law.model_copy(update={"tr_sc": 100})
 

@@ -23,7 +23,7 @@ from wearlaw_exact import Exact
 class Searched(Exact):
     """Carter's theory without its closed forms."""
 
-    def crossings(self, problem: wl.LineProblem, variable: wl.FieldVariable, value: Array) -> None:  # noqa: ARG002
+    def crossings(self, problem: wl.LineProblem, variable: wl.FieldVariable, value: Array) -> None:
         return None
 
 

@@ -141,7 +141,7 @@ class Silent(wl.WearLaw):
     name = "silent"
     source = "none"
 
-    def rate(self, contact: wl.Contact) -> wl.Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
         return 0.0 * contact.pressure
 
 
@@ -150,8 +150,7 @@ class Bounded(Silent):
 
     name = "bounded"
 
-    @property
-    def breakpoints(self) -> wl.BreakpointMap:
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         return {}
 
     @property

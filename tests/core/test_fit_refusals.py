@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from typing import Annotated, Any, ClassVar
 
@@ -47,23 +48,41 @@ def test_a_pressure_beyond_the_elastic_limit_is_warned_of() -> None:
 
 
 class Narrow(wl.WearLaw):
-    """A law that allows its parameter little, and is fitted one parameter set at a time."""
+    """A law that allows its parameter little."""
 
     name: ClassVar[str] = "narrow"
     source: ClassVar[str] = "made up"
     k: Annotated[wl.Quantity, wl.Unit("ug/m/N", limit=8.0)]
 
-    def rate(self, contact: wl.Contact) -> Any:
-        return wl.scalar_si(self.k, "kg/m/N") * contact.wear_index_density
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return p["k"] * contact.wear_index_density
 
 
-def test_a_law_that_is_refused_on_the_way_asks_for_bounds() -> None:
+def test_a_fit_may_pass_through_parameters_that_a_law_refuses_but_not_end_there() -> None:
     predict = GLOBAL | Narrow(k=Q(5.0, "ug/m/N"))
     tests = made_up(GLOBAL | Narrow(k=Q(6.0, "ug/m/N")), creepage=np.linspace(1.0, 5.0, 6))
-    with pytest.raises(wl.FitError, match=r"(?s)must not exceed 8.*give bounds"):
+    for bounds in (None, {"k": ("1 ug/m/N", Q(7.9, "ug/m/N"))}):
+        fit = wl.fit(predict, tests, free=["k"], bootstrap=0, bounds=bounds)
+        assert fit.parameters["k"].magnitude == pytest.approx(6.0, rel=1e-7)
+    steeper = dataclasses.replace(tests, columns={**tests.columns, "wear_rate": 1.5 * tests.columns["wear_rate"]})
+    with pytest.raises(wl.FitError, match=r"(?s)best fit is no law, which bounds may help: .*must not exceed 8"):
+        wl.fit(predict, steeper, free=["k"], bootstrap=0)
+
+
+class Steps(Narrow):
+    """A law with an `if` on its parameter."""
+
+    name: ClassVar[str] = "steps"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return (p["k"] if p["k"] > 0.0 else 0.0) * contact.wear_index_density
+
+
+def test_a_law_with_an_if_on_a_parameter_is_named_and_told_what_to_write() -> None:
+    predict = GLOBAL | Steps(k=Q(5.0, "ug/m/N"))
+    tests = made_up(predict, creepage=np.linspace(1.0, 5.0, 6))
+    with pytest.raises(wl.ModelError, match=r"(?s)^wear law 'steps' failed: ValueError: .*np\.where instead of if"):
         wl.fit(predict, tests, free=["k"], bootstrap=0)
-    fit = wl.fit(predict, tests, free=["k"], bootstrap=0, bounds={"k": ("1 ug/m/N", Q(7.9, "ug/m/N"))})
-    assert fit.parameters["k"].magnitude == pytest.approx(6.0, rel=1e-7)
 
 
 def test_parameters_that_are_not_known_are_refused() -> None:

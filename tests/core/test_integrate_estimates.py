@@ -28,7 +28,7 @@ class Smooth(wl.WearLaw):
     name: ClassVar[str] = "smooth"
     source: ClassVar[str] = "the tests"
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         return (contact.wear_index_density / 1e6) ** 2
 
 
@@ -38,8 +38,8 @@ class Kinked(Smooth):
     name: ClassVar[str] = "kinked"
     threshold: float = 10.0
 
-    def rate(self, contact: wl.Contact) -> Array:
-        return np.maximum(contact.wear_index_density / 1e6 - self.threshold, 0.0)
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return np.maximum(contact.wear_index_density / 1e6 - p["threshold"], 0.0)
 
 
 class Jumping(Kinked):
@@ -47,9 +47,9 @@ class Jumping(Kinked):
 
     name: ClassVar[str] = "jumping"
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         w = contact.wear_index_density / 1e6
-        return np.where(w < self.threshold, 0.1 * w, w)
+        return np.where(w < p["threshold"], 0.1 * w, w)
 
 
 class Sticking(Kinked):
@@ -57,7 +57,7 @@ class Sticking(Kinked):
 
     name: ClassVar[str] = "sticking"
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         return np.abs(contact.traction)
 
 
@@ -88,7 +88,7 @@ def test_the_error_estimate_of_a_law_that_declares_nothing_is_honest(
     points = Points(seed=6, size=100)
     points.creepage = 10.0 ** points.random.uniform(-4.0, 0.0, points.size)
     law: Any = law_type() if law_type is Smooth else law_type(threshold=10.0)  # type: ignore[call-arg]
-    assert law.breakpoints is None
+    assert law.breakpoints(law.numbers) is None
     wear = integrate_wear(LINE_MODELS[name], law, points.problem, "cells")
     want = []
     for point in points.references():
@@ -114,9 +114,8 @@ def test_a_law_that_wears_where_the_bodies_stick_is_refused(name: str) -> None:
 
 def test_breakpoints_that_are_declared_bring_the_error_down() -> None:
     class Declared(Kinked):
-        @property
-        def breakpoints(self) -> wl.BreakpointMap:
-            return {"wear_index_density": (self.threshold * 1e6,)}
+        def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+            return {"wear_index_density": (p["threshold"] * 1e6,)}
 
     points = Points(seed=8, size=100)
     blind, split = (
@@ -201,7 +200,7 @@ class Broken(Smooth):
     name: ClassVar[str] = "broken"
     fault: str
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         rate = np.abs(contact.slip)
         if self.fault == "shape":
             return np.zeros(rate.shape[:-1])

@@ -54,11 +54,10 @@ LAW = """
         name: ClassVar[str] = "bent"
         source: ClassVar[str] = "the tests"
 
-        @property
-        def breakpoints(self):
+        def breakpoints(self, p):
             return {"wear_index_density": (1e6,)}
 
-        def rate(self, contact):
+        def rate(self, contact, p):
             return bent(contact.wear_index_density, 1e6)
     """
 
@@ -179,7 +178,12 @@ def test_predictions_are_the_same_compiled_or_not_and_alone(model: str, law: str
     ]
     # USFD is a sum of ramps, each rounded as the whole dissipation is; 24 roundings, see the kernels' own tests.
     dissipation = found.wear_index_density.m_as("N/m^2")
-    allowed = ramps * EPS * sum(abs(slope) for _, slope in predict.wear_law.ramps or ()) * dissipation
+    allowed = (
+        ramps
+        * EPS
+        * sum(abs(slope) for _, slope in predict.wear_law.ramps(predict.wear_law.numbers) or ())
+        * dissipation
+    )
     if law == "kth":  # the sum of some hundred nodes, in which a vector sine may differ by a rounding from a single one
         allowed = nodes * EPS * rates[False]
     assert np.count_nonzero(rates[False]) == 0.9 * points

@@ -197,7 +197,7 @@ def test_closed_forms_give_the_wear_that_quadrature_gives(name: str, fitted_for:
     closed, nodes = ((RIG | each | law)(**conditions) for each in (model, without_closed_forms(model)))
     assert closed.tangential_force.m.tolist() == nodes.tangential_force.m.tolist()
     # Each ramp alone is as large as its slope times the whole dissipation, from which the others are subtracted.
-    largest = sum(abs(slope) for _, slope in law.ramps or ()) * closed.wear_index_density.m_as("N/m^2")
+    largest = sum(abs(slope) for _, slope in law.ramps(law.numbers) or ()) * closed.wear_index_density.m_as("N/m^2")
     apart = np.abs(closed.wear_rate.m_as("kg/m/m^2") - nodes.wear_rate.m_as("kg/m/m^2"))
     assert (apart <= SUM * largest).all()
     rate = closed.wear_rate.m_as("ug/m/mm^2")
@@ -214,11 +214,10 @@ def test_the_energy_above_a_threshold_is_that_of_the_fields(name: str, threshold
         name: ClassVar[str] = "above"
         source: ClassVar[str] = "the tests"
 
-        @property
-        def breakpoints(self) -> wl.BreakpointMap:
+        def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
             return {"wear_index_density": (threshold,)}
 
-        def rate(self, contact: wl.Contact) -> Array:
+        def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
             return np.maximum(contact.wear_index_density - threshold, 0.0)
 
     model = LINE_MODELS[name]

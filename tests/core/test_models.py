@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -48,8 +49,54 @@ class Proportional(wl.WearLaw):
     name = "proportional"
     source = "a test"
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         return contact.wear_index_density
+
+
+class Methods:
+    """Methods that no law may have."""
+
+    def of_contact(self, contact: wl.Contact) -> Array:
+        return contact.slip
+
+    def of_keyword(self, contact: wl.Contact, *, p: wl.Numbers) -> Array:
+        return p["slope"] * contact.slip
+
+    def of_nothing(self) -> wl.BreakpointMap:
+        return {}
+
+
+@pytest.mark.parametrize(
+    ("name", "method", "message"),
+    [
+        (
+            "rate",
+            Methods.of_contact,
+            r"must take \(self, contact, p\): p holds the law's numbers in SI; it takes \(self, ",
+        ),
+        ("rate", Methods.of_keyword, r"it takes \(self, contact: .*, \*, p: "),
+        ("breakpoints", property(Methods.of_nothing), r"must take \(self, p\): .* it is a property, make it a method$"),
+        ("ramps", property(Methods.of_nothing), "it is a property, make it a method$"),
+        ("jumps", functools.cached_property(Methods.of_nothing), "it is a property, make it a method$"),
+        ("breakpoints", Methods.of_nothing, r"must take \(self, p\): .* it takes \(self\)"),
+    ],
+)
+def test_a_law_whose_methods_do_not_take_its_numbers_is_refused_where_it_is_defined(
+    name: str, method: Any, message: str
+) -> None:
+    with pytest.raises(TypeError, match=rf"^Law\.{name} .*{message}"):
+        type("Law", (wl.WearLaw,), {"__module__": __name__, "name": "law", name: method})
+
+
+def test_a_method_that_takes_more_than_the_numbers_is_taken() -> None:
+    class Law(Proportional):
+        def rate(self, contact: wl.Contact, p: wl.Numbers, *, warm: bool = False) -> Array:
+            return p.get("slope", 1.0) * contact.wear_index_density * (2.0 if warm else 1.0)
+
+        def ramps(self, p: wl.Numbers, *more: Any) -> tuple[tuple[float, float], ...]:
+            return ((0.0, 1.0), *more)
+
+    assert Law().ramps({}) == ((0.0, 1.0),)
 
 
 @pytest.mark.parametrize("base", [wl.ContactModel, wl.LineContactModel, wl.CreepForceModel, wl.WearLaw])
@@ -94,7 +141,8 @@ def test_what_a_model_or_law_does_not_declare_has_a_cautious_default() -> None:
     assert not Ramp().uses_measured_traction
     assert wl.contact_model("exact").exemptions == {}
     law = Proportional()
-    assert (law.scale, law.breakpoints, law.jumps, law.valid_range) == ("any", None, {}, {})
+    assert (law.scale, law.valid_range, law.numbers) == ("any", {}, {})
+    assert (law.breakpoints({}), law.ramps({}), law.jumps({})) == (None, None, {})
     assert law.calibration is None
     assert law.band() is None
     assert law.monotone_in == ()
@@ -168,7 +216,7 @@ def test_a_law_that_breaks_its_contract_is_named(said: str) -> None:
     class Wrong(Proportional):
         name = "wrong"
 
-        def rate(self, contact: wl.Contact) -> Array:
+        def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
             return WRONG_RATES[said](contact)
 
     with pytest.raises(wl.ModelError, match=f"wear law 'wrong' {said}"):
@@ -185,7 +233,7 @@ def test_what_a_model_knows_of_its_force_without_nodes_is_used() -> None:
         name = "knows"
         source = "a test"
 
-        def solve_line(self, problem: wl.LineProblem) -> wl.Contact:  # noqa: ARG002
+        def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
             raise AssertionError("not needed")
 
         def tangential_force(self, problem: wl.LineProblem) -> Array:

@@ -64,7 +64,7 @@ class Returning(wl.Rig):
     source: ClassVar[str] = "a test"
     what: ClassVar[Any] = None
 
-    def problem(self, *, creepage: wl.QuantityLike) -> Any:  # noqa: ARG002
+    def problem(self, *, creepage: wl.QuantityLike) -> Any:
         """Return it."""
         if isinstance(self.what, BaseException):
             raise self.what

@@ -18,7 +18,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import wearlaw
 from tests.core.distributions import FIRST_PARTY_LAWS, FIRST_PARTY_MODELS, LAW, Install, write_distribution
-from wearlaw import hookspecs, plugins
+from wearlaw import plugins
 
 BROKEN = {
     "import_that_fails": ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named"),
@@ -85,7 +85,15 @@ BROKEN = {
     ),
     "built_for_a_newer_interface": (
         "wearlaw_interface = 99",
-        "TypeError: it is built for version 99 of the plugin interface, this wearlaw has version 1; upgrade wearlaw",
+        "TypeError: it is built for version 99 of the plugin interface, this wearlaw has version 2; upgrade wearlaw",
+    ),
+    "built_for_an_older_interface": (
+        textwrap.dedent(LAW).format(name="outside") + "\nwearlaw_interface = 1",
+        "TypeError: it is built for version 1 of the plugin interface, this wearlaw has version 2; upgrade the plugin",
+    ),
+    "law_of_an_older_interface": (
+        textwrap.dedent(LAW).format(name="outside").replace("contact, p)", "contact)"),
+        "TypeError: Outside.rate must take (self, contact, p): p holds the law's numbers in SI; it takes (self,",
     ),
     "interface_that_is_no_number": (
         "wearlaw_interface = '1'",
@@ -128,10 +136,9 @@ def test_an_outside_law_is_found_beside_the_others(install: Install) -> None:
     assert str(plugins.installed().wear_laws.origin("outside")) == "outside_plugin 3.2 (plugin 'outside_plugin')"
 
 
-def test_a_plugin_for_an_older_interface_is_loaded(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(hookspecs, "INTERFACE_VERSION", 2)
-    install("older_plugin", LAW.format(name="older") + "\n    wearlaw_interface = 1\n")
-    assert "older" in wl.wear_laws()
+def test_a_plugin_for_this_interface_is_loaded(install: Install) -> None:
+    install("current_plugin", LAW.format(name="current") + "\n    wearlaw_interface = 2\n")
+    assert "current" in wl.wear_laws()
 
 
 @pytest.mark.parametrize("case", BROKEN)

@@ -35,11 +35,10 @@ class Stated(wl.WearLaw):
     def valid_range(self) -> Mapping[str, tuple[float, float]]:
         return {self.variable: (self.low, self.high)}
 
-    @property
-    def ramps(self) -> tuple[tuple[float, float], ...] | None:
+    def ramps(self, p: wl.Numbers) -> tuple[tuple[float, float], ...] | None:
         return ((0.0, 1e-9), (1e6, 1e-9)) if self.declared else None
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         w = contact.wear_index_density
         return 1e-9 * (w + np.maximum(w - 1e6, 0.0))
 

@@ -127,7 +127,9 @@ def test_the_contact_holds_si_arrays_whose_rate_averages_to_the_wear_rate(shape:
     contact = result.contact
     assert contact.pressure.shape[:-1] == shape
     assert contact.tangential_force.shape == shape
-    np.testing.assert_allclose(contact.mean(LAW.rate(contact)), result.wear_rate.to("kg/m^3").magnitude, rtol=16 * EPS)
+    np.testing.assert_allclose(
+        contact.mean(LAW.checked_rate(contact)), result.wear_rate.to("kg/m^3").magnitude, rtol=16 * EPS
+    )
     np.testing.assert_allclose(contact.patch_area, 2 * HALF_WIDTH * WIDTH, rtol=1e-13)
     # T is the integral of the tractions.
     np.testing.assert_allclose(contact.sum_over_nodes(contact.traction * contact.area), carter(0.01), rtol=1e-10)

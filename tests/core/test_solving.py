@@ -34,7 +34,7 @@ class PerEnergy(wl.WearLaw):
     name: ClassVar[str] = "per_energy"
     source: ClassVar[str] = "the tests"
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         return contact.wear_index_density
 
 
@@ -86,8 +86,7 @@ class Ramps(PerEnergy):
 
     name: ClassVar[str] = "ramps"
 
-    @property
-    def ramps(self) -> tuple[tuple[float, float], ...]:
+    def ramps(self, p: wl.Numbers) -> tuple[tuple[float, float], ...]:
         return ((1e5, 1.0),)
 
 
@@ -126,7 +125,7 @@ def test_the_mass_on_a_rail_is_that_of_all_parts_of_a_patch(use_patch_mean: bool
     found = (contact | PerEnergy())(**ON_RAIL)
     nodes = two_parts(Strips().solve(RAIL.problem(**ON_RAIL)))
     seen = nodes.patch_mean() if use_patch_mean else nodes
-    expected = (PerEnergy().rate(seen) * seen.area).sum(axis=(-2, -1))
+    expected = (PerEnergy().checked_rate(seen) * seen.area).sum(axis=(-2, -1))
     assert found.mass_per_distance.m_as("kg/m") == pytest.approx(expected, rel=64 * EPS)
     assert found.mass_lost("2 km", "wheel").m_as("kg") == pytest.approx(2e3 * expected, rel=64 * EPS)
     assert found.patch_area.m_as("m^2") == pytest.approx(2.0 * found.problem.patch_area, rel=64 * EPS)
@@ -140,7 +139,7 @@ def test_the_mass_on_a_disc_is_that_of_the_nodes() -> None:
     larger = replace(area=lambda area: 2.0 * area, pressure=lambda p: 0.5 * p, traction=lambda q: 0.5 * q)
     found = (RIG | ChangedCells(change=larger) | PerEnergy())(**ON_DISCS)
     contact = larger(Cells().solve(RIG.problem(**ON_DISCS)))
-    expected = (PerEnergy().rate(contact) * contact.area).sum(axis=-1)
+    expected = (PerEnergy().checked_rate(contact) * contact.area).sum(axis=-1)
     assert found.mass_lost("1 m", "disc_1").m_as("kg") == pytest.approx(expected, rel=64 * EPS)
     assert found.patch_area.m_as("m^2") == pytest.approx(contact.patch_area, rel=8 * EPS)
     assert found.wear_index_density.m_as("N/m^2") == pytest.approx(contact.wear_index / contact.patch_area, rel=8 * EPS)
@@ -334,7 +333,7 @@ class Told(wl.WearLaw):
     source: ClassVar[str] = "the tests"
     change: Any
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         rate: Array = self.change(contact.wear_index_density)
         return rate
 
@@ -408,12 +407,10 @@ def test_what_a_law_raises_from_its_declarations_names_it() -> None:
         name: ClassVar[str] = "undecided"
         declaration: str
 
-        @property
-        def breakpoints(self) -> Any:
+        def breakpoints(self, p: wl.Numbers) -> Any:
             self._raise("breakpoints")
 
-        @property
-        def ramps(self) -> Any:
+        def ramps(self, p: wl.Numbers) -> Any:
             self._raise("ramps")
 
         @property

@@ -37,9 +37,9 @@ def test_a_warning_that_all_pairs_give_is_noted_once_for_each_sweep_or_profile()
 class Warns(cases.Linear):
     name = "warns"
 
-    def rate(self, contact: wl.Contact) -> Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         warnings.warn("from elsewhere", DeprecationWarning, stacklevel=1)
-        return super().rate(contact)
+        return super().rate(contact, p)
 
 
 def test_warnings_of_others_are_passed_on_and_not_noted(install_model: InstallModel) -> None:

@@ -101,7 +101,7 @@ class Choosing(Failing):
 
     name = "choosing"
 
-    def rate(self, contact: wl.Contact) -> wl.Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
         return abs(contact.slip) * (kernels.chosen() is False)
 
 
@@ -150,7 +150,7 @@ class Talking(Failing):
 
     name = "talking"
 
-    def rate(self, contact: wl.Contact) -> wl.Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
         print("a law that prints", flush=True)
         return np.zeros_like(contact.slip)
 

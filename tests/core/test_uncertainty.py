@@ -21,7 +21,6 @@ from wearlaw.uncertainties.specification import UncertainPoint
     returns="ug/m/mm^2",
     breakpoints={},
     parameters={"first": "ug/m/N", "second": "ug/m/N"},
-    varies=True,
     source="made up for the tests",
 )
 def linear(wear_index_density: Any, *, first: float = 4.0, second: float = 2.0) -> Any:

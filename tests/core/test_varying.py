@@ -1,8 +1,8 @@
-"""Laws whose parameters differ from operating point to operating point, against one law at a time."""
+"""Laws whose numbers differ from operating point to operating point, against one law at a time."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,8 +13,7 @@ from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.errors import InputError
 from wearlaw.integrate import BLOCK, integrate_wear
-from wearlaw.parameters import changed, number_in_si, number_like, numbers, per_point
-from wearlaw.varying import integrate_varying
+from wearlaw.parameters import changed, number_in_si, number_like, numbers
 
 RIG = wl.TwinDisc.suros()
 
@@ -24,26 +23,18 @@ class Stepped(wl.WearLaw):
 
     name: ClassVar[str] = "stepped"
     source: ClassVar[str] = "made up for the tests"
-    varies: ClassVar[bool] = True
 
     threshold: wl.Stress = Q(4.0, "MPa")
     """Where the rate triples."""
     exponent: float = 1.5
     """Of q·s."""
 
-    @property
-    def breakpoints(self) -> wl.BreakpointMap:
-        return {"wear_index_density": (wl.scalar_si(self.threshold, "Pa"),)}
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"wear_index_density": (p["threshold"],)}
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
-        return np.where(w < wl.scalar_si(self.threshold, "Pa"), 1e-9, 3e-9) * w * (w / 1e6) ** (self.exponent - 1.0)
-
-
-class OneByOne(Stepped):
-    """The same, not declared to vary."""
-
-    varies: ClassVar[bool] = False
+        return np.where(w < p["threshold"], 1e-9, 3e-9) * w * (w / 1e6) ** (p["exponent"] - 1.0)
 
 
 @pytest.fixture(params=[False, True], ids=["NumPy", "numba"])
@@ -64,6 +55,11 @@ def points(count: int) -> tuple[Any, Any]:
     return problem, rng
 
 
+def rates(model: wl.ContactModel, law: wl.WearLaw, values: Mapping[str, Any], problem: wl.LineProblem) -> Any:
+    p = {**law.numbers, **{name: si[:, None] for name, si in values.items()}}
+    return integrate_wear(model, law, problem, model.scale, p=p).wear_rate
+
+
 @pytest.mark.usefixtures("_accelerated")
 @pytest.mark.parametrize("contact", ["global", "exact", "fastsim"])
 @pytest.mark.parametrize("law", [wl.wear_law("usfd"), wl.wear_law("kth").explicit(), Stepped()], ids=lambda x: x.name)
@@ -71,8 +67,8 @@ def test_each_point_gets_the_rate_of_its_own_law(law: wl.WearLaw, contact: str) 
     model = wl.contact_model(contact)
     problem, rng = points(40)
     units = numbers(law)
-    values = {name: number_in_si(number) * rng.uniform(0.97, 1.03, 40) for name, number in units.items()}
-    found = integrate_varying(model, law, values, problem, model.scale)
+    values = {name: si * rng.uniform(0.97, 1.03, 40) for name, si in law.numbers.items()}
+    found = rates(model, law, values, problem)
     for point, rate in enumerate(found):
         own = changed(law, {name: number_like(units[name], float(si[point])) for name, si in values.items()})
         expected = integrate_wear(model, own, problem[point : point + 1], model.scale).wear_rate[0]
@@ -81,23 +77,69 @@ def test_each_point_gets_the_rate_of_its_own_law(law: wl.WearLaw, contact: str) 
         assert rate == pytest.approx(expected, rel=1000 * EPS)
 
 
-def test_blocks_do_not_matter() -> None:
-    law, model = wl.wear_law("usfd"), wl.contact_model("exact")
+@pytest.mark.parametrize("law", [wl.wear_law("usfd"), Stepped()], ids=lambda x: x.name)
+@pytest.mark.parametrize(
+    "model",
+    # the second has no closed form, for want of which the nodes of a block are solved in smaller blocks
+    [wl.contact_model("exact"), wl.contact_model("exact", slip="as_printed"), wl.contact_model("global")],
+    ids=repr,
+)
+def test_blocks_do_not_matter(model: wl.ContactModel, law: wl.WearLaw) -> None:
     count = BLOCK + 3
     problem, rng = points(count)
-    values = {"q_s": number_in_si(numbers(law)["q_s"]) * rng.uniform(0.9, 1.1, count)}
-    whole = integrate_varying(model, law, values, problem, "cells")
-    last = integrate_varying(model, law, {"q_s": values["q_s"][-5:]}, problem[count - 5 :], "cells")
+    values = {name: si * rng.uniform(0.97, 1.03, count) for name, si in law.numbers.items()}
+    whole = rates(model, law, values, problem)
+    last = rates(model, law, {name: si[-5:] for name, si in values.items()}, problem[count - 5 :])
     assert whole[-5:] == pytest.approx(last, rel=1000 * EPS)
 
 
-def test_a_law_that_does_not_vary_is_taken_one_at_a_time() -> None:
+class AsksAboutNumbers(Stepped):
+    """Has an `if` on a number in one of its formulas, which an array of numbers cannot answer."""
+
+    name: ClassVar[str] = "asks"
+    where: str
+
+    def _ask(self, where: str, p: wl.Numbers) -> None:
+        if self.where == where and p["exponent"] > 1.0:
+            pass
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        self._ask("rate", p)
+        return super().rate(contact, p)
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        self._ask("breakpoints", p)
+        return super().breakpoints(p)
+
+    def ramps(self, p: wl.Numbers) -> None:
+        self._ask("ramps", p)
+
+
+@pytest.mark.parametrize("where", ["rate", "breakpoints", "ramps"])
+def test_a_law_that_fails_with_arrays_is_named_and_told_what_to_write(where: str) -> None:
+    law, model = AsksAboutNumbers(where=where), wl.contact_model("exact")
     problem, rng = points(12)
-    values = {"threshold": rng.choice([3e6, 5e6], 12), "exponent": rng.uniform(1.0, 2.0, 12)}
-    model = wl.contact_model("exact")
-    slow = integrate_varying(model, OneByOne(), values, problem, "cells")
-    assert slow == pytest.approx(integrate_varying(model, Stepped(), values, problem, "cells"), rel=1000 * EPS)
-    assert len(set(slow)) == 12
+    assert integrate_wear(model, law, problem, "cells").wear_rate.shape == (12,)
+    with pytest.raises(wl.ModelError, match=r"(?s)^wear law 'asks' failed: ValueError: .*np\.where instead of if"):
+        rates(model, law, {"exponent": rng.uniform(1.0, 2.0, 12)}, problem)
+
+
+def test_numbers_of_a_law_are_floats_in_si_with_those_of_published_sets() -> None:
+    law = wl.wear_law("kth", hardness="3 GPa")
+    assert law.numbers == law.explicit().numbers
+    assert law.numbers["hardness"] == 3e9
+    assert law.numbers["coefficient.mid_speed"] == 35e-4
+    assert {type(number) for number in law.numbers.values()} == {float}
+
+
+def test_checked_rate_takes_the_numbers_of_the_law_unless_given_others() -> None:
+    law = wl.wear_law("usfd")
+    contact = wl.Contact.from_arrays(
+        pressure=Q([1.0], "GPa"), traction="0.4 GPa", slip="0.1 %", area="1 mm^2", rolling_speed="1 m/s"
+    )
+    (own,), (twice,) = law.checked_rate(contact), law.checked_rate(contact, {**law.numbers, "m_m": 10.6e-9})
+    assert own == (contact | law).rate
+    assert twice == pytest.approx(2.0 * own, rel=4 * EPS)
 
 
 def test_numbers_are_named_through_nested_records() -> None:
@@ -112,11 +154,6 @@ def test_changed_numbers_are_checked_like_new_ones() -> None:
     assert numbers(changed(law, {"coefficient.mid_speed": 4e-3}))["coefficient.mid_speed"] == 4e-3
     with pytest.raises(wl.ConfigurationError, match="mid_speed"):
         changed(law, {"coefficient.mid_speed": -1.0})
-
-
-def test_values_for_each_point_keep_the_unit_of_the_field() -> None:
-    varied: Any = per_point(wl.wear_law("usfd"), {"q_s": np.array([50e-3, 60e-3])})
-    assert varied.q_s.magnitude == pytest.approx(np.array([[50.0], [60.0]]), rel=4 * EPS)
 
 
 def test_an_unknown_number_is_named() -> None:

@@ -33,8 +33,8 @@ class PerEnergy(wl.WearLaw):
     source = "made up for these tests"
     slope: float = 1e-12
 
-    def rate(self, contact: wl.Contact) -> wl.Array:
-        return self.slope * contact.wear_index_density
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return p["slope"] * contact.wear_index_density
 
 
 PER_ENERGY = PerEnergy()

@@ -130,6 +130,6 @@ class Means(wl.CreepForceModel):
         factor = self.factor(problem, reduced) * (1.0 - left + left**2 / 3.0) * 3.0 / np.maximum(reduced, 3.0)
         return wl.CreepForces(longitudinal=factor * along, lateral=factor * across, spin_moment=factor * turning)
 
-    def factor(self, problem: wl.EllipticProblem, reduced: Any) -> Any:  # noqa: ARG002  for those that are wrong
+    def factor(self, problem: wl.EllipticProblem, reduced: Any) -> Any:
         """Return what the forces are multiplied by; `reduced` is the force of linear theory over μN."""
         return np.ones_like(reduced)

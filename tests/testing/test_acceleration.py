@@ -28,7 +28,7 @@ def overflowing(w: float) -> float:
 class Overflows(Linear):
     """An integer of its kernel overflows when compiled."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return overflowing(contact.wear_index_density)
 
 

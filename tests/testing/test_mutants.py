@@ -80,7 +80,6 @@ def test_every_check_of_an_invariant_catches_a_mutant() -> None:
     breakpoints={"wear_index_density": [4.0]},
     jumps=[4.0],
     parameters={"mild": "ug/m/N", "severe": "ug/m/N", "limit": "N/mm^2"},
-    varies=True,
     source="made up for the tests",
 )
 def two_slopes(wear_index_density: Any, *, mild: float = 5.0, severe: float = 15.0, limit: float = 4.0) -> Any:

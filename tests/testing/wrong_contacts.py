@@ -1,6 +1,5 @@
 """Contact models that are wrong in one way each, made from Carter's."""
 
-# ruff: noqa: ARG002  the signature is that of the base
 from __future__ import annotations
 
 import dataclasses

@@ -1,6 +1,5 @@
 """Contact models of ellipses whose forces do not follow the creepages as they must, made from patch means."""
 
-# ruff: noqa: ARG002  the signature is that of the base
 from __future__ import annotations
 
 import dataclasses

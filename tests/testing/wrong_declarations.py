@@ -15,7 +15,7 @@ from tests.testing.wrong_laws import SLOPE, Linear
 class HiddenJump(Linear):
     """Twice the rate above 4 N/mm², undeclared."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return np.where(w < 4e6, SLOPE, 2 * SLOPE) * w
 
@@ -23,22 +23,20 @@ class HiddenJump(Linear):
 class SmallHiddenJump(Linear):
     """A hundredth more above a slip speed of 0.3 m/s, undeclared."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return np.where(contact.slip_speed < 0.3, 1.0, 1.01) * SLOPE * contact.wear_index_density
 
 
 class JumpElsewhere(Linear):
     """The jump is declared at 4 N/mm², but lies at 5 N/mm²."""
 
-    @property
-    def breakpoints(self) -> wl.BreakpointMap:
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         return {"wear_index_density": (4e6,)}
 
-    @property
-    def jumps(self) -> wl.BreakpointMap:
-        return self.breakpoints
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return self.breakpoints(p)
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return np.where(w < 5e6, SLOPE, 2 * SLOPE) * w
 
@@ -46,22 +44,21 @@ class JumpElsewhere(Linear):
 class JumpThatIsNone(JumpElsewhere):
     """A declared jump at which nothing jumps."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density
 
 
 class JumpWithoutBreakpoint(HiddenJump):
     """The jump is declared, but not as a breakpoint."""
 
-    @property
-    def jumps(self) -> wl.BreakpointMap:
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
         return {"wear_index_density": (4e6,)}
 
 
 class Smooth(Linear):
     """The right one of those without a breakpoint: steep, saturating and turning in places, but smooth."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         activated = np.exp(-1e8 / (contact.pressure + 1e3))
         turning = 2.0 + np.tanh(np.log((contact.slip_speed + 1e-9) / 0.2) / 0.01)
@@ -71,7 +68,7 @@ class Smooth(Linear):
 class HiddenKink(Linear):
     """A hundredth more of each further joule above 4 N/mm², undeclared."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return SLOPE * (w + 0.01 * np.maximum(w - 4e6, 0.0))
 
@@ -79,7 +76,7 @@ class HiddenKink(Linear):
 class SmallHiddenKink(Linear):
     """A thousandth more for each e-fold of pressure above 900 MPa, undeclared."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         above = np.log(np.maximum(contact.pressure, 9e8) / 9e8)
         return SLOPE * contact.wear_index_density * (1.0 + 0.001 * above)
 
@@ -87,11 +84,10 @@ class SmallHiddenKink(Linear):
 class KinkElsewhere(Linear):
     """The kink is declared at 4 N/mm², but lies at 4.1 N/mm²."""
 
-    @property
-    def breakpoints(self) -> wl.BreakpointMap:
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         return {"wear_index_density": (4e6,)}
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return SLOPE * (w + np.maximum(w - 4.1e6, 0.0))
 
@@ -99,7 +95,7 @@ class KinkElsewhere(Linear):
 class SecondKink(KinkElsewhere):
     """A declared kink, and a smaller one a tenth above it."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return SLOPE * (w + np.maximum(w - 4e6, 0.0) + 0.1 * np.maximum(w - 4.4e6, 0.0))
 
@@ -107,15 +103,13 @@ class SecondKink(KinkElsewhere):
 class Ramps(Linear):
     """The right one of those with ramps: a threshold at 4 N/mm²."""
 
-    @property
-    def breakpoints(self) -> wl.BreakpointMap:
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         return {"wear_index_density": (4e6,)}
 
-    @property
-    def ramps(self) -> tuple[tuple[float, float], ...]:
+    def ramps(self, p: wl.Numbers) -> tuple[tuple[float, float], ...]:
         return (0.0, SLOPE), (4e6, SLOPE)
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return SLOPE * (w + np.maximum(w - 4e6, 0.0))
 
@@ -123,39 +117,35 @@ class Ramps(Linear):
 class RampIsTooSteep(Ramps):
     """The second ramp is steeper than the law, by a millionth."""
 
-    @property
-    def ramps(self) -> tuple[tuple[float, float], ...]:
+    def ramps(self, p: wl.Numbers) -> tuple[tuple[float, float], ...]:
         return (0.0, SLOPE), (4e6, SLOPE * (1.0 + 1e-6))
 
 
 class RampIsMissing(Ramps):
     """The ramps end at the threshold."""
 
-    @property
-    def ramps(self) -> tuple[tuple[float, float], ...]:
+    def ramps(self, p: wl.Numbers) -> tuple[tuple[float, float], ...]:
         return ((0.0, SLOPE),)
 
 
 class RampWithoutBreakpoint(Ramps):
     """Two ramps that cancel each other begin where no breakpoint is."""
 
-    @property
-    def ramps(self) -> tuple[tuple[float, float], ...]:
+    def ramps(self, p: wl.Numbers) -> tuple[tuple[float, float], ...]:
         return (0.0, SLOPE), (4e6, SLOPE), (9e6, SLOPE), (9e6, -SLOPE)
 
 
 class NegativeThreshold(Ramps):
     """A ramp without slope begins below zero."""
 
-    @property
-    def ramps(self) -> tuple[tuple[float, float], ...]:
+    def ramps(self, p: wl.Numbers) -> tuple[tuple[float, float], ...]:
         return (0.0, SLOPE), (4e6, SLOPE), (-1.0, 0.0)
 
 
 class FallsWithSlip(Linear):
     """Less wear for the same energy at high slip."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density / (1.0 + (10.0 * contact.slip) ** 2)
 
 
@@ -164,14 +154,14 @@ class FallsWithSpeed(Linear):
 
     monotone_in: ClassVar[tuple[str, ...]] = ("slip_speed",)
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density / (1.0 + contact.slip_speed)
 
 
 class FallsDespiteDeclaration(Linear):
     """Less wear above 4 N/mm², continuously."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return SLOPE * np.where(w < 4e6, w, 4e6 * np.sqrt(4e6 / np.maximum(w, 1.0)))
 

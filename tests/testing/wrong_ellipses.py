@@ -1,6 +1,5 @@
 """Contact models of ellipses that are wrong in one way each, made from a march along strips."""
 
-# ruff: noqa: ARG002  the signature is that of the base
 from __future__ import annotations
 
 import dataclasses

@@ -22,53 +22,52 @@ class Linear(wl.WearLaw):
     slope: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = Field(default="5 ug/m/N", validate_default=True)
     """Slope [kg/m/N]."""
 
-    @property
-    def breakpoints(self) -> wl.BreakpointMap:
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         return {}
 
-    def rate(self, contact: wl.Contact) -> Any:
-        return wl.scalar_si(self.slope, "kg/m/N") * contact.wear_index_density
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return p["slope"] * contact.wear_index_density
 
 
 class WrongSign(Linear):
     """Material grows."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return -SLOPE * contact.wear_index_density
 
 
 class SignedSlip(Linear):
     """Pressure times the slip with its sign."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.pressure * contact.slip
 
 
 class ForwardOnly(Linear):
     """Wear at positive creepage only."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density * (contact.slip > 0)
 
 
 class Offset(Linear):
     """A rate of 1e-7 without slip."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density + 1e-7
 
 
 class MissingUnit(Linear):
     """The number of a parameter without its unit."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return 1e-9 * float(self.slope.magnitude) * contact.wear_index_density
 
 
 class WholePascals(Linear):
     """A millionth more where the pressure is a whole number of pascals."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         whole = (contact.pressure > 0) & (contact.pressure == np.rint(contact.pressure))
         return SLOPE * contact.wear_index_density * np.where(whole, 1.0 + 1e-6, 1.0)
 
@@ -86,18 +85,17 @@ def nearly(w: float) -> float:
 class KernelDiffers(Linear):
     """The formula of a kernel for one point is not that of its arrays."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return nearly(contact.wear_index_density)
 
 
 class TwelveDigits(Linear):
     """Loses four digits in a difference of large numbers."""
 
-    @property
-    def breakpoints(self) -> Any:
+    def breakpoints(self, p: wl.Numbers) -> Any:
         return None
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return SLOPE * ((1.0 + 3e3) * w - 3e3 * w)
 
@@ -105,14 +103,14 @@ class TwelveDigits(Linear):
 class NodeOrder(Linear):
     """Wear accumulates from the leading edge."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * np.cumsum(contact.wear_index_density, axis=-1)
 
 
 class BatchLeak(Linear):
     """Relative to the largest of the batch."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return SLOPE * w * (1.0 + 0.01 * w / np.maximum(w.max(), 1.0))
 
@@ -120,7 +118,7 @@ class BatchLeak(Linear):
 class NeighbourLeak(Linear):
     """Relative to the largest of the patch."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return SLOPE * w * (1.0 + 0.01 * w / np.maximum(w.max(axis=-1, keepdims=True), 1.0))
 
@@ -128,21 +126,21 @@ class NeighbourLeak(Linear):
 class CountsNodes(Linear):
     """Depends on how finely the patch is resolved."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density / contact.area.shape[-1]
 
 
 class PlainMean(Linear):
     """The mean over the nodes without their areas."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return np.broadcast_to(SLOPE * contact.wear_index_density.mean(axis=-1, keepdims=True), contact.slip.shape)
 
 
 class ChangesInput(Linear):
     """Takes the magnitude of the slip in place."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         if contact.slip.flags.writeable:
             np.abs(contact.slip, out=contact.slip)
         return SLOPE * np.abs(contact.traction) * np.abs(contact.slip)
@@ -151,7 +149,7 @@ class ChangesInput(Linear):
 class NaNAtCorner(Linear):
     """Divides zero by zero where the pressure is zero."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         with np.errstate(all="ignore"):
             return SLOPE * contact.wear_index_density * (contact.pressure / contact.pressure)
 
@@ -162,7 +160,7 @@ CALLS: list[int] = []
 class KeepsState(Linear):
     """Wears more with each call."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         CALLS.append(1)
         return SLOPE * contact.wear_index_density * (1.0 + 1e-9 * len(CALLS))
 
@@ -173,7 +171,7 @@ BUFFER: dict[tuple[int, ...], Any] = {}
 class ReusesBuffer(Linear):
     """Returns the same array again."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         buffer = BUFFER.setdefault(contact.slip.shape, np.empty(contact.slip.shape))
         buffer[...] = SLOPE * contact.wear_index_density
         return buffer
@@ -182,35 +180,35 @@ class ReusesBuffer(Linear):
 class SinglePrecision(Linear):
     """Computes in single precision, and returns double."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density.astype(np.float32).astype(np.float64)
 
 
 class ReturnsSingle(Linear):
     """Returns single precision."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return (SLOPE * contact.wear_index_density).astype(np.float32)
 
 
 class WrongShape(Linear):
     """One rate a patch, though stated for the nodes."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density.mean(axis=-1)
 
 
 class FlattensMemory(Linear):
     """Reads the memory of an array in its order."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density.ravel(order="K").reshape(contact.slip.shape)
 
 
 class IntegerArithmetic(Linear):
     """Fills an array of the type of the input."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         rate = np.zeros_like(contact.pressure)
         rate[...] = SLOPE * contact.wear_index_density
         return rate
@@ -222,39 +220,69 @@ class PatchOnCells(Linear):
     scale: ClassVar[Literal["patch", "any"]] = "patch"
 
     def __ror__(self, contact: wl.Contact) -> wl.LocalWear:
-        return wl.LocalWear(contact, self.rate(contact))
+        return wl.LocalWear(contact, self.checked_rate(contact))
 
 
 class Raises(Linear):
     """Refuses a corner."""
 
-    def rate(self, contact: wl.Contact) -> Any:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         if (contact.slip == 0).any():
             raise ZeroDivisionError("no slip")
         return SLOPE * contact.wear_index_density
 
 
-class Varies(Linear):
-    """The right one of those whose slope may differ from point to point."""
+class ReadsItself(Linear):
+    """Takes the slope of the law and not the one that it is given."""
 
-    varies: ClassVar[bool] = True
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return wl.scalar_si(self.slope, "kg/m/N") * contact.wear_index_density
 
 
-class OneForAll(Varies):
+class BranchesInPython(Linear):
+    """Asks whether a slope is steep, which an array of slopes cannot answer."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return (p["slope"] if p["slope"] < 1e-6 else 1e-6) * contact.wear_index_density
+
+
+class ChangesNumbers(Linear):
+    """Makes the slope steeper for the next call."""
+
+    def rate(self, contact: wl.Contact, p: Any) -> Any:
+        rate, p["slope"] = p["slope"] * contact.wear_index_density, p["slope"] * (1.0 + 1e-9)
+        return rate
+
+
+class BreakpointOfItself(Linear):
+    """A kink whose place does not move with the slope that it is made of."""
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"wear_index_density": (20e-3 / wl.scalar_si(self.slope, "kg/m/N"),)}
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return np.minimum(p["slope"] * contact.wear_index_density, 20e-3)
+
+
+class OneForAll(Linear):
     """The first point's slope at all points."""
 
-    def rate(self, contact: wl.Contact) -> Any:
-        return np.ravel(wl.scalar_si(self.slope, "kg/m/N"))[0] * contact.wear_index_density
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return np.ravel(p["slope"])[0] * contact.wear_index_density
 
 
-class AxisOfPoints(Varies):
+class AxisOfPoints(Linear):
     """One value of the slope a node, for want of the axis of the nodes."""
 
-    def rate(self, contact: wl.Contact) -> Any:
-        return np.ravel(wl.scalar_si(self.slope, "kg/m/N")) * contact.wear_index[0] / contact.patch_area[0]
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return np.ravel(p["slope"]) * contact.wear_index[0] / contact.patch_area[0]
 
 
 CAUGHT: dict[type[wl.WearLaw], str] = {
+    ReadsItself: "parameters_may_vary",
+    BranchesInPython: "parameters_may_vary",
+    BreakpointOfItself: "parameters_may_vary",
+    ChangesNumbers: "inputs_are_not_changed",
     OneForAll: "parameters_may_vary",
     AxisOfPoints: "parameters_may_vary",
     WrongSign: "rate_is_never_negative",

@@ -1,6 +1,5 @@
 """Contact models of ellipses whose energy, refinements, strips or conditions are wrong, made from a march on strips."""
 
-# ruff: noqa: ARG002  the signature is that of the base
 from __future__ import annotations
 
 from typing import Any

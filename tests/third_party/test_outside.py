@@ -30,6 +30,10 @@ BROKEN = {
         "wearlaw_interface = 99",
         "TypeError: it is built for version 99 of the plugin interface, this wearlaw has version ",
     ),
+    "too_old": (
+        "wearlaw_interface = 1",
+        "TypeError: it is built for version 1 of the plugin interface, this wearlaw has version ",
+    ),
 }
 """Plugins that cannot be loaded, each with its cause."""
 
@@ -40,7 +44,7 @@ USURPER = """
         name = "usfd"
         source = "a test"
 
-        def rate(self, contact):
+        def rate(self, contact, p):
             return 0.0 * contact.pressure
 
     @wl.hookimpl

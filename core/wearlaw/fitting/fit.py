@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from wearlaw.errors import ConfigurationError, FitError, FitWarning
+from wearlaw.errors import FitError, FitWarning
 from wearlaw.fitting.intervals import DECIDED_ALONE, Replicates, leverage, replicate
 from wearlaw.fitting.least_squares import Solutions
 from wearlaw.fitting.observations import named
@@ -88,13 +88,10 @@ def fit(
     _check_settings(scatter, confidence, starts=starts, bootstrap=bootstrap, seed=seed)
     _check_replicates(bootstrap, confidence)
     task = Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
+    best = task.solve(starts, seed)
     replicates = None
-    try:
-        best = task.solve(starts, seed)
-        if bootstrap:
-            replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
-    except ConfigurationError as error:
-        raise FitError(f"on the way to a fit, a law was refused: {error}; give bounds that keep clear of it") from None
+    if bootstrap:
+        replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
     predict.rig.warn_of_plasticity(task.observations[0].problem.max_pressure, stacklevel=2)
     found = summarise(task, best, replicates, confidence, seed)
     _warn(task, best, replicates)

@@ -18,7 +18,6 @@ from wearlaw.line import LineProblem
 from wearlaw.pipeline import Pipeline
 from wearlaw.units import in_unit
 from wearlaw.variables import UNITS
-from wearlaw.varying import integrate_varying
 from wearlaw.wear_tests.tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
@@ -104,14 +103,13 @@ def predictions(
     problem = problem[np.tile(np.arange(points), sets)]
     if FRICTION in values:
         problem = dataclasses.replace(problem, friction_coefficient=np.repeat(values[FRICTION], points))
-    of_law = {name: np.repeat(value, points) for name, value in values.items() if name != FRICTION}
+    of_law = {name: np.repeat(value, points)[:, None] for name, value in values.items() if name != FRICTION}
     model = pipeline.contact_model
     if observable == "traction_coefficient":
         predicted = np.abs(integrate_contact(model, problem)) / problem.normal_force
-    elif of_law:
-        predicted = integrate_varying(model, pipeline.wear_law, of_law, problem, pipeline.scale)
     else:
-        predicted = integrate_wear(model, pipeline.wear_law, problem, pipeline.scale).wear_rate
+        law = pipeline.wear_law
+        predicted = integrate_wear(model, law, problem, pipeline.scale, p={**law.numbers, **of_law}).wear_rate
     return predicted.reshape(sets, points)
 
 

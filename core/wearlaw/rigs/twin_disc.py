@@ -166,7 +166,7 @@ class TwinDisc(Rig):
             **same,
         )
 
-    @cached_property
+    @property
     def bodies(self) -> Mapping[str, Body]:
         """The two discs, "disc_1" and "disc_2"."""
         discs = {"disc_1": self.disc_1, "disc_2": self.disc_2}

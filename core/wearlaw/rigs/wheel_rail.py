@@ -80,7 +80,7 @@ class WheelRail(Rig):
             )
         return self
 
-    @cached_property
+    @property
     def bodies(self) -> Mapping[str, Body]:
         """The "wheel" and the "rail"."""
         return {

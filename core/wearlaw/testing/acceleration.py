@@ -9,7 +9,7 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.errors import InputError
 from wearlaw.kernels import accelerate
-from wearlaw.models import BreakpointMap, WearLaw
+from wearlaw.models import BreakpointMap, Numbers, WearLaw
 from wearlaw.records import Contact
 from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.tangential import ContactModel, Model
@@ -25,20 +25,18 @@ class Ramps(WearLaw):
     name: ClassVar[str] = "ramps"
     source: ClassVar[str] = "the conformance kit"
 
-    @property
-    def ramps(self) -> tuple[tuple[float, float], ...]:
-        """Two ramps, with the order of magnitude of those of steel."""
-        return (0.0, 5e-9), (1e7, -4e-9), (8e7, 6e-8)
-
-    @property
-    def breakpoints(self) -> BreakpointMap:
-        """Where the ramps begin."""
-        return {"wear_index_density": (1e7, 8e7)}
-
-    def rate(self, contact: Contact) -> Array:
+    def rate(self, contact: Contact, p: Numbers) -> Array:
         """Return the sum of the ramps [kg/m/m²]."""
         w = contact.wear_index_density
-        return sum((slope * np.maximum(w - threshold, 0.0) for threshold, slope in self.ramps), np.zeros_like(w))
+        return sum((slope * np.maximum(w - threshold, 0.0) for threshold, slope in self.ramps(p)), np.zeros_like(w))
+
+    def ramps(self, p: Numbers) -> tuple[tuple[float, float], ...]:  # noqa: ARG002
+        """Return ramps with the order of magnitude of those of steel."""
+        return (0.0, 5e-9), (1e7, -4e-9), (8e7, 6e-8)
+
+    def breakpoints(self, p: Numbers) -> BreakpointMap:  # noqa: ARG002
+        """Return where the ramps begin."""
+        return {"wear_index_density": (1e7, 8e7)}
 
 
 POINTS = 12
@@ -66,7 +64,11 @@ def _results(model: Model, part: slice | int) -> tuple[Array, Array]:
     """Return what a model computes at some of `POINTS` operating points, the last axis, or at one, and its rounding."""
     if isinstance(model, WearLaw):
         contact = random_contacts(POINTS)
-        rate = model.rate(contact)[:, 0] if isinstance(part, slice) else model.rate(rows(contact, [part]))[0, 0]
+        rate = (
+            model.rate(contact, model.numbers)[:, 0]
+            if isinstance(part, slice)
+            else model.rate(rows(contact, [part]), model.numbers)[0, 0]
+        )
         return rate, np.zeros_like(rate)
     assert isinstance(model, ContactModel)
     of = {"line": _of_line, "ellipse": _of_ellipse}
@@ -116,7 +118,7 @@ def _of_ellipse(model: ContactModel, part: slice | int) -> tuple[Array, Array]:
     return np.stack([along, across, moment, index, slip, rate]), SUM * np.stack(allowed)
 
 
-STEEPEST = sum(abs(slope) for _, slope in Ramps().ramps)
+STEEPEST = sum(abs(slope) for _, slope in Ramps().ramps({}))
 """Slopes of the ramps, of which each is rounded as the whole dissipation is [kg/m/N]."""
 
 CHECKS = (acceleration_does_not_matter,)

@@ -43,8 +43,13 @@ def json_schema_is_complete(model: Model) -> None:
 
 def declared_names_are_variables(law: WearLaw) -> None:
     """`breakpoints`, `jumps`, `monotone_in` and `valid_range` name variables of a contact, with finite values."""
-    for subject in ("breakpoints", "jumps", "valid_range"):
-        for name, values in (getattr(law, subject) or {}).items():
+    declared = {
+        "breakpoints": law.breakpoints(law.numbers) or {},
+        "jumps": law.jumps(law.numbers),
+        "valid_range": law.valid_range,
+    }
+    for subject, variables in declared.items():
+        for name, values in variables.items():
             assert name in VARIABLES, f"`{subject}` names '{name}'; the variables are: {', '.join(VARIABLES)}"
             bad = np.isnan(values).any() or (subject != "valid_range" and not np.isfinite(values).all())
             assert not bad, f"`{subject}` has {name} = {values}"
@@ -61,7 +66,7 @@ def band_is_ordered(law: WearLaw) -> None:
         return
 
     def examine(contact: Contact) -> None:
-        low, middle, high = (end.rate(forward(contact)) for end in band)
+        low, middle, high = (end.rate(forward(contact), end.numbers) for end in band)
         assert (low <= middle).all(), f"the low end {low!r} lies above the middle {middle!r}"
         assert (middle <= high).all(), f"the middle {middle!r} lies above the high end {high!r}"
 

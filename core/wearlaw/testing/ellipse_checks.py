@@ -237,7 +237,7 @@ def wear_laws_run_on_the_ellipse(model: ContactModel) -> None:
         found = getattr(contact, variable).shape
         assert found == contact.pressure.shape, f"{variable} has the shape {found}, not {contact.pressure.shape}"
     law = Ramps()
-    due = contact.mean(law.rate(contact))
+    due = contact.mean(law.rate(contact, law.numbers))
     found = (WHEEL_RAIL | model).with_law(law)(**conditions).wear_rate.m_as("kg/m/m^2")
     assert (due > 0).all(), f"the wear rates are {due!r}"
     assert_close(found, due, "the wear rate of a pipeline", SUM)

@@ -17,7 +17,7 @@ from typing import Any
 def computed(model: Any, arguments: list[Any]) -> list[Any]:
     """Return what a wear law computes for contacts, or a contact model for problems."""
     if hasattr(model, "rate"):
-        return [model.rate(contact) for contact in arguments]
+        return [model.rate(contact, model.numbers) for contact in arguments]
     contacts = [model.solve(problem) for problem in arguments]
     return [value for found in contacts for value in (found.tangential_force, found.traction, found.slip)]
 

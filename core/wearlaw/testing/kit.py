@@ -110,12 +110,10 @@ def checks(model: Model) -> Iterator[Check]:
 
 def _of_law(law: WearLaw) -> list[CheckFunction]:
     idle = [*(law_checks.OF_SEVERAL_NODES if law.scale == "patch" else law_checks.OF_THE_PATCH)]
-    if law.breakpoints is None:
+    if law.breakpoints(law.numbers) is None:
         idle += law_branches.OF_BREAKPOINTS
-    if law.ramps is None:
+    if law.ramps(law.numbers) is None:
         idle += law_branches.OF_RAMPS
-    if not law.varies:
-        idle += law_varies.CHECKS
     functions = [*law_shape.CHECKS, *law_varies.CHECKS, *law_checks.CHECKS, *law_branches.CHECKS]
     return [*(function for function in functions if function not in idle), *COMMON, *declarations.OF_LAWS]
 

@@ -39,7 +39,7 @@ class _Paths:
         return between(rows(self.first, index), rows(self.second, index), share)
 
     def rate(self, law: WearLaw) -> Function:
-        return lambda index, share: law.rate(self.contact(index, share))[:, 0]
+        return lambda index, share: law.rate(self.contact(index, share), law.numbers)[:, 0]
 
     def ends(self, path: int, low: float, high: float) -> tuple[Contact, Contact]:
         """Return the contacts at both ends of a piece of a path."""
@@ -49,10 +49,10 @@ class _Paths:
 
 def rate_jumps_only_where_declared(law: WearLaw) -> None:
     """Between any two contacts the rate is continuous, except where a variable passes a value in `jumps`."""
-    paths = _Paths()
+    paths, jumps = _Paths(), law.jumps(law.numbers)
     for path, share, before, behind in find_jumps(paths.rate(law), PATHS):
         values, _ = paths.ends(path, share, share)
-        assert _declared(law.jumps, values, values), (
+        assert _declared(jumps, values, values), (
             f"the rate jumps from {before:.6g} to {behind:.6g} kg/m/m², not declared in `jumps`, at {_at(values)}"
         )
 
@@ -64,10 +64,10 @@ def rate_has_kinks_only_where_declared(law: WearLaw) -> None:
     many paths that variable has more than a fifth of the e-folds of all values, and half of the change shows. What
     turns smoothly over less than a ten-thousandth of a variable counts as a kink too.
     """
-    paths = _Paths()
+    paths, breakpoints = _Paths(), law.breakpoints(law.numbers) or {}
     for path, low, high, change in find_kinks(paths.rate(law), KINK * e_folds(paths.first, paths.second)):
         start, end = paths.ends(path, low, high)
-        assert _declared(law.breakpoints or {}, start, end), (
+        assert _declared(breakpoints, start, end), (
             f"the slope of the rate jumps by {change:.2g} of the rate, over the length of a path between two contacts,"
             f" not declared in `breakpoints`, at {_at(start)}"
         )
@@ -90,17 +90,17 @@ def _at(contact: Contact) -> str:
 def declared_jumps_exist(law: WearLaw) -> None:
     """At every value in `jumps` there is a contact at which the rate jumps."""
     contact = forward(random_contacts(512, seed=3))
-    for name, jumps in law.jumps.items():
+    for name, jumps in law.jumps(law.numbers).items():
         for jump in jumps:
-            below, above = (law.rate(aimed(contact, name, jump * (1.0 + side * STEP))) for side in (-1, 1))
+            below, above = (law.rate(aimed(contact, name, jump * (1.0 + side * STEP)), law.numbers) for side in (-1, 1))
             step = np.abs(above - below) > 1e3 * STEP * np.maximum(np.abs(above), np.abs(below))
             assert step.any(), f"`jumps` declares a jump at {name} = {jump:g}, but the rate is continuous there"
 
 
 def jumps_are_breakpoints(law: WearLaw) -> None:
     """A declared jump is also a breakpoint, where the integration puts the border of a panel."""
-    breakpoints = law.breakpoints or {}
-    for name, jumps in law.jumps.items():
+    breakpoints = law.breakpoints(law.numbers) or {}
+    for name, jumps in law.jumps(law.numbers).items():
         missing = set(jumps) - set(breakpoints.get(name, ()))
         assert not missing, f"`jumps` has {name} = {sorted(missing)}, which `breakpoints` lacks"
 
@@ -108,24 +108,24 @@ def jumps_are_breakpoints(law: WearLaw) -> None:
 def precision_is_double(law: WearLaw) -> None:
     """The rate is a float64 and exact to rounding, in steps of 1e-8 of each value of the contact."""
     contact = random_contacts(256, seed=4)
-    rate = law.rate(contact)
+    rate = law.rate(contact, law.numbers)
     assert rate.dtype == np.float64, f"the rate is of type {rate.dtype}, not float64"
     for name in ("pressure", "traction", "slip", "rolling_speed", "density"):
         lost_digits(partial(_rate_with, law, contact, name), f"the rate loses digits of {name}")
     lost_digits(
-        lambda factor: law.rate(dataclasses.replace(contact, wear_index=contact.wear_index * factor)),
+        lambda factor: law.rate(dataclasses.replace(contact, wear_index=contact.wear_index * factor), law.numbers),
         "the rate loses digits of wear_index",
     )
 
 
 def _rate_with(law: WearLaw, contact: Contact, name: str, factor: float) -> Array:
-    return law.rate(retotalled(contact, **{name: getattr(contact, name) * factor}))
+    return law.rate(retotalled(contact, **{name: getattr(contact, name) * factor}), law.numbers)
 
 
 def ramps_sum_to_the_rate(law: WearLaw) -> None:
     """The ramps are the law: Σ slope · max(q·s - threshold, 0), with thresholds at zero or at breakpoints."""
-    ramps = law.ramps or ()
-    declared = np.array((law.breakpoints or {}).get("wear_index_density", ()))
+    ramps = law.ramps(law.numbers) or ()
+    declared = np.array((law.breakpoints(law.numbers) or {}).get("wear_index_density", ()))
     for threshold, slope in ramps:
         assert np.isfinite([threshold, slope]).all(), f"`ramps` has a threshold of {threshold}, a slope of {slope}"
         assert threshold >= 0, f"`ramps` has a negative threshold, {threshold:g}"
@@ -139,7 +139,9 @@ def ramps_sum_to_the_rate(law: WearLaw) -> None:
         terms = [slope * np.maximum(w - threshold, 0.0) for threshold, slope in ramps]
         # A ramp rounds q·s once more than the law, and the sum as much as its largest term.
         size = sum(abs(slope) * w for _, slope in ramps)
-        assert_close(sum(terms, np.zeros_like(w)), law.rate(contact), "the sum of the `ramps`", absolute=SAME * size)
+        assert_close(
+            sum(terms, np.zeros_like(w)), law.rate(contact, law.numbers), "the sum of the `ramps`", absolute=SAME * size
+        )
 
 
 CHECKS = (

@@ -22,7 +22,11 @@ def order_of_nodes_does_not_matter(law: WearLaw) -> None:
 
     def examine(contact: Contact) -> None:
         turned = _nodes(contact, lambda array: array[..., ::-1])
-        assert_close(law.rate(turned)[..., ::-1], law.rate(contact), "the rate with the nodes in reverse order")
+        assert_close(
+            law.rate(turned, law.numbers)[..., ::-1],
+            law.rate(contact, law.numbers),
+            "the rate with the nodes in reverse order",
+        )
 
     for_each(contacts_for(law), examine)
 
@@ -31,9 +35,9 @@ def batching_does_not_matter(law: WearLaw) -> None:
     """One operating point at a time gives what all at once give."""
 
     def examine(contact: Contact) -> None:
-        together = law.rate(contact)
+        together = law.rate(contact, law.numbers)
         for point in range(contact.rolling_speed.size):
-            alone = law.rate(rows(contact, [point]))[0]
+            alone = law.rate(rows(contact, [point]), law.numbers)[0]
             assert_close(together[point], alone, f"the rate at operating point {point} of a batch")
 
     for_each(contacts_for(law), examine)
@@ -45,8 +49,8 @@ def splitting_a_node_does_not_matter(law: WearLaw) -> None:
     def examine(contact: Contact) -> None:
         halves = _nodes(contact, lambda array: np.repeat(array, 2, axis=-1))
         halves = dataclasses.replace(halves, area=0.5 * halves.area)
-        rate = np.repeat(law.rate(contact), 2, axis=-1)
-        assert_close(law.rate(halves), rate, "the rate of the halves of a node")
+        rate = np.repeat(law.rate(contact, law.numbers), 2, axis=-1)
+        assert_close(law.rate(halves, law.numbers), rate, "the rate of the halves of a node")
 
     for_each(contacts_for(law), examine)
 
@@ -57,8 +61,8 @@ def nodes_without_area_do_not_matter(law: WearLaw) -> None:
     def examine(contact: Contact) -> None:
         more = _nodes(contact, lambda array: np.concatenate([array, array[..., :1] * 0.5], axis=-1))
         area = np.concatenate([contact.area, np.zeros_like(contact.area[..., :1])], axis=-1)
-        rate = law.rate(dataclasses.replace(more, area=area))[..., :-1]
-        assert_close(rate, law.rate(contact), "the rate beside a node without area")
+        rate = law.rate(dataclasses.replace(more, area=area), law.numbers)[..., :-1]
+        assert_close(rate, law.rate(contact, law.numbers), "the rate beside a node without area")
 
     for_each(contacts_for(law), examine)
 
@@ -67,12 +71,12 @@ def each_node_wears_by_itself(law: WearLaw) -> None:
     """The rate at a node depends on its own values and the totals of the patch, not on its neighbours."""
 
     def examine(contact: Contact) -> None:
-        rate = law.rate(contact)
+        rate = law.rate(contact, law.numbers)
         for node in range(rate.shape[-1]):
             names = ("pressure", "traction", "slip", "traction_bound", "x")
             own = {name: getattr(contact, name)[..., node : node + 1] for name in names}
             alike = {name: np.broadcast_to(value, rate.shape).copy() for name, value in own.items()}
-            found = law.rate(dataclasses.replace(contact, **alike))[..., node]
+            found = law.rate(dataclasses.replace(contact, **alike), law.numbers)[..., node]
             assert_close(found, rate[..., node], f"the rate at node {node} among others like it")
 
     for_each(contacts_for(law), examine)
@@ -96,10 +100,10 @@ def is_monotone_as_declared(law: WearLaw) -> None:
     The wear-index density grows by the traction and by the slip.
     """
     start = _many(law)
-    rate = law.rate(start)
+    rate = law.rate(start, law.numbers)
     for name in law.monotone_in:
         for by, factor in itertools.product(GROWN_BY.get(name, (name,)), 1.0 + np.logspace(-6, 2, 17)):
-            after = law.rate(_grown(start, by, factor))
+            after = law.rate(_grown(start, by, factor), law.numbers)
             fell = after < rate * (1.0 - SAME)
             if fell.any():
                 at = tuple(np.argwhere(fell)[0])
@@ -116,7 +120,7 @@ GROWN_BY = {"wear_index_density": ("traction", "slip")}
 def _many(law: WearLaw, points: int = 512) -> Contact:
     """Return many contacts of one node, a third of them at the breakpoints of the law."""
     contact = forward(random_contacts(points))
-    targets = [(name, value) for name, values in (law.breakpoints or {}).items() for value in values]
+    targets = [(name, value) for name, values in (law.breakpoints(law.numbers) or {}).items() for value in values]
     for number, (name, value) in enumerate(targets):
         chosen = np.arange(points) % (3 * len(targets)) == number
         near = value * np.random.default_rng(number).uniform(0.7, 1.1, contact.pressure.shape)

@@ -20,7 +20,7 @@ from wearlaw.testing.strategies import contacts
 
 def contacts_for(law: WearLaw) -> st.SearchStrategy[Contact]:
     """Return contacts of the scale of a law, which crowd at its breakpoints."""
-    crowded = ((name, tuple(values)) for name, values in (law.breakpoints or {}).items())
+    crowded = ((name, tuple(values)) for name, values in (law.breakpoints(law.numbers) or {}).items())
     return _contacts(1 if law.scale == "patch" else 5, tuple(crowded))
 
 
@@ -36,7 +36,7 @@ def rate_has_the_shape_of_the_nodes(law: WearLaw) -> None:
         for shape in ((), (1,), (2, 1)):
             fields = {f.name: getattr(contact, f.name)[0] for f in dataclasses.fields(contact)}
             batch = Contact(**{n: np.broadcast_to(v, shape + v.shape).copy() for n, v in fields.items()})
-            found, due = np.shape(law.rate(batch)), batch.pressure.shape
+            found, due = np.shape(law.rate(batch, law.numbers)), batch.pressure.shape
             assert found == due, f"rates of shape {found} for nodes of shape {due}"
 
     for_each(contacts_for(law), examine)
@@ -46,7 +46,7 @@ def rate_is_finite(law: WearLaw) -> None:
     """The rate is a finite number at every node, also where pressure, traction or slip is zero."""
 
     def examine(contact: Contact) -> None:
-        rate = law.rate(contact)
+        rate = law.rate(contact, law.numbers)
         assert np.isfinite(rate).all(), f"the rate is not finite: {rate!r}"
 
     for_each(contacts_for(law), examine)
@@ -56,7 +56,7 @@ def rate_is_never_negative(law: WearLaw) -> None:
     """Wear takes material away; no rate is below zero, whatever the sign of the creepage."""
 
     def examine(contact: Contact) -> None:
-        rate = law.rate(contact)
+        rate = law.rate(contact, law.numbers)
         assert not (rate < 0).any(), f"the rate is negative: {rate!r}"
 
     for_each(contacts_for(law), examine)
@@ -66,7 +66,7 @@ def no_slip_no_wear(law: WearLaw) -> None:
     """Where nothing slips, and hence no energy is dissipated, the rate is exactly zero."""
 
     def examine(contact: Contact) -> None:
-        rate = law.rate(retotalled(contact, slip=np.zeros_like(contact.slip)))
+        rate = law.rate(retotalled(contact, slip=np.zeros_like(contact.slip)), law.numbers)
         assert (rate == 0).all(), f"without slip the rate is {rate!r}, not zero"
 
     for_each(contacts_for(law), examine)
@@ -83,7 +83,9 @@ def sign_of_creepage_does_not_matter(law: WearLaw) -> None:
             slip=-contact.slip,
             tangential_force=-contact.tangential_force,
         )
-        assert_close(law.rate(mirrored), law.rate(contact), "the rate with the opposite creepage")
+        assert_close(
+            law.rate(mirrored, law.numbers), law.rate(contact, law.numbers), "the rate with the opposite creepage"
+        )
 
     for_each(contacts_for(law), examine)
 
@@ -92,10 +94,10 @@ def memory_layout_does_not_matter(law: WearLaw) -> None:
     """The rate is the same for arrays in Fortran order, with strides, or read-only."""
 
     def examine(contact: Contact) -> None:
-        rate = law.rate(contact)
+        rate = law.rate(contact, law.numbers)
         for message, layout in LAYOUTS.items():
             fields = {f.name: layout(getattr(contact, f.name)) for f in dataclasses.fields(contact)}
-            assert_close(law.rate(Contact(**fields)), rate, f"the rate for {message} arrays")
+            assert_close(law.rate(Contact(**fields), law.numbers), rate, f"the rate for {message} arrays")
 
     for_each(contacts_for(law), examine)
 
@@ -133,21 +135,22 @@ def integer_input_does_not_matter(law: WearLaw) -> None:
         )
         names = ("pressure", "traction", "slip", "rolling_speed", "density")
         integers = {name: getattr(whole, name).astype(np.int64) for name in names}
-        rate = law.rate(dataclasses.replace(whole, **integers))
-        assert_close(rate, law.rate(whole), "the rate for integers")
+        rate = law.rate(dataclasses.replace(whole, **integers), law.numbers)
+        assert_close(rate, law.rate(whole, law.numbers), "the rate for integers")
 
     for_each(contacts_for(law), examine)
 
 
 def inputs_are_not_changed(law: WearLaw) -> None:
-    """The law leaves the arrays of the contact as they are."""
+    """The law leaves the arrays of the contact and its numbers as they are."""
 
     def examine(contact: Contact) -> None:
-        before = copy.deepcopy(contact)
-        law.rate(contact)
+        before, numbers = copy.deepcopy(contact), dict(law.numbers)
+        law.rate(contact, law.numbers)
         for field in dataclasses.fields(contact):
             same = np.array_equal(getattr(contact, field.name), getattr(before, field.name))
             assert same, f"the law changed the {field.name} of the contact"
+        assert law.numbers == numbers, "the law changed its numbers, p"
 
     for_each(contacts_for(law), examine)
 
@@ -161,12 +164,12 @@ def calls_agree_to_the_bit(law: WearLaw) -> None:
     """The same contact gives the same rates again, with another contact in between, in an array of its own."""
 
     def examine(pair: tuple[Contact, Contact]) -> None:
-        first = law.rate(pair[0])
+        first = law.rate(pair[0], law.numbers)
         kept = np.array(first)
-        law.rate(pair[1])
-        law.rate(retotalled(pair[0], slip=0.5 * pair[0].slip))
+        law.rate(pair[1], law.numbers)
+        law.rate(retotalled(pair[0], slip=0.5 * pair[0].slip), law.numbers)
         assert np.array_equal(kept, first), "a later call changed the array that an earlier one returned"
-        second = law.rate(pair[0])
+        second = law.rate(pair[0], law.numbers)
         assert np.array_equal(kept, second), f"two calls differ: {kept!r} and {second!r}"
 
     for_each(_pairs(contacts_for(law)), examine)

@@ -1,13 +1,15 @@
-"""The check of laws that declare that their parameters may differ from operating point to operating point."""
+"""The check that a law's formulas take one value of a number for each operating point, as fits pass them."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.errors import WearlawError
-from wearlaw.models import WearLaw
-from wearlaw.parameters import changed, number_in_si, number_like, numbers, per_point
+from wearlaw.models import Numbers, WearLaw
+from wearlaw.parameters import changed, number_like, numbers
 from wearlaw.records import Contact
 from wearlaw.testing.examples import assert_close, for_each
 from wearlaw.testing.law_shape import contacts_for
@@ -18,14 +20,18 @@ STEPS = (1.0, 1.001, 0.999)
 
 
 def parameters_may_vary(law: WearLaw) -> None:
-    """With one value of a parameter for each operating point, rate and ramps are those of one law after the other."""
+    """With one value of a number for each operating point, a law gives what one law after the other gives.
+
+    That goes for its rate, its breakpoints and its ramps.
+    """
+    law = law.explicit()
 
     def examine(contact: Contact) -> None:
         batch = rows(contact, [0] * len(STEPS))
         for name, number in numbers(law).items():
-            values = number_in_si(number) * np.array(STEPS)
-            varied = per_point(law, {name: values})
-            rate = varied.rate(batch)
+            values = law.numbers[name] * np.array(STEPS)
+            p: Numbers = {**law.numbers, name: values[:, None]}
+            rate = law.rate(batch, p)
             assert np.shape(rate) == batch.pressure.shape, f"rates of shape {np.shape(rate)} when {name} varies"
             for point, value in enumerate(values):
                 try:
@@ -33,14 +39,25 @@ def parameters_may_vary(law: WearLaw) -> None:
                 except WearlawError:  # not a value that the law takes
                     continue
                 what = f"with {name} for each point"
-                assert_close(rate[point], one.rate(rows(batch, [point]))[0], f"the rate {what}")
-                assert_close(_ramps(varied, point), _ramps(one, 0), f"the ramps {what}")
+                assert_close(rate[point], one.rate(rows(batch, [point]), one.numbers)[0], f"the rate {what}")
+                for found, expected, of in zip(_borders(law, p), _borders(one, one.numbers), BORDERS, strict=True):
+                    assert_close(_at(found, point), _at(expected, 0), f"the {of} {what}")
 
     for_each(contacts_for(law), examine)
 
 
-def _ramps(law: WearLaw, point: int) -> Array:
-    flat = [np.ravel(number) for ramp in law.ramps or () for number in ramp]
+BORDERS = ("breakpoints", "ramps")
+
+
+def _borders(law: WearLaw, p: Numbers) -> tuple[list[Any], list[Any]]:
+    """Return the numbers of breakpoints and of ramps, each in one list."""
+    breakpoints, ramps = law.breakpoints(p) or {}, law.ramps(p) or ()
+    return [value for name in sorted(breakpoints) for value in breakpoints[name]], [n for ramp in ramps for n in ramp]
+
+
+def _at(found: list[Any], point: int) -> Array:
+    """Return numbers at one operating point, of which each is a float or an array with one value for each."""
+    flat = [np.ravel(number) for number in found]
     return np.array([each[point if each.size > 1 else 0] for each in flat])
 
 

@@ -250,7 +250,7 @@ def contacts(
     points, nodes : strategy for int
         Number of operating points and of nodes.
     crowded : mapping of str to tuple of float, optional
-        SI values of variables to crowd at, such as `WearLaw.breakpoints`.
+        SI values of variables to crowd at, such as those of `WearLaw.breakpoints`.
     """
     batch, count = draw(points), draw(nodes)
     contact = contact_from_shares(

@@ -68,7 +68,7 @@ def _near(model: Model, name: str, value: Any) -> Iterator[Model]:
 
 def _computed(model: Model) -> Array:
     if isinstance(model, WearLaw):
-        return model.rate(random_contacts(POINTS))
+        return model.rate(random_contacts(POINTS), model.numbers)
     assert isinstance(model, ContactModel)
     problems: dict[Geometry, Any] = {"line": random_problems(POINTS), "ellipse": random_ellipses(POINTS)}
     return np.stack([model.solve(problems[geometry]).tangential_force for geometry in model.geometries()])
@@ -80,7 +80,7 @@ def units_of_conditions_do_not_matter(model: Model) -> None:
     A contact model sees them through a rig, a wear law through `Contact.from_arrays`.
     """
     if isinstance(model, WearLaw):
-        _compare(_contacts(), lambda given: model.rate(Contact.from_arrays(**given)), OF_CONTACTS)
+        _compare(_contacts(), lambda given: model.rate(Contact.from_arrays(**given), model.numbers), OF_CONTACTS)
         return
     assert isinstance(model, ContactModel)
     for geometry in model.geometries():

@@ -13,13 +13,13 @@ from wearlaw.composition import check_traction, needs_discs
 from wearlaw.conditions import TWIN_DISC, broadcast, is_friction_law
 from wearlaw.errors import InputError, UnitError
 from wearlaw.grid import with_units
-from wearlaw.integrate import integrate_contact, patch_area
+from wearlaw.integrate import integrate_contact, integrate_wear, patch_area
+from wearlaw.models import Numbers
 from wearlaw.ranges import RangeWatch, line_mean
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
 from wearlaw.uncertainties.figure import CONFIDENCE, figure_data
 from wearlaw.uncertainties.inputs import OTHERS, Uncertain, check_samples, parameter, split
 from wearlaw.units import WEAR_RATE, Q, Quantity, QuantityLike, from_si, shortened
-from wearlaw.varying import integrate_varying
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -232,7 +232,7 @@ class Uncertainty:
         shape = (*self.shape, probability.shape[-1])
         problem = self._problem(conditions)
         flat = problem.broadcast_to(shape).flatten()
-        varied = {name: np.broadcast_to(values, shape).reshape(-1) for name, values in of_law.items()}
+        varied = {name: np.broadcast_to(values, shape).reshape(-1, 1) for name, values in of_law.items()}
         predict = self._predict
         check_traction(predict.contact_model, flat)
         if stacklevel is not None:
@@ -244,8 +244,9 @@ class Uncertainty:
             }
             watch.see(flat.size, partial(line_mean, flat, columns))
             watch.warn(stacklevel)
-        rates = integrate_varying(predict.contact_model, self._law, varied, flat, predict.scale)
-        return rates.reshape(shape)
+        p: Numbers = {**self._law.numbers, **varied}
+        wear = integrate_wear(predict.contact_model, self._law, flat, predict.scale, p=p)
+        return wear.wear_rate.reshape(shape)
 
     def __repr__(self) -> str:
         lines = [f"Uncertainty of the wear rate, {self.samples} samples"]

@@ -76,7 +76,7 @@ class Roller(wl.Rig):
     name: ClassVar[str] = "roller"
     source: ClassVar[str] = "made up"
 
-    def problem(self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.LineProblem:  # noqa: ARG002
+    def problem(self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.LineProblem:
         return rig.problem(max_pressure="1 GPa", creepage=creepage, friction_coefficient=0.4)
 
 

@@ -4,7 +4,7 @@ import wearlaw as wl
 from wearlaw_outside.contact import Rigid
 from wearlaw_outside.law import MadeUp
 
-wearlaw_interface = 1
+wearlaw_interface = 2
 
 
 @wl.hookimpl

@@ -1,6 +1,5 @@
 """A wear law of two slopes."""
 
-from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -23,17 +22,11 @@ class MadeUp(wl.WearLaw):
     limit: Annotated[wl.Quantity, wl.Unit("N/mm^2")] = Field(default="4 N/mm^2", validate_default=True)
     """Wear-index density at the kink [N/m²]."""
 
-    @cached_property
-    def _si(self) -> tuple[float, float]:
-        return wl.scalar_si(self.slope, "kg/m/N"), wl.scalar_si(self.limit, "N/m^2")
-
-    @property
-    def breakpoints(self) -> wl.BreakpointMap:
-        """Return the place of the kink."""
-        return {"wear_index_density": (self._si[1],)}
-
-    def rate(self, contact: wl.Contact) -> wl.Array:
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
         """Return the mass lost per metre rolled and contact area [kg/m/m²]."""
-        slope, limit = self._si
         w = contact.wear_index_density
-        return slope * (w + 2.0 * np.maximum(w - limit, 0.0))
+        return p["slope"] * (w + 2.0 * np.maximum(w - p["limit"], 0.0))
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        """Return the place of the kink."""
+        return {"wear_index_density": (p["limit"],)}
