@@ -155,18 +155,25 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
         if self.rig.geometry not in (None, "ellipse" if isinstance(problem, EllipticProblem) else "line"):
             raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
         self.rig.warn_of_plasticity(problem.max_pressure, stacklevel=stacklevel)
-        if not self.laws:
-            return self._without_wear(problem)
-        watch = RangeWatch(self.wear_law)
+        watch = self.range_watch()
         found = self.watched(problem, watch, on_block)
         watch.warn(stacklevel)
         return found
 
+    def range_watch(self) -> RangeWatch:
+        """Return what sees whether operating points stay in the range of the law, if there is one."""
+        return RangeWatch(self.laws[0] if self.laws else None)
+
     def watched(
         self, problem: LineProblem | EllipticProblem, watch: RangeWatch, on_block: Callable[[int], None] | None = None
     ) -> Prediction | WheelRailPrediction:
-        """Return what `predict` does with a law, without its warnings; `watch` sees the operating points."""
-        model, scale, law = self.contact_model, self.scale, self.wear_law
+        """Return what `predict` does, without its warnings; `watch` sees the operating points."""
+        model, scale = self.contact_model, self.scale
+        if isinstance(problem, LineProblem):
+            check_traction(model, problem)
+        if not self.laws:
+            return self._without_wear(problem, watch, on_block)
+        law = self.laws[0]
 
         def see(part: LineProblem | EllipticProblem, columns: Columns) -> None:
             if isinstance(part, LineProblem):
@@ -180,15 +187,20 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
             rolled = elliptic_wear(model, law, problem, scale, see)
             law.check_not_negative(rolled.wear_rate)
             return WheelRailPrediction(self, problem, rolled.forces, rolled)
-        check_traction(model, problem)
         wear = integrate_wear(model, law, problem, scale, see)
         found = Prediction(self, problem, wear.tangential_force, wear)
         law.check_not_negative(wear.wear_rate, lambda: found.wear_rate_error.to("kg/m^3").magnitude)
         return found
 
-    def _without_wear(self, problem: LineProblem | EllipticProblem) -> Prediction | WheelRailPrediction:
-        model = self.contact_model
+    def _without_wear(
+        self, problem: LineProblem | EllipticProblem, watch: RangeWatch, on_block: Callable[[int], None] | None
+    ) -> Prediction | WheelRailPrediction:
+        found: Prediction | WheelRailPrediction
         if isinstance(problem, EllipticProblem):
-            return WheelRailPrediction(self, problem, creep_forces(model, problem))
-        check_traction(model, problem)
-        return Prediction(self, problem, integrate_contact(model, problem))
+            found = WheelRailPrediction(self, problem, creep_forces(self.contact_model, problem))
+        else:
+            found = Prediction(self, problem, integrate_contact(self.contact_model, problem))
+        watch.points += problem.size
+        if on_block is not None:
+            on_block(problem.size)
+        return found

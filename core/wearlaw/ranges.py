@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -22,10 +22,12 @@ from wearlaw.units import from_si
 class RangeWatch:
     """Sees operating points block by block and warns once for each variable that leaves the law's range."""
 
-    def __init__(self, law: WearLaw) -> None:
+    def __init__(self, law: WearLaw | None) -> None:
         self.law = law
-        with Blame(law):
-            self.range = law.valid_range
+        self.range: Mapping[str, tuple[float, float]] = {}
+        if law is not None:
+            with Blame(law):
+                self.range = law.valid_range
         self.seen = {name: _Seen() for name in self.range}
         self.points = 0
 
@@ -45,7 +47,7 @@ class RangeWatch:
     def warn(self, stacklevel: int) -> None:
         """Warn of what has been seen; `stacklevel` 1 is the caller."""
         for name, seen in self.seen.items():
-            if seen.outside:
+            if self.law is not None and seen.outside:
                 low, high = self.range[name]
                 farthest = seen.highest if seen.highest > high else seen.lowest
                 shown = [repr(from_si(value, UNITS[name])) for value in (low, high, farthest)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 import wearlaw as wl
@@ -57,3 +58,16 @@ def test_what_only_a_wheel_on_a_rail_has_is_offered_with_its_unit() -> None:
 def test_conditions_are_no_outputs(outputs: list[str]) -> None:
     with pytest.raises(wl.InputError, match=f"'{outputs[0]}' is one of the conditions"):
         wl.sweep(ON_RAILS, **ELLIPSE, outputs=outputs)
+
+
+@pytest.mark.parametrize(("predict", "given"), [(ON_DISCS, LINE), (ON_RAILS, ELLIPSE)])
+def test_the_contact_alone_is_swept_without_a_law(predict: wl.Pipeline[..., Any], given: dict[str, Any]) -> None:
+    contact = predict.without_law()
+    alone, both = (wl.sweep(one, **given, outputs=["tangential_force"]) for one in (contact, predict))
+    # The same forces by another way: fastsim's in closed form on a line, else the same sums.
+    np.testing.assert_allclose(alone.tangential_force, both.tangential_force, rtol=64 * np.finfo(np.float64).eps)
+    with pytest.raises(wl.CompositionError, match="the pipeline has no wear law; give one, as in rig"):
+        wl.sweep(contact, **given)
+    _, known = offered(contact, given)
+    assert "tangential_force" in known
+    assert not {"wear_rate", "wear_rate_error", "mass_per_distance"} & {*known}

@@ -14,10 +14,9 @@ import pint
 
 from wearlaw import kernels
 from wearlaw.arrays import Array
-from wearlaw.errors import InputError, did_you_mean
+from wearlaw.errors import CompositionError, InputError, did_you_mean
 from wearlaw.extremes import extremes
 from wearlaw.pipeline import Pipeline
-from wearlaw.ranges import RangeWatch
 from wearlaw.registry import symbol
 from wearlaw.sweeping.points import Points
 from wearlaw.units import Quantity
@@ -75,7 +74,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     """
     kernels.accelerate(job.accelerate)
     problem = job.pipeline.rig.checked_problem(part.conditions())
-    watch = RangeWatch(job.pipeline.wear_law)
+    watch = job.pipeline.range_watch()
     prediction = job.pipeline.watched(problem, watch, on_block)
     outputs = {name: _in_unit(getattr(prediction, name), unit) for name, unit in job.units.items()}
     ranges = {name: (seen.lowest, seen.highest, seen.outside) for name, seen in watch.seen.items()}
@@ -98,7 +97,7 @@ def checksum(seen: Seen, outputs: Iterable[Array]) -> int:
 def notes(pipeline: Pipeline[..., Any], blocks: Iterable[Seen]) -> list[str]:
     """Return what a prediction of all blocks together would warn of."""
     every = list(blocks)
-    watch = RangeWatch(pipeline.wear_law)
+    watch = pipeline.range_watch()
     watch.points = sum(one.points for one in every)
     for name, seen in watch.seen.items():
         lowest, highest, outside = zip(*(one.ranges[name] for one in every), strict=True)
@@ -120,7 +119,7 @@ def output_units(pipeline: Pipeline[..., Any], points: Points, outputs: list[str
         If there is no such output, or it is a condition.
     """
     problem = pipeline.rig.checked_problem(points.part([slice(0, 1)] * len(points.dims)).conditions())
-    prediction = pipeline.watched(problem, RangeWatch(pipeline.wear_law))
+    prediction = pipeline.watched(problem, pipeline.range_watch())
     given = {*points.varying, *points.fixed}
     units = {}
     for name in outputs:
@@ -128,7 +127,7 @@ def output_units(pipeline: Pipeline[..., Any], points: Points, outputs: list[str
             raise InputError(f"outputs: '{name}' is one of the conditions, and among the coordinates of the results")
         value = _output(prediction, name)
         if value is None:
-            known = [one for one in dir(prediction) if one not in given and _output(prediction, one) is not None]
+            known = [one for one in dir(prediction) if one not in given and _is_output(prediction, one)]
             raise InputError(
                 f"outputs: there is no '{name}' at an operating point{did_you_mean(name, known)}"
                 f" There are: {', '.join(known)}"
@@ -142,6 +141,13 @@ def _output(prediction: object, name: str) -> Quantity | None:
     there = not name.startswith("_") and hasattr(type(prediction), name)
     value = getattr(prediction, name) if there else None
     return value if isinstance(value, pint.Quantity) and np.shape(value.magnitude) == (1,) else None
+
+
+def _is_output(prediction: object, name: str) -> bool:
+    try:
+        return _output(prediction, name) is not None
+    except CompositionError:  # there is no wear without a law
+        return False
 
 
 def _written(quantity: Quantity) -> str:

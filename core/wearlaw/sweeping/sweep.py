@@ -47,7 +47,7 @@ def sweep(
     Parameters
     ----------
     predict : Pipeline
-        A rig, a contact model and a wear law.
+        A rig, a contact model and a wear law; without a law, other `outputs` than the wear are possible.
     table : pandas.DataFrame or xarray.Dataset, optional
         Operating points row by row, a condition a column, with units by type (pint), `attrs["units"]` or heads such as
         "creepage [%]"; the conditions that are given besides are the same in all rows.
