@@ -37,7 +37,7 @@ BLOCK = 8192
 COMPILED_BLOCK = 16384
 """The same with compiled kernels, which make fewer arrays."""
 
-NODE_BLOCK = 2048
+NODE_BLOCK = 3072
 """Operating points of a block with nodes."""
 
 PANELS_UNDECLARED = 4

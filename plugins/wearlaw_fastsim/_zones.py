@@ -23,6 +23,9 @@ import numpy as np
 from wearlaw import Array
 from wearlaw_fastsim._first_slip import Growth, first_slip
 
+BELOW = 1.0 - 8.0 * float(np.finfo(np.float64).eps)
+"""Factor that keeps the magnitude of a traction below its bound, whatever is rounded."""
+
 LEAST_ANGLE = 1e-90
 """Slip zone of a strip without creepage [rad]: the powers of it that are needed are not zero."""
 
@@ -104,7 +107,7 @@ def _stick_zone(growth: Growth, elliptic: bool, start: Point, end: Array, count:
     from_leading = before + np.multiply.outer(share, span)
     traction_x, traction_y = _stuck(growth, start, from_leading)
     bound = _bound(elliptic, np.sqrt(from_leading * (2.0 - from_leading)))
-    within = np.minimum(1.0, bound / np.maximum(_magnitude(traction_x, traction_y), 1e-150))
+    within = np.minimum(BELOW, BELOW * bound / np.maximum(_magnitude(traction_x, traction_y), 1e-150))
     return Zone(
         x=from_leading - 1.0,
         length=np.multiply.outer(weight, span),
@@ -152,7 +155,7 @@ def _directions(growth: Growth, start: Point, x: Array, bound: Array, left: Arra
         half_x[k] = before_x + (turns_x[k] * before_x + turns_y[k] * before_y)
         half_y[k] = before_y + (turns_y[k] * before_x - turns_x[k] * before_y)
         before_x, before_y = half_x[k], half_y[k]
-    over = 1.0 / np.maximum(half_x * half_x + half_y * half_y, 1e-300)
+    over = BELOW / np.maximum(half_x * half_x + half_y * half_y, 1e-300)
     return (half_x - half_y) * (half_x + half_y) * over, 2.0 * half_x * half_y * over
 
 

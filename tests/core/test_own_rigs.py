@@ -97,6 +97,13 @@ def test_a_rig_of_ones_own_predicts_what_the_discs_do(law: str) -> None:
     np.testing.assert_allclose(found.wear_rate.magnitude, expected.wear_rate.magnitude, rtol=8 * EPS)
 
 
+def test_parameters_fitted_for_another_contact_give_a_warning(recwarn: pytest.WarningsRecorder) -> None:
+    Roller() | wl.contact_model("global") | wl.wear_law("usfd")
+    assert not recwarn.list
+    with pytest.warns(wl.CalibrationWarning, match="were fitted for patch means"):
+        Roller() | MODEL | wl.wear_law("usfd")
+
+
 def test_a_sweep_runs_along_the_conditions_of_the_rig() -> None:
     swept = wl.sweep(Roller() | MODEL | KTH, mass=Q([20.0, 40.0], "kg"), creepage=Q([1.0, 2.0, 3.0], "%"))
     assert dict(swept.wear_rate.sizes) == {"mass": 2, "creepage": 3}

@@ -173,6 +173,19 @@ def test_a_pipeline_is_frozen(predict: Any) -> None:
             setattr(predict, name, None)
 
 
+def test_a_law_is_taken_off_and_put_on_again() -> None:
+    contact = RIG | FASTSIM | wl.patch_mean()
+    predict = contact | KTH
+    assert predict.without_law() == contact
+    assert contact.without_law() is contact
+    assert contact.with_law(KTH) == predict
+    assert (contact.laws, predict.laws, predict.stages) == ((), (KTH,), (wl.patch_mean(),))
+    with pytest.raises(wl.CompositionError, match="the pipeline has no wear law; give one, as in rig"):
+        contact.wear_law  # noqa: B018
+    with pytest.raises(wl.CompositionError, match="a pipeline has one wear law, got kth and kth"):
+        wl.Pipeline(rig=RIG, contact_model=FASTSIM, laws=(KTH, KTH))
+
+
 def test_a_contact_pipeline_survives_json_too() -> None:
     contact = RIG | FASTSIM | wl.patch_mean()
     assert wl.Pipeline.model_validate_json(contact.model_dump_json()) == contact
