@@ -230,7 +230,7 @@ def test_zero_creepage_gives_zero_wear(predict: wl.Pipeline[..., wl.LineProblem]
 
 def test_progress_counts_every_operating_point_once() -> None:
     done: list[int] = []
-    problem = RIG.problem(normal_force="7 kN", creepage=Q(np.linspace(0.001, 0.01, 2500), ""), friction_coefficient=0.4)
+    problem = RIG.problem(normal_force="7 kN", creepage=Q(np.linspace(0.001, 0.01, 8000), ""), friction_coefficient=0.4)
     (RIG | GLOBAL | KTH).predict(problem, on_block=done.append)
-    assert sum(done) == 2500
+    assert sum(done) == 8000
     assert len(done) > 1

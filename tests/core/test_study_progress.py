@@ -31,7 +31,7 @@ def test_progress_sums_to_the_announced_evaluations(changes: dict[str, Any], exp
 
 
 def test_long_work_reports_progress_in_several_blocks() -> None:
-    sweep = {**cases.POINT, "creepage": {"from": "0 %", "to": "9 %", "points": 5000}}
+    sweep = {**cases.POINT, "creepage": {"from": "0 %", "to": "9 %", "points": 20000}}
     blocks: list[int] = []
     run(case(contact_models=["exact"], wear_laws=["kth"], sweeps={"long": sweep}, profiles={}), blocks.append)
-    assert max(blocks) < 5000 / 2
+    assert max(blocks) < 20000 / 2
