@@ -155,7 +155,8 @@ def _check_types(model: ContactModel, contact: Contact, problem: LineProblem | E
     expected = EllipticContact if ellipse else Contact
     if not isinstance(contact, expected):
         raise ModelError(f"contact model '{model.name}' returned {contact!r}, not a wearlaw.{expected.__name__}")
-    batch, nodes = problem.batch_shape, getattr(contact.pressure, "shape", ())
+    batch = problem.batch_shape
+    nodes: tuple[int, ...] = getattr(contact.pressure, "shape", ())
     axes = len(batch) + (2 if ellipse else 1)
     if len(nodes) != axes or nodes[: len(batch)] != batch or 0 in nodes:
         wanted = ", ".join([*map(str, batch), "nodes", *(["strips"] if ellipse else [])])
