@@ -105,8 +105,9 @@ class Rig(Model):
 
     @classmethod
     def conditions(cls) -> tuple[str, ...]:
-        """Return the names of the conditions that `problem` takes."""
-        return tuple(inspect.signature(cls.problem).parameters)[1:]
+        """Return the names of the conditions that `problem` takes; a rig that takes `**conditions` overrides this."""
+        parameters = list(inspect.signature(cls.problem).parameters.values())[1:]
+        return tuple(one.name for one in parameters if one.kind is not one.VAR_KEYWORD)
 
     def checked_problem(self, conditions: Mapping[str, Any]) -> Any:
         """Return `problem` of the conditions, or raise an error that says whether they or the rig are wrong.
@@ -131,7 +132,7 @@ class Rig(Model):
     def _check_names(self, conditions: Mapping[str, Any]) -> None:
         """Refuse conditions that are not those that `problem` takes."""
         known = self.conditions()
-        for name in conditions:
+        for name in conditions if known else ():
             if name not in known:
                 raise ConditionsError(
                     f"{name}: unknown condition{did_you_mean(name, known)} The conditions are: {', '.join(known)}"

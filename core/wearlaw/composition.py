@@ -6,11 +6,12 @@ import warnings
 
 from wearlaw import plugins
 from wearlaw.base_rig import Rig
+from wearlaw.ellipse import EllipticProblem
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
 from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
 from wearlaw.rigs.twin_disc import TwinDisc
-from wearlaw.tangential import PATCHES, ContactModel, Scale
+from wearlaw.tangential import PATCHES, ContactModel, Geometry, Scale
 
 PEAKS = (
     "The peak of the traction is 4/π or 3/2 times its mean on a line (elliptic or parabolic bound), but 3/2 or 2 times"
@@ -38,19 +39,22 @@ def check_geometry(rig: Rig, model: ContactModel) -> None:
         )
 
 
-def warn_of_calibration(rig: Rig, model: ContactModel, scale: Scale, law: WearLaw) -> None:
-    """Warn of parameters that were fitted for another contact; the caller's caller is named."""
-    calibration, geometry = law.calibration, rig.geometry
-    if geometry is None and calibration is not None:  # the shape of the patch is not known yet
-        geometry = calibration.geometry
-    if calibration is None or geometry is None or calibration.covers(model, scale, geometry):
+def warn_of_calibration(
+    geometry: Geometry | None, model: ContactModel, scale: Scale, law: WearLaw, stacklevel: int = 3
+) -> None:
+    """Warn of parameters that were fitted for another contact; `stacklevel` 1 is this function."""
+    calibration = law.calibration
+    if calibration is None:
+        return
+    geometry = geometry or calibration.geometry  # unknown before there is a problem: see `warn_of_geometry`
+    if calibration.covers(model, scale, geometry):
         return
     if calibration.geometry != geometry:
         warnings.warn(
             f"the parameters of wear law '{law.name}' were fitted for {PATCHES[calibration.geometry]}, but are used"
             f" with {PATCHES[geometry]}. {PEAKS} Check them against data",
             CalibrationWarning,
-            stacklevel=3,
+            stacklevel=stacklevel,
         )
         return
     used = "its patch means" if scale == "patch" else "its cells"
@@ -58,8 +62,22 @@ def warn_of_calibration(rig: Rig, model: ContactModel, scale: Scale, law: WearLa
         f"the parameters of wear law '{law.name}' were fitted for {calibration}, but are used with"
         f" {model!r} and {used}; check them against data, or choose parameters fitted for that contact",
         CalibrationWarning,
-        stacklevel=3,
+        stacklevel=stacklevel,
     )
+
+
+def geometry_of(problem: LineProblem | EllipticProblem) -> Geometry:
+    """Return the shape of the patch of a problem."""
+    return "ellipse" if isinstance(problem, EllipticProblem) else "line"
+
+
+def warn_of_geometry(
+    rig: Rig, model: ContactModel, scale: Scale, law: WearLaw, problem: LineProblem | EllipticProblem, stacklevel: int
+) -> None:
+    """Warn of parameters fitted for another shape of patch, for a rig whose problems only tell that shape."""
+    calibration, geometry = law.calibration, geometry_of(problem)
+    if rig.geometry is None and calibration is not None and calibration.geometry != geometry:
+        warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
 
 
 def needs_discs(rig: Rig, what: str) -> None:

@@ -10,7 +10,14 @@ from pydantic import model_validator
 
 from wearlaw.base_rig import P, ProblemT
 from wearlaw.blocks import Columns
-from wearlaw.composition import check_geometry, check_scale, check_traction, warn_of_calibration
+from wearlaw.composition import (
+    check_geometry,
+    check_scale,
+    check_traction,
+    geometry_of,
+    warn_of_calibration,
+    warn_of_geometry,
+)
 from wearlaw.configuration import Configuration
 from wearlaw.ellipse import EllipticProblem
 from wearlaw.elliptic_wear import creep_forces, elliptic_wear
@@ -112,7 +119,7 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
         if not isinstance(stage, WearLaw):
             raise CompositionError(f"a contact model is followed by wl.patch_mean() or a wear law, not by {stage!r}")
         pipeline = self.with_law(stage)
-        warn_of_calibration(self.rig, self.contact_model, self.scale, stage)
+        warn_of_calibration(self.rig.geometry, self.contact_model, self.scale, stage)
         return pipeline
 
     @overload
@@ -152,9 +159,11 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
         stacklevel : int
             Which caller warnings name; 2 is the caller of this method.
         """
-        if self.rig.geometry not in (None, "ellipse" if isinstance(problem, EllipticProblem) else "line"):
+        if self.rig.geometry not in (None, geometry_of(problem)):
             raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
         self.rig.warn_of_plasticity(problem.max_pressure, stacklevel=stacklevel)
+        for law in self.laws:
+            warn_of_geometry(self.rig, self.contact_model, self.scale, law, problem, stacklevel + 1)
         watch = self.range_watch()
         found = self.watched(problem, watch, on_block)
         watch.warn(stacklevel)

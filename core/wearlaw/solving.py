@@ -164,7 +164,7 @@ def _check_types(model: ContactModel, contact: Contact, problem: LineProblem | E
     _check_fields(model, contact, (*FIELDS, *VECTORS) if ellipse else FIELDS, nodes)
     _check_fields(model, contact, TOTALS if ellipse else LINE_TOTALS, batch)
     if ellipse:
-        _check_fields(model, contact, ("strip_width",), (*batch, nodes[-1]))
+        _check_fields(model, contact, ("strip_width",), (*batch, contact.pressure.shape[-1]))
 
 
 def _check_fields(model: ContactModel, contact: Contact, names: tuple[str, ...], shape: tuple[int, ...]) -> None:
@@ -203,8 +203,14 @@ def _check_values(
         finite = finite and math.isfinite(traction.max())
     if not finite:
         check_finite(model, contact, problem)
-    if not (traction.min() >= 0.0 and (traction <= bound).all()):  # True only of numbers
+    magnitude = traction if traction.min() >= 0.0 else np.abs(traction)
+    if (magnitude <= bound).all():  # False where one is no number
+        return
+    with np.errstate(invalid="ignore"):  # infinity less infinity is NaN
+        margin = float((bound - magnitude).min())
+    if not margin > -math.inf:
         check_finite(model, contact, problem)
+    if margin < -ROUNDINGS * float(magnitude.max()):
         _check_bound(model, contact, problem)
 
 
@@ -233,9 +239,7 @@ def check_finite(model: ContactModel, contact: Contact, problem: LineProblem | E
 def _check_bound(model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem) -> None:
     if "traction_bound" in model.exemptions:
         return
-    magnitude = np.abs(contact.traction)
-    rounding = ROUNDINGS * magnitude.max()  # of differences that are small beside the greatest traction
-    over = ~(magnitude <= contact.traction_bound * (1.0 + _rounding_of_traction(model)) + rounding)
+    over = ~(np.abs(contact.traction) <= contact.traction_bound * (1.0 + _rounding_of_traction(model)))
     if over.any():
         first = _first(over)
         traction, bound = (_shown(name, getattr(contact, name)[first]) for name in ("traction", "traction_bound"))

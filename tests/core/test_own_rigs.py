@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -102,6 +103,33 @@ def test_parameters_fitted_for_another_contact_give_a_warning(recwarn: pytest.Wa
     assert not recwarn.list
     with pytest.warns(wl.CalibrationWarning, match="were fitted for patch means"):
         Roller() | MODEL | wl.wear_law("usfd")
+
+
+def test_parameters_fitted_for_another_shape_of_patch_give_a_warning_once_the_shape_is_known() -> None:
+    predict = OnRail() | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim")
+    for call in (
+        lambda: predict(mass="8000 kg", longitudinal_creepage="0.2 %"),
+        lambda: wl.sweep(predict, mass="8000 kg", longitudinal_creepage=Q([0.1, 0.2], "%")),
+    ):
+        with pytest.warns(wl.CalibrationWarning, match="fitted for line contacts, but are used with elliptic") as said:
+            call()
+        assert [Path(one.filename).name for one in said] == [Path(__file__).name]
+
+
+class Delegating(wl.Rig):
+    """A rig whose conditions are those of another, and which fails."""
+
+    name: ClassVar[str] = "delegating"
+    source: ClassVar[str] = "a test"
+
+    def problem(self, **conditions: Any) -> wl.LineProblem:
+        """Fail."""
+        raise KeyError(*conditions)
+
+
+def test_a_rig_that_takes_any_conditions_is_blamed_for_its_failure() -> None:
+    with pytest.raises(wl.ModelError, match="rig 'delegating' failed: KeyError: 'creepage'"):
+        (Delegating() | MODEL)(creepage="1 %")
 
 
 def test_a_sweep_runs_along_the_conditions_of_the_rig() -> None:

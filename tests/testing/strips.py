@@ -13,7 +13,8 @@ class Strips(wl.ContactModel):
     """Kalker's simplified theory with a parabolic bound, sampled in the middle of equal cells along strips.
 
     From one middle to the next the traction grows by w = dq/dx in stick, and is clipped to the bound. Half of what is
-    clipped off at both ends of such a step is slip in either cell; so that q·s sums to what is fed in.
+    clipped off in such a step is slip in either cell, so that q·s sums to what is fed in; all of it is in the second
+    cell where it points against the traction of the first, for no cell gains energy.
     """
 
     name: ClassVar[str] = "strips"
@@ -97,9 +98,12 @@ class Strips(wl.ContactModel):
             over = size > bound[..., k, :]
             now = np.where(over, free * np.divide(bound[..., k, :], size, out=np.zeros_like(size), where=over), free)
             traction[..., k, :] = now
-            clipped[..., k, :] += (1.0 if k == 0 else 0.5) * (free - now)
-            if k > 0:
-                clipped[..., k - 1, :] += 0.5 * (free - now)
+            slip = free - now
+            # Where spin turns the traction fast, the slip of a step may point against the traction of the cell before.
+            before = traction[..., k - 1, :]  # none before the first cell: the last one has no traction yet
+            shared = 0.5 * slip * ((slip * before).sum(axis=0) > 0.0)
+            clipped[..., k, :] += slip - shared
+            clipped[..., k - 1, :] += shared
         clipped[..., -1, :] += 0.5 * now  # at the trailing edge, where the bound is zero
         return traction, clipped
 

@@ -10,6 +10,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wearlaw.composition import warn_of_geometry
 from wearlaw.configuration import parts
 from wearlaw.errors import InputError, RangeWarning, ResumeWarning, WorkerWarning
 from wearlaw.pipeline import Pipeline
@@ -145,7 +146,9 @@ def _check_conditions(pipeline: Pipeline[..., Any], points: Points, not_given: M
     """Find what cannot be before anything is evaluated: each dimension at the first values of the others."""
     for dim in points.dims:
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
-        pipeline.rig.checked_problem({**not_given, **line.conditions()})
+        problem = pipeline.rig.checked_problem({**not_given, **line.conditions()})
+        for law in pipeline.laws if dim == points.dims[0] else ():
+            warn_of_geometry(pipeline.rig, pipeline.contact_model, pipeline.scale, law, problem, stacklevel=4)
 
 
 def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:
