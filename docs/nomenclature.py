@@ -22,7 +22,6 @@ HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
 CLASSES = (
     *(wl.LineProblem, wl.Contact, TwinDiscConditions, wl.Prediction, wl.LocalWear),
     *(wl.EllipticProblem, wl.CreepForces, wl.EllipticContact, WheelRailConditions),
-    wl.WheelRailPrediction,
 )
 SHOWN_AS = {"TwinDiscConditions": "conditions", "WheelRailConditions": "conditions"}
 

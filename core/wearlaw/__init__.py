@@ -75,7 +75,6 @@ from wearlaw.units import Density, Length, Q, Quantity, QuantityLike, Speed, Str
 from wearlaw.version import __version__
 from wearlaw.wear_tests.reader import read_tests
 from wearlaw.wear_tests.tests import WearTests
-from wearlaw.wheel_rail_result import WheelRailPrediction
 
 __all__ = [
     "INTERFACE_VERSION",
@@ -152,7 +151,6 @@ __all__ = [
     "WearlawError",
     "WearlawWarning",
     "WheelRail",
-    "WheelRailPrediction",
     "WorkerWarning",
     "__version__",
     "accelerate",

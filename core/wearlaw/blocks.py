@@ -37,7 +37,7 @@ def by_block(
 ) -> Columns:
     """Return the columns of a function of a problem with one batch axis at most, evaluated block by block.
 
-    With `drop_force`, the tangential forces are told to `on_block` and not kept.
+    With `drop_force`, the forces are told to `on_block` and not kept.
     """
     points = problem.size
     if points == 0:
@@ -51,7 +51,7 @@ def by_block(
         if on_block is not None:
             on_block(within, columns)
         if drop_force:
-            del columns["tangential_force"]
+            del columns["longitudinal"]
         if points <= block:
             whole = columns
             break

@@ -56,8 +56,9 @@ class CreepForces:
 
     @classmethod
     def of(cls, columns: Mapping[str, Array]) -> Self:
-        """Return the forces that are among some columns."""
-        return cls(**{field.name: columns[field.name] for field in dataclasses.fields(cls)})
+        """Return the forces that are among some columns; those of a line have no lateral force and no moment."""
+        none = np.broadcast_to(0.0, columns["longitudinal"].shape)
+        return cls(**{field.name: columns.get(field.name, none) for field in dataclasses.fields(cls)})
 
     @property
     def tangential(self) -> Array:

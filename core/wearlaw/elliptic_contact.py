@@ -180,9 +180,9 @@ class EllipticContact(Contact):
         return from_si(self.moment_z, "N*m")
 
     @property
-    def cell_wear_index(self) -> Array:
-        """Energy dissipated per metre rolled, ∑ q·s dA over the nodes [N], of the batch shape."""
-        return self.sum_over_nodes(self.wear_index_density * self.area)
+    def forces(self) -> CreepForces:
+        """The forces and the moment that the contact transmits."""
+        return CreepForces(longitudinal=self.force_x, lateral=self.force_y, spin_moment=self.moment_z)
 
     def scaled_to_wear_index(self) -> Self:
         """Return the contact with slips scaled so that what the nodes dissipate is Tγ.

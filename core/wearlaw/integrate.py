@@ -3,11 +3,12 @@
 The only code that sees both a contact model and a wear law. Three ways, from the most that is known to the least:
 
 1. The law is a sum of ramps in q·s, and the model knows the energy above a threshold: a closed form without nodes.
-2. The model knows its fields: quadrature over the slip zone, to rounding error where the law declares the breakpoints
-   at which the zone is then split.
-3. Else the law at the nodes that the model chose.
+2. The model knows its fields on a line: quadrature over the slip zone, to rounding error where the law declares the
+   breakpoints at which the zone is then split.
+3. Else, and always on an ellipse, the law at the nodes that the model chose.
 
-The last two come with an error estimate. The number of cells of a plot has no part in this.
+On a line the last two come with an error estimate, on an ellipse `wear_rate_error` makes one. The number of cells of a
+plot has no part in this.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
-from wearlaw.blocks import Columns, OnBlock, by_block
+from wearlaw.blocks import Columns, OfBlock, OnBlock, by_block
 from wearlaw.crossings import crossings
+from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.extremes import extremes
 from wearlaw.kernels import accelerated
 from wearlaw.line import LineProblem
@@ -28,7 +30,7 @@ from wearlaw.line_model import LineContactModel
 from wearlaw.models import Numbers, WearLaw
 from wearlaw.quadrature import join, remainder
 from wearlaw.records import NODE_VARIABLES, Contact
-from wearlaw.solving import Solver, check_columns, check_type
+from wearlaw.solving import ProblemT, Solver, check_columns, check_type
 from wearlaw.tangential import Blame, ContactModel, Scale
 
 BLOCK = 8192
@@ -39,6 +41,13 @@ COMPILED_BLOCK = 16384
 
 NODE_BLOCK = 3072
 """Operating points of a block with nodes."""
+
+ELLIPSE_NODES = 2**16
+"""Nodes of a block of elliptic contacts: enough to outweigh what each call of NumPy takes, few enough for the memory of
+any machine."""
+
+FEW = 8
+"""Elliptic contacts that are solved at once, whatever their nodes."""
 
 PANELS_UNDECLARED = 4
 """Panels of the slip zone for a law that says nothing about where it branches."""
@@ -64,11 +73,14 @@ class SlipTotals:
         Area of what slips [m²].
     patch_area : ndarray
         Area of the whole patch, the sum of its nodes' areas [m²].
+    cell_wear_index : ndarray
+        Energy dissipated per metre rolled, summed over the nodes [N].
     """
 
     mean_slip: Array
     slip_area: Array
     patch_area: Array
+    cell_wear_index: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,50 +92,63 @@ class WearTotals:
     wear_rate : ndarray
         Area mean of the law's rate over the patch [kg/m/m²].
     wear_rate_error : ndarray or None
-        Estimate of the numerical error in it [kg/m/m²]; None for a closed form, where `rounding` gives it.
-    tangential_force : ndarray or None
-        T with the sign of the creepage [N]; None where the contact model knows it without nodes.
+        Estimate of the numerical error in it [kg/m/m²]; None where `wear_rate_error` gives it.
+    forces : CreepForces or None
+        The forces and the moment; None where the contact model knows them without nodes.
     patch_area : ndarray or None
         Area of the patch, the sum of its nodes' areas [m²]; None where that is the area of the problem.
     """
 
     wear_rate: Array
     wear_rate_error: Array | None = None
-    tangential_force: Array | None = None
+    forces: CreepForces | None = None
     patch_area: Array | None = None
 
 
-def integrate_contact(model: ContactModel, problem: LineProblem) -> Array:
-    """Return the tangential force [N], or raise a `ModelError` if it is not finite."""
+def integrate_forces(model: ContactModel, problem: LineProblem | EllipticProblem) -> CreepForces:
+    """Return the forces and the moment, or raise a `ModelError` if they are not finite."""
+    if isinstance(problem, EllipticProblem):
+
+        def of_ellipse(part: EllipticProblem, _: slice) -> Columns:
+            return _columns(model.creep_forces(part))
+
+        return CreepForces.of(_by_block(Solver(model), problem, of_ellipse))
     if isinstance(model, LineContactModel):  # in closed form, without nodes that would fill the memory
         with Blame(model):
             force = model.tangential_force(problem)
         check_columns(model, {"tangential_force": force}, problem)
-        return force
+        return CreepForces.of({"longitudinal": force})
 
-    def columns(part: LineProblem, _: slice) -> Columns:
+    def of_line(part: LineProblem, _: slice) -> Columns:
         return {"tangential_force": model.tangential_force(part)}
 
-    return Solver(model).by_block(problem, NODE_BLOCK, columns)["tangential_force"]
+    found = _by_block(Solver(model), problem, of_line)
+    return CreepForces.of({"longitudinal": found["tangential_force"]})
 
 
-def integrate_slip(model: ContactModel, problem: LineProblem, scale: Scale) -> SlipTotals:
+def integrate_slip(model: ContactModel, problem: LineProblem | EllipticProblem, scale: Scale) -> SlipTotals:
     """Return how the patch slips."""
     solver = Solver(model)
 
-    def columns(part: LineProblem, _: slice) -> Columns:
-        contact = seen_by_law(model, solver.solve(part), scale)
+    def columns(part: LineProblem | EllipticProblem, _: slice) -> Columns:
+        solved = solver.solve(part)
+        contact = seen_by_law(model, solved, scale)
         slip_area, patch_area = contact.slip_area, contact.patch_area
-        if scale == "cells" and isinstance(model, LineContactModel):
+        if scale == "cells" and isinstance(model, LineContactModel) and isinstance(part, LineProblem):
             slip_area, patch_area = model.slip_length(part.forward()) * part.track_width, part.patch_area
-        return {"mean_slip": contact.mean_slip, "slip_area": slip_area, "patch_area": patch_area}
+        return {
+            "mean_slip": contact.mean_slip,
+            "slip_area": slip_area,
+            "patch_area": patch_area,
+            "cell_wear_index": solved.cell_wear_index,
+        }
 
-    return SlipTotals(**solver.by_block(problem, NODE_BLOCK, columns))
+    return SlipTotals(**_by_block(solver, problem, columns))
 
 
-def patch_area(model: ContactModel, problem: LineProblem, scale: Scale) -> Array:
+def patch_area(model: ContactModel, problem: LineProblem | EllipticProblem, scale: Scale) -> Array:
     """Return the area of the patch, the sum of its nodes' areas [m²]."""
-    if isinstance(model, LineContactModel):  # its nodes share out the patch of the problem
+    if isinstance(model, LineContactModel) and isinstance(problem, LineProblem):  # its nodes share out the patch
         return problem.patch_area
     return integrate_slip(model, problem, scale).patch_area
 
@@ -131,9 +156,9 @@ def patch_area(model: ContactModel, problem: LineProblem, scale: Scale) -> Array
 def integrate_wear(
     model: ContactModel,
     law: WearLaw,
-    problem: LineProblem,
+    problem: ProblemT,
     scale: Scale,
-    on_block: OnBlock[LineProblem] | None = None,
+    on_block: OnBlock[ProblemT] | None = None,
     p: Numbers | None = None,
 ) -> WearTotals:
     """Return the wear in a contact, block by block.
@@ -142,11 +167,11 @@ def integrate_wear(
     ----------
     model : ContactModel
     law : WearLaw
-    problem : LineProblem
+    problem : LineProblem or EllipticProblem
     scale : str
         Whether the law sees the patch means or the cells.
     on_block : callable, optional
-        Called with each block of operating points, and the tangential forces [N] among its columns.
+        Called with each block of operating points, and the forces [N] among its columns.
     p : mapping of str to float or ndarray, optional
         The law's numbers in SI, by default its own. Arrays of shape (points, 1) need a batch of one axis, (points,).
 
@@ -155,8 +180,43 @@ def integrate_wear(
     ModelError
         If the model or the law breaks its contract.
     """
-    solver = Solver(model)
     p = law.numbers if p is None else p
+    if isinstance(problem, EllipticProblem):
+        return _over_ellipse(model, law, problem, scale, on_block, p)
+    return _over_line(model, law, problem, scale, on_block, p)
+
+
+def _over_ellipse(
+    model: ContactModel,
+    law: WearLaw,
+    problem: EllipticProblem,
+    scale: Scale,
+    on_block: OnBlock[EllipticProblem] | None,
+    p: Numbers,
+) -> WearTotals:
+    solver = Solver(model)
+    across = {name: value[..., None] if isinstance(value, np.ndarray) else value for name, value in p.items()}
+
+    def columns(part: EllipticProblem, points: slice) -> Columns:
+        contact = solver.solve(part)
+        seen = seen_by_law(model, contact, scale)
+        area = seen.patch_area
+        rate = seen.sum_over_nodes(solver.rate(law, seen, part, _at_points(across, points)) * seen.area) / area
+        return {"wear_rate": rate, "patch_area": area, **_columns(contact.forces)}
+
+    found = _by_block(solver, problem, columns, on_block)
+    return WearTotals(wear_rate=found["wear_rate"], forces=CreepForces.of(found), patch_area=found["patch_area"])
+
+
+def _over_line(
+    model: ContactModel,
+    law: WearLaw,
+    problem: LineProblem,
+    scale: Scale,
+    on_block: OnBlock[LineProblem] | None,
+    p: Numbers,
+) -> WearTotals:
+    solver = Solver(model)
     with Blame(law, p):
         ramps = law.ramps(p) if scale == "cells" else None
     closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
@@ -176,11 +236,66 @@ def integrate_wear(
     block = NODE_BLOCK
     if closed:
         block = COMPILED_BLOCK if accelerated(problem.creepage.size) else BLOCK
-    drop_force = isinstance(model, LineContactModel)
-    return WearTotals(**solver.by_block(problem, block, columns, on_block, drop_force))
+    found = solver.by_block(problem, block, columns, on_block, isinstance(model, LineContactModel))
+    forces = CreepForces.of(found) if "longitudinal" in found else None
+    return WearTotals(
+        wear_rate=found["wear_rate"],
+        wear_rate_error=found.get("wear_rate_error"),
+        forces=forces,
+        patch_area=found.get("patch_area"),
+    )
 
 
-def solve(model: ContactModel, problem: LineProblem, scale: Scale) -> Contact:
+def wear_rate_error(
+    model: ContactModel, law: WearLaw, problem: LineProblem | EllipticProblem, scale: Scale, totals: WearTotals
+) -> Array:
+    """Return an estimate of the error of wear rates [kg/m/m²].
+
+    Of a closed form it is some roundings of what each ramp would give without its threshold. On an ellipse it is how
+    far the rates move on nodes twice and four times as fine, times the 4/3 by which errors of first order exceed the
+    sum of both steps; or, of a model that has no finer nodes, how far they move when nodes are left out, which in
+    partial slip can fall short of the error, by six times on 64 strips.
+    """
+    if totals.wear_rate_error is not None:
+        return totals.wear_rate_error
+    if isinstance(problem, LineProblem):
+        slopes: float = sum(abs(slope) for _, slope in law.ramps(law.numbers) or ())
+        force = integrate_forces(model, problem).longitudinal
+        return (ROUNDINGS * EPS * slopes) * force * problem.creepage / problem.patch_area
+    if scale == "patch":
+        return EPS * np.abs(totals.wear_rate)
+    with Blame(model):
+        twice = model.refined()
+        four_times = None if twice is None else twice.refined()
+    if twice is not None and four_times is not None:
+        fine, finest = (integrate_wear(one, law, problem, scale).wear_rate for one in (twice, four_times))
+        return 4.0 / 3.0 * (np.abs(fine - totals.wear_rate) + np.abs(finest - fine))
+    solver = Solver(model)
+
+    def columns(part: EllipticProblem, _: slice) -> Columns:
+        contact = solver.solve(part)
+        return {"error": thinning_error(contact, solver.rate(law, contact, part))}
+
+    return _by_block(solver, problem, columns)["error"]
+
+
+def _columns(forces: CreepForces) -> Columns:
+    return {"longitudinal": forces.longitudinal, "lateral": forces.lateral, "spin_moment": forces.spin_moment}
+
+
+def _by_block(
+    solver: Solver, problem: ProblemT, columns: OfBlock[ProblemT], on_block: OnBlock[ProblemT] | None = None
+) -> Columns:
+    """Return columns over blocks of as many operating points as the model's nodes allow."""
+    block = NODE_BLOCK
+    if isinstance(problem, EllipticProblem):
+        few = problem.size <= FEW
+        nodes = 1 if few else Solver(solver.model).solve(problem.flatten()[:1]).pressure.size
+        block = FEW if few else max(ELLIPSE_NODES // nodes, 1)
+    return solver.by_block(problem, block, columns, on_block)
+
+
+def solve(model: ContactModel, problem: LineProblem | EllipticProblem, scale: Scale) -> Contact:
     """Return the contact of a model on its own nodes, or its patch mean where that is asked for."""
     return seen_by_law(model, Solver(model).solve(problem), scale)
 
@@ -225,7 +340,7 @@ def closed_form(
     if extremes(rate)[0] < 0.0:  # ramps that cancel leave their rounding
         rate = np.maximum(rate, 0.0)
     signed = force if forward is problem else np.copysign(force, problem.creepage)
-    return {"wear_rate": rate, "tangential_force": signed}
+    return {"wear_rate": rate, "longitudinal": signed}
 
 
 def _per_point(number: float | Array, points: slice) -> float | Array:
@@ -236,12 +351,6 @@ def _per_point(number: float | Array, points: slice) -> float | Array:
 def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:
     """Return the numbers of a law at some operating points."""
     return {name: value[points] if isinstance(value, np.ndarray) else value for name, value in p.items()}
-
-
-def rounding(law: WearLaw, problem: LineProblem, tangential_force: Array) -> Array:
-    """Return the error of a closed form: some roundings of what each ramp would give without its threshold."""
-    slopes: float = sum(abs(slope) for _, slope in law.ramps(law.numbers) or ())
-    return (ROUNDINGS * EPS * slopes) * tangential_force * problem.creepage / problem.patch_area
 
 
 def _from_nodes(solver: Solver, law: WearLaw, p: Numbers, problem: LineProblem, scale: Scale) -> Columns:
@@ -256,7 +365,7 @@ def _from_nodes(solver: Solver, law: WearLaw, p: Numbers, problem: LineProblem, 
         rate = solver.rate(law, contact, part, own)
         mean, force = contact.mean(rate), contact.tangential_force
         error = thinning_error(contact, rate) if scale == "cells" else EPS * np.abs(mean)
-        found = {"wear_rate": mean, "wear_rate_error": error, "tangential_force": force}
+        found = {"wear_rate": mean, "wear_rate_error": error, "longitudinal": force}
         return found if isinstance(model, LineContactModel) else found | {"patch_area": contact.patch_area}
 
     return by_block(problem.flatten(), NODE_BLOCK, columns)
@@ -278,7 +387,7 @@ def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Nu
             columns = first[points, None] + np.arange(count)
             own, own_splits = _at_points(p, points), splits[points[:, None], columns]
             rate[points], error[points] = _over_panels(solver, model, law, own, problem[points], own_splits, totals)
-    return {"wear_rate": rate, "wear_rate_error": error, "tangential_force": model.tangential_force(problem)}
+    return {"wear_rate": rate, "wear_rate_error": error, "longitudinal": model.tangential_force(problem)}
 
 
 def splits_of(model: LineContactModel, law: WearLaw, p: Numbers, problem: LineProblem) -> Array | None:

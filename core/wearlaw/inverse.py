@@ -10,7 +10,7 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.conditions import is_friction_law
 from wearlaw.errors import CompositionError, ConditionsError, UnitError
-from wearlaw.integrate import integrate_contact
+from wearlaw.integrate import integrate_forces
 from wearlaw.line import LineProblem
 from wearlaw.units import Quantity, QuantityLike, Unit, from_si, real_array
 
@@ -73,7 +73,7 @@ def creepage_for(
         """Return by how much T/N falls short, for points as floats, as `find_root` hands them on."""
         index = point.astype(np.intp)
         at = dataclasses.replace(flat[index], creepage=np.exp(log_creepage))
-        return due[index] - integrate_contact(predict.contact_model, at) / at.normal_force
+        return due[index] - integrate_forces(predict.contact_model, at).longitudinal / at.normal_force
 
     points = np.arange(due.size, dtype=np.float64)
     short = lacking(np.zeros(due.size), points)

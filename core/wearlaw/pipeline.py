@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Generic, Literal, Self, overload
+from typing import TYPE_CHECKING, Generic, Literal, Self
 
 from pydantic import model_validator
 
@@ -20,16 +20,14 @@ from wearlaw.composition import (
 )
 from wearlaw.configuration import Configuration
 from wearlaw.ellipse import EllipticProblem
-from wearlaw.elliptic_wear import creep_forces, elliptic_wear
 from wearlaw.errors import CompositionError, ConditionsError, InputError
-from wearlaw.integrate import integrate_contact, integrate_wear
+from wearlaw.integrate import integrate_forces, integrate_wear
 from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
-from wearlaw.ranges import RangeWatch, elliptic_mean, line_mean
+from wearlaw.ranges import RangeWatch, mean_over_patch
 from wearlaw.result import Prediction
 from wearlaw.specification import ContactModelField, RigField, WearLawField
 from wearlaw.tangential import Scale
-from wearlaw.wheel_rail_result import WheelRailPrediction
 
 ORDER = 'the order is rig | wl.contact_model("exact") | wl.patch_mean(), where it is needed, | wl.wear_law("usfd")'
 
@@ -122,32 +120,20 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
         warn_of_calibration(self.rig.geometry, self.contact_model, self.scale, stage)
         return pipeline
 
-    @overload
-    def __call__(self: Pipeline[P, LineProblem], *_: P.args, **conditions: P.kwargs) -> Prediction: ...
-    @overload
-    def __call__(self: Pipeline[P, EllipticProblem], *_: P.args, **conditions: P.kwargs) -> WheelRailPrediction: ...
-    def __call__(self, *positional: Any, **conditions: Any) -> Prediction | WheelRailPrediction:
+    def __call__(self, *positional: P.args, **conditions: P.kwargs) -> Prediction:
         """Return the contact and the wear under the given conditions; see the `problem` of the rig for these."""
         if positional:
             raise ConditionsError(f"{positional[0]!r}: is given without a name; write creepage=..., for example")
         problem: LineProblem | EllipticProblem = self.rig.checked_problem(conditions)
         return self.predict(problem, stacklevel=3)
 
-    @overload
-    def predict(
-        self, problem: LineProblem, *, on_block: Callable[[int], None] | None = None, stacklevel: int = 2
-    ) -> Prediction: ...
-    @overload
-    def predict(
-        self, problem: EllipticProblem, *, on_block: Callable[[int], None] | None = None, stacklevel: int = 2
-    ) -> WheelRailPrediction: ...
     def predict(
         self,
         problem: LineProblem | EllipticProblem,
         *,
         on_block: Callable[[int], None] | None = None,
         stacklevel: int = 2,
-    ) -> Prediction | WheelRailPrediction:
+    ) -> Prediction:
         """Return the contact and the wear for a contact problem that the rig has made.
 
         Parameters
@@ -175,7 +161,7 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
 
     def watched(
         self, problem: LineProblem | EllipticProblem, watch: RangeWatch, on_block: Callable[[int], None] | None = None
-    ) -> Prediction | WheelRailPrediction:
+    ) -> Prediction:
         """Return what `predict` does, without its warnings; `watch` sees the operating points."""
         model, scale = self.contact_model, self.scale
         if isinstance(problem, LineProblem):
@@ -185,30 +171,19 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
         law = self.laws[0]
 
         def see(part: LineProblem | EllipticProblem, columns: Columns) -> None:
-            if isinstance(part, LineProblem):
-                watch.see(part.size, partial(line_mean, part, columns))
-            else:
-                watch.see(part.size, partial(elliptic_mean, part, columns))
+            watch.see(part.size, partial(mean_over_patch, part, columns))
             if on_block is not None:
                 on_block(part.size)
 
-        if isinstance(problem, EllipticProblem):
-            rolled = elliptic_wear(model, law, problem, scale, see)
-            law.check_not_negative(rolled.wear_rate)
-            return WheelRailPrediction(self, problem, rolled.forces, rolled)
         wear = integrate_wear(model, law, problem, scale, see)
-        found = Prediction(self, problem, wear.tangential_force, wear)
+        found = Prediction(self, problem, wear.forces, wear)
         law.check_not_negative(wear.wear_rate, lambda: found.wear_rate_error.to("kg/m^3").magnitude)
         return found
 
     def _without_wear(
         self, problem: LineProblem | EllipticProblem, watch: RangeWatch, on_block: Callable[[int], None] | None
-    ) -> Prediction | WheelRailPrediction:
-        found: Prediction | WheelRailPrediction
-        if isinstance(problem, EllipticProblem):
-            found = WheelRailPrediction(self, problem, creep_forces(self.contact_model, problem))
-        else:
-            found = Prediction(self, problem, integrate_contact(self.contact_model, problem))
+    ) -> Prediction:
+        found = Prediction(self, problem, integrate_forces(self.contact_model, problem))
         watch.points += problem.size
         if on_block is not None:
             on_block(problem.size)

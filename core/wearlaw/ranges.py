@@ -31,11 +31,11 @@ class RangeWatch:
         self.seen = {name: _Seen() for name in self.range}
         self.points = 0
 
-    def see(self, points: int, patch_mean: Callable[[str], Array]) -> None:
-        """Take note of so many operating points; `patch_mean` gives a variable of `Contact` as its mean in SI."""
+    def see(self, points: int, mean_over_patch: Callable[[str], Array]) -> None:
+        """Take note of so many operating points; `mean_over_patch` gives a variable of `Contact` as its mean in SI."""
         self.points += points
         for name, (low, high) in self.range.items():
-            values = patch_mean(name)
+            values = mean_over_patch(name)
             lowest, highest = extremes(values)
             seen = self.seen[name]
             seen.lowest, seen.highest = min(seen.lowest, lowest), max(seen.highest, highest)
@@ -66,29 +66,25 @@ class _Seen:
         self.lowest, self.highest, self.outside = np.inf, -np.inf, 0
 
 
-def line_mean(problem: LineProblem, columns: Columns, variable: str) -> Array:
-    """Return a variable of `Contact` as its mean over a line contact, from forces [N] and areas [m²] in columns."""
-    force = columns["tangential_force"]
-    return _mean(
-        problem,
-        lambda: columns.get("patch_area", problem.patch_area),
-        lambda: np.abs(force),
-        lambda: np.abs(problem.creepage),
-        lambda: force * problem.creepage,
-        variable,
-    )
+def mean_over_patch(problem: LineProblem | EllipticProblem, columns: Columns, variable: str) -> Array:
+    """Return a variable of `Contact` as its mean over the patch, from forces [N] and areas [m²] in columns."""
 
+    def area() -> Array:
+        return columns.get("patch_area", problem.patch_area)
 
-def elliptic_mean(problem: EllipticProblem, columns: Columns, variable: str) -> Array:
-    """Return a variable of `Contact` as its mean over an ellipse, as in `EllipticContact.of_patch`."""
+    if isinstance(problem, LineProblem):
+        force = columns["longitudinal"]
+        return _mean(
+            problem,
+            area,
+            lambda: np.abs(force),
+            lambda: np.abs(problem.creepage),
+            lambda: force * problem.creepage,
+            variable,
+        )
     forces = CreepForces.of(columns)
     return _mean(
-        problem,
-        lambda: columns.get("patch_area", problem.patch_area),
-        lambda: forces.tangential,
-        lambda: problem.rigid_slip,
-        lambda: problem.power(forces),
-        variable,
+        problem, area, lambda: forces.tangential, lambda: problem.rigid_slip, lambda: problem.power(forces), variable
     )
 
 

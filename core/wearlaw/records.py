@@ -233,6 +233,11 @@ class Contact:
         """Share of the patch's area that sticks [-], of the batch shape."""
         return 1.0 - self.slip_area / self.patch_area
 
+    @property
+    def cell_wear_index(self) -> Array:
+        """Energy dissipated per metre rolled, ∑ q·s dA over the nodes [N], of the batch shape."""
+        return self.sum_over_nodes(self.wear_index_density * self.area)
+
     def with_batch(self, shape: tuple[int, ...]) -> Self:
         """Return the contact with its one batch axis reshaped."""
         fields = ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self))

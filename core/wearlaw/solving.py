@@ -314,7 +314,13 @@ def _first(wrong: NDArray[np.bool_]) -> tuple[int, ...]:
 
 def _words(name: str) -> str:
     """Return what messages call a field, with its article."""
-    words = {"force_x": "longitudinal force", "force_y": "lateral force", "moment_z": "spin moment"}
+    words = {
+        "force_x": "longitudinal force",
+        "force_y": "lateral force",
+        "moment_z": "spin moment",
+        "longitudinal": "longitudinal force",
+        "lateral": "lateral force",
+    }
     named = words.get(name, name.replace("_", " "))
     return f"{'an' if named[0] in 'aeiou' else 'a'} {named}"
 

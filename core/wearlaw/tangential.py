@@ -166,8 +166,7 @@ class ContactModel(Model):
 
     def creep_forces(self, problem: EllipticProblem) -> CreepForces:
         """Return the forces of an elliptic contact; those of `solve_ellipse`, unless the model knows them without."""
-        contact = self.solve_ellipse(problem)
-        return CreepForces(longitudinal=contact.force_x, lateral=contact.force_y, spin_moment=contact.moment_z)
+        return self.solve_ellipse(problem).forces
 
     def on_strips(self, problem: EllipticProblem, shares: Array) -> EllipticContact | None:  # noqa: ARG002
         """Return the contact on strips at y = `shares` × b, of shape (strips), or None if it is known on its own only.

@@ -21,7 +21,7 @@ from tests.benchmarks.report import Gate
 from tests.benchmarks.rivals import CHECK, FAST, PLAIN_LIBRARY, compilers
 from tests.benchmarks.timing import Times, in_mode, modes, side_by_side
 from tests.benchmarks.wheel_rail_rivals import RIVAL_CELLS, WORKLOAD, Compiled, MarchAndLaw, Outcome, ellipses, workload
-from wearlaw.elliptic_wear import elliptic_wear
+from wearlaw.integrate import integrate_wear
 from wearlaw_fastsim import Fastsim
 from wearlaw_fastsim._march import Cells, march
 
@@ -124,7 +124,8 @@ def _march_and_law(problem: wl.EllipticProblem, bound: str, cells: int, strips: 
 
 def _wearlaw(problem: wl.EllipticProblem, bound: str, strips: int) -> Outcome:
     model = wl.contact_model("fastsim", bound=bound, strips=strips)
-    found = elliptic_wear(model, wl.wear_law("usfd", fitted_for="global"), problem, "cells")
+    found = integrate_wear(model, wl.wear_law("usfd", fitted_for="global"), problem, "cells")
+    assert found.forces is not None
     return found.forces.longitudinal, found.forces.lateral, found.wear_rate
 
 

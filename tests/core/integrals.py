@@ -12,7 +12,7 @@ import wearlaw as wl
 from tests import reference
 from tests.strategies import LINE_MODELS
 from wearlaw import Array, Q, integrate
-from wearlaw.integrate import integrate_contact
+from wearlaw.integrate import integrate_forces
 
 Solve = Callable[[reference.Point], reference.Solution]
 REFERENCE: dict[str, Solve] = {
@@ -45,9 +45,9 @@ class Wear(NamedTuple):
 def integrate_wear(model: wl.ContactModel, law: wl.WearLaw, problem: wl.LineProblem, scale: wl.Scale) -> Wear:
     """Return the wear, with what is computed when it is asked for."""
     wear = integrate.integrate_wear(model, law, problem, scale)
-    force = integrate_contact(model, problem) if wear.tangential_force is None else wear.tangential_force
-    error = integrate.rounding(law, problem, force) if wear.wear_rate_error is None else wear.wear_rate_error
-    return Wear(wear.wear_rate, error, force)
+    forces = integrate_forces(model, problem) if wear.forces is None else wear.forces
+    error = integrate.wear_rate_error(model, law, problem, scale, wear)
+    return Wear(wear.wear_rate, error, forces.longitudinal)
 
 
 class Points:

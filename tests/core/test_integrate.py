@@ -14,7 +14,7 @@ from tests.core.integrals import FULL_SLIP, MEANS, REFERENCE, RIG, SPEED, Points
 from tests.roots import brentq
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q, integrate
-from wearlaw.integrate import BLOCK, NODE_BLOCK, integrate_contact, integrate_slip
+from wearlaw.integrate import BLOCK, NODE_BLOCK, integrate_forces, integrate_slip
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 
@@ -175,8 +175,8 @@ def test_each_block_is_told_with_its_forces() -> None:
 
     integrate.integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells", on_block)
     assert [part.creepage.size for part, _ in told] == [BLOCK, 10]
-    forces = np.concatenate([columns["tangential_force"] for _, columns in told])
-    assert forces == pytest.approx(integrate_contact(LINE_MODELS["exact"], problem), rel=4 * EPS)
+    forces = np.concatenate([columns["longitudinal"] for _, columns in told])
+    assert forces == pytest.approx(integrate_forces(LINE_MODELS["exact"], problem).longitudinal, rel=4 * EPS)
 
 
 def test_the_batch_keeps_its_shape() -> None:

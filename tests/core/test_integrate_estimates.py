@@ -14,7 +14,7 @@ from tests import reference
 from tests.core.integrals import MEANS, REFERENCE, Points, integrate_wear
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array
-from wearlaw.integrate import integrate_contact
+from wearlaw.integrate import integrate_forces
 from wearlaw.quadrature import uniform_cells
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
@@ -164,7 +164,7 @@ def test_a_model_that_only_solves_works_and_says_how_good_it_is(honest: float) -
     error = np.abs(wear.wear_rate - want)[seen]
     assert (error <= wear.wear_rate_error[seen]).mean() >= honest
     assert np.median(wear.wear_rate_error[seen] / want[seen]) < 0.1
-    force = integrate_contact(LINE_MODELS["exact"], points.problem)
+    force = integrate_forces(LINE_MODELS["exact"], points.problem).longitudinal
     assert wear.tangential_force == pytest.approx(force, rel=4 * EPS)
 
 

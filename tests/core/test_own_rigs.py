@@ -148,7 +148,7 @@ def test_the_creepage_for_a_traction_is_found() -> None:
 
 def test_a_rig_that_makes_ellipses_gives_their_results() -> None:
     r = (OnRail() | wl.contact_model("fastsim") | KTH)(mass="8000 kg", longitudinal_creepage="0.2 %")
-    assert isinstance(r, wl.WheelRailPrediction)
+    assert isinstance(r, wl.Prediction)
     assert r.wear_rate.magnitude > 0.0
     with pytest.raises(wl.CompositionError, match="'exact' does not solve elliptic contacts"):
         (OnRail() | MODEL)(mass="8000 kg", longitudinal_creepage="0.2 %")

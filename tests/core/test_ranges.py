@@ -15,7 +15,7 @@ import pytest
 import wearlaw as wl
 from wearlaw import Array, Q
 from wearlaw.integrate import BLOCK, NODE_BLOCK
-from wearlaw.ranges import RangeWatch, elliptic_mean, line_mean
+from wearlaw.ranges import RangeWatch, mean_over_patch
 
 RIG = wl.TwinDisc.suros(rolling_speed="2 m/s")
 EXACT = wl.contact_model("exact")
@@ -61,7 +61,7 @@ def messages(watch: RangeWatch) -> list[str]:
 def see(watch: RangeWatch, *blocks: Any) -> None:
     for creepage in blocks:
         part = problem(np.asarray(creepage))
-        watch.see(part.size, partial(line_mean, part, {"tangential_force": EXACT.tangential_force(part)}))
+        watch.see(part.size, partial(mean_over_patch, part, {"longitudinal": EXACT.tangential_force(part)}))
 
 
 def test_points_outside_are_counted_over_all_blocks() -> None:
@@ -121,7 +121,7 @@ def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> 
     between = 0.5 * (values[1:] + values[:-1])
     for low, high, outside in ((between[0], between[1], 3), (0.0, between[1], 2), (between[0], 1e12, 1)):
         watch = RangeWatch(Stated(variable=name, low=low, high=high))
-        watch.see(one.size, partial(line_mean, one, {"tangential_force": EXACT.tangential_force(one)}))
+        watch.see(one.size, partial(mean_over_patch, one, {"longitudinal": EXACT.tangential_force(one)}))
         (message,) = messages(watch)
         assert f"a mean {name.replace('_', ' ')} from" in message
         assert f"; {outside} of 4 operating points lie outside" in message
@@ -151,7 +151,7 @@ def test_every_variable_of_an_ellipse_is_watched_by_its_patch_mean(name: str) ->
         "wear_index_density": power / area,
     }[name]
     columns = dataclasses.asdict(forces)
-    assert elliptic_mean(one, columns, name) == pytest.approx(values, rel=64 * float(np.finfo(np.float64).eps))
+    assert mean_over_patch(one, columns, name) == pytest.approx(values, rel=64 * float(np.finfo(np.float64).eps))
 
 
 def test_a_range_of_what_has_no_patch_mean_is_refused() -> None:

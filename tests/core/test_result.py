@@ -30,6 +30,21 @@ from tests.core.discs import (
 from tests.strategies import EPS
 from wearlaw import Q
 
+OF_ELLIPSES = {"semi_axis_a", "semi_axis_b"}
+
+
+def public_properties() -> set[str]:
+    """Return the properties of a prediction of a line."""
+    names = {name for name, value in vars(wl.Prediction).items() if isinstance(value, property)}
+    return {name for name in names if not name.startswith("_")} - OF_ELLIPSES
+
+
+def test_properties_of_ellipses_say_so_on_a_line() -> None:
+    result = PREDICT(creepage="1 %", **CONDITIONS)
+    for name in OF_ELLIPSES:
+        with pytest.raises(wl.CompositionError, match="of elliptic contacts, and the patch is a line"):
+            getattr(result, name)
+
 
 @pytest.mark.parametrize("creepage", [1e-4, 0.004, 0.02])
 def test_every_property_has_its_unit_and_value(creepage: float) -> None:
@@ -38,6 +53,7 @@ def test_every_property_has_its_unit_and_value(creepage: float) -> None:
     slip_share = min(creepage / SATURATION, 1.0)
     mean_slip = mean_over_slip_zone(lambda x: slip_at(x, creepage), creepage)
     area = 2 * HALF_WIDTH * WIDTH
+    wear_rate = mean_over_slip_zone(lambda x: usfd(bound_at(x) * slip_at(x, creepage) * 1e-6), creepage)
     expected = {
         "normal_force": (FORCE, "N", "N"),
         "normal_force_per_width": (FORCE / WIDTH, "N/m", "kN/m"),
@@ -53,14 +69,14 @@ def test_every_property_has_its_unit_and_value(creepage: float) -> None:
         "stick_ratio": (1 - slip_share, "", ""),
         "mean_slip": (mean_slip, "", "%"),
         "averaged_wear_index": (mean_slip / slip_share * force, "N", "N"),
-        "wear_rate": (
-            mean_over_slip_zone(lambda x: usfd(bound_at(x) * slip_at(x, creepage) * 1e-6), creepage),
-            "kg/m^3",
-            "ug/m/mm^2",
-        ),
+        "cell_wear_index": (force * creepage, "N", "N"),
+        "longitudinal_force": (force, "N", "N"),
+        "lateral_force": (0.0, "N", "N"),
+        "spin_moment": (0.0, "N*m", "N*m"),
+        "mass_per_distance": (wear_rate * area, "kg/m", "ug/m"),
+        "wear_rate": (wear_rate, "kg/m^3", "ug/m/mm^2"),
     }
-    properties = {name for name in dir(type(result)) if isinstance(getattr(type(result), name), property)}
-    assert properties - {"wear_rate_error"} == set(expected)
+    assert public_properties() == set(expected)
     for name, (value, si, shown) in expected.items():
         quantity = getattr(result, name)
         assert quantity.units == Q(1, shown).units, name
@@ -107,8 +123,7 @@ def test_the_averaged_wear_index_equals_the_wear_index_in_full_slip_and_exceeds_
 )
 def test_every_value_has_the_shape_of_the_broadcast_conditions(creepage: Any, friction: Any, shape: Any) -> None:
     result = PREDICT(creepage=Q(creepage, ""), normal_force="6 kN", friction_coefficient=friction)
-    names = [name for name in dir(type(result)) if isinstance(getattr(type(result), name), property)]
-    values = {name: getattr(result, name) for name in names}
+    values = {name: getattr(result, name) for name in public_properties()}
     for convert in (result.depth_per_distance, result.profile_area_rate, result.mass_per_cycle):
         values[convert.__name__] = convert("disc_1")
     for name, value in values.items():

@@ -295,5 +295,5 @@ def test_a_problem_without_operating_points_is_refused() -> None:
 
 def test_a_result_shows_itself() -> None:
     shown = repr((RIG | FASTSIM | PER_ENERGY)(**CONDITIONS))
-    assert shown.startswith("WheelRailPrediction of 1 operating point\n  wear_rate")
+    assert shown.startswith("Prediction of 1 operating point\n  wear_rate")
     assert "longitudinal_force" in shown

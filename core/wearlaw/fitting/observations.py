@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from wearlaw.arrays import Array
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION
-from wearlaw.integrate import integrate_contact, integrate_wear, patch_area
+from wearlaw.integrate import integrate_forces, integrate_wear, patch_area
 from wearlaw.line import LineProblem
 from wearlaw.pipeline import Pipeline
 from wearlaw.units import in_unit
@@ -106,7 +106,7 @@ def predictions(
     of_law = {name: np.repeat(value, points)[:, None] for name, value in values.items() if name != FRICTION}
     model = pipeline.contact_model
     if observable == "traction_coefficient":
-        predicted = np.abs(integrate_contact(model, problem)) / problem.normal_force
+        predicted = integrate_forces(model, problem).tangential / problem.normal_force
     else:
         law = pipeline.wear_law
         predicted = integrate_wear(model, law, problem, pipeline.scale, p={**law.numbers, **of_law}).wear_rate
@@ -116,7 +116,7 @@ def predictions(
 def wear_index_density(pipeline: Pipeline[..., LineProblem], problem: LineProblem) -> Array:
     """Return the patch mean of Tγ/A [N/m²], of the batch shape."""
     model = pipeline.contact_model
-    force = integrate_contact(model, problem)
+    force = integrate_forces(model, problem).longitudinal
     density: Array = np.abs(force * problem.creepage) / patch_area(model, problem, pipeline.scale)
     return density
 

@@ -13,9 +13,9 @@ from wearlaw.composition import check_traction, needs_discs
 from wearlaw.conditions import TWIN_DISC, broadcast, is_friction_law
 from wearlaw.errors import InputError, UnitError
 from wearlaw.grid import with_units
-from wearlaw.integrate import integrate_contact, integrate_wear, patch_area
+from wearlaw.integrate import integrate_forces, integrate_wear, patch_area
 from wearlaw.models import Numbers
-from wearlaw.ranges import RangeWatch, line_mean
+from wearlaw.ranges import RangeWatch, mean_over_patch
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
 from wearlaw.uncertainties.figure import CONFIDENCE, figure_data
 from wearlaw.uncertainties.inputs import OTHERS, Uncertain, check_samples, parameter, split
@@ -239,10 +239,10 @@ class Uncertainty:
             predict.rig.warn_of_plasticity(flat.max_pressure, stacklevel=stacklevel)
             watch = RangeWatch(self._law)
             columns = {
-                "tangential_force": integrate_contact(predict.contact_model, flat),
+                "longitudinal": integrate_forces(predict.contact_model, flat).longitudinal,
                 "patch_area": patch_area(predict.contact_model, flat, predict.scale),
             }
-            watch.see(flat.size, partial(line_mean, flat, columns))
+            watch.see(flat.size, partial(mean_over_patch, flat, columns))
             watch.warn(stacklevel)
         p: Numbers = {**self._law.numbers, **varied}
         wear = integrate_wear(predict.contact_model, self._law, flat, predict.scale, p=p)

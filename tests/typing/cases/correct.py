@@ -50,7 +50,7 @@ wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius=Q(300, "mm"), mater
 on_rail = wheel | wl.contact_model("fastsim") | wl.wear_law("usfd")
 on_ellipses: wl.Pipeline[..., wl.EllipticProblem] = on_rail
 worn = on_rail(normal_force="80 kN", longitudinal_creepage="0.2 %", spin="0.3 1/m", friction_coefficient=0.3)
-assert_type(worn, wl.WheelRailPrediction)
+assert_type(worn, wl.Prediction)
 assert_type(worn.spin_moment, wl.Quantity)
 falling = wl.FallingFriction(static_coefficient=0.4, limit_ratio=0.5, decay="0.6 s/m")
 (wheel | wl.contact_model("polach"))(max_pressure="1 GPa", longitudinal_creepage="1 %", friction_coefficient=falling)
