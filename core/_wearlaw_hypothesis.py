@@ -29,8 +29,7 @@ def register_types() -> None:
         wl.Material: "materials",
         wl.TwinDisc: "rigs",
         wl.WheelRail: "wheel_rails",
-        wl.LineProblem: "line_problems",
-        wl.EllipticProblem: "elliptic_problems",
+        wl.Problem: "problems",
         wl.Contact: "contacts",
     }
 

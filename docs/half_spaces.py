@@ -42,10 +42,10 @@ class Errors(NamedTuple):
     cells: Array
 
 
-def ellipses(ratio: Array, xi: Array, eta: Array, phi: Array) -> wl.EllipticProblem:
+def ellipses(ratio: Array, xi: Array, eta: Array, phi: Array) -> wl.Problem:
     """Return contacts with reduced creepages and spins."""
     root = np.sqrt(ratio)
-    return wl.EllipticProblem(
+    return wl.Problem.ellipse(
         a=Q(SIZE * root, "m"),
         b=Q(SIZE / root, "m"),
         normal_force=Q(LIMIT / 0.3, "N"),

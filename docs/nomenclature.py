@@ -20,8 +20,8 @@ from wearlaw.variables import NAMES, label
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
 CLASSES = (
-    *(wl.LineProblem, wl.Contact, TwinDiscConditions, wl.Prediction, wl.LocalWear),
-    *(wl.EllipticProblem, wl.CreepForces, wl.EllipticContact, WheelRailConditions),
+    *(wl.Problem, wl.Contact, TwinDiscConditions, wl.Prediction, wl.LocalWear),
+    *(wl.CreepForces, wl.EllipticContact, WheelRailConditions),
 )
 SHOWN_AS = {"TwinDiscConditions": "conditions", "WheelRailConditions": "conditions"}
 

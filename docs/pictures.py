@@ -103,9 +103,9 @@ def cost_against_error() -> Figure:
     return figure
 
 
-def reference_problem(xi: Any, eta: Any, phi: Any) -> wl.EllipticProblem:
+def reference_problem(xi: Any, eta: Any, phi: Any) -> wl.Problem:
     """Return the contact of the reference cases under other creepages [-] and spin [1/mm]."""
-    return wl.EllipticProblem(
+    return wl.Problem.ellipse(
         a=Q(6, "mm"),
         b=Q(6, "mm"),
         normal_force=Q(100, "kN"),
@@ -122,7 +122,7 @@ def solve_reference() -> tuple[pd.DataFrame, dict[str, wl.EllipticContact]]:
     """Return the reference cases of the half-space theory, and their solutions by FASTSIM for each bound."""
     table = pd.read_csv(REFERENCE, comment="#")
     problem = reference_problem(table.xi.to_numpy(), table.eta.to_numpy(), table.phi.to_numpy())
-    return table, {bound: wl.contact_model("fastsim", bound=bound).solve(problem) for bound in BOUNDS}
+    return table, {bound: wl.contact_model("fastsim", bound=bound).solve_ellipse(problem) for bound in BOUNDS}
 
 
 def fastsim_errors() -> tuple[list[str], dict[tuple[str, str], wl.Array]]:

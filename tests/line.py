@@ -9,19 +9,19 @@ from tests.strategies import EPS
 from wearlaw import Array
 
 
-def slip_zone(model: wl.ContactModel, problem: wl.LineProblem) -> tuple[Array, Array]:
+def slip_zone(model: wl.ContactModel, problem: wl.Problem) -> tuple[Array, Array]:
     """Return where the slip zone begins and ends."""
     assert isinstance(model, wl.LineContactModel)
     return problem.half_width - model.slip_length(problem), problem.half_width
 
 
-def fields_at(model: wl.ContactModel, problem: wl.LineProblem, x: Array) -> wl.LineFields:
+def fields_at(model: wl.ContactModel, problem: wl.Problem, x: Array) -> wl.LineFields:
     """Return the fields at positions x of shape (batch, points)."""
     assert isinstance(model, wl.LineContactModel)
     return model.fields(problem[..., None], wl.Nodes.at(np.asarray(x), np.asarray(problem.half_width)))
 
 
-def crossings_meet(model: wl.LineContactModel, problem: wl.LineProblem) -> None:
+def crossings_meet(model: wl.LineContactModel, problem: wl.Problem) -> None:
     """Hold that slip and pressure cross the values that they have in the slip zone where they have them."""
     problem = problem.broadcast_to((12,))
     a, start = problem.half_width, slip_zone(model, problem)[0]

@@ -52,11 +52,11 @@ FASTSIM: 3μPL/(2a²) with L = 4a/(πE*) or 32a/(3π²E*), and P/E* = πa²/(4R)
 CROWDED = sorted(set(FULL_SLIP.values()))
 
 
-def line_problems() -> st.SearchStrategy[wl.LineProblem]:
+def line_problems() -> st.SearchStrategy[wl.Problem]:
     """Return the kit's problems, which crowd where one of these models begins to slip everywhere."""
     return kit_problems(tuple(CROWDED))
 
 
-def saturation_creepage(problem: wl.LineProblem) -> float:
+def saturation_creepage(problem: wl.Problem) -> float:
     """Return μa/R."""
     return float(saturation(problem))

@@ -43,7 +43,7 @@ def claiming(claim: Claim, among: Iterable[str] = tuple(MODELS)) -> list[str]:
     return [name for name in among if claim not in MODELS[name].exemptions]
 
 
-def solutions(name: str, problem: wl.LineProblem) -> list[wl.Contact]:
+def solutions(name: str, problem: wl.Problem) -> list[wl.Contact]:
     """Return the contact on the model's own nodes and, for a line model, on uniform cells."""
     model = MODELS[name]
     contacts = [model.solve(problem)]
@@ -61,7 +61,7 @@ def slip_share(contact: wl.Contact) -> float:
 
 @pytest.mark.parametrize("name", ["exact", "exact-as_printed", "fastsim-elliptic-line", "global"])
 @given(problem=line_problems())
-def test_the_bound_is_the_friction_coefficient_times_the_pressure(name: str, problem: wl.LineProblem) -> None:
+def test_the_bound_is_the_friction_coefficient_times_the_pressure(name: str, problem: wl.Problem) -> None:
     for contact in solutions(name, problem):
         # a node that lies within rounding of an edge keeps a bound of √EPS/2, where the pressure may be zero
         edge = math.sqrt(EPS) * float(problem.friction_coefficient * problem.max_pressure)
@@ -72,7 +72,7 @@ def test_the_bound_is_the_friction_coefficient_times_the_pressure(name: str, pro
 
 @pytest.mark.parametrize("name", LINE_MODELS)
 @given(problem=line_problems())
-def test_the_bound_carries_friction_times_the_load(name: str, problem: wl.LineProblem) -> None:
+def test_the_bound_carries_friction_times_the_load(name: str, problem: wl.Problem) -> None:
     contact = MODELS[name].solve(problem)
     total = float(contact.sum_over_nodes(contact.traction_bound * contact.area))
     assert total == pytest.approx(float(problem.friction_coefficient * problem.normal_force), rel=GRAZING)
@@ -95,7 +95,7 @@ SMOOTH_DISSIPATION = ("exact", "fastsim-parabolic-line", "fastsim-parabolic-kalk
 @pytest.mark.parametrize("name", claiming("energy_balance"))
 @given(problem=line_problems())
 def test_slip_dissipates_the_energy_that_the_creepage_feeds_in(
-    name: str, problem: wl.LineProblem, roundings: float, grazing: float
+    name: str, problem: wl.Problem, roundings: float, grazing: float
 ) -> None:
     contact = MODELS[name].solve(problem)
     dissipated = float(contact.sum_over_nodes(contact.wear_index_density * contact.area))
@@ -152,7 +152,7 @@ def test_the_dissipation_in_uniform_cells_converges_in_its_order(
 @pytest.mark.parametrize("name", claiming("saturation", FULL_SLIP))
 @given(problem=line_problems(), gap=log_uniform(1e-12, 1e-1))
 def test_everything_passes_continuously_into_full_slip(
-    name: str, problem: wl.LineProblem, gap: float, roundings: int
+    name: str, problem: wl.Problem, gap: float, roundings: int
 ) -> None:
     full = FULL_SLIP[name] * saturation_creepage(problem)
     model = MODELS[name]
@@ -185,7 +185,7 @@ def test_everything_passes_continuously_into_full_slip(
 @pytest.mark.parametrize("name", claiming("saturation", FULL_SLIP))
 @given(problem=line_problems(), excess=log_uniform(1e-12, 1e2))
 def test_the_mean_slip_is_the_creepage_in_full_slip(
-    name: str, problem: wl.LineProblem, excess: float, roundings: int
+    name: str, problem: wl.Problem, excess: float, roundings: int
 ) -> None:
     creepage = FULL_SLIP[name] * saturation_creepage(problem) * (1.0 + excess)
     contact = MODELS[name].solve(with_creepage(problem, creepage))
@@ -205,7 +205,7 @@ def test_the_mean_slip_is_the_creepage_in_full_slip(
 )
 @given(problem=line_problems(), reduced=log_uniform(3.0, 1e3))
 def test_exact_and_elliptic_fastsim_approach_the_same_traction(
-    problem: wl.LineProblem, reduced: float, roundings: int
+    problem: wl.Problem, reduced: float, roundings: int
 ) -> None:
     at = with_creepage(problem, reduced * saturation_creepage(problem))
     nodes = uniform_cells(problem.half_width, 500)
@@ -225,7 +225,7 @@ def test_exact_and_elliptic_fastsim_approach_the_same_traction(
 LAWS: dict[str, wl.WearLaw] = {name: wl.wear_law(name) for name in ("usfd", "kth", "brr")}
 
 
-def prediction(model: wl.ContactModel, law: wl.WearLaw, problem: wl.LineProblem) -> wl.Prediction:
+def prediction(model: wl.ContactModel, law: wl.WearLaw, problem: wl.Problem) -> wl.Prediction:
     contact = wl.TwinDisc.suros() | model
     if law.scale == "patch" and model.scale != "patch":
         contact = contact | wl.patch_mean()
@@ -242,7 +242,7 @@ def prediction(model: wl.ContactModel, law: wl.WearLaw, problem: wl.LineProblem)
 )
 @pytest.mark.parametrize("name", MODELS)
 @given(problem=line_problems())
-def test_wear_does_not_know_the_sign_of_the_creepage_and_is_zero_without(name: str, problem: wl.LineProblem) -> None:
+def test_wear_does_not_know_the_sign_of_the_creepage_and_is_zero_without(name: str, problem: wl.Problem) -> None:
     creepage = float(problem.creepage)
     batch = with_creepage(repeated(problem, (3,)), np.array([creepage, 0.0, -creepage]))
     for law in LAWS.values():

@@ -16,7 +16,6 @@ from wearlaw.arrays import Array
 from wearlaw.base_rig import Body, Rig
 from wearlaw.configuration import Configuration
 from wearlaw.creep_force_model import CreepForceModel
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.errors import (
     CalibrationWarning,
@@ -46,7 +45,6 @@ from wearlaw.friction import FallingFriction
 from wearlaw.functions import as_wear_law
 from wearlaw.hookspecs import INTERFACE_VERSION, hookimpl
 from wearlaw.kernels import accelerate, accelerated, compiled_loop, kernel
-from wearlaw.line import LineFields, LineProblem
 from wearlaw.line_model import FieldVariable, LineContactModel
 from wearlaw.material import Material, steel
 from wearlaw.models import BreakpointMap, Calibration, LocalWear, Numbers, WearLaw
@@ -62,14 +60,15 @@ from wearlaw.plugins import (
     wear_law,
     wear_laws,
 )
+from wearlaw.problem import CreepForces, Geometry, Problem
 from wearlaw.quadrature import Nodes
-from wearlaw.records import Contact
+from wearlaw.records import Contact, LineFields
 from wearlaw.result import Prediction
 from wearlaw.rigs.twin_disc import Disc, TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.sections import CheckedClaim, Section
 from wearlaw.specification import ContactModelField, WearLawField
-from wearlaw.tangential import Claim, ContactModel, Geometry, Scale
+from wearlaw.tangential import Claim, ContactModel, Scale
 from wearlaw.uncertainties.distributions import lognormal, normal, published_range, uniform
 from wearlaw.units import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
 from wearlaw.version import __version__
@@ -102,7 +101,6 @@ __all__ = [
     "Density",
     "Disc",
     "EllipticContact",
-    "EllipticProblem",
     "FallingFriction",
     "FieldVariable",
     "FigureData",
@@ -115,7 +113,6 @@ __all__ = [
     "Length",
     "LineContactModel",
     "LineFields",
-    "LineProblem",
     "LocalWear",
     "Material",
     "ModelError",
@@ -128,6 +125,7 @@ __all__ = [
     "PlotAxis",
     "PluginWarning",
     "Prediction",
+    "Problem",
     "Q",
     "Quantity",
     "QuantityLike",

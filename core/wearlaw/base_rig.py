@@ -8,25 +8,22 @@ from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, Protocol
 
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.ellipse import EllipticProblem
 from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, RangeWarning, did_you_mean
 from wearlaw.extremes import extremes
-from wearlaw.line import LineProblem
 from wearlaw.material import Material
-from wearlaw.tangential import Blame, ContactModel, Geometry, Model
+from wearlaw.problem import Geometry, Problem
+from wearlaw.tangential import Blame, ContactModel, Model
 from wearlaw.units import from_si, scalar_si
 
 if TYPE_CHECKING:
     from wearlaw.pipeline import Pipeline
 
 P = ParamSpec("P")
-ProblemT = TypeVar("ProblemT", bound=LineProblem | EllipticProblem)
-ProblemT_co = TypeVar("ProblemT_co", bound=LineProblem | EllipticProblem, covariant=True)
 
 TINY = float(np.sqrt(np.finfo(np.float64).tiny))
 """The least length or pressure in SI whose square is a float of full precision."""
@@ -51,10 +48,10 @@ class Body:
     rolling_radius: float
 
 
-class Poses(Protocol[P, ProblemT_co]):
-    """What type checkers see of a rig: the conditions that it takes, and the kind of problem that they pose."""
+class Poses(Protocol[P]):
+    """What type checkers see of a rig: the conditions that it takes."""
 
-    def problem(self, *args: P.args, **conditions: P.kwargs) -> ProblemT_co:
+    def problem(self, *args: P.args, **conditions: P.kwargs) -> Problem:
         """Return the problem that the conditions pose."""
         ...
 
@@ -81,7 +78,7 @@ class Rig(Model):
         return cls.__name__
 
     @abstractmethod
-    def problem(self, *args: Any, **conditions: Any) -> LineProblem | EllipticProblem:
+    def problem(self, *args: Any, **conditions: Any) -> Problem:
         """Return the contact problem that the conditions pose; arrays broadcast against each other."""
 
     @property
@@ -109,7 +106,7 @@ class Rig(Model):
         parameters = list(inspect.signature(cls.problem).parameters.values())[1:]
         return tuple(one.name for one in parameters if one.kind is not one.VAR_KEYWORD)
 
-    def checked_problem(self, conditions: Mapping[str, Any]) -> Any:
+    def checked_problem(self, conditions: Mapping[str, Any]) -> Problem:
         """Return `problem` of the conditions, or raise an error that says whether they or the rig are wrong.
 
         Raises
@@ -125,8 +122,8 @@ class Rig(Model):
         except ModelError:
             self._check_names(conditions)
             raise
-        if not isinstance(problem, LineProblem | EllipticProblem):
-            raise ModelError(f"rig '{self.name}' returned {problem!r}, not a wearlaw.LineProblem or EllipticProblem")
+        if not isinstance(problem, Problem):
+            raise ModelError(f"rig '{self.name}' returned {problem!r}, not a wearlaw.Problem")
         return problem
 
     def _check_names(self, conditions: Mapping[str, Any]) -> None:
@@ -141,7 +138,7 @@ class Rig(Model):
             if parameter.default is parameter.empty and name in known and name not in conditions:
                 raise ConditionsError(f"{name}: is missing; rig '{self.name}' takes {', '.join(known)}")
 
-    def __or__(self: Poses[P, ProblemT], model: ContactModel) -> Pipeline[P, ProblemT]:
+    def __or__(self: Poses[P], model: ContactModel) -> Pipeline[P]:
         """Return the pipeline that solves this rig's contact with a contact model."""
         from wearlaw.pipeline import Pipeline
 

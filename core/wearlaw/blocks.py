@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TypeAlias, TypeVar
+from typing import TypeAlias
 
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.batch import Batch
 from wearlaw.errors import ConditionsError
+from wearlaw.problem import Problem
 
 Columns: TypeAlias = dict[str, Array]
 """Arrays with one entry an operating point."""
 
-ProblemT = TypeVar("ProblemT", bound=Batch)
-
-OfBlock: TypeAlias = Callable[[ProblemT, slice], Columns]
+OfBlock: TypeAlias = Callable[[Problem, slice], Columns]
 """A function of a block of operating points, and of where in the whole problem they lie."""
 
-OnBlock: TypeAlias = Callable[[ProblemT, Columns], None]
+OnBlock: TypeAlias = Callable[[Problem, Columns], None]
 """What is called with a block of operating points and what was computed for them."""
 
 KEPT = 2**24
@@ -29,10 +27,10 @@ as long as the arithmetic."""
 
 
 def by_block(
-    problem: ProblemT,
+    problem: Problem,
     block: int,
-    function: OfBlock[ProblemT],
-    on_block: OnBlock[ProblemT] | None = None,
+    function: OfBlock,
+    on_block: OnBlock | None = None,
     drop_force: bool = False,
 ) -> Columns:
     """Return the columns of a function of a problem with one batch axis at most, evaluated block by block.

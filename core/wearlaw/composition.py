@@ -6,12 +6,11 @@ import warnings
 
 from wearlaw import plugins
 from wearlaw.base_rig import Rig
-from wearlaw.ellipse import EllipticProblem
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
-from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
+from wearlaw.problem import Geometry, Problem
 from wearlaw.rigs.twin_disc import TwinDisc
-from wearlaw.tangential import PATCHES, ContactModel, Geometry, Scale
+from wearlaw.tangential import PATCHES, ContactModel, Scale
 
 PEAKS = (
     "The peak of the traction is 4/π or 3/2 times its mean on a line (elliptic or parabolic bound), but 3/2 or 2 times"
@@ -66,16 +65,11 @@ def warn_of_calibration(
     )
 
 
-def geometry_of(problem: LineProblem | EllipticProblem) -> Geometry:
-    """Return the shape of the patch of a problem."""
-    return "ellipse" if isinstance(problem, EllipticProblem) else "line"
-
-
 def warn_of_geometry(
-    rig: Rig, model: ContactModel, scale: Scale, law: WearLaw, problem: LineProblem | EllipticProblem, stacklevel: int
+    rig: Rig, model: ContactModel, scale: Scale, law: WearLaw, problem: Problem, stacklevel: int
 ) -> None:
     """Warn of parameters fitted for another shape of patch, for a rig whose problems only tell that shape."""
-    calibration, geometry = law.calibration, geometry_of(problem)
+    calibration, geometry = law.calibration, problem.geometry
     if rig.geometry is None and calibration is not None and calibration.geometry != geometry:
         warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
 
@@ -86,7 +80,7 @@ def needs_discs(rig: Rig, what: str) -> None:
         raise CompositionError(f"{what}: is for a TwinDisc only, not for a {type(rig).__name__}")
 
 
-def check_traction(model: ContactModel, problem: LineProblem) -> None:
+def check_traction(model: ContactModel, problem: Problem) -> None:
     """Refuse a measured traction for a contact model that has no use for it."""
     if problem.traction_coefficient is not None and not model.uses_measured_traction:
         raise ConditionsError(

@@ -5,8 +5,8 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import ClassVar
 
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
+from wearlaw.problem import CreepForces, Problem
 from wearlaw.tangential import ContactModel, Scale
 
 
@@ -16,9 +16,9 @@ class CreepForceModel(ContactModel):
     scale: ClassVar[Scale] = "patch"
 
     @abstractmethod
-    def creep_forces(self, problem: EllipticProblem) -> CreepForces:
+    def creep_forces(self, problem: Problem) -> CreepForces:
         """Return the forces and the moment, of the batch shape."""
 
-    def solve_ellipse(self, problem: EllipticProblem) -> EllipticContact:
+    def solve_ellipse(self, problem: Problem) -> EllipticContact:
         """Return the patch means as a contact of one node, of shape (batch, 1, 1)."""
         return EllipticContact.of_patch(problem, self.creep_forces(problem))

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.errors import ModelError
-from wearlaw.line import LineProblem
 from wearlaw.line_model import FieldVariable, LineContactModel
+from wearlaw.problem import Problem
 from wearlaw.quadrature import Nodes, Zone
 
 SAMPLES = 32
@@ -34,7 +34,7 @@ What lies beyond them is 2.5e-13 of the zone.
 
 
 def crossings(
-    model: LineContactModel, problem: LineProblem, zone: Zone, breakpoints: Mapping[str, tuple[Any, ...]]
+    model: LineContactModel, problem: Problem, zone: Zone, breakpoints: Mapping[str, tuple[Any, ...]]
 ) -> Array:
     """Return the ψ at which variables cross their breakpoints, in ascending order.
 
@@ -42,7 +42,7 @@ def crossings(
     ----------
     model : LineContactModel
         The contact model.
-    problem : LineProblem
+    problem : Problem
         With a batch of one axis, (points,), and creepage ≥ 0.
     zone : Zone
         The slip zone.
@@ -67,7 +67,7 @@ def crossings(
     return np.sort(np.concatenate(columns, axis=-1), axis=-1)
 
 
-def _in_closed_form(model: LineContactModel, problem: LineProblem, zone: Zone, name: str, value: Any) -> Array | None:
+def _in_closed_form(model: LineContactModel, problem: Problem, zone: Zone, name: str, value: Any) -> Array | None:
     level = np.broadcast_to(value, (problem.creepage.size, 1))[:, 0]
     if name == "slip_speed":
         name, level = "slip", level / problem.rolling_speed
@@ -78,7 +78,7 @@ def _in_closed_form(model: LineContactModel, problem: LineProblem, zone: Zone, n
 class _Variable:
     """The magnitude of one variable of the contact as a function of ψ/Ψ, sampled over the slip zone."""
 
-    def __init__(self, model: LineContactModel, problem: LineProblem, zone: Zone, name: str) -> None:
+    def __init__(self, model: LineContactModel, problem: Problem, zone: Zone, name: str) -> None:
         self.model, self.problem, self.zone, self.name = model, problem, zone, name
         self.share = _sample_shares()
         points = np.arange(problem.creepage.size)

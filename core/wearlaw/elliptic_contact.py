@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Self
 
 import numpy as np
 
 from wearlaw import hertz_ellipse
 from wearlaw.arrays import Array
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.errors import InputError
+from wearlaw.problem import CreepForces, Problem
 from wearlaw.records import Contact
-from wearlaw.units import Quantity, from_si
 
 TOTALS = (
     "rolling_speed", "normal_force", "tangential_force", "wear_index", "density",
@@ -53,21 +52,22 @@ class EllipticContact(Contact):
         Root mean square of the rigid slip over the patch [-].
     """
 
-    traction_x: Array
-    traction_y: Array
-    slip_x: Array
-    slip_y: Array
-    y: Array
+    # `field()`, or the properties of `Contact` would be taken for defaults
+    traction_x: Array = field()
+    traction_y: Array = field()
+    slip_x: Array = field()
+    slip_y: Array = field()
+    y: Array = field()
     strip_width: Array
-    force_x: Array
-    force_y: Array
-    moment_z: Array
+    force_x: Array = field()
+    force_y: Array = field()
+    moment_z: Array = field()
     rigid_slip: Array
 
     @classmethod
     def from_strips(
         cls,
-        problem: EllipticProblem,
+        problem: Problem,
         forces: CreepForces,
         *,
         x: Array,
@@ -82,7 +82,7 @@ class EllipticContact(Contact):
 
         Parameters
         ----------
-        problem : EllipticProblem
+        problem : Problem
             The problem that was solved.
         forces : CreepForces
             The totals.
@@ -114,7 +114,7 @@ class EllipticContact(Contact):
         )
 
     @classmethod
-    def of_patch(cls, problem: EllipticProblem, forces: CreepForces) -> Self:
+    def of_patch(cls, problem: Problem, forces: CreepForces) -> Self:
         """Return the contact of one node that holds the patch means, of a model that knows the forces alone.
 
         Its slip is the root mean square of the rigid slip, its components those in the centre, and its
@@ -164,26 +164,6 @@ class EllipticContact(Contact):
             return self.per_node(self.wear_index / self.patch_area)
         return self.traction_x * self.slip_x + self.traction_y * self.slip_y
 
-    @property
-    def longitudinal_force(self) -> Quantity:
-        """Longitudinal force, Fx [N], with the sign of the creepage."""
-        return from_si(self.force_x, "N")
-
-    @property
-    def lateral_force(self) -> Quantity:
-        """Lateral force, Fy [N], with the sign of the creepage."""
-        return from_si(self.force_y, "N")
-
-    @property
-    def spin_moment(self) -> Quantity:
-        """Spin moment, Mz [N m], with the sign of the spin."""
-        return from_si(self.moment_z, "N*m")
-
-    @property
-    def forces(self) -> CreepForces:
-        """The forces and the moment that the contact transmits."""
-        return CreepForces(longitudinal=self.force_x, lateral=self.force_y, spin_moment=self.moment_z)
-
     def scaled_to_wear_index(self) -> Self:
         """Return the contact with slips scaled so that what the nodes dissipate is Tγ.
 
@@ -214,7 +194,7 @@ def _magnitude(x: Array, y: Array) -> Array:
     return magnitude
 
 
-def _totals(problem: EllipticProblem, forces: CreepForces) -> dict[str, Array]:
+def _totals(problem: Problem, forces: CreepForces) -> dict[str, Array]:
     return {
         "rolling_speed": problem.rolling_speed,
         "normal_force": problem.normal_force,

@@ -13,7 +13,7 @@ from wearlaw.arrays import Array
 from wearlaw.conditions import TWIN_DISC
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError
-from wearlaw.line import LineProblem
+from wearlaw.problem import Problem
 from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.units import Q
 
@@ -118,7 +118,7 @@ class Grid(Configuration):
         """The number of operating points."""
         return math.prod(values.size for values in self.axes().values())
 
-    def problem(self, rig: TwinDisc) -> LineProblem:
+    def problem(self, rig: TwinDisc) -> Problem:
         """Return the contact problem at all points of the grid."""
         axes = list(self.axes())
         shaped = {

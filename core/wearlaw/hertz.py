@@ -24,7 +24,18 @@ def effective_modulus(
     return 1.0 / (compliance + (1.0 - poisson_ratio_2**2) / youngs_modulus_2)
 
 
-def half_width(normal_force_per_width: Array, radius: float, modulus: float) -> Array:
+def mean_poisson_ratio(
+    youngs_modulus_1: float, poisson_ratio_1: float, youngs_modulus_2: float, poisson_ratio_2: float
+) -> float:
+    """Return ν [-] of like bodies that stand for unlike ones: ν/G = (ν1/G1 + ν2/G2)/2, where 1/G = (1/G1 + 1/G2)/2.
+
+    With these means G/(1-ν) is the E* of the unlike bodies, since (1-ν²)/E = (1-ν)/(2G) for each.
+    """
+    softness_1, softness_2 = (1.0 + poisson_ratio_1) / youngs_modulus_1, (1.0 + poisson_ratio_2) / youngs_modulus_2
+    return (poisson_ratio_1 * softness_1 + poisson_ratio_2 * softness_2) / (softness_1 + softness_2)
+
+
+def half_width(normal_force_per_width: Array, radius: float | Array, modulus: float | Array) -> Array:
     """Return a [m] of a² = 4 P R / (π E*) (Johnson, eq. 4.43)."""
     width: Array = np.sqrt(normal_force_per_width * (4.0 * radius / (np.pi * modulus)))
     return width

@@ -22,15 +22,14 @@ from numpy.typing import NDArray
 from wearlaw.arrays import Array
 from wearlaw.blocks import Columns, OfBlock, OnBlock, by_block
 from wearlaw.crossings import crossings
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.extremes import extremes
 from wearlaw.kernels import accelerated
-from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import Numbers, WearLaw
+from wearlaw.problem import CreepForces, Problem
 from wearlaw.quadrature import join, remainder
 from wearlaw.records import NODE_VARIABLES, Contact
-from wearlaw.solving import ProblemT, Solver, check_columns, check_type
+from wearlaw.solving import Solver, check_columns, check_type
 from wearlaw.tangential import Blame, ContactModel, Scale
 
 BLOCK = 8192
@@ -105,11 +104,11 @@ class WearTotals:
     patch_area: Array | None = None
 
 
-def integrate_forces(model: ContactModel, problem: LineProblem | EllipticProblem) -> CreepForces:
+def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
     """Return the forces and the moment, or raise a `ModelError` if they are not finite."""
-    if isinstance(problem, EllipticProblem):
+    if problem.geometry == "ellipse":
 
-        def of_ellipse(part: EllipticProblem, _: slice) -> Columns:
+        def of_ellipse(part: Problem, _: slice) -> Columns:
             return _columns(model.creep_forces(part))
 
         return CreepForces.of(_by_block(Solver(model), problem, of_ellipse))
@@ -119,22 +118,22 @@ def integrate_forces(model: ContactModel, problem: LineProblem | EllipticProblem
         check_columns(model, {"tangential_force": force}, problem)
         return CreepForces.of({"longitudinal": force})
 
-    def of_line(part: LineProblem, _: slice) -> Columns:
+    def of_line(part: Problem, _: slice) -> Columns:
         return {"tangential_force": model.tangential_force(part)}
 
     found = _by_block(Solver(model), problem, of_line)
     return CreepForces.of({"longitudinal": found["tangential_force"]})
 
 
-def integrate_slip(model: ContactModel, problem: LineProblem | EllipticProblem, scale: Scale) -> SlipTotals:
+def integrate_slip(model: ContactModel, problem: Problem, scale: Scale) -> SlipTotals:
     """Return how the patch slips."""
     solver = Solver(model)
 
-    def columns(part: LineProblem | EllipticProblem, _: slice) -> Columns:
+    def columns(part: Problem, _: slice) -> Columns:
         solved = solver.solve(part)
         contact = seen_by_law(model, solved, scale)
         slip_area, patch_area = contact.slip_area, contact.patch_area
-        if scale == "cells" and isinstance(model, LineContactModel) and isinstance(part, LineProblem):
+        if scale == "cells" and isinstance(model, LineContactModel) and part.geometry == "line":
             slip_area, patch_area = model.slip_length(part.forward()) * part.track_width, part.patch_area
         return {
             "mean_slip": contact.mean_slip,
@@ -146,9 +145,9 @@ def integrate_slip(model: ContactModel, problem: LineProblem | EllipticProblem, 
     return SlipTotals(**_by_block(solver, problem, columns))
 
 
-def patch_area(model: ContactModel, problem: LineProblem | EllipticProblem, scale: Scale) -> Array:
+def patch_area(model: ContactModel, problem: Problem, scale: Scale) -> Array:
     """Return the area of the patch, the sum of its nodes' areas [m²]."""
-    if isinstance(model, LineContactModel) and isinstance(problem, LineProblem):  # its nodes share out the patch
+    if isinstance(model, LineContactModel) and problem.geometry == "line":  # its nodes share out the patch
         return problem.patch_area
     return integrate_slip(model, problem, scale).patch_area
 
@@ -156,9 +155,9 @@ def patch_area(model: ContactModel, problem: LineProblem | EllipticProblem, scal
 def integrate_wear(
     model: ContactModel,
     law: WearLaw,
-    problem: ProblemT,
+    problem: Problem,
     scale: Scale,
-    on_block: OnBlock[ProblemT] | None = None,
+    on_block: OnBlock | None = None,
     p: Numbers | None = None,
 ) -> WearTotals:
     """Return the wear in a contact, block by block.
@@ -167,7 +166,7 @@ def integrate_wear(
     ----------
     model : ContactModel
     law : WearLaw
-    problem : LineProblem or EllipticProblem
+    problem : Problem
     scale : str
         Whether the law sees the patch means or the cells.
     on_block : callable, optional
@@ -181,7 +180,7 @@ def integrate_wear(
         If the model or the law breaks its contract.
     """
     p = law.numbers if p is None else p
-    if isinstance(problem, EllipticProblem):
+    if problem.geometry == "ellipse":
         return _over_ellipse(model, law, problem, scale, on_block, p)
     return _over_line(model, law, problem, scale, on_block, p)
 
@@ -189,15 +188,15 @@ def integrate_wear(
 def _over_ellipse(
     model: ContactModel,
     law: WearLaw,
-    problem: EllipticProblem,
+    problem: Problem,
     scale: Scale,
-    on_block: OnBlock[EllipticProblem] | None,
+    on_block: OnBlock | None,
     p: Numbers,
 ) -> WearTotals:
     solver = Solver(model)
     across = {name: value[..., None] if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
-    def columns(part: EllipticProblem, points: slice) -> Columns:
+    def columns(part: Problem, points: slice) -> Columns:
         contact = solver.solve(part)
         seen = seen_by_law(model, contact, scale)
         area = seen.patch_area
@@ -211,9 +210,9 @@ def _over_ellipse(
 def _over_line(
     model: ContactModel,
     law: WearLaw,
-    problem: LineProblem,
+    problem: Problem,
     scale: Scale,
-    on_block: OnBlock[LineProblem] | None,
+    on_block: OnBlock | None,
     p: Numbers,
 ) -> WearTotals:
     solver = Solver(model)
@@ -221,7 +220,7 @@ def _over_line(
         ramps = law.ramps(p) if scale == "cells" else None
     closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
 
-    def columns(part: LineProblem, points: slice) -> Columns:
+    def columns(part: Problem, points: slice) -> Columns:
         found = closed and closed_form(*closed, part, points)
         return found or _from_nodes(solver, law, _at_points(p, points), part, scale)
 
@@ -246,9 +245,7 @@ def _over_line(
     )
 
 
-def wear_rate_error(
-    model: ContactModel, law: WearLaw, problem: LineProblem | EllipticProblem, scale: Scale, totals: WearTotals
-) -> Array:
+def wear_rate_error(model: ContactModel, law: WearLaw, problem: Problem, scale: Scale, totals: WearTotals) -> Array:
     """Return an estimate of the error of wear rates [kg/m/m²].
 
     Of a closed form it is some roundings of what each ramp would give without its threshold. On an ellipse it is how
@@ -258,7 +255,7 @@ def wear_rate_error(
     """
     if totals.wear_rate_error is not None:
         return totals.wear_rate_error
-    if isinstance(problem, LineProblem):
+    if problem.geometry == "line":
         slopes: float = sum(abs(slope) for _, slope in law.ramps(law.numbers) or ())
         force = integrate_forces(model, problem).longitudinal
         return (ROUNDINGS * EPS * slopes) * force * problem.creepage / problem.patch_area
@@ -272,7 +269,7 @@ def wear_rate_error(
         return 4.0 / 3.0 * (np.abs(fine - totals.wear_rate) + np.abs(finest - fine))
     solver = Solver(model)
 
-    def columns(part: EllipticProblem, _: slice) -> Columns:
+    def columns(part: Problem, _: slice) -> Columns:
         contact = solver.solve(part)
         return {"error": thinning_error(contact, solver.rate(law, contact, part))}
 
@@ -283,19 +280,17 @@ def _columns(forces: CreepForces) -> Columns:
     return {"longitudinal": forces.longitudinal, "lateral": forces.lateral, "spin_moment": forces.spin_moment}
 
 
-def _by_block(
-    solver: Solver, problem: ProblemT, columns: OfBlock[ProblemT], on_block: OnBlock[ProblemT] | None = None
-) -> Columns:
+def _by_block(solver: Solver, problem: Problem, columns: OfBlock, on_block: OnBlock | None = None) -> Columns:
     """Return columns over blocks of as many operating points as the model's nodes allow."""
     block = NODE_BLOCK
-    if isinstance(problem, EllipticProblem):
+    if problem.geometry == "ellipse":
         few = problem.size <= FEW
         nodes = 1 if few else Solver(solver.model).solve(problem.flatten()[:1]).pressure.size
         block = FEW if few else max(ELLIPSE_NODES // nodes, 1)
     return solver.by_block(problem, block, columns, on_block)
 
 
-def solve(model: ContactModel, problem: LineProblem | EllipticProblem, scale: Scale) -> Contact:
+def solve(model: ContactModel, problem: Problem, scale: Scale) -> Contact:
     """Return the contact of a model on its own nodes, or its patch mean where that is asked for."""
     return seen_by_law(model, Solver(model).solve(problem), scale)
 
@@ -305,7 +300,7 @@ def seen_by_law(model: ContactModel, contact: Contact, scale: Scale) -> Contact:
     return contact.patch_mean() if scale == "patch" and model.scale != "patch" else contact
 
 
-def contact_for(model: ContactModel, law: WearLaw, problem: LineProblem, scale: Scale) -> Contact:
+def contact_for(model: ContactModel, law: WearLaw, problem: Problem, scale: Scale) -> Contact:
     """Return the contact on the nodes that suit a law, for a batch of one axis."""
     if scale == "patch" or not isinstance(model, LineContactModel):
         return solve(model, problem, scale)
@@ -317,7 +312,7 @@ def contact_for(model: ContactModel, law: WearLaw, problem: LineProblem, scale: 
 
 
 def closed_form(
-    model: LineContactModel, ramps: tuple[tuple[Any, Any], ...], problem: LineProblem, points: slice = ALL
+    model: LineContactModel, ramps: tuple[tuple[Any, Any], ...], problem: Problem, points: slice = ALL
 ) -> Columns | None:
     """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form.
 
@@ -353,11 +348,11 @@ def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:
     return {name: value[points] if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
 
-def _from_nodes(solver: Solver, law: WearLaw, p: Numbers, problem: LineProblem, scale: Scale) -> Columns:
+def _from_nodes(solver: Solver, law: WearLaw, p: Numbers, problem: Problem, scale: Scale) -> Columns:
     """Return the mean of a law's rate at nodes."""
     model = solver.model
 
-    def columns(part: LineProblem, points: slice) -> Columns:
+    def columns(part: Problem, points: slice) -> Columns:
         own = _at_points(p, points)
         if scale == "cells" and isinstance(model, LineContactModel):
             return _over_slip_zone(solver, model, law, own, part)
@@ -371,7 +366,7 @@ def _from_nodes(solver: Solver, law: WearLaw, p: Numbers, problem: LineProblem, 
     return by_block(problem.flatten(), NODE_BLOCK, columns)
 
 
-def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Numbers, problem: LineProblem) -> Columns:
+def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem) -> Columns:
     """Return the mean of a law's rate, with as many panels as each operating point needs."""
     splits = splits_of(model, law, p, problem)
     totals = solver.block_is_summed()
@@ -390,7 +385,7 @@ def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Nu
     return {"wear_rate": rate, "wear_rate_error": error, "longitudinal": model.tangential_force(problem)}
 
 
-def splits_of(model: LineContactModel, law: WearLaw, p: Numbers, problem: LineProblem) -> Array | None:
+def splits_of(model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem) -> Array | None:
     """Return ψ where a law branches in the slip zone, (points, k), or None if nothing is known of that."""
     with Blame(law, p):
         breakpoints = law.breakpoints(p)
@@ -405,7 +400,7 @@ def _over_panels(
     model: LineContactModel,
     law: WearLaw,
     p: Numbers,
-    problem: LineProblem,
+    problem: Problem,
     splits: Array | None,
     totals: bool,
 ) -> tuple[Array, Array]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +10,6 @@ from wearlaw.arrays import Array
 from wearlaw.conditions import is_friction_law
 from wearlaw.errors import CompositionError, ConditionsError, UnitError
 from wearlaw.integrate import integrate_forces
-from wearlaw.line import LineProblem
 from wearlaw.units import Quantity, QuantityLike, Unit, from_si, real_array
 
 if TYPE_CHECKING:
@@ -24,7 +22,7 @@ SMALLEST = 1e-30
 
 
 def creepage_for(
-    predict: Pipeline[..., LineProblem],
+    predict: Pipeline[...],
     /,
     *,
     tangential_force: QuantityLike | None = None,
@@ -59,7 +57,7 @@ def creepage_for(
         )
     rig = predict.rig
     problem = rig.checked_problem({**conditions, rig.creepage: from_si(0.0, "")})
-    if not isinstance(problem, LineProblem):
+    if problem.geometry != "line":
         raise CompositionError(f"creepage_for: is for line contacts, which rig '{rig.name}' does not make")
     if tangential_force is None:
         target = _finite(traction_coefficient)
@@ -72,7 +70,7 @@ def creepage_for(
     def lacking(log_creepage: Array, point: Array) -> Array:
         """Return by how much T/N falls short, for points as floats, as `find_root` hands them on."""
         index = point.astype(np.intp)
-        at = dataclasses.replace(flat[index], creepage=np.exp(log_creepage))
+        at = flat[index].replaced(longitudinal_creepage=np.exp(log_creepage))
         return due[index] - integrate_forces(predict.contact_model, at).longitudinal / at.normal_force
 
     points = np.arange(due.size, dtype=np.float64)
@@ -110,7 +108,7 @@ def _finite(traction_coefficient: object) -> Array:
 
 
 def _beyond_reach(
-    predict: Pipeline[..., LineProblem], due: Array, reached: Array, first: int, shape: tuple[int, ...]
+    predict: Pipeline[...], due: Array, reached: Array, first: int, shape: tuple[int, ...]
 ) -> ConditionsError:
     where = f" at index {[int(i) for i in np.unravel_index(first, shape)]}" if shape else ""
     return ConditionsError(

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.errors import InputError
+from wearlaw.problem import CreepForces, Problem
 
 # Kalker (1990), Table E.3. Columns: C11, C22, C23, C33, each at ν = 0, 1/4 and 1/2.
 # Rows: a/b = 0.1, 0.2 ... 1.0, then b/a = 0.9, 0.8 ... 0.1.
@@ -163,12 +163,12 @@ def _refuse(rule: str, values: Array, right: NDArray[np.bool_]) -> None:
         raise InputError(f"{rule}, got {values[~right][0]:g}")
 
 
-def linear_forces(problem: EllipticProblem, interpolation: Interpolation = "scaled") -> CreepForces:
+def linear_forces(problem: Problem, interpolation: Interpolation = "scaled") -> CreepForces:
     """Return the forces and the moment of the linear theory, as if the creepages of a problem were vanishing.
 
     Parameters
     ----------
-    problem : EllipticProblem
+    problem : Problem
         The contact; friction and load have no part in the result.
     interpolation : {"scaled", "contact"}
         As in `coefficients`.

@@ -9,9 +9,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.line import LineFields, LineProblem
+from wearlaw.problem import Problem
 from wearlaw.quadrature import Nodes, Zone, join
-from wearlaw.records import Contact
+from wearlaw.records import Contact, LineFields
 from wearlaw.tangential import ContactModel
 
 FieldVariable: TypeAlias = Literal["pressure", "traction", "slip", "wear_index_density"]
@@ -34,26 +34,26 @@ class LineContactModel(ContactModel):
         return "slip_zone"
 
     @abstractmethod
-    def slip_length(self, problem: LineProblem) -> Array:
+    def slip_length(self, problem: Problem) -> Array:
         """Return the length of the slip zone, which ends at the trailing edge [m]; 0 if nothing slips."""
 
     @abstractmethod
-    def fields(self, problem: LineProblem, nodes: Nodes) -> LineFields:
+    def fields(self, problem: Problem, nodes: Nodes) -> LineFields:
         """Return the fields at `nodes`, whose positions are of shape (batch, nodes) or broadcast to it.
 
         The arrays of `problem` come with a last axis of length one, so that formulas broadcast against positions.
         """
 
     @abstractmethod
-    def tangential_force_per_width(self, problem: LineProblem) -> Array:
+    def tangential_force_per_width(self, problem: Problem) -> Array:
         """Return T [N/m], of the batch shape."""
 
-    def crossings(self, problem: LineProblem, variable: FieldVariable, value: Array) -> Array | None:  # noqa: ARG002
+    def crossings(self, problem: Problem, variable: FieldVariable, value: Array) -> Array | None:  # noqa: ARG002
         """Return where in the slip zone a variable crosses a value, or None to have it searched for.
 
         Parameters
         ----------
-        problem : LineProblem
+        problem : Problem
             With a batch of any shape.
         variable : str
             "pressure" [Pa], "traction" [Pa], "slip" [-] or "wear_index_density" [N/m²].
@@ -67,31 +67,31 @@ class LineContactModel(ContactModel):
         """
         return None
 
-    def excess_dissipation(self, problem: LineProblem, threshold: float | Array) -> Array | None:  # noqa: ARG002
+    def excess_dissipation(self, problem: Problem, threshold: float | Array) -> Array | None:  # noqa: ARG002
         """Return ∫ max(q·s - threshold, 0) dx over the patch [N/m], of the batch shape, or None if not known.
 
         `threshold` [N/m²] is positive; one number, or an array of the batch shape.
         """
         return None
 
-    def tangential_force(self, problem: LineProblem) -> Array:
+    def tangential_force(self, problem: Problem) -> Array:
         """Return T [N] with the sign of the creepage."""
         return self._mirrored_force(problem) * problem.track_width
 
-    def _mirrored_force(self, problem: LineProblem) -> Array:
+    def _mirrored_force(self, problem: Problem) -> Array:
         return np.copysign(self.tangential_force_per_width(problem.forward()), problem.creepage)
 
-    def slip_zone(self, problem: LineProblem) -> Zone:
+    def slip_zone(self, problem: Problem) -> Zone:
         """Return the slip zone, by distances from the trailing edge."""
         length = self.slip_length(problem.forward())
         return Zone.of(problem.half_width, length, over_patch=self.square_roots_at == "patch")
 
-    def stick_zone(self, problem: LineProblem) -> Zone:
+    def stick_zone(self, problem: Problem) -> Zone:
         """Return what does not slip, by distances from the leading edge."""
         length = 2.0 * problem.half_width - self.slip_length(problem.forward())
         return Zone.of(problem.half_width, length, over_patch=self.square_roots_at == "patch")
 
-    def at(self, problem: LineProblem, nodes: Nodes) -> Contact:
+    def at(self, problem: Problem, nodes: Nodes) -> Contact:
         """Return the contact on the given nodes, mirrored where the creepage is negative."""
         sign = np.sign(problem.creepage)[..., None]
         fields = self.fields(problem.forward()[..., None], nodes)
@@ -99,7 +99,7 @@ class LineContactModel(ContactModel):
         force = self._mirrored_force(problem)
         return Contact.from_line(problem, mirrored, x=nodes.x, length=nodes.length, force_per_width=force)
 
-    def solve_line(self, problem: LineProblem) -> Contact:
+    def solve_line(self, problem: Problem) -> Contact:
         """Return the contact on quadrature nodes of the stick zone and the slip zone."""
         stick, slip = self.stick_zone(problem), self.slip_zone(problem).nodes()
         return self.at(problem, join(stick.nodes().reversed(), slip) if stick.length.any() else slip)

@@ -18,8 +18,9 @@ from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, did_you_mean
 from wearlaw.extremes import extremes
 from wearlaw.parameters import numbers_in_si
+from wearlaw.problem import Geometry
 from wearlaw.records import UNITS, Contact
-from wearlaw.tangential import Blame, ContactModel, Geometry, Model, Scale
+from wearlaw.tangential import Blame, ContactModel, Model, Scale
 from wearlaw.units import WEAR_RATE, Quantity, Unit, from_si
 
 Numbers: TypeAlias = Mapping[str, float | Array]

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from wearlaw.errors import CompositionError, InputError
-from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
 from wearlaw.notes import Notes
 from wearlaw.pipeline import Pipeline
@@ -20,7 +19,7 @@ class Pair:
 
     contact_model: str
     wear_law: str
-    pipeline: Pipeline[..., LineProblem]
+    pipeline: Pipeline[...]
 
     @property
     def label(self) -> str:

@@ -8,22 +8,20 @@ from typing import TYPE_CHECKING, Generic, Literal, Self
 
 from pydantic import model_validator
 
-from wearlaw.base_rig import P, ProblemT
+from wearlaw.base_rig import P
 from wearlaw.blocks import Columns
 from wearlaw.composition import (
     check_geometry,
     check_scale,
     check_traction,
-    geometry_of,
     warn_of_calibration,
     warn_of_geometry,
 )
 from wearlaw.configuration import Configuration
-from wearlaw.ellipse import EllipticProblem
 from wearlaw.errors import CompositionError, ConditionsError, InputError
 from wearlaw.integrate import integrate_forces, integrate_wear
-from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
+from wearlaw.problem import Problem
 from wearlaw.ranges import RangeWatch, mean_over_patch
 from wearlaw.result import Prediction
 from wearlaw.specification import ContactModelField, RigField, WearLawField
@@ -52,7 +50,7 @@ def patch_mean() -> PatchMean:
     return PatchMean()
 
 
-class Pipeline(Configuration, Generic[P, ProblemT]):
+class Pipeline(Configuration, Generic[P]):
     """A rig and a contact model, followed by stages and a wear law: predicts the contact, and with a law the wear.
 
     A pipeline is frozen: it prints, compares, hashes, pickles, and serialises with
@@ -82,7 +80,7 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
         """Whether a law sees the means of the patch or its cells."""
         return "patch" if self.stages else self.contact_model.scale
 
-    def without_law(self) -> Pipeline[P, ProblemT]:
+    def without_law(self) -> Pipeline[P]:
         """Return the pipeline that predicts the contact alone."""
         return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages) if self.laws else self
 
@@ -101,14 +99,14 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
             )
         return self.laws[0]
 
-    def with_law(self, law: WearLaw) -> Pipeline[P, ProblemT]:
+    def with_law(self, law: WearLaw) -> Pipeline[P]:
         """Return the pipeline with this law in place of its own, without a warning of what it was fitted for."""
         return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages, laws=(law,))
 
     def __repr__(self) -> str:
         return " | ".join(map(repr, (self.rig, self.contact_model, *self.stages, *self.laws)))
 
-    def __or__(self, stage: WearLaw | PatchMean) -> Pipeline[P, ProblemT]:
+    def __or__(self, stage: WearLaw | PatchMean) -> Pipeline[P]:
         """Return the pipeline with a wear law, or with the contact's patch means."""
         if self.laws:
             raise CompositionError(f"a pipeline ends with its wear law, nothing follows it, not {stage!r}; {ORDER}")
@@ -124,12 +122,12 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
         """Return the contact and the wear under the given conditions; see the `problem` of the rig for these."""
         if positional:
             raise ConditionsError(f"{positional[0]!r}: is given without a name; write creepage=..., for example")
-        problem: LineProblem | EllipticProblem = self.rig.checked_problem(conditions)
+        problem: Problem = self.rig.checked_problem(conditions)
         return self.predict(problem, stacklevel=3)
 
     def predict(
         self,
-        problem: LineProblem | EllipticProblem,
+        problem: Problem,
         *,
         on_block: Callable[[int], None] | None = None,
         stacklevel: int = 2,
@@ -138,14 +136,14 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
 
         Parameters
         ----------
-        problem : LineProblem or EllipticProblem
+        problem : Problem
             From the `problem` of the rig.
         on_block : callable, optional
             Called with the number of operating points done after each block of them, to show progress.
         stacklevel : int
             Which caller warnings name; 2 is the caller of this method.
         """
-        if self.rig.geometry not in (None, geometry_of(problem)):
+        if self.rig.geometry not in (None, problem.geometry):
             raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
         self.rig.warn_of_plasticity(problem.max_pressure, stacklevel=stacklevel)
         for law in self.laws:
@@ -159,18 +157,16 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
         """Return what sees whether operating points stay in the range of the law, if there is one."""
         return RangeWatch(self.laws[0] if self.laws else None)
 
-    def watched(
-        self, problem: LineProblem | EllipticProblem, watch: RangeWatch, on_block: Callable[[int], None] | None = None
-    ) -> Prediction:
+    def watched(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None = None) -> Prediction:
         """Return what `predict` does, without its warnings; `watch` sees the operating points."""
         model, scale = self.contact_model, self.scale
-        if isinstance(problem, LineProblem):
+        if problem.geometry == "line":
             check_traction(model, problem)
         if not self.laws:
             return self._without_wear(problem, watch, on_block)
         law = self.laws[0]
 
-        def see(part: LineProblem | EllipticProblem, columns: Columns) -> None:
+        def see(part: Problem, columns: Columns) -> None:
             watch.see(part.size, partial(mean_over_patch, part, columns))
             if on_block is not None:
                 on_block(part.size)
@@ -180,9 +176,7 @@ class Pipeline(Configuration, Generic[P, ProblemT]):
         law.check_not_negative(wear.wear_rate, lambda: found.wear_rate_error.to("kg/m^3").magnitude)
         return found
 
-    def _without_wear(
-        self, problem: LineProblem | EllipticProblem, watch: RangeWatch, on_block: Callable[[int], None] | None
-    ) -> Prediction:
+    def _without_wear(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None) -> Prediction:
         found = Prediction(self, problem, integrate_forces(self.contact_model, problem))
         watch.points += problem.size
         if on_block is not None:

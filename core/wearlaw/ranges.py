@@ -9,11 +9,10 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.blocks import Columns
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.errors import ModelError, RangeWarning
 from wearlaw.extremes import extremes
-from wearlaw.line import LineProblem
 from wearlaw.models import WearLaw
+from wearlaw.problem import CreepForces, Problem
 from wearlaw.records import UNITS
 from wearlaw.tangential import Blame
 from wearlaw.units import from_si
@@ -66,48 +65,25 @@ class _Seen:
         self.lowest, self.highest, self.outside = np.inf, -np.inf, 0
 
 
-def mean_over_patch(problem: LineProblem | EllipticProblem, columns: Columns, variable: str) -> Array:
-    """Return a variable of `Contact` as its mean over the patch, from forces [N] and areas [m²] in columns."""
+def mean_over_patch(problem: Problem, columns: Columns, variable: str) -> Array:
+    """Return a variable of `Contact` as its mean over the patch, from forces [N] and areas [m²] in columns.
 
-    def area() -> Array:
-        return columns.get("patch_area", problem.patch_area)
-
-    if isinstance(problem, LineProblem):
-        force = columns["longitudinal"]
-        return _mean(
-            problem,
-            area,
-            lambda: np.abs(force),
-            lambda: np.abs(problem.creepage),
-            lambda: force * problem.creepage,
-            variable,
-        )
-    forces = CreepForces.of(columns)
-    return _mean(
-        problem, area, lambda: forces.tangential, lambda: problem.rigid_slip, lambda: problem.power(forces), variable
-    )
-
-
-def _mean(
-    problem: LineProblem | EllipticProblem,
-    area: Callable[[], Array],
-    force: Callable[[], Array],
-    slip: Callable[[], Array],
-    wear_index: Callable[[], Array],
-    variable: str,
-) -> Array:
-    """Return a variable of `Contact` as its mean, from the magnitudes of force and slip and from the wear index."""
+    The slip is the rigid one, as in `EllipticContact.of_patch`.
+    """
+    force = columns["longitudinal"]
+    match variable:
+        case "slip":
+            return problem.rigid_slip
+        case "slip_speed":
+            return problem.rigid_slip * problem.rolling_speed
+        case "wear_index":
+            return problem.power(CreepForces.of(columns))
+    area = columns.get("patch_area", problem.patch_area)
     match variable:
         case "pressure":
-            return problem.normal_force / area()
+            return problem.normal_force / area
         case "traction":
-            return force() / area()
-        case "slip":
-            return slip()
-        case "slip_speed":
-            return slip() * problem.rolling_speed
+            return (np.abs(force) if problem.geometry == "line" else CreepForces.of(columns).tangential) / area
         case "wear_index_density":
-            return wear_index() / area()
-        case "wear_index":
-            return wear_index()
+            return problem.power(CreepForces.of(columns)) / area
     raise ModelError(f"`valid_range` names '{variable}', which is no variable of a contact that has a patch mean")

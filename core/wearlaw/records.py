@@ -14,8 +14,8 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.errors import InputError
-from wearlaw.line import LineFields, LineProblem
-from wearlaw.units import QuantityLike, Unit
+from wearlaw.problem import CreepForces, Problem
+from wearlaw.units import Quantity, QuantityLike, Unit, from_si
 
 NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density")
 """The variables of a `Contact` that differ from node to node."""
@@ -54,6 +54,16 @@ def _broadcast(arrays: dict[str, Array], batch_axes: int) -> dict[str, Array]:
     if len(shape) <= batch_axes or 0 in shape:
         raise InputError(f"there must be at least one node behind the {batch_axes} axes of rolling_speed; got {shapes}")
     return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LineFields:
+    """Pressure, traction, slip and traction bound at points of a line contact, as in `Contact`."""
+
+    pressure: Array
+    traction: Array
+    slip: Array
+    traction_bound: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -103,13 +113,13 @@ class Contact:
 
     @classmethod
     def from_line(
-        cls, problem: LineProblem, fields: LineFields, *, x: Array, length: Array, force_per_width: Array
+        cls, problem: Problem, fields: LineFields, *, x: Array, length: Array, force_per_width: Array
     ) -> Self:
         """Return the contact that a solution of a line problem makes over the whole track width.
 
         Parameters
         ----------
-        problem : LineProblem
+        problem : Problem
             The problem that was solved.
         fields : LineFields
             The solution at the nodes, each of shape (batch, nodes).
@@ -237,6 +247,66 @@ class Contact:
     def cell_wear_index(self) -> Array:
         """Energy dissipated per metre rolled, ∑ q·s dA over the nodes [N], of the batch shape."""
         return self.sum_over_nodes(self.wear_index_density * self.area)
+
+    @property
+    def traction_x(self) -> Array:
+        """Longitudinal component of the traction, q_x [Pa]; on a line the traction."""
+        return self.traction
+
+    @property
+    def traction_y(self) -> Array:
+        """Lateral component of the traction, q_y [Pa]; on a line zero."""
+        return np.zeros_like(self.traction)
+
+    @property
+    def slip_x(self) -> Array:
+        """Longitudinal component of the relative slip, s_x [-]; on a line the slip."""
+        return self.slip
+
+    @property
+    def slip_y(self) -> Array:
+        """Lateral component of the relative slip, s_y [-]; on a line zero."""
+        return np.zeros_like(self.slip)
+
+    @property
+    def y(self) -> Array:
+        """Position across the rolling direction [m]; on a line zero, its middle."""
+        return np.zeros_like(self.x)
+
+    @property
+    def force_x(self) -> Array:
+        """Longitudinal force [N], with the sign of the longitudinal creepage; on a line the tangential force."""
+        return self.tangential_force
+
+    @property
+    def force_y(self) -> Array:
+        """Lateral force [N]; on a line zero."""
+        return np.zeros_like(self.tangential_force)
+
+    @property
+    def moment_z(self) -> Array:
+        """Spin moment [N m]; on a line zero."""
+        return np.zeros_like(self.tangential_force)
+
+    @property
+    def forces(self) -> CreepForces:
+        """The forces and the moment that the contact transmits."""
+        return CreepForces(longitudinal=self.force_x, lateral=self.force_y, spin_moment=self.moment_z)
+
+    @property
+    def longitudinal_force(self) -> Quantity:
+        """Longitudinal force, Fx [N], with the sign of the creepage."""
+        return from_si(self.force_x, "N")
+
+    @property
+    def lateral_force(self) -> Quantity:
+        """Lateral force, Fy [N], with the sign of the creepage."""
+        return from_si(self.force_y, "N")
+
+    @property
+    def spin_moment(self) -> Quantity:
+        """Spin moment, Mz [N m], with the sign of the spin."""
+        return from_si(self.moment_z, "N*m")
 
     def with_batch(self, shape: tuple[int, ...]) -> Self:
         """Return the contact with its one batch axis reshaped."""

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import dataclasses
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wearlaw import integrate
 from wearlaw.arrays import Array
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.integrate import SlipTotals, WearTotals
-from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
+from wearlaw.problem import CreepForces, Problem
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import UNITS, Contact
 from wearlaw.solving import Solver
@@ -51,14 +49,14 @@ class Prediction:
     ----------
     pipeline : Pipeline
         What made it.
-    problem : LineProblem or EllipticProblem
+    problem : Problem
         The contact problem, as SI arrays.
     """
 
     def __init__(
         self,
-        pipeline: Pipeline[..., Any],
-        problem: LineProblem | EllipticProblem,
+        pipeline: Pipeline[...],
+        problem: Problem,
         forces: CreepForces | None = None,
         wear: WearTotals | None = None,
     ) -> None:
@@ -138,12 +136,12 @@ class Prediction:
     @property
     def normal_force_per_width(self) -> Quantity:
         """Normal force per unit width of a line, P [N/m]."""
-        return from_si(self._line.normal_force_per_width, "kN/m")
+        return from_si(self.problem.normal_force_per_width, "kN/m")
 
     @property
     def creepage(self) -> Quantity:
         """Longitudinal creepage, ξ [-], positive where body 1 is the faster one."""
-        return from_si(self._longitudinal_creepage, "%")
+        return from_si(self.problem.longitudinal_creepage, "%")
 
     @property
     def friction_coefficient(self) -> Quantity:
@@ -153,17 +151,20 @@ class Prediction:
     @property
     def half_width(self) -> Quantity:
         """Half the length of a line's patch in the rolling direction, a [m]."""
-        return from_si(self._line.half_width, "mm")
+        self.problem.needs("line", "half_width")
+        return from_si(self.problem.a, "mm")
 
     @property
     def semi_axis_a(self) -> Quantity:
         """Semi-axis of an ellipse in the rolling direction, a [m]."""
-        return from_si(self._ellipse.a, "mm")
+        self.problem.needs("ellipse", "semi_axis_a")
+        return from_si(self.problem.a, "mm")
 
     @property
     def semi_axis_b(self) -> Quantity:
         """Semi-axis of an ellipse across the rolling direction, b [m]."""
-        return from_si(self._ellipse.b, "mm")
+        self.problem.needs("ellipse", "semi_axis_b")
+        return from_si(self.problem.b, "mm")
 
     @property
     def max_pressure(self) -> Quantity:
@@ -189,7 +190,7 @@ class Prediction:
     def contact(self) -> Contact:
         """The solved contact as SI arrays, on nodes that suit the wear law, or that the contact model chose."""
         model, scale = self.pipeline.contact_model, self.pipeline.scale
-        if isinstance(self.problem, EllipticProblem) or not self.pipeline.laws:
+        if self.problem.geometry == "ellipse" or not self.pipeline.laws:
             return integrate.solve(model, self.problem, scale)
         contact = integrate.contact_for(model, self.pipeline.wear_law, self.problem.flatten(), scale)
         return contact.with_batch(self.problem.batch_shape)
@@ -203,9 +204,10 @@ class Prediction:
 
     def _cells(self) -> Contact:
         """Return the contact on uniform cells where the model can give them, else on its own nodes."""
-        model, line = self.pipeline.contact_model, self._line
+        model, problem = self.pipeline.contact_model, self.problem
+        problem.needs("line", "profile")
         if self.pipeline.scale == "cells" and isinstance(model, LineContactModel):
-            return Solver(model).at(line, uniform_cells(line.half_width, PROFILE_CELLS), totals=False)
+            return Solver(model).at(problem, uniform_cells(problem.half_width, PROFILE_CELLS), totals=False)
         return self.contact
 
     def _profile(self, more: dict[str, tuple[Array, str]]) -> xarray.Dataset:
@@ -287,8 +289,7 @@ class Prediction:
         body : str
             Its name in the rig, such as "disc_1" or "wheel".
         """
-        problem = self.problem
-        length = 2.0 * problem.half_width if isinstance(problem, LineProblem) else 0.5 * self._patch_area / problem.b
+        length = 0.5 * self._patch_area / self.problem.b
         return from_si(self._volume_rate(body) * (length / self._circumference(body)), "um/km")
 
     def profile_area_rate(self, body: str) -> Quantity:
@@ -321,23 +322,6 @@ class Prediction:
         """Return the mass that a body loses in one of its revolutions, over πD rolled [kg]."""
         return from_si(self._mass_per_distance(body) * self._circumference(body), "ug")
 
-    @property
-    def _line(self) -> LineProblem:
-        if not isinstance(self.problem, LineProblem):
-            raise CompositionError("this is a property of line contacts, and the patch is an ellipse")
-        return self.problem
-
-    @property
-    def _ellipse(self) -> EllipticProblem:
-        if not isinstance(self.problem, EllipticProblem):
-            raise CompositionError("this is a property of elliptic contacts, and the patch is a line")
-        return self.problem
-
-    @property
-    def _longitudinal_creepage(self) -> Array:
-        problem = self.problem
-        return problem.creepage if isinstance(problem, LineProblem) else problem.longitudinal_creepage
-
     @cached_property
     def _forces(self) -> CreepForces:
         if self._given_forces is not None:
@@ -347,12 +331,10 @@ class Prediction:
     @cached_property
     def _force(self) -> Array:
         """The tangential force [N], on an ellipse its magnitude."""
-        return self._forces.longitudinal if isinstance(self.problem, LineProblem) else self._forces.tangential
+        return self._forces.longitudinal if self.problem.geometry == "line" else self._forces.tangential
 
     @cached_property
     def _wear_index(self) -> Array:
-        if isinstance(self.problem, LineProblem):
-            return self._force * self.problem.creepage
         return self.problem.power(self._forces)
 
     @cached_property
@@ -383,7 +365,7 @@ class Prediction:
         density = np.full_like(self.problem.density, self._density(body))
         if np.array_equal(density, self.problem.density):
             return self._wear.wear_rate
-        of_body = dataclasses.replace(self.problem, density=density)
+        of_body = self.problem.replaced(density=density)
         predict = self.pipeline
         return integrate.integrate_wear(predict.contact_model, predict.wear_law, of_body, predict.scale).wear_rate
 
@@ -397,7 +379,7 @@ class Prediction:
         return 2.0 * np.pi * radius
 
     def __repr__(self) -> str:
-        summary = OF_LINE if isinstance(self.problem, LineProblem) else OF_ELLIPSE
+        summary = OF_LINE if self.problem.geometry == "line" else OF_ELLIPSE
         names = ("wear_rate", *summary) if self.pipeline.laws else summary
         rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in names)
         points = "1 operating point" if self.problem.size == 1 else f"{self.problem.size} operating points"
@@ -406,7 +388,7 @@ class Prediction:
     def _across(self) -> EllipticContact:
         """Return the contact on strips across the patch."""
         model, problem = self.pipeline.contact_model, self.problem
-        if isinstance(problem, LineProblem):
+        if problem.geometry == "line":
             raise CompositionError("wear_profile: a line wears evenly across its width; take depth_per_distance")
         if self.pipeline.scale == "patch":
             raise CompositionError(

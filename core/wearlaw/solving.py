@@ -9,26 +9,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, TypeVar, overload
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array, type_name
 from wearlaw.blocks import Columns, OfBlock, OnBlock, by_block
-from wearlaw.ellipse import EllipticProblem
 from wearlaw.elliptic_contact import TOTALS, EllipticContact
 from wearlaw.errors import ModelError
 from wearlaw.extremes import extremes
-from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import Numbers, WearLaw
+from wearlaw.problem import Problem
 from wearlaw.quadrature import Nodes
 from wearlaw.records import Contact
 from wearlaw.tangential import QUADRATURE, Blame, ContactModel
 from wearlaw.units import from_si
-
-ProblemT = TypeVar("ProblemT", LineProblem, EllipticProblem)
 
 EVERY = 64
 """Blocks from one comparison of sums with totals to the next."""
@@ -71,10 +68,10 @@ class Solver:
 
     def by_block(
         self,
-        problem: ProblemT,
+        problem: Problem,
         block: int,
-        columns: OfBlock[ProblemT],
-        on_block: OnBlock[ProblemT] | None = None,
+        columns: OfBlock,
+        on_block: OnBlock | None = None,
         drop_force: bool = False,
     ) -> Columns:
         """Return the columns of a function of the problem, in the shape of its batch; see `blocks.by_block`.
@@ -85,7 +82,7 @@ class Solver:
             If the model or the law fails, or a column is not one finite float64 for each operating point.
         """
 
-        def checked(part: ProblemT, points: slice) -> Columns:
+        def checked(part: Problem, points: slice) -> Columns:
             with Blame(self.model):
                 found = columns(part, points)
             check_columns(self.model, found, part)
@@ -94,18 +91,14 @@ class Solver:
         found = by_block(problem.flatten(), block, checked, on_block, drop_force)
         return {name: values.reshape(problem.batch_shape) for name, values in found.items()}
 
-    @overload
-    def solve(self, problem: LineProblem) -> Contact: ...
-    @overload
-    def solve(self, problem: EllipticProblem) -> EllipticContact: ...
-    def solve(self, problem: LineProblem | EllipticProblem) -> Contact:
+    def solve(self, problem: Problem) -> Contact:
         """Return the contact on the model's own nodes."""
         with Blame(self.model):
             contact = self.model.solve(problem)
         self.check(contact, problem, totals=self.block_is_summed())
         return contact
 
-    def at(self, problem: LineProblem, nodes: Nodes, *, totals: bool) -> Contact:
+    def at(self, problem: Problem, nodes: Nodes, *, totals: bool) -> Contact:
         """Return the contact on given nodes, by a model that knows its fields.
 
         `totals` says whether sums over the nodes, which then cover the whole patch, are compared with the totals.
@@ -121,18 +114,14 @@ class Solver:
         self._blocks += 1
         return self._blocks % EVERY == 1
 
-    def check(
-        self, contact: Contact, problem: LineProblem | EllipticProblem, *, totals: bool, areas: bool = True
-    ) -> None:
+    def check(self, contact: Contact, problem: Problem, *, totals: bool, areas: bool = True) -> None:
         """Raise a `ModelError` if a contact breaks the contract of contact models."""
         _check_types(self.model, contact, problem)
         _check_values(self.model, contact, problem, areas=areas)
         if totals:
             _check_totals(self.model, contact, problem)
 
-    def rate(
-        self, law: WearLaw, contact: Contact, problem: LineProblem | EllipticProblem, p: Numbers | None = None
-    ) -> Array:
+    def rate(self, law: WearLaw, contact: Contact, problem: Problem, p: Numbers | None = None) -> Array:
         """Return the rates of a law with its numbers, or blame the contact for them if that is what is wrong."""
         try:
             return law.checked_rate(contact, p)
@@ -141,7 +130,7 @@ class Solver:
             raise
 
 
-def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: LineProblem | EllipticProblem) -> None:
+def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Problem) -> None:
     """Raise a `ModelError` unless each column holds one finite float64 for each operating point."""
     for name, values in columns.items():
         check_type(model, name, values, problem.batch_shape)
@@ -150,8 +139,8 @@ def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Li
             raise _error(model, f"gave {_words(name)} that is not finite", problem, ~np.isfinite(values))
 
 
-def _check_types(model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem) -> None:
-    ellipse = isinstance(problem, EllipticProblem)
+def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> None:
+    ellipse = problem.geometry == "ellipse"
     expected = EllipticContact if ellipse else Contact
     if not isinstance(contact, expected):
         raise ModelError(f"contact model '{model.name}' returned {contact!r}, not a wearlaw.{expected.__name__}")
@@ -186,9 +175,7 @@ def check_type(model: ContactModel, name: str, values: Any, shape: tuple[int, ..
         )
 
 
-def _check_values(
-    model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem, *, areas: bool
-) -> None:
+def _check_values(model: ContactModel, contact: Contact, problem: Problem, *, areas: bool) -> None:
     """Check the values that laws read in few passes, and search for the first wrong one only if there is one.
 
     Components of vectors are checked by their magnitudes, and where sums are compared with totals. Areas are checked
@@ -226,7 +213,7 @@ def _product(one: Array, other: Array) -> float:
     return total
 
 
-def check_finite(model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem) -> None:
+def check_finite(model: ContactModel, contact: Contact, problem: Problem) -> None:
     """Raise a `ModelError` if a value is not finite. Only the traction bound may be infinite."""
     names = (*FIELDS, *VECTORS, *TOTALS) if isinstance(contact, EllipticContact) else (*FIELDS, *LINE_TOTALS)
     for name in names:
@@ -236,7 +223,7 @@ def check_finite(model: ContactModel, contact: Contact, problem: LineProblem | E
             raise _error(model, f"gave {_words(name)} that is not finite", problem, bad)
 
 
-def _check_bound(model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem) -> None:
+def _check_bound(model: ContactModel, contact: Contact, problem: Problem) -> None:
     if "traction_bound" in model.exemptions:
         return
     over = ~(np.abs(contact.traction) <= contact.traction_bound * (1.0 + _rounding_of_traction(model)))
@@ -251,14 +238,14 @@ def _rounding_of_traction(model: ContactModel) -> float:
     return ROUNDINGS if model.scale == "cells" or model.accuracy == QUADRATURE else model.accuracy
 
 
-def _check_totals(model: ContactModel, contact: Contact, problem: LineProblem | EllipticProblem) -> None:
+def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> None:
     """Compare sums over the nodes with the totals, to what the model declares of its sums."""
     rest = (*VECTORS, *TOTALS) if isinstance(contact, EllipticContact) else LINE_TOTALS
     if not all(math.isfinite(_product(values, values)) for values in (getattr(contact, name) for name in rest)):
         check_finite(model, contact, problem)
     limit = np.maximum(problem.friction_coefficient * problem.normal_force, np.abs(contact.tangential_force))
     area = contact.area
-    if isinstance(contact, EllipticContact) and isinstance(problem, EllipticProblem):
+    if isinstance(contact, EllipticContact):
         declared, error = "elliptic_accuracy", SLACK * max(model.elliptic_accuracy, ROUNDINGS)
         sums = {
             "force_x": (contact.traction_x, limit),
@@ -271,7 +258,7 @@ def _check_totals(model: ContactModel, contact: Contact, problem: LineProblem | 
         declared, error = "accuracy", SLACK * max(model.accuracy, ROUNDINGS)
         sums = {"tangential_force": (contact.traction, limit)}
         if "energy_balance" not in model.exemptions and model.scale == "cells":
-            sums["wear_index"] = contact.wear_index_density, limit * np.abs(_creepage(problem))
+            sums["wear_index"] = contact.wear_index_density, limit * np.abs(problem.longitudinal_creepage)
     for name, (values, size) in {"normal_force": (contact.pressure, contact.normal_force), **sums}.items():
         total, found = getattr(contact, name), contact.sum_over_nodes(values * area)
         wrong = ~(np.abs(found - total) <= error * size)
@@ -288,20 +275,14 @@ def _check_totals(model: ContactModel, contact: Contact, problem: LineProblem | 
             )
 
 
-def _creepage(problem: LineProblem | EllipticProblem) -> Array:
-    return problem.longitudinal_creepage if isinstance(problem, EllipticProblem) else problem.creepage
-
-
-def _error(
-    model: ContactModel, what: str, problem: LineProblem | EllipticProblem, wrong: NDArray[np.bool_]
-) -> ModelError:
+def _error(model: ContactModel, what: str, problem: Problem, wrong: NDArray[np.bool_]) -> ModelError:
     """Return the error that names the first place where something is wrong, of the shape of the batch or the nodes."""
     first = _first(wrong)
     batch = len(problem.batch_shape)
     point, node = first[:batch], first[batch:]
-    creepage = "longitudinal creepage" if isinstance(problem, EllipticProblem) else "creepage"
+    creepage = "longitudinal creepage" if problem.geometry == "ellipse" else "creepage"
     conditions = (
-        f"{creepage} {from_si(_creepage(problem)[point], '%')!r}"
+        f"{creepage} {from_si(problem.longitudinal_creepage[point], '%')!r}"
         f" and maximum pressure {from_si(problem.max_pressure[point], 'MPa')!r}"
     )
     at = f"node {', '.join(map(str, node))} at " if node else ""

@@ -24,7 +24,6 @@ from wearlaw.errors import (
     did_you_mean,
     message_of,
 )
-from wearlaw.line import LineProblem
 from wearlaw.material import Material
 from wearlaw.models import WearLaw
 from wearlaw.notes import Notes
@@ -228,7 +227,7 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
 
 
 def _with_band(
-    key: str, pipeline: Pipeline[..., LineProblem], points: Points, found: dict[str, Array], evaluator: Evaluator
+    key: str, pipeline: Pipeline[...], points: Points, found: dict[str, Array], evaluator: Evaluator
 ) -> dict[str, Array]:
     """Return results with the ends of the wear rate over the published range of the law's parameters."""
     ends = []
@@ -239,7 +238,7 @@ def _with_band(
     return {**found, **dict(zip(BAND, ends or [found["wear_rate"]] * 2, strict=True))}
 
 
-def _band_ends(pipeline: Pipeline[..., LineProblem]) -> list[Pipeline[..., LineProblem]]:
+def _band_ends(pipeline: Pipeline[...]) -> list[Pipeline[...]]:
     """Return the pipeline with the low and the high end of its law's published range, if there is one."""
     band = pipeline.wear_law.band()
     return [] if band is None else [pipeline.with_law(law) for law in (band[0], band[2])]

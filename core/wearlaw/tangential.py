@@ -5,23 +5,19 @@ A model is its configuration: a frozen pydantic record whose fields carry units 
 
 from abc import ABC
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeAlias, final, overload
+from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeAlias, final
 
 import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.errors import CompositionError, ModelError, WearlawError, described
-from wearlaw.line import LineProblem
+from wearlaw.problem import CreepForces, Geometry, Problem
 from wearlaw.records import Contact
 
 Scale: TypeAlias = Literal["patch", "cells"]
 """Whether a contact holds the means of the whole patch in one node, or resolves it into many."""
-
-Geometry: TypeAlias = Literal["line", "ellipse"]
-"""The shape of a contact patch: discs with parallel axes touch in a line, a wheel and a rail in an ellipse."""
 
 Claim: TypeAlias = Literal["traction_bound", "stick", "energy_balance", "saturation", "initial_slope", "similarity"]
 """An invariant that a contact model keeps unless it declares itself exempt; see `ContactModel.exemptions`."""
@@ -121,12 +117,8 @@ class ContactModel(Model):
                 raise TypeError(f"{cls.__name__} is abstract: it implements neither solve_line nor solve_ellipse")
             return super().__new__(cls)
 
-    @overload
-    def solve(self, problem: LineProblem) -> Contact: ...
-    @overload
-    def solve(self, problem: EllipticProblem) -> EllipticContact: ...
     @final
-    def solve(self, problem: LineProblem | EllipticProblem) -> Contact:
+    def solve(self, problem: Problem) -> Contact:
         """Return the solved contact, on nodes of the model's choice.
 
         Raises
@@ -134,13 +126,13 @@ class ContactModel(Model):
         CompositionError
             If the model does not solve contacts of this geometry.
         """
-        return self.solve_ellipse(problem) if isinstance(problem, EllipticProblem) else self.solve_line(problem)
+        return self.solve_ellipse(problem) if problem.geometry == "ellipse" else self.solve_line(problem)
 
-    def solve_line(self, problem: LineProblem) -> Contact:  # noqa: ARG002
+    def solve_line(self, problem: Problem) -> Contact:  # noqa: ARG002
         """Return the solved line contact on nodes of the model's choice, of shape (batch, nodes)."""
         raise self._cannot_solve("line")
 
-    def solve_ellipse(self, problem: EllipticProblem) -> EllipticContact:  # noqa: ARG002
+    def solve_ellipse(self, problem: Problem) -> EllipticContact:  # noqa: ARG002
         """Return the solved elliptic contact on strips of the model's choice, of shape (batch, nodes, strips)."""
         raise self._cannot_solve("ellipse")
 
@@ -157,18 +149,18 @@ class ContactModel(Model):
             f" {' and '.join(PATCHES[known] for known in self.geometries())}"
         )
 
-    def tangential_force(self, problem: LineProblem) -> Array:
+    def tangential_force(self, problem: Problem) -> Array:
         """Return T [N] of a line contact with the sign of the creepage, of the batch shape.
 
         It is that of `solve_line`, unless the model knows it without.
         """
         return self.solve_line(problem).tangential_force
 
-    def creep_forces(self, problem: EllipticProblem) -> CreepForces:
+    def creep_forces(self, problem: Problem) -> CreepForces:
         """Return the forces of an elliptic contact; those of `solve_ellipse`, unless the model knows them without."""
         return self.solve_ellipse(problem).forces
 
-    def on_strips(self, problem: EllipticProblem, shares: Array) -> EllipticContact | None:  # noqa: ARG002
+    def on_strips(self, problem: Problem, shares: Array) -> EllipticContact | None:  # noqa: ARG002
         """Return the contact on strips at y = `shares` × b, of shape (strips), or None if it is known on its own only.
 
         Each strip stands for the width from half-way to the one before to half-way to the next one.

@@ -42,11 +42,11 @@ class Exact(wl.LineContactModel):
             return {}
         return {"energy_balance": "the printed slip lacks a term in partial slip"}
 
-    def slip_length(self, problem: wl.LineProblem) -> Array:
+    def slip_length(self, problem: wl.Problem) -> Array:
         """Return 2 (a - c)."""
         return 2.0 * np.minimum(problem.creepage * _inverse_k(problem), problem.half_width)
 
-    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
+    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
         """Return the fields of the paper's eqs. (7) and (8), corrected."""
         a, k = problem.half_width, 1.0 / _inverse_k(problem)
         before, behind = nodes.from_trailing, nodes.from_leading  # a - x and x + a
@@ -71,12 +71,12 @@ class Exact(wl.LineContactModel):
             traction_bound=bound,
         )
 
-    def tangential_force_per_width(self, problem: wl.LineProblem) -> Array:
+    def tangential_force_per_width(self, problem: wl.Problem) -> Array:
         """Return μP [1 - (c/a)²], with d = ξ/ξ_sat = (a-c)/a as μP d (2-d)."""
         d = np.minimum(problem.creepage / _saturation(problem), 1.0)
         return problem.friction_coefficient * problem.normal_force_per_width * d * (2.0 - d)
 
-    def crossings(self, problem: wl.LineProblem, variable: wl.FieldVariable, value: Array) -> Array | None:
+    def crossings(self, problem: wl.Problem, variable: wl.FieldVariable, value: Array) -> Array | None:
         """Return where the pressure or the slip crosses a value."""
         if variable == "pressure":
             return wl.hertz.distances_at_pressure(value, problem.half_width, problem.max_pressure)
@@ -91,7 +91,7 @@ class Exact(wl.LineContactModel):
         partial = length - grown**2 / (c + np.sqrt(c**2 + grown**2))
         return np.where(length < 2.0 * a, partial, everywhere)[..., None]
 
-    def excess_dissipation(self, problem: wl.LineProblem, threshold: float | Array) -> Array | None:
+    def excess_dissipation(self, problem: wl.Problem, threshold: float | Array) -> Array | None:
         """Return ∫ max(q·s - threshold, 0) dx [N/m] in closed form."""
         if self.slip == "as_printed":
             return None
@@ -100,19 +100,19 @@ class Exact(wl.LineContactModel):
             problem.friction_coefficient,
             problem.max_pressure,
             problem.half_width,
-            problem.relative_radius,
+            problem.effective_modulus,
             threshold,
         )
 
 
-def _inverse_k(problem: wl.LineProblem) -> Array:
-    """Return 1/k = R/μ [m]."""
-    return problem.relative_radius / problem.friction_coefficient
+def _inverse_k(problem: wl.Problem) -> Array:
+    """Return 1/k = R/μ [m], a/ξ_sat."""
+    return problem.half_width / _saturation(problem)
 
 
-def _saturation(problem: wl.LineProblem) -> Array:
-    """Return ξ_sat = μa/R."""
-    return problem.friction_coefficient * problem.half_width / problem.relative_radius
+def _saturation(problem: wl.Problem) -> Array:
+    """Return ξ_sat = μa/R = 2 μ p0/E*."""
+    return 2.0 * problem.friction_coefficient * problem.max_pressure / problem.effective_modulus
 
 
 @wl.hookimpl

@@ -1,6 +1,6 @@
 """The energy that Carter's contact dissipates above a threshold, in closed form.
 
-With d = ξR/(μa), h = min(d, 1) and t from -1 to 1 over the slip zone, whose half-length is a h,
+With d = ξ E*/(2 μ p0) = ξR/(μa), h = min(d, 1) and t from -1 to 1 over the slip zone, whose half-length is a h,
 
     q s = μp0 (μa/R) h f(t),  f(t) = (A + h t) √(1-t²),  A = max(2-d, d).
 
@@ -62,9 +62,9 @@ def _roots(base: Array, growth: Array, top: Array, square: Array, v: Array) -> A
 
 
 def _excess_arrays(
-    creepage: Array, friction: Array, max_pressure: Array, half_width: Array, radius: Array, threshold: float | Array
+    creepage: Array, friction: Array, max_pressure: Array, half_width: Array, modulus: Array, threshold: float | Array
 ) -> Array:
-    saturation = friction * half_width / radius
+    saturation = 2.0 * friction * max_pressure / modulus
     scale, reduced = friction * max_pressure * saturation, creepage / saturation
     reduced, level = np.broadcast_arrays(reduced, threshold / scale)
     shape, reduced, level = reduced.shape, reduced.ravel(), level.ravel()
@@ -93,10 +93,10 @@ def _excess_arrays(
 
 @wl.kernel(_excess_arrays)
 def excess_dissipation(
-    creepage: float, friction: float, max_pressure: float, half_width: float, radius: float, threshold: float
+    creepage: float, friction: float, max_pressure: float, half_width: float, modulus: float, threshold: float
 ) -> float:
     """Return ∫ max(q s - threshold, 0) dx [N/m], of values in SI."""
-    saturation = friction * half_width / radius
+    saturation = 2.0 * friction * max_pressure / modulus
     scale, reduced = friction * max_pressure * saturation, creepage / saturation
     level = threshold / scale
     zone, mean = min(reduced, 1.0), max(2.0 - reduced, reduced)

@@ -102,7 +102,7 @@ class Fastsim(wl.LineContactModel):
         """
         return 0.5 / self.strips if self.march == "adaptive" else 1.0 / self.strips
 
-    def solve_ellipse(self, problem: wl.EllipticProblem) -> wl.EllipticContact:
+    def solve_ellipse(self, problem: wl.Problem) -> wl.EllipticContact:
         """Return the contact on strips."""
         from wearlaw_fastsim import _solution  # most of what there is to import, and not needed on a line
 
@@ -111,7 +111,7 @@ class Fastsim(wl.LineContactModel):
         contact = solve(problem, patches, self.strips)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 
-    def on_strips(self, problem: wl.EllipticProblem, shares: Array) -> wl.EllipticContact | None:
+    def on_strips(self, problem: wl.Problem, shares: Array) -> wl.EllipticContact | None:
         """Return the contact on strips at y = `shares` × b; a uniform march has its own strips."""
         if self.march == "uniform":
             return None
@@ -121,14 +121,14 @@ class Fastsim(wl.LineContactModel):
         contact = _solution.on_strips(problem, patches, self.strips, shares)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 
-    def slip_length(self, problem: wl.LineProblem) -> Array:
+    def slip_length(self, problem: wl.Problem) -> Array:
         """Return the distance from where the traction meets its bound to the trailing edge."""
         d = self._reduced_creepage(problem)
         if self.bound == "parabolic":
             return 2.0 * problem.half_width * np.minimum(d, 1.0)
         return 2.0 * problem.half_width * (d**2 / (1.0 + d**2))
 
-    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
+    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
         """Return the fields of the paper's eqs. (11) to (13), in closed form."""
         a, friction = problem.half_width, problem.friction_coefficient
         inside = nodes.from_leading * nodes.from_trailing  # a² - x²
@@ -149,7 +149,7 @@ class Fastsim(wl.LineContactModel):
             traction_bound=bound,
         )
 
-    def tangential_force_per_width(self, problem: wl.LineProblem) -> Array:
+    def tangential_force_per_width(self, problem: wl.Problem) -> Array:
         """Return T [N/m].
 
         Parabolic: μP [1 - (1-d)³], d = ξ/ξ_f, ξ_f = 3μPL/(2a²). Elliptic: μP (2/π) [atan κ + κ/(1+κ²)],
@@ -163,7 +163,7 @@ class Fastsim(wl.LineContactModel):
             share = 2.0 / np.pi * (np.arctan(d) + d / (1.0 + d**2))
         return problem.friction_coefficient * problem.normal_force_per_width * share
 
-    def crossings(self, problem: wl.LineProblem, variable: wl.FieldVariable, value: Array) -> Array | None:
+    def crossings(self, problem: wl.Problem, variable: wl.FieldVariable, value: Array) -> Array | None:
         """Return where the pressure or the slip crosses a value."""
         a, slope = problem.half_width, self._bound_slope(problem)
         if variable == "pressure":
@@ -176,28 +176,28 @@ class Fastsim(wl.LineContactModel):
         distance: Array = 2.0 * a * np.sin(0.5 * np.arctan2(slope, grown)) ** 2
         return distance[..., None]
 
-    def excess_dissipation(self, problem: wl.LineProblem, threshold: float | Array) -> Array:
+    def excess_dissipation(self, problem: wl.Problem, threshold: float | Array) -> Array:
         """Return ∫ max(q·s - threshold, 0) dx [N/m] in closed form."""
         excess = parabolic_excess if self.bound == "parabolic" else elliptic_excess
         centre = problem.friction_coefficient * self._bound_centre(problem)
         return excess(problem.creepage, self._bound_slope(problem), centre, problem.half_width, threshold)
 
-    def _flexibility(self, problem: wl.LineProblem) -> Array:
+    def _flexibility(self, problem: wl.Problem) -> Array:
         factor = 4.0 / np.pi if self.flexibility == "line" else 32.0 / (3.0 * np.pi**2)
         return factor * problem.half_width / problem.effective_modulus
 
-    def _bound_centre(self, problem: wl.LineProblem) -> Array:
+    def _bound_centre(self, problem: wl.Problem) -> Array:
         """Return p2 at x = 0 [Pa]."""
         if self.bound == "parabolic":
             return 0.75 * problem.normal_force_per_width / problem.half_width
         return problem.max_pressure
 
-    def _bound_slope(self, problem: wl.LineProblem) -> Array:
+    def _bound_slope(self, problem: wl.Problem) -> Array:
         """Return the slope of the bound's shape in x/a, as slip: L μp2(0)/a, for the parabola twice that."""
         slope = self._flexibility(problem) * problem.friction_coefficient * self._bound_centre(problem)
         return (2.0 if self.bound == "parabolic" else 1.0) * slope / problem.half_width
 
-    def _reduced_creepage(self, problem: wl.LineProblem) -> Array:
+    def _reduced_creepage(self, problem: wl.Problem) -> Array:
         """Return d = ξ/ξ_f (parabolic) or κ (elliptic)."""
         return problem.creepage / self._bound_slope(problem)
 

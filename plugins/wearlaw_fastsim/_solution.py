@@ -16,9 +16,7 @@ CELLS = 16
 """Cells that take about as long as an operating point does that `accelerated` counts."""
 
 
-def ellipses(
-    problem: wl.EllipticProblem, elliptic: bool, interpolation: wl.kalker.Interpolation = "scaled"
-) -> Ellipses:
+def ellipses(problem: wl.Problem, elliptic: bool, interpolation: wl.kalker.Interpolation = "scaled") -> Ellipses:
     """Return what the simplified theory needs of a problem with one batch axis; with Kalker's three flexibilities.
 
     L1 = 8a/(3 C11 G), L2 = 8a/(3 C22 G), L3 = π a √(a/b)/(4 C23 G) (Kalker 1982).
@@ -41,21 +39,19 @@ def ellipses(
     )
 
 
-def adaptive(problem: wl.EllipticProblem, patches: Ellipses, count: int) -> wl.EllipticContact:
+def adaptive(problem: wl.Problem, patches: Ellipses, count: int) -> wl.EllipticContact:
     """Return the contact on `count` strips with nodes where they are needed."""
     shares, widths = _strips.even_strips(count)
     return _on_strips(problem, patches, count, shares, widths)
 
 
-def on_strips(problem: wl.EllipticProblem, patches: Ellipses, count: int, shares: Array) -> wl.EllipticContact:
+def on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array) -> wl.EllipticContact:
     """Return the contact on strips at y = `shares` × b, with as many nodes on each as among `count` strips."""
     between = 0.5 * (shares[1:] + shares[:-1])
     return _on_strips(problem, patches, count, shares, np.diff(np.concatenate([[-1.0], between, [1.0]])))
 
 
-def _on_strips(
-    problem: wl.EllipticProblem, patches: Ellipses, count: int, shares: Array, widths: Array
-) -> wl.EllipticContact:
+def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array, widths: Array) -> wl.EllipticContact:
     flat = problem.flatten()
     along = max(round(STICK_NODES_PER_STRIP * count), 4), max(round(SLIP_NODES_PER_STRIP * count), 8)
     found = _strips.strips(patches, shares, *along)
@@ -78,7 +74,7 @@ def _on_strips(
     return contact.with_batch(problem.batch_shape)
 
 
-def uniform(problem: wl.EllipticProblem, patches: Ellipses, count: int) -> wl.EllipticContact:
+def uniform(problem: wl.Problem, patches: Ellipses, count: int) -> wl.EllipticContact:
     """Return the contact on `count` × `count` cells, by Kalker's march."""
     flat = problem.flatten()
     compiled = wl.accelerated(flat.size * count**2 // CELLS)

@@ -45,7 +45,7 @@ class Global(wl.ContactModel):
         kept = ("saturation", "initial_slope")
         return {"stick": stick, **{c: r for c, r in self.total_from.exemptions.items() if c in kept}}
 
-    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.Problem) -> wl.Contact:
         """Return the patch means as a contact of one node, of shape (batch, 1)."""
         length = 2.0 * problem.half_width
         pressure = problem.normal_force_per_width / length

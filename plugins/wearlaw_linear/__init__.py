@@ -44,7 +44,7 @@ class Linear(wl.CreepForceModel):
             exempt["initial_slope"] = "between the rows of Kalker's table long patches differ"
         return exempt
 
-    def creep_forces(self, problem: wl.EllipticProblem) -> wl.CreepForces:
+    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
         """Return the forces and the moment, of the batch shape."""
         return wl.kalker.linear_forces(problem, self.interpolation)
 

@@ -81,7 +81,7 @@ class Polach(wl.CreepForceModel):
             exempt["traction_bound"] = "the part of the spin is not reduced, and can pass μN on a long patch"
         return exempt
 
-    def creep_forces(self, problem: wl.EllipticProblem) -> wl.CreepForces:
+    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
         """Return the forces and the moment, of the batch shape."""
         along, across, spin = problem.longitudinal_creepage, problem.lateral_creepage, problem.spin
         c = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)

@@ -133,7 +133,7 @@ class Bench:
         return 100.0 * slip_speed / self.rolling_speed
 
     @cached_property
-    def problem(self) -> wl.LineProblem:
+    def problem(self) -> wl.Problem:
         """The contact under the load of the bench, at 1 % creepage."""
         return self.rig.problem(
             normal_force_per_width=self.normal_force_per_width,

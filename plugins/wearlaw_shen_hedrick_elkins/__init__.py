@@ -42,7 +42,7 @@ class ShenHedrickElkins(wl.CreepForceModel):
         """The one node slips as a whole."""
         return {"stick": "the one node slips as a whole, with a traction below its bound"}
 
-    def creep_forces(self, problem: wl.EllipticProblem) -> wl.CreepForces:
+    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
         """Return the forces and the moment, of the batch shape."""
         linear = wl.kalker.linear_forces(problem)
         share = linear.tangential / (problem.friction_coefficient * problem.normal_force)

@@ -27,12 +27,12 @@ CREEPAGE = np.concatenate([np.geomspace(0.1, 1.3, 7), np.linspace(2.0, 13.0, 6),
 """Seven tests in the mild, six in the severe and seven in the catastrophic regime [%]."""
 
 
-def pipeline(contact: str) -> wl.Pipeline[..., wl.LineProblem]:
+def pipeline(contact: str) -> wl.Pipeline[...]:
     """Return the pipeline that makes the tests and is fitted to them."""
     return wl.TwinDisc.suros() | wl.contact_model(contact) | wl.wear_law("usfd", fitted_for=contact)
 
 
-def made_up(predict: wl.Pipeline[..., wl.LineProblem], scatter: float, seed: int) -> wl.WearTests:
+def made_up(predict: wl.Pipeline[...], scatter: float, seed: int) -> wl.WearTests:
     """Return tests that follow a law but for lognormal scatter."""
     conditions: Any = {
         "creepage": Q(CREEPAGE, "%"),

@@ -22,7 +22,7 @@ GATE = 10.0
 """Times faster than the loop that the bootstrap must be."""
 
 
-def bootstrap_seconds(predict: wl.Pipeline[..., wl.LineProblem], tests: wl.WearTests) -> float:
+def bootstrap_seconds(predict: wl.Pipeline[...], tests: wl.WearTests) -> float:
     """Return the CPU time of the replicates alone: that of a fit with them less that of one without."""
     wl.fit(predict, tests, free=FREE, bootstrap=40)  # imports and caches
     began = time.process_time()
@@ -32,7 +32,7 @@ def bootstrap_seconds(predict: wl.Pipeline[..., wl.LineProblem], tests: wl.WearT
     return time.process_time() - middle - (middle - began)
 
 
-def loop_seconds(predict: wl.Pipeline[..., wl.LineProblem], tests: wl.WearTests, replicates: int) -> float:
+def loop_seconds(predict: wl.Pipeline[...], tests: wl.WearTests, replicates: int) -> float:
     """Return the CPU time of REPLICATES refits with scipy through `predict(...)`, from that of some of them."""
     from scipy.optimize import least_squares
 

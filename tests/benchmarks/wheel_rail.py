@@ -118,18 +118,18 @@ def few_nodes(bound: str, rounds: int) -> list[Gate]:
     ]
 
 
-def _march_and_law(problem: wl.EllipticProblem, bound: str, cells: int, strips: int, block: int = BLOCK) -> MarchAndLaw:
+def _march_and_law(problem: wl.Problem, bound: str, cells: int, strips: int, block: int = BLOCK) -> MarchAndLaw:
     return MarchAndLaw(ellipses(problem, elliptic=bound == "elliptic"), cells, strips, block)
 
 
-def _wearlaw(problem: wl.EllipticProblem, bound: str, strips: int) -> Outcome:
+def _wearlaw(problem: wl.Problem, bound: str, strips: int) -> Outcome:
     model = wl.contact_model("fastsim", bound=bound, strips=strips)
     found = integrate_wear(model, wl.wear_law("usfd", fitted_for="global"), problem, "cells")
     assert found.forces is not None
     return found.forces.longitudinal, found.forces.lateral, found.wear_rate
 
 
-def _reference(problem: wl.EllipticProblem, bound: str) -> Outcome:
+def _reference(problem: wl.Problem, bound: str) -> Outcome:
     """Return the limit of the march, whose error is of first order, from cells of two sizes."""
     coarse, fine = (
         _march_and_law(problem, bound, cells, REFERENCE_STRIPS, block=4)()
@@ -139,7 +139,7 @@ def _reference(problem: wl.EllipticProblem, bound: str) -> Outcome:
     return longitudinal, lateral, rate
 
 
-def _errors(found: Outcome, exact: Outcome, problem: wl.EllipticProblem) -> tuple[float, float, float, float]:
+def _errors(found: Outcome, exact: Outcome, problem: wl.Problem) -> tuple[float, float, float, float]:
     """Return root mean square and maximum of the errors of the force over μN, and of the relative ones of the wear."""
     limit = problem.friction_coefficient * problem.normal_force
     force = np.hypot(found[0] - exact[0], found[1] - exact[1]) / limit

@@ -33,7 +33,7 @@ Outcome = tuple[Array, Array, Array]
 """Both forces [N], and the area mean of the wear rate [kg/m/m²]."""
 
 
-def workload(count: int) -> wl.EllipticProblem:
+def workload(count: int) -> wl.Problem:
     """Return operating points that vary in everything."""
     rng = np.random.default_rng(19820101)
 
@@ -52,7 +52,7 @@ def workload(count: int) -> wl.EllipticProblem:
         "rolling_speed": 30.0,
         "density": 7850.0,
     }
-    return wl.EllipticProblem.from_si(
+    return wl.Problem.ellipse_from_si(
         a=5e-3 * root,
         b=5e-3 / root,
         spin=rng.uniform(*SPINS, count),
@@ -62,7 +62,7 @@ def workload(count: int) -> wl.EllipticProblem:
     )
 
 
-def ellipses(problem: wl.EllipticProblem, *, elliptic: bool) -> Ellipses:
+def ellipses(problem: wl.Problem, *, elliptic: bool) -> Ellipses:
     """Return the problem of the simplified theory with the flexibilities of Kalker (1982)."""
     ratio, scale = problem.a / problem.b, problem.a / problem.shear_modulus
     coefficients = wl.kalker.coefficients(ratio, problem.poisson_ratio)

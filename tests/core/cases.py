@@ -98,7 +98,7 @@ class Coarse(wl.ContactModel):
     def accuracy(self) -> float:
         return 0.02  # of the midpoint rule under an ellipse
 
-    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.Problem) -> wl.Contact:
         edges = np.linspace(-1.0, 1.0, 8) * problem.half_width[..., None]
         x = 0.5 * (edges[..., 1:] + edges[..., :-1])
         pressure = wl.hertz.pressure(x, problem.half_width[..., None], problem.max_pressure[..., None])

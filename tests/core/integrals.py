@@ -42,7 +42,7 @@ class Wear(NamedTuple):
     tangential_force: Array
 
 
-def integrate_wear(model: wl.ContactModel, law: wl.WearLaw, problem: wl.LineProblem, scale: wl.Scale) -> Wear:
+def integrate_wear(model: wl.ContactModel, law: wl.WearLaw, problem: wl.Problem, scale: wl.Scale) -> Wear:
     """Return the wear, with what is computed when it is asked for."""
     wear = integrate.integrate_wear(model, law, problem, scale)
     forces = integrate_forces(model, problem) if wear.forces is None else wear.forces
@@ -73,7 +73,7 @@ class Points:
         return saturation
 
     @property
-    def problem(self) -> wl.LineProblem:
+    def problem(self) -> wl.Problem:
         return RIG.problem(
             max_pressure=Q(self.pressure, "Pa"),
             creepage=Q(np.minimum(self.creepage, 1.0), ""),

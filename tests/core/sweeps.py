@@ -24,7 +24,7 @@ CONDITIONS: dict[str, Any] = {
 OUTPUTS = ["wear_rate", "tangential_force"]
 
 
-def predictor(law: wl.WearLaw | None = None) -> wl.Pipeline[..., wl.LineProblem]:
+def predictor(law: wl.WearLaw | None = None) -> wl.Pipeline[...]:
     return wl.TwinDisc.suros() | wl.contact_model("exact") | (law or wl.wear_law("usfd", fitted_for="exact"))
 
 
@@ -76,12 +76,12 @@ class Ending(Linear):
         return super().rate(contact, p)
 
 
-def ending(error: str) -> wl.Pipeline[..., wl.LineProblem]:
+def ending(error: str) -> wl.Pipeline[...]:
     """Return a pipeline that raises an exception of Python in every worker."""
     return predictor(Ending(slope=Q(1.0, "mm"), spared=os.getpid(), error=error))
 
 
-def deadly(marker: Path, always: bool = False) -> wl.Pipeline[..., wl.LineProblem]:
+def deadly(marker: Path, always: bool = False) -> wl.Pipeline[...]:
     """Return a pipeline that kills the next worker that evaluates it, or all."""
     marker.touch()
     return predictor(Deadly(slope=Q(1.0, "mm"), marker=str(marker), always=always, spared=os.getpid()))

@@ -68,7 +68,7 @@ WARNED = [
 ]
 
 
-def contact_pipeline(model: wl.ContactModel, mean: wl.PatchMean | None) -> wl.Pipeline[..., wl.LineProblem]:
+def contact_pipeline(model: wl.ContactModel, mean: wl.PatchMean | None) -> wl.Pipeline[...]:
     return RIG | model if mean is None else RIG | model | mean
 
 

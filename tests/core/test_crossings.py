@@ -23,7 +23,7 @@ from wearlaw_exact import Exact
 class Searched(Exact):
     """Carter's theory without its closed forms."""
 
-    def crossings(self, problem: wl.LineProblem, variable: wl.FieldVariable, value: Array) -> None:
+    def crossings(self, problem: wl.Problem, variable: wl.FieldVariable, value: Array) -> None:
         return None
 
 
@@ -32,7 +32,7 @@ EXACT = ("exact", "exact, searched")
 
 
 def find(
-    name: str, problem: wl.LineProblem, breakpoints: Mapping[str, tuple[float, ...]]
+    name: str, problem: wl.Problem, breakpoints: Mapping[str, tuple[float, ...]]
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Return the crossings of a batch of one axis as x, in the order of x, and which of them are there."""
     zone = MODELS[name].slip_zone(problem)
@@ -41,11 +41,11 @@ def find(
     return x, angles < zone.angle[:, None]
 
 
-def one(problem: wl.LineProblem) -> wl.LineProblem:
+def one(problem: wl.Problem) -> wl.Problem:
     return problem[None] if problem.creepage.ndim == 0 else problem
 
 
-def suros(creepage: float, max_pressure: float = 1500e6) -> wl.LineProblem:
+def suros(creepage: float, max_pressure: float = 1500e6) -> wl.Problem:
     return one(
         wl.TwinDisc.suros().problem(
             max_pressure=wl.Q(max_pressure, "Pa"), creepage=wl.Q(creepage, ""), friction_coefficient=0.46
@@ -76,7 +76,7 @@ def test_crossings_are_in_ascending_order() -> None:
 
 @pytest.mark.parametrize("name", EXACT)
 @given(problem=line_problems(), share=st.floats(0.01, 0.99))
-def test_the_pressure_is_crossed_at_the_root_of_hertz(name: str, problem: wl.LineProblem, share: float) -> None:
+def test_the_pressure_is_crossed_at_the_root_of_hertz(name: str, problem: wl.Problem, share: float) -> None:
     # in full slip, where the zone is the patch
     full = one(with_creepage(problem, 2.0 * saturation_creepage(problem)))
     x, _ = find(name, full, {"pressure": (share * float(problem.max_pressure),)})
@@ -88,7 +88,7 @@ def test_the_pressure_is_crossed_at_the_root_of_hertz(name: str, problem: wl.Lin
 
 @pytest.mark.parametrize("name", EXACT)
 @given(problem=line_problems(), share=st.floats(0.01, 0.99))
-def test_the_slip_speed_is_crossed_at_the_root_of_the_slip(name: str, problem: wl.LineProblem, share: float) -> None:
+def test_the_slip_speed_is_crossed_at_the_root_of_the_slip(name: str, problem: wl.Problem, share: float) -> None:
     reduced = 3.0
     saturation = saturation_creepage(problem)
     full = one(with_creepage(problem, reduced * saturation))
@@ -164,7 +164,7 @@ def test_a_hump_next_to_the_start_of_the_zone_is_found(name: str, half: float, g
 class WithAHole(Searched):
     """No pressure is known where it is close to 1 GPa, between two of the places that are searched."""
 
-    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
+    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
         fields = super().fields(problem, nodes)
         pressure = np.where(np.abs(fields.pressure - 1e9) < 1e6, np.nan, fields.pressure)
         return dataclasses.replace(fields, pressure=pressure)

@@ -26,16 +26,18 @@ GIVEN: dict[str, Any] = {
 }
 
 
-def problem(**changes: Any) -> wl.EllipticProblem:
-    return wl.EllipticProblem(**{**GIVEN, **changes})
+def problem(**changes: Any) -> wl.Problem:
+    return wl.Problem.ellipse(**{**GIVEN, **changes})
 
 
 def test_quantities_become_si_arrays_of_one_shape() -> None:
     found = problem(longitudinal_creepage=Q([[0.1], [0.2]], "%"), normal_force=Q([50.0, 100.0, 150.0], "kN"))
     assert found.batch_shape == (2, 3)
     assert found.size == 6
+    assert found.geometry == "ellipse"
     for field in dataclasses.fields(found):
-        assert getattr(found, field.name).shape == (2, 3), field.name
+        if field.name not in ("geometry", "traction_coefficient"):
+            assert getattr(found, field.name).shape == (2, 3), field.name
     assert found.a[0, 0] == pytest.approx(6e-3, rel=EPS)
     assert found.spin[0, 0] == pytest.approx(1.0, rel=2 * EPS)
     assert found.longitudinal_creepage[1, 0] == pytest.approx(2e-3, rel=2 * EPS)

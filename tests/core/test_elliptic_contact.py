@@ -10,8 +10,8 @@ from tests.strategies import EPS
 from wearlaw import Array, Q
 
 
-def problem(points: int = 2) -> wl.EllipticProblem:
-    return wl.EllipticProblem(
+def problem(points: int = 2) -> wl.Problem:
+    return wl.Problem.ellipse(
         a=Q(6, "mm"),
         b=Q(4, "mm"),
         normal_force=Q(np.linspace(50, 100, points), "kN"),

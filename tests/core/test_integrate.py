@@ -167,10 +167,10 @@ def test_slip_is_summed_in_blocks() -> None:
 
 
 def test_each_block_is_told_with_its_forces() -> None:
-    told: list[tuple[wl.LineProblem, dict[str, Array]]] = []
+    told: list[tuple[wl.Problem, dict[str, Array]]] = []
     problem = Points(seed=16, size=BLOCK + 10).problem
 
-    def on_block(part: wl.LineProblem, columns: dict[str, Array]) -> None:
+    def on_block(part: wl.Problem, columns: dict[str, Array]) -> None:
         told.append((part, dict(columns)))
 
     integrate.integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells", on_block)

@@ -144,7 +144,7 @@ class Celled(wl.ContactModel):
         # Where slip begins in a cell is as good as random; q·s, and at the edges p, grow like square roots.
         return 1.0 / self.cells
 
-    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.Problem) -> wl.Contact:
         return LINE_MODELS["exact"].at(problem, uniform_cells(problem.half_width, self.cells))
 
 
@@ -225,7 +225,7 @@ class Nan(Celled):
     name: ClassVar[str] = "nan"
     field: str
 
-    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.Problem) -> wl.Contact:
         contact = super().solve_line(problem)
         getattr(contact, self.field)[...] *= np.nan
         return contact

@@ -134,10 +134,10 @@ def test_a_model_whose_force_is_no_number_is_named() -> None:
         name = "nowhere"
         source = "a test"
 
-        def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+        def solve_line(self, problem: wl.Problem) -> wl.Contact:
             return wl.contact_model("global").solve(problem)
 
-        def tangential_force(self, problem: wl.LineProblem) -> wl.Array:
+        def tangential_force(self, problem: wl.Problem) -> wl.Array:
             return problem.creepage * np.nan
 
     contact = RIG | Nowhere()

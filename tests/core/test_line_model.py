@@ -25,11 +25,11 @@ SUM = 64.0 * EPS
 """A sum over the nodes of a zone, of which each carries some ten roundings that do not add up."""
 
 
-def mirrored(problem: wl.LineProblem) -> wl.LineProblem:
-    return dataclasses.replace(problem, creepage=-problem.creepage)
+def mirrored(problem: wl.Problem) -> wl.Problem:
+    return problem.replaced(longitudinal_creepage=-problem.creepage)
 
 
-def sweep(creepage: Array, **changes: Any) -> wl.LineProblem:
+def sweep(creepage: Array, **changes: Any) -> wl.Problem:
     conditions: Any = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46, **changes}
     return RIG.problem(creepage=Q(creepage, ""), **conditions)
 
@@ -40,16 +40,16 @@ class Bare(wl.LineContactModel):
     name: ClassVar[str] = "bare"
     source: ClassVar[str] = "the tests"
 
-    def slip_length(self, problem: wl.LineProblem) -> Array:
+    def slip_length(self, problem: wl.Problem) -> Array:
         return np.where(problem.creepage > 0.0, 2.0 * problem.half_width, 0.0)
 
-    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
+    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
         pressure = wl.hertz.pressure(nodes.x, problem.half_width, problem.max_pressure)
         bound = np.broadcast_to(problem.friction_coefficient * problem.max_pressure, nodes.x.shape)
         slip = np.broadcast_to(problem.creepage, nodes.x.shape)
         return wl.LineFields(pressure=pressure, traction=0.5 * bound, slip=slip, traction_bound=bound)
 
-    def tangential_force_per_width(self, problem: wl.LineProblem) -> Array:
+    def tangential_force_per_width(self, problem: wl.Problem) -> Array:
         force = problem.friction_coefficient * problem.max_pressure * problem.half_width
         return np.where(problem.creepage > 0.0, force, 0.0)
 
@@ -75,7 +75,7 @@ def test_a_model_with_nothing_but_the_required_methods_predicts_wear() -> None:
 
 @every_model
 @given(problem=line_problems())
-def test_the_force_has_the_sign_of_the_creepage_and_is_that_of_solve(name: str, problem: wl.LineProblem) -> None:
+def test_the_force_has_the_sign_of_the_creepage_and_is_that_of_solve(name: str, problem: wl.Problem) -> None:
     model = LINE_MODELS[name]
     force = model.tangential_force(problem)
     assert force == model.tangential_force_per_width(problem.forward()) * problem.track_width
@@ -86,7 +86,7 @@ def test_the_force_has_the_sign_of_the_creepage_and_is_that_of_solve(name: str, 
 
 @every_model
 @given(problem=line_problems())
-def test_the_zones_share_the_patch(name: str, problem: wl.LineProblem) -> None:
+def test_the_zones_share_the_patch(name: str, problem: wl.Problem) -> None:
     model, patch = LINE_MODELS[name], 2.0 * problem.half_width
     slip, stick = model.slip_zone(problem), model.stick_zone(problem)
     assert slip.length == model.slip_length(problem)
@@ -149,7 +149,7 @@ def test_closed_forms_take_batches_of_any_shape(name: str) -> None:
     model = LINE_MODELS[name]
     problem = sweep(np.geomspace(1e-4, 0.3, 12).reshape(3, 4))
     flat = problem.flatten()
-    methods: dict[str, Callable[[wl.LineProblem], Array | None]] = {
+    methods: dict[str, Callable[[wl.Problem], Array | None]] = {
         "slip_length": model.slip_length,
         "tangential_force_per_width": model.tangential_force_per_width,
         "excess_dissipation": lambda p: model.excess_dissipation(p, 1e6),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import functools
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -27,10 +26,10 @@ class Ramp(wl.LineContactModel):
     def exemptions(self) -> Mapping[wl.Claim, str]:
         return {"energy_balance": "slip and traction are not those of one theory"}
 
-    def slip_length(self, problem: wl.LineProblem) -> Array:
+    def slip_length(self, problem: wl.Problem) -> Array:
         return problem.half_width
 
-    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
+    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
         assert (problem.creepage >= 0).all()
         x = nodes.x
         slip = self.steepness * problem.creepage * np.maximum(x, 0.0) / problem.half_width
@@ -41,7 +40,7 @@ class Ramp(wl.LineContactModel):
             traction_bound=np.full_like(x, 1e9),
         )
 
-    def tangential_force_per_width(self, problem: wl.LineProblem) -> Array:
+    def tangential_force_per_width(self, problem: wl.Problem) -> Array:
         return problem.creepage * 1e6 * 2.0 * problem.half_width
 
 
@@ -108,7 +107,7 @@ def test_the_bases_are_abstract(base: type[Any]) -> None:
 @pytest.mark.parametrize("creepage", [[0.02], [-0.02], [0.02, -0.02, 0.0]])
 def test_negative_creepage_mirrors_traction_and_slip(creepage: list[float]) -> None:
     problem = RIG.problem(normal_force="7 kN", creepage=Q(creepage, ""), friction_coefficient=0.4)
-    forward = dataclasses.replace(problem, creepage=np.abs(problem.creepage))
+    forward = problem.replaced(longitudinal_creepage=np.abs(problem.creepage))
     mirrored, straight = Ramp().solve(problem), Ramp().solve(forward)
     sign = np.sign(problem.creepage)
     np.testing.assert_array_equal(mirrored.traction, sign[:, None] * straight.traction)
@@ -233,10 +232,10 @@ def test_what_a_model_knows_of_its_force_without_nodes_is_used() -> None:
         name = "knows"
         source = "a test"
 
-        def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+        def solve_line(self, problem: wl.Problem) -> wl.Contact:
             raise AssertionError("not needed")
 
-        def tangential_force(self, problem: wl.LineProblem) -> Array:
+        def tangential_force(self, problem: wl.Problem) -> Array:
             return 7e3 * problem.creepage
 
     contact = (RIG | Knows())(normal_force="7 kN", creepage=Q([1.0, 2.0], "%"), friction_coefficient=0.4)
@@ -247,7 +246,7 @@ def test_a_contact_model_that_breaks_its_contract_is_named_with_the_conditions()
     class Wrong(Ramp):
         name = "wrong"
 
-        def tangential_force_per_width(self, problem: wl.LineProblem) -> Array:
+        def tangential_force_per_width(self, problem: wl.Problem) -> Array:
             return problem.creepage * np.inf
 
     with pytest.raises(

@@ -52,7 +52,7 @@ class Roller(wl.Rig):
 
     def problem(
         self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike, friction_coefficient: ArrayLike = 0.4
-    ) -> wl.LineProblem:
+    ) -> wl.Problem:
         """Return the problem of a weight."""
         load = Q(wl.Unit("kg").si(mass, "mass") * 9.81, "N")
         return SUROS.problem(normal_force=load, creepage=creepage, friction_coefficient=friction_coefficient)
@@ -79,7 +79,7 @@ class OnRail(wl.Rig):
     source: ClassVar[str] = "a test"
     creepage: ClassVar[str] = "longitudinal_creepage"
 
-    def problem(self, *, mass: wl.QuantityLike, longitudinal_creepage: wl.QuantityLike) -> wl.EllipticProblem:
+    def problem(self, *, mass: wl.QuantityLike, longitudinal_creepage: wl.QuantityLike) -> wl.Problem:
         """Return the problem of a weight."""
         wheel = wl.WheelRail(
             wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s"
@@ -122,7 +122,7 @@ class Delegating(wl.Rig):
     name: ClassVar[str] = "delegating"
     source: ClassVar[str] = "a test"
 
-    def problem(self, **conditions: Any) -> wl.LineProblem:
+    def problem(self, **conditions: Any) -> wl.Problem:
         """Fail."""
         raise KeyError(*conditions)
 
@@ -180,7 +180,7 @@ def test_conditions_are_given_by_name() -> None:
 @pytest.mark.parametrize(
     ("what", "said"),
     [
-        (None, "rig 'returning' returned None, not a wearlaw.LineProblem"),
+        (None, "rig 'returning' returned None, not a wearlaw.Problem"),
         (KeyError("lost"), "rig 'returning' failed: KeyError: 'lost'"),
         (SystemExit(0), "rig 'returning' failed: SystemExit: 0"),
     ],

@@ -43,7 +43,7 @@ class Stated(wl.WearLaw):
         return 1e-9 * (w + np.maximum(w - 1e6, 0.0))
 
 
-def problem(creepage: Any, **changes: Any) -> wl.LineProblem:
+def problem(creepage: Any, **changes: Any) -> wl.Problem:
     conditions: Any = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46, **changes}
     return RIG.problem(creepage=Q(creepage, ""), **conditions)
 

@@ -35,11 +35,17 @@ def contact() -> wl.Contact:
     )
 
 
-def line_problem(shape: tuple[int, ...]) -> wl.LineProblem:
-    names = [field.name for field in dataclasses.fields(wl.LineProblem) if field.name != "traction_coefficient"]
+ARRAYS = [
+    field.name for field in dataclasses.fields(wl.Problem) if field.name not in ("geometry", "traction_coefficient")
+]
+
+
+def line_problem(shape: tuple[int, ...]) -> wl.Problem:
     size = int(np.prod(shape))
-    arrays = {name: np.arange(size, dtype=float).reshape(shape) + 10 * i for i, name in enumerate(names)}
-    return wl.LineProblem(**arrays)
+    arrays: dict[str, Any] = {
+        name: np.arange(size, dtype=float).reshape(shape) + 10 * i for i, name in enumerate(ARRAYS)
+    }
+    return wl.Problem(geometry="line", **arrays)
 
 
 def test_means_are_weighted_with_the_area() -> None:
@@ -77,11 +83,8 @@ def test_the_patch_mean_keeps_the_totals_in_one_node() -> None:
 
 
 def test_a_solution_on_a_line_stands_for_the_whole_track_width() -> None:
-    problem = dataclasses.replace(
-        line_problem((1,)),
-        normal_force_per_width=np.array([7e5]),
-        creepage=np.array([0.02]),
-        track_width=np.array([0.01]),
+    problem = line_problem((1,)).replaced(
+        normal_force=np.array([7e3]), longitudinal_creepage=np.array([0.02]), b=np.array([0.005])
     )
     node = np.array([[3.0]])
     fields = wl.LineFields(pressure=node, traction=node, slip=node, traction_bound=node)
@@ -109,28 +112,24 @@ def test_a_problem_is_indexed_and_flattened_in_all_its_arrays() -> None:
     part, flat = problem[1, ::2], problem.flatten()
     assert part.batch_shape == (2,)
     assert flat.batch_shape == (6,)
-    for field in dataclasses.fields(wl.LineProblem):
-        if field.name != "traction_coefficient":
-            np.testing.assert_array_equal(getattr(part, field.name), getattr(problem, field.name)[1, ::2])
-            np.testing.assert_array_equal(getattr(flat, field.name), getattr(problem, field.name).ravel())
+    for name in ARRAYS:
+        np.testing.assert_array_equal(getattr(part, name), getattr(problem, name)[1, ::2])
+        np.testing.assert_array_equal(getattr(flat, name), getattr(problem, name).ravel())
+    assert part.geometry == flat.geometry == "line"
     assert part.traction_coefficient is None
 
 
 def test_a_measured_traction_coefficient_is_indexed_too() -> None:
-    problem = dataclasses.replace(line_problem((4,)), traction_coefficient=np.array([0.1, 0.2, 0.3, 0.4]))
+    problem = line_problem((4,)).replaced(traction_coefficient=np.array([0.1, 0.2, 0.3, 0.4]))
     part = problem[2:].traction_coefficient
     assert part is not None
     np.testing.assert_array_equal(part, [0.3, 0.4])
 
 
 def test_areas_and_forces_of_a_problem_take_the_whole_width() -> None:
-    problem = dataclasses.replace(
-        line_problem((1,)),
-        normal_force_per_width=np.array([7e5]),
-        half_width=np.array([3e-4]),
-        track_width=np.array([0.01]),
-    )
-    np.testing.assert_allclose(problem.normal_force, [7e3], rtol=1e-15)
+    problem = line_problem((1,)).replaced(normal_force=np.array([7e3]), a=np.array([3e-4]), b=np.array([0.005]))
+    np.testing.assert_allclose(problem.normal_force_per_width, [7e5], rtol=1e-15)
+    np.testing.assert_allclose(problem.track_width, [0.01], rtol=1e-15)
     np.testing.assert_allclose(problem.patch_area, [6e-6], rtol=1e-15)
 
 
@@ -146,7 +145,7 @@ def test_the_arrays_of_a_contact_are_given_by_name() -> None:
         made(*[np.zeros((1, 1))] * len(dataclasses.fields(wl.Contact)))
 
 
-@pytest.mark.parametrize("record", [contact(), line_problem((2,))], ids=["Contact", "LineProblem"])
+@pytest.mark.parametrize("record", [contact(), line_problem((2,))], ids=["Contact", "Problem"])
 def test_records_are_frozen(record: object) -> None:
     with pytest.raises(dataclasses.FrozenInstanceError):
         record.density = np.zeros(2)  # type: ignore[attr-defined]

@@ -42,7 +42,7 @@ def public_properties() -> set[str]:
 def test_properties_of_ellipses_say_so_on_a_line() -> None:
     result = PREDICT(creepage="1 %", **CONDITIONS)
     for name in OF_ELLIPSES:
-        with pytest.raises(wl.CompositionError, match="of elliptic contacts, and the patch is a line"):
+        with pytest.raises(wl.CompositionError, match="belongs to elliptic contacts, not to line contacts"):
             getattr(result, name)
 
 

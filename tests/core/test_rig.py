@@ -18,7 +18,7 @@ from tests.strategies import EPS
 from wearlaw import Q
 
 
-def problem(rig: wl.TwinDisc = RIG, **conditions: Any) -> wl.LineProblem:
+def problem(rig: wl.TwinDisc = RIG, **conditions: Any) -> wl.Problem:
     loads = {"normal_force", "normal_force_per_width", "max_pressure"}
     load: dict[str, Any] = {} if loads & set(conditions) else {"normal_force": "7.4143 kN"}
     given: dict[str, Any] = {"creepage": "1 %", "friction_coefficient": 0.46, **load, **conditions}

@@ -20,7 +20,7 @@ ON_DISCS, ON_RAILS = (rig | wl.contact_model("fastsim") | LAW for rig in (wl.Twi
 MEANS = RAILS | wl.contact_model("polach") | LAW
 
 
-def offered(predict: wl.Pipeline[..., Any], given: dict[str, Any], wrong: str = "none") -> tuple[str, list[str]]:
+def offered(predict: wl.Pipeline[...], given: dict[str, Any], wrong: str = "none") -> tuple[str, list[str]]:
     """Return the message about an output that does not exist, and what it offers."""
     with pytest.raises(wl.InputError, match=f"outputs: there is no '{wrong}'") as refusal:
         wl.sweep(predict, **given, outputs=[wrong])
@@ -29,7 +29,7 @@ def offered(predict: wl.Pipeline[..., Any], given: dict[str, Any], wrong: str = 
 
 
 @pytest.mark.parametrize(("predict", "given"), [(ON_DISCS, LINE), (ON_RAILS, ELLIPSE), (MEANS, ELLIPSE)])
-def test_every_output_that_is_offered_is_taken(predict: wl.Pipeline[..., Any], given: dict[str, Any]) -> None:
+def test_every_output_that_is_offered_is_taken(predict: wl.Pipeline[...], given: dict[str, Any]) -> None:
     _, known = offered(predict, given)
     ds = wl.sweep(predict, **given, outputs=known)
     assert list(ds.data_vars) == known
@@ -61,7 +61,7 @@ def test_conditions_are_no_outputs(outputs: list[str]) -> None:
 
 
 @pytest.mark.parametrize(("predict", "given"), [(ON_DISCS, LINE), (ON_RAILS, ELLIPSE)])
-def test_the_contact_alone_is_swept_without_a_law(predict: wl.Pipeline[..., Any], given: dict[str, Any]) -> None:
+def test_the_contact_alone_is_swept_without_a_law(predict: wl.Pipeline[...], given: dict[str, Any]) -> None:
     contact = predict.without_law()
     alone, both = (wl.sweep(one, **given, outputs=["tangential_force"]) for one in (contact, predict))
     # The same forces by another way: fastsim's in closed form on a line, else the same sums.

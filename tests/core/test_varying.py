@@ -55,7 +55,7 @@ def points(count: int) -> tuple[Any, Any]:
     return problem, rng
 
 
-def rates(model: wl.ContactModel, law: wl.WearLaw, values: Mapping[str, Any], problem: wl.LineProblem) -> Any:
+def rates(model: wl.ContactModel, law: wl.WearLaw, values: Mapping[str, Any], problem: wl.Problem) -> Any:
     p = {**law.numbers, **{name: si[:, None] for name, si in values.items()}}
     return integrate_wear(model, law, problem, model.scale, p=p).wear_rate
 

@@ -277,7 +277,7 @@ class Lost(Strips):
 
     name = "lost"
 
-    def solve_ellipse(self, problem: wl.EllipticProblem) -> wl.EllipticContact:
+    def solve_ellipse(self, problem: wl.Problem) -> wl.EllipticContact:
         return super().solve_ellipse(problem).replaced(moment_z=np.full(problem.batch_shape, np.nan))
 
 

@@ -34,14 +34,14 @@ GIVEN: dict[str, Any] = {
 }
 
 
-def ellipse(**changes: Any) -> wl.EllipticProblem:
+def ellipse(**changes: Any) -> wl.Problem:
     """Return a contact; creepages and spin as numbers in SI."""
     units = {"longitudinal_creepage": "", "lateral_creepage": "", "spin": "1/m"}
     changes = {name: Q(value, units[name]) if name in units else value for name, value in changes.items()}
-    return wl.EllipticProblem(**{**GIVEN, **changes})
+    return wl.Problem.ellipse(**{**GIVEN, **changes})
 
 
-def of_ratio(axis_ratio: float, poisson_ratio: float, **changes: Any) -> wl.EllipticProblem:
+def of_ratio(axis_ratio: float, poisson_ratio: float, **changes: Any) -> wl.Problem:
     """Return a contact with √(ab) = 6 mm."""
     root = axis_ratio**0.5
     return ellipse(a=Q(6 * root, "mm"), b=Q(6 / root, "mm"), poisson_ratio=poisson_ratio, **changes)
@@ -59,7 +59,7 @@ def initial_slopes(model: wl.ContactModel, axis_ratio: float, poisson_ratio: flo
     return forces / (80e9 * size**2 * small)
 
 
-def limit(problem: wl.EllipticProblem) -> Any:
+def limit(problem: wl.Problem) -> Any:
     """Return μN [N]."""
     return problem.friction_coefficient * problem.normal_force
 
@@ -72,7 +72,7 @@ def creepages() -> st.SearchStrategy[float]:
 
 
 @st.composite
-def ellipses(draw: st.DrawFn) -> wl.EllipticProblem:
+def ellipses(draw: st.DrawFn) -> wl.Problem:
     """Return contacts of any slenderness, with creepages and spin of any sign and size."""
     return of_ratio(
         10.0 ** draw(st.floats(-1.5, 1.5)),

@@ -23,7 +23,7 @@ class Reference:
     """Operating points with their forces [N] and Tγ [N]."""
 
     names: list[str]
-    problem: wl.EllipticProblem
+    problem: wl.Problem
     force_x: Array
     force_y: Array
     wear_index: Array
@@ -62,7 +62,7 @@ def creep_curve() -> Reference:
     """Return a locomotive wheel in pure longitudinal creepage from 1e-5 to 0.25, at a = b/2, by the full theory."""
     table = rows("creep_curve.csv")
     creepage, force = (np.array([float(row[column]) for row in table]) for column in ("xi", "fx"))
-    problem = wl.EllipticProblem(
+    problem = wl.Problem.ellipse(
         a=Q(6.304, "mm"),
         b=Q(12.61, "mm"),
         normal_force=Q(106.7, "kN"),
@@ -83,7 +83,7 @@ def spheres(method: str) -> Reference:
     def column(name: str) -> Array:
         return np.array([float(row[name]) for row in table])
 
-    problem = wl.EllipticProblem(
+    problem = wl.Problem.ellipse(
         a=Q(6, "mm"),
         b=Q(6, "mm"),
         normal_force=Q(100, "kN"),

@@ -40,7 +40,7 @@ STILL: dict[str, Any] = {
 }
 
 
-def usfd(model: wl.ContactModel) -> wl.Pipeline[..., wl.EllipticProblem]:
+def usfd(model: wl.ContactModel) -> wl.Pipeline[...]:
     with pytest.warns(wl.CalibrationWarning, match="fitted for line contacts"):
         return RIG | model | wl.wear_law("usfd")
 
@@ -58,7 +58,7 @@ def si(quantity: wl.Quantity, unit: str) -> Array:
 @given(problem=ellipses())
 @every_model
 def test_mirrored_and_reversed_creepages_mirror_and_reverse_the_forces(
-    model: wl.ContactModel, problem: wl.EllipticProblem
+    model: wl.ContactModel, problem: wl.Problem
 ) -> None:
     along, across, spin = problem.longitudinal_creepage, problem.lateral_creepage, problem.spin
     found = dataclasses.astuple(model.creep_forces(problem))
@@ -70,7 +70,7 @@ def test_mirrored_and_reversed_creepages_mirror_and_reverse_the_forces(
 
 @given(problem=ellipses())
 @every_model
-def test_the_contact_is_one_node_of_means(model: wl.ContactModel, problem: wl.EllipticProblem) -> None:
+def test_the_contact_is_one_node_of_means(model: wl.ContactModel, problem: wl.Problem) -> None:
     contact, forces = model.solve(problem), model.creep_forces(problem)
     assert contact.pressure.shape == (1, 1)
     area = problem.patch_area

@@ -19,15 +19,15 @@ PRINTED = wl.contact_model("exact", slip="as_printed")
 SUROS = wl.TwinDisc.suros()
 
 
-def problem_at(percent: float) -> wl.LineProblem:
+def problem_at(percent: float) -> wl.Problem:
     return SUROS.problem(normal_force="7.4143 kN", creepage=Q(percent, "%"), friction_coefficient=0.46)
 
 
-def fields_at(model: wl.ContactModel, problem: wl.LineProblem, x: float) -> wl.LineFields:
+def fields_at(model: wl.ContactModel, problem: wl.Problem, x: float) -> wl.LineFields:
     return line.fields_at(model, problem, np.array([x]))
 
 
-def literal(problem: wl.LineProblem, x: float) -> tuple[float, float]:
+def literal(problem: wl.Problem, x: float) -> tuple[float, float]:
     """Return traction and slip as the corrected eqs. (7) and (8) of Tassini et al. write them, to 60 digits."""
     with mpmath.workdps(60):
         a, p0, radius = (
@@ -52,7 +52,7 @@ def literal(problem: wl.LineProblem, x: float) -> tuple[float, float]:
     roundings=16,
 )
 @given(problem=line_problems(), where=log_uniform(1e-3, 1.0))
-def test_the_fields_are_the_corrected_equations_7_and_8(problem: wl.LineProblem, where: float, roundings: int) -> None:
+def test_the_fields_are_the_corrected_equations_7_and_8(problem: wl.Problem, where: float, roundings: int) -> None:
     x = float(problem.half_width) * (2.0 * where - 1.0) * (1.0 - 1e-6)
     traction, slip = literal(problem, x)
     fields = fields_at(EXACT, problem, x)
@@ -150,7 +150,7 @@ def test_both_slips_have_the_same_tractions_and_total() -> None:
     roundings=64,
 )
 @given(problem=line_problems())
-def test_the_stick_ratio_is_one_less_the_reduced_creepage(problem: wl.LineProblem, roundings: int) -> None:
+def test_the_stick_ratio_is_one_less_the_reduced_creepage(problem: wl.Problem, roundings: int) -> None:
     contact = EXACT.solve(problem)
     expected = max(1.0 - float(problem.creepage) / saturation_creepage(problem), 0.0)
     assert float(contact.stick_ratio) == pytest.approx(expected, abs=roundings * EPS)

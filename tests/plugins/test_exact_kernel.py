@@ -46,8 +46,9 @@ def whole(reduced: Array) -> Array:
 
 
 def apply(copy: str, reduced: Array, level: Array) -> Array:
-    """Return what a copy of the kernel gives in units where μ, p0, a and R are one."""
-    return COPIES[copy](reduced, *[np.ones_like(reduced)] * 4, level)
+    """Return what a copy of the kernel gives in units where μ, p0, a and R are one, and E* = 2 p0 R/a is two."""
+    one = np.ones_like(reduced)
+    return COPIES[copy](reduced, one, one, one, 2.0 * one, level)
 
 
 @functools.cache
@@ -107,6 +108,7 @@ def test_values_in_si_are_reduced_as_in_the_literature() -> None:
     friction, pressure = random.uniform(0.05, 1.0, size), random.uniform(0.3e9, 4e9, size)
     half_width, radius = random.uniform(1e-4, 1e-2, size), random.uniform(5e-3, 0.5, size)
     columns = (crowded(random, size) * friction * half_width / radius, friction, pressure, half_width, radius)
+    modulus = 2.0 * pressure * radius / half_width
     threshold, expected, most = [], [], []
     with mpmath.workdps(DIGITS):
         for share, row in zip(shares(random, size), zip(*columns, strict=True), strict=True):
@@ -117,7 +119,7 @@ def test_values_in_si_are_reduced_as_in_the_literature() -> None:
             expected.append(float(unit * a * each.excess(threshold[-1] / unit)))
             most.append(float(unit * a * each.excess(0.0)))
     for copy, formula in COPIES.items():
-        error = np.abs(formula(*columns, np.array(threshold)) - expected)
+        error = np.abs(formula(*columns[:-1], modulus, np.array(threshold)) - expected)
         # Three roundings make d, of which the energy is the square at most, four the level, and four the product.
         assert (error <= (ROUNDINGS + (2 * 3 + 4 + 4) * 0.5 * EPS) * np.array(most)).all(), copy
 

@@ -28,7 +28,7 @@ every_configuration = pytest.mark.parametrize(("bound", "flexibility"), CONFIGUR
 PERCENT = [1e-3, 0.1, 0.5, 1.0, 1.8, 1.85, 5.0, 25.0]
 
 
-def problem_at(percent: float) -> wl.LineProblem:
+def problem_at(percent: float) -> wl.Problem:
     return wl.TwinDisc.suros().problem(normal_force="7.4143 kN", creepage=Q(percent, "%"), friction_coefficient=0.46)
 
 
@@ -38,13 +38,13 @@ def fastsim(bound: Bound, flexibility: Flexibility) -> wl.LineContactModel:
     return model
 
 
-def flexibility_of(problem: wl.LineProblem, flexibility: Flexibility) -> float:
+def flexibility_of(problem: wl.Problem, flexibility: Flexibility) -> float:
     """Return L [m³/N]: 4a/(πE*), or Kalker's 8a/(3 C11 G) in the limit of a long ellipse, 32a/(3π²E*)."""
     a, modulus = float(problem.half_width), float(problem.effective_modulus)
     return 4.0 * a / (math.pi * modulus) if flexibility == "line" else 32.0 * a / (3.0 * math.pi**2 * modulus)
 
 
-def bound_at(problem: wl.LineProblem, bound: Bound, x: Array) -> Array:
+def bound_at(problem: wl.Problem, bound: Bound, x: Array) -> Array:
     """Return μ p2 with the load P of Hertz's pressure."""
     a, load = float(problem.half_width), float(problem.normal_force_per_width)
     inside = np.maximum(1.0 - (x / a) ** 2, 0.0)
@@ -52,7 +52,7 @@ def bound_at(problem: wl.LineProblem, bound: Bound, x: Array) -> Array:
     return float(problem.friction_coefficient) * shape
 
 
-def march(problem: wl.LineProblem, bound: Bound, flexibility: Flexibility, cells: int) -> tuple[Array, Array, Array]:
+def march(problem: wl.Problem, bound: Bound, flexibility: Flexibility, cells: int) -> tuple[Array, Array, Array]:
     """Return positions, traction and slip by the march of Tassini et al. 2010, eqs. (12) and (13), cell by cell.
 
     From the leading edge each cell adds ξ dx/L to the traction of the one before and is cut off at the bound; the
@@ -237,7 +237,7 @@ def test_the_two_flexibilities_differ_by_the_known_factor(line: float, kalker: f
 
 
 @given(problem=line_problems())
-def test_the_parabola_exceeds_friction_times_pressure_in_the_middle_only(problem: wl.LineProblem) -> None:
+def test_the_parabola_exceeds_friction_times_pressure_in_the_middle_only(problem: wl.Problem) -> None:
     contact = fastsim("parabolic", "line").at(problem, uniform_cells(problem.half_width, 401))
     ratio = contact.traction_bound / (problem.friction_coefficient * contact.pressure)
     # 3/4 P/a (1-t²) over (2/π) P/a √(1-t²)

@@ -75,7 +75,7 @@ def test_fastsim_with_spin_leaves_the_power_of_the_half_space_as_documented(
 def test_slip_and_traction_of_fastsim_are_not_parallel(circle: float, slender: float) -> None:
     angle = np.radians(np.linspace(0.0, 90.0, 901))
     for ratio, most in ((1.0, circle), (0.1, slender)):
-        problem = wl.EllipticProblem(
+        problem = wl.Problem.ellipse(
             a=Q(5e-3 * ratio**0.5, "m"), b=Q(5e-3 / ratio**0.5, "m"), normal_force=Q(80, "kN"),
             shear_modulus=Q(82, "GPa"), poisson_ratio=0.28, friction_coefficient=0.3,
             longitudinal_creepage=Q(0.9 * np.cos(angle), ""), lateral_creepage=Q(0.9 * np.sin(angle), ""),

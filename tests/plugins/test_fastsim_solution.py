@@ -17,7 +17,7 @@ BOUNDS: tuple[Bound, ...] = ("elliptic", "parabolic")
 MARCHES: tuple[Literal["adaptive", "uniform"], ...] = ("adaptive", "uniform")
 
 
-def two_loads() -> wl.EllipticProblem:
+def two_loads() -> wl.Problem:
     """Two ellipses that slip in part, a/b = 1/2 and larger."""
     return ellipse(a=Q([3.0, 4.0], "mm"), longitudinal_creepage=np.array([1e-3, 2e-3]), lateral_creepage=5e-4, spin=0.2)
 

@@ -24,7 +24,7 @@ CONDITIONS = {"normal_force": Q(7.4143, "kN"), "friction_coefficient": 0.46}
 
 
 @given(problem=line_problems())
-def test_the_one_cell_holds_the_patch_means(problem: wl.LineProblem) -> None:
+def test_the_one_cell_holds_the_patch_means(problem: wl.Problem) -> None:
     contact = wl.contact_model("global").solve(problem)
     area = float(2.0 * problem.half_width * problem.track_width)
     assert contact.pressure.shape == (1,)
@@ -36,7 +36,7 @@ def test_the_one_cell_holds_the_patch_means(problem: wl.LineProblem) -> None:
 
 
 @given(problem=line_problems())
-def test_the_total_is_that_of_carter_by_default(problem: wl.LineProblem) -> None:
+def test_the_total_is_that_of_carter_by_default(problem: wl.Problem) -> None:
     reduced = min(float(problem.creepage) / saturation_creepage(problem), 1.0)
     # d (2-d), as 1-(1-d)² without its rounding at small d
     expected = float(problem.friction_coefficient * problem.normal_force) * reduced * (2.0 - reduced)
@@ -45,7 +45,7 @@ def test_the_total_is_that_of_carter_by_default(problem: wl.LineProblem) -> None
 
 @pytest.mark.parametrize("name", LINE_MODELS)
 @given(problem=line_problems())
-def test_the_total_is_that_of_the_model_it_is_taken_from(name: str, problem: wl.LineProblem) -> None:
+def test_the_total_is_that_of_the_model_it_is_taken_from(name: str, problem: wl.Problem) -> None:
     model = LINE_MODELS[name]
     contact = wl.contact_model("global", total_from=model).solve(problem)
     assert float(contact.tangential_force) == pytest.approx(float(model.solve(problem).tangential_force), rel=4 * EPS)
@@ -53,7 +53,7 @@ def test_the_total_is_that_of_the_model_it_is_taken_from(name: str, problem: wl.
 
 @given(problem=line_problems(), coefficient=log_uniform(1e-3, 1.0), sign=st.sampled_from([-1.0, 0.0, 1.0]))
 def test_a_measured_traction_coefficient_takes_the_place_of_the_theory(
-    problem: wl.LineProblem, coefficient: float, sign: float
+    problem: wl.Problem, coefficient: float, sign: float
 ) -> None:
     measured = dataclasses.replace(
         with_creepage(problem, sign * float(problem.creepage)), traction_coefficient=np.array(coefficient)

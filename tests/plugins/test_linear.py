@@ -41,7 +41,7 @@ def test_forces_and_moment_are_those_of_kalkers_table(
 
 
 @given(problem=ellipses())
-def test_twice_the_creepages_give_twice_the_forces(problem: wl.EllipticProblem) -> None:
+def test_twice_the_creepages_give_twice_the_forces(problem: wl.Problem) -> None:
     twice = problem.with_creepages(
         2.0 * problem.longitudinal_creepage, 2.0 * problem.lateral_creepage, 2.0 * problem.spin
     )

@@ -18,7 +18,7 @@ POLACH = wl.contact_model("polach")
 WET = wl.contact_model("polach", adhesion_reduction=0.3, slip_reduction=0.1)
 
 
-def published(problem: wl.EllipticProblem, k_a: float, k_s: float) -> tuple[float, float, float]:
+def published(problem: wl.Problem, k_a: float, k_s: float) -> tuple[float, float, float]:
     """Return Fx, Fy and the sum of what they are made of, as Polach (1999, 2005) prints them, from 60 digits.
 
     They are in the signs of the creepages.
@@ -59,7 +59,7 @@ def published(problem: wl.EllipticProblem, k_a: float, k_s: float) -> tuple[floa
 )
 @given(problem=ellipses(), k_a=st.floats(0.05, 1.0), share=st.floats(0.05, 1.0))
 def test_the_forces_are_those_of_the_published_equations(
-    problem: wl.EllipticProblem, k_a: float, share: float, roundings: int
+    problem: wl.Problem, k_a: float, share: float, roundings: int
 ) -> None:
     k_s = k_a * share
     found = wl.contact_model("polach", adhesion_reduction=k_a, slip_reduction=k_s).creep_forces(problem)
@@ -107,7 +107,7 @@ def test_pure_creepage_is_what_fastsim_converges_to(share: float) -> None:
     assert (np.abs(found - (force_200 - step)) < share * np.abs(step)).all()
 
 
-def gradient_of(problem: wl.EllipticProblem) -> Any:
+def gradient_of(problem: wl.Problem) -> Any:
     """Return ε of pure longitudinal creepage at a = b = 6 mm, ν = 1/4."""
     return 0.25 * np.pi * 80e9 * 36e-6 * 4.12 * problem.longitudinal_creepage / limit(problem)
 
@@ -128,7 +128,7 @@ def test_with_reduction_factors_full_slip_is_approached_as_the_creepage() -> Non
 
 
 @given(problem=ellipses())
-def test_the_force_stays_below_friction(problem: wl.EllipticProblem) -> None:
+def test_the_force_stays_below_friction(problem: wl.Problem) -> None:
     assert POLACH.creep_forces(problem).tangential <= limit(problem) * (1.0 + 8 * EPS)
 
 
@@ -171,9 +171,7 @@ def test_the_part_of_the_spin_rises_and_falls() -> None:
 )
 @given(problem=ellipses())
 @pytest.mark.parametrize("model", [POLACH, WET], ids=["1, 1", "0.3, 0.1"])
-def test_no_creepage_and_spin_give_back_energy(
-    model: wl.ContactModel, problem: wl.EllipticProblem, roundings: int
-) -> None:
+def test_no_creepage_and_spin_give_back_energy(model: wl.ContactModel, problem: wl.Problem, roundings: int) -> None:
     found = model.creep_forces(problem)
     terms = [
         problem.longitudinal_creepage * found.longitudinal,

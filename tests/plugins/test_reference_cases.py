@@ -15,13 +15,10 @@ DIGITS = 5e-3
 """Three digits are printed: half of the last one, of 1.00."""
 
 
-def carter() -> wl.LineProblem:
+def carter() -> wl.Problem:
     force, modulus, radius = 35780.0 / 0.2, 82e9 / (1.0 - 0.28), 0.5
-    half_width = np.sqrt(4.0 * force * radius / (np.pi * modulus))
     values = {
         "normal_force_per_width": force,
-        "half_width": half_width,
-        "max_pressure": 2.0 * force / (np.pi * half_width),
         "relative_radius": radius,
         "effective_modulus": modulus,
         "friction_coefficient": 0.3,
@@ -30,7 +27,7 @@ def carter() -> wl.LineProblem:
         "track_width": 0.2,
         "density": 7850.0,
     }
-    return wl.LineProblem(**{name: np.asarray(value) for name, value in values.items()})
+    return wl.Problem.line_from_si(**{name: np.asarray(value) for name, value in values.items()})
 
 
 def column(name: str) -> Array:
@@ -84,8 +81,8 @@ def test_carters_force_meets_the_half_space(share: float, within: float, printed
     assert force == pytest.approx(printed, abs=0.3 * 35780.0 * element)
 
 
-def locomotive(creepage: Array) -> wl.EllipticProblem:
-    return wl.EllipticProblem(
+def locomotive(creepage: Array) -> wl.Problem:
+    return wl.Problem.ellipse(
         a=Q(6.304, "mm"),
         b=Q(12.61, "mm"),
         normal_force=Q(106700, "N"),

@@ -38,7 +38,7 @@ def test_the_slopes_at_vanishing_creepage_are_kalkers(axis_ratio: float, poisson
     roundings=16,
 )
 @given(problem=ellipses())
-def test_the_force_is_the_published_cubic_of_the_linear_one(problem: wl.EllipticProblem, roundings: int) -> None:
+def test_the_force_is_the_published_cubic_of_the_linear_one(problem: wl.Problem, roundings: int) -> None:
     linear, found = LINEAR.creep_forces(problem), SHE.creep_forces(problem)
     u = float(linear.tangential / limit(problem))
     share = u - u**2 / 3.0 + u**3 / 27.0 if u <= 3.0 else 1.0
@@ -69,7 +69,7 @@ def test_full_slip_is_friction_times_load_at_three_times_the_linear_limit(angle:
 
 
 @given(problem=ellipses())
-def test_the_energy_is_a_sum_of_squares(problem: wl.EllipticProblem) -> None:
+def test_the_energy_is_a_sum_of_squares(problem: wl.Problem) -> None:
     c = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
     ab = problem.a * problem.b
     squares = (

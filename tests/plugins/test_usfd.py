@@ -144,7 +144,7 @@ def test_a_wrong_parameter_is_one_clear_error(options: dict[str, Any], message: 
         wl.wear_law("usfd", **options)
 
 
-def fits(fitted_for: str, contact: wl.Pipeline[..., wl.LineProblem]) -> bool:
+def fits(fitted_for: str, contact: wl.Pipeline[...]) -> bool:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         contact | wl.wear_law("usfd", fitted_for=fitted_for)  # type: ignore[unused-ignore]

@@ -28,7 +28,7 @@ class Cells(wl.ContactModel):
     def refined(self) -> Cells:
         return self.model_copy(update={"cells": 2 * self.cells})
 
-    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.Problem) -> wl.Contact:
         a, creepage = problem.half_width[..., None], problem.creepage[..., None]
         x = a * ((2.0 * np.arange(self.cells) + 1.0) / self.cells - 1.0)
         flexibility = 4.0 * a / (np.pi * problem.effective_modulus[..., None])
@@ -44,7 +44,7 @@ class Cells(wl.ContactModel):
         )
         return self.made(problem, fields, x, np.broadcast_to(2.0 * a / self.cells, x.shape))
 
-    def made(self, problem: wl.LineProblem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
+    def made(self, problem: wl.Problem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
         force = (fields.traction * length).sum(axis=-1)
         return wl.Contact.from_line(problem, fields, x=x, length=length, force_per_width=force)
 
@@ -52,14 +52,14 @@ class Cells(wl.ContactModel):
 class LosesEnergyOnAnyCells(Cells):
     """Half a per cent of the slip is missing, less than its accuracy, however fine the cells."""
 
-    def made(self, problem: wl.LineProblem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
+    def made(self, problem: wl.Problem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
         return super().made(problem, dataclasses.replace(fields, slip=0.995 * fields.slip), x, length)
 
 
 class ForceIsNoSumOnAnyCells(Cells):
     """The force is larger than the sum of the tractions by less than its accuracy, and the slip as much."""
 
-    def made(self, problem: wl.LineProblem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
+    def made(self, problem: wl.Problem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
         contact = super().made(problem, dataclasses.replace(fields, slip=1.003 * fields.slip), x, length)
         force, index = 1.003 * contact.tangential_force, 1.003 * contact.wear_index
         return dataclasses.replace(contact, tangential_force=force, wear_index=index)
@@ -68,7 +68,7 @@ class ForceIsNoSumOnAnyCells(Cells):
 class MoreTractionThanTheBoundOnAnyCells(Cells):
     """In slip, the traction is above its bound by half a per cent, less than the accuracy of the sums."""
 
-    def made(self, problem: wl.LineProblem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
+    def made(self, problem: wl.Problem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
         return super().made(problem, dataclasses.replace(fields, traction=1.005 * fields.traction), x, length)
 
 

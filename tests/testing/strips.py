@@ -33,16 +33,16 @@ class Strips(wl.ContactModel):
     def refined(self) -> Strips:
         return self.model_copy(update={"cells": 2 * self.cells, "strips": 2 * self.strips})
 
-    def solve_ellipse(self, problem: wl.EllipticProblem) -> wl.EllipticContact:
+    def solve_ellipse(self, problem: wl.Problem) -> wl.EllipticContact:
         # Chebyshev's quadrature of the second kind, exact for the area.
         angle = np.pi * np.arange(1, self.strips + 1) / (self.strips + 1)
         return self.at(problem, -np.cos(angle), np.pi / (self.strips + 1) * np.sin(angle))
 
-    def on_strips(self, problem: wl.EllipticProblem, shares: Any) -> wl.EllipticContact | None:
+    def on_strips(self, problem: wl.Problem, shares: Any) -> wl.EllipticContact | None:
         edges = np.concatenate([[-1.0], 0.5 * (shares[1:] + shares[:-1]), [1.0]])
         return self.at(problem, shares, np.diff(edges))
 
-    def at(self, problem: wl.EllipticProblem, shares: Any, widths: Any) -> wl.EllipticContact:
+    def at(self, problem: wl.Problem, shares: Any, widths: Any) -> wl.EllipticContact:
         """Return the contact on strips at y = `shares` × b, which stand for `widths` × b."""
         a, b = problem.a[..., None, None], problem.b[..., None, None]
         known = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
@@ -118,7 +118,7 @@ class Means(wl.CreepForceModel):
     def exemptions(self) -> Any:
         return {"stick": "one node slips as a whole"}
 
-    def creep_forces(self, problem: wl.EllipticProblem) -> wl.CreepForces:
+    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
         known = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
         ab, lateral, spin = problem.a * problem.b, problem.lateral_creepage, problem.spin
         along, across, turning = (
@@ -134,6 +134,6 @@ class Means(wl.CreepForceModel):
         factor = self.factor(problem, reduced) * (1.0 - left + left**2 / 3.0) * 3.0 / np.maximum(reduced, 3.0)
         return wl.CreepForces(longitudinal=factor * along, lateral=factor * across, spin_moment=factor * turning)
 
-    def factor(self, problem: wl.EllipticProblem, reduced: Any) -> Any:
+    def factor(self, problem: wl.Problem, reduced: Any) -> Any:
         """Return what the forces are multiplied by; `reduced` is the force of linear theory over μN."""
         return np.ones_like(reduced)

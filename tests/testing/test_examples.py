@@ -17,7 +17,7 @@ def test_a_function_that_writes_into_its_examples_leaves_those_of_the_next_as_th
     for _ in range(2):
         seen.append([])
 
-        def examine(problem: wl.LineProblem) -> None:
+        def examine(problem: wl.Problem) -> None:
             seen[-1].append(float(problem.creepage))
             np.asarray(problem.creepage)[...] = np.nan
 

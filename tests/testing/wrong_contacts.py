@@ -18,18 +18,18 @@ class Wrapped(wl.ContactModel):
     name: ClassVar[str] = "wrapped"
     source: ClassVar[str] = "made up for the tests"
 
-    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.Problem) -> wl.Contact:
         contact: wl.Contact = Exact().solve(problem)
         return self.spoilt(contact, problem)
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return contact
 
 
 class OverBoundInOneNode(Wrapped):
     """One node carries a thousandth too much."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         traction = contact.traction.copy()
         traction[..., -1] *= 1.001
         return dataclasses.replace(contact, traction=traction)
@@ -38,21 +38,21 @@ class OverBoundInOneNode(Wrapped):
 class SlipsInStick(Wrapped):
     """A little slip everywhere."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return dataclasses.replace(contact, slip=contact.slip + 1e-9 * problem.creepage[..., None])
 
 
 class LosesEnergy(Wrapped):
     """One per cent of the slip is missing."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return dataclasses.replace(contact, slip=0.99 * contact.slip)
 
 
 class LosesEnergyAnywhere(Exact):  # type: ignore[misc]
     """A tenth of the slip is missing at any position, so that the energy is not there however fine the cells."""
 
-    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
+    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
         fields: wl.LineFields = super().fields(problem, nodes)
         return dataclasses.replace(fields, slip=0.9 * fields.slip)
 
@@ -60,17 +60,17 @@ class LosesEnergyAnywhere(Exact):  # type: ignore[misc]
 class SlipAgainstTraction(Wrapped):
     """The slip has the opposite sign."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return dataclasses.replace(contact, slip=-contact.slip)
 
 
 class _ForceScaled(Wrapped):
     """Base of models whose force is wrong by a factor, consistently."""
 
-    def factor(self, problem: wl.LineProblem) -> Any:
+    def factor(self, problem: wl.Problem) -> Any:
         raise NotImplementedError
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         factor = self.factor(problem)
         return dataclasses.replace(
             contact,
@@ -80,7 +80,7 @@ class _ForceScaled(Wrapped):
         )
 
 
-def reduced(problem: wl.LineProblem) -> Any:
+def reduced(problem: wl.Problem) -> Any:
     """Return ξR/(μa)."""
     return np.abs(problem.creepage) * problem.relative_radius / (problem.friction_coefficient * problem.half_width)
 
@@ -88,56 +88,56 @@ def reduced(problem: wl.LineProblem) -> Any:
 class NotQuiteFullSlip(_ForceScaled):
     """A hundred-thousandth is missing in full slip."""
 
-    def factor(self, problem: wl.LineProblem) -> Any:
+    def factor(self, problem: wl.Problem) -> Any:
         return np.full(problem.batch_shape, 1.0 - 1e-5)
 
 
 class AboveFriction(_ForceScaled):
     """A millionth more than friction allows."""
 
-    def factor(self, problem: wl.LineProblem) -> Any:
+    def factor(self, problem: wl.Problem) -> Any:
         return np.full(problem.batch_shape, 1.0 + 1e-6)
 
 
 class JumpsIntoFullSlip(_ForceScaled):
     """The force lacks a per mille below full slip."""
 
-    def factor(self, problem: wl.LineProblem) -> Any:
+    def factor(self, problem: wl.Problem) -> Any:
         return np.where(reduced(problem) < 1.0, 0.999, 1.0)
 
 
 class StepsIntoFullSlip(_ForceScaled):
     """The force lacks a millionth just below full slip."""
 
-    def factor(self, problem: wl.LineProblem) -> Any:
+    def factor(self, problem: wl.Problem) -> Any:
         return np.where(reduced(problem) < 1.0, 1.0 - 1e-6 * reduced(problem) ** 4, 1.0)
 
 
 class WrongInitialSlope(_ForceScaled):
     """Too soft at first by 1e-8, right in full slip."""
 
-    def factor(self, problem: wl.LineProblem) -> Any:
+    def factor(self, problem: wl.Problem) -> Any:
         return 1.0 - 1e-8 * np.maximum(1.0 - reduced(problem), 0.0)
 
 
 class FallsWithCreepage(_ForceScaled):
     """Friction that falls with creepage."""
 
-    def factor(self, problem: wl.LineProblem) -> Any:
+    def factor(self, problem: wl.Problem) -> Any:
         return 1.0 / (1.0 + 0.1 * reduced(problem))
 
 
 class NotSimilar(_ForceScaled):
     """Depends on the rolling speed."""
 
-    def factor(self, problem: wl.LineProblem) -> Any:
+    def factor(self, problem: wl.Problem) -> Any:
         return 1.0 / (1.0 + 1e-6 * problem.rolling_speed)
 
 
 class CountsTenThousandths(Wrapped):
     """Slips less by 1e-12 where the creepage is an odd number of ten-thousandths."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         factor = np.where((1e4 * problem.creepage) % 2.0 == 1.0, 1.0 - 1e-12, 1.0)
         return dataclasses.replace(contact, slip=contact.slip * factor[..., None])
 
@@ -145,14 +145,14 @@ class CountsTenThousandths(Wrapped):
 class NotOdd(_ForceScaled):
     """A thousandth less in braking."""
 
-    def factor(self, problem: wl.LineProblem) -> Any:
+    def factor(self, problem: wl.Problem) -> Any:
         return np.where(problem.creepage < 0, 0.999, 1.0)
 
 
 class BatchLeakOfForce(_ForceScaled):
     """Depends on the largest creepage of the batch."""
 
-    def factor(self, problem: wl.LineProblem) -> Any:
+    def factor(self, problem: wl.Problem) -> Any:
         return 1.0 - 1e-6 * (np.abs(problem.creepage) < np.abs(problem.creepage).max())
 
 
@@ -162,7 +162,7 @@ SOLVED: list[int] = []
 class KeepsStateOfContact(_ForceScaled):
     """Softer with each call."""
 
-    def factor(self, problem: wl.LineProblem) -> Any:
+    def factor(self, problem: wl.Problem) -> Any:
         SOLVED.append(1)
         return np.full(problem.batch_shape, 1.0 - 1e-12 * len(SOLVED))
 
@@ -170,7 +170,7 @@ class KeepsStateOfContact(_ForceScaled):
 class SinglePrecisionForce(_ForceScaled):
     """The force is rounded to single precision."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         force = contact.tangential_force.astype(np.float32).astype(np.float64)
         return dataclasses.replace(contact, tangential_force=force)
 
@@ -178,21 +178,21 @@ class SinglePrecisionForce(_ForceScaled):
 class ForgetsWidth(Wrapped):
     """The areas are those of one metre of width."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return dataclasses.replace(contact, area=contact.area / problem.track_width[..., None])
 
 
 class HalfThePressure(Wrapped):
     """The pressure carries half the load."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return dataclasses.replace(contact, pressure=0.5 * contact.pressure)
 
 
 class ForceOfItsOwn(Wrapped):
     """The force is not the sum of the tractions."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         force = contact.tangential_force * 0.999
         return dataclasses.replace(contact, tangential_force=force, wear_index=force * problem.creepage)
 
@@ -200,21 +200,21 @@ class ForceOfItsOwn(Wrapped):
 class WearIndexOffset(Wrapped):
     """The wear index has an offset of 1e-7 N, also at zero creepage."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return dataclasses.replace(contact, wear_index=contact.wear_index + 1e-7)
 
 
 class WearIndexTwice(Wrapped):
     """The wear index is twice what it is."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return dataclasses.replace(contact, wear_index=2.0 * contact.wear_index)
 
 
 class NaNWithoutCreepage(Wrapped):
     """Divides zero by zero in free rolling."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         with np.errstate(invalid="ignore"):
             share = problem.creepage / problem.creepage
         return dataclasses.replace(contact, tangential_force=contact.tangential_force * share)
@@ -223,7 +223,7 @@ class NaNWithoutCreepage(Wrapped):
 class NaNInField(Wrapped):
     """One node holds no number."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         traction = contact.traction.copy()
         traction[..., 0] = np.nan
         return dataclasses.replace(contact, traction=traction)
@@ -232,7 +232,7 @@ class NaNInField(Wrapped):
 class ChangesProblem(Wrapped):
     """Doubles the creepage in place."""
 
-    def solve_line(self, problem: wl.LineProblem) -> wl.Contact:
+    def solve_line(self, problem: wl.Problem) -> wl.Contact:
         contact: wl.Contact = Exact().solve(problem)
         np.multiply(problem.creepage, 2.0, out=problem.creepage)
         return contact
@@ -241,14 +241,14 @@ class ChangesProblem(Wrapped):
 class WrongBatchShape(Wrapped):
     """The force has an axis too many."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return dataclasses.replace(contact, tangential_force=contact.tangential_force[..., None])
 
 
 class ForgetsDensity(Wrapped):
     """The density is always that of steel."""
 
-    def spoilt(self, contact: wl.Contact, problem: wl.LineProblem) -> wl.Contact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return dataclasses.replace(contact, density=np.full(problem.batch_shape, 7850.0))
 
 

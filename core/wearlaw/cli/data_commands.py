@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from wearlaw.comparison.result import Comparison
     from wearlaw.figures.formats import FigureFormat
     from wearlaw.fitting.result import Fit
-    from wearlaw.line import LineProblem
     from wearlaw.pairs import Pair
     from wearlaw.pipeline import Pipeline
     from wearlaw.rigs.twin_disc import TwinDisc
@@ -130,9 +129,7 @@ def _fit(
         )
 
 
-def _with_law(
-    stage: Pipeline[..., LineProblem], text: str, given: dict[str, str], free: list[str], notes: Notes
-) -> Pipeline[..., LineProblem]:
+def _with_law(stage: Pipeline[...], text: str, given: dict[str, str], free: list[str], notes: Notes) -> Pipeline[...]:
     """Return the pipeline with the law to fit; what it was fitted for does not matter, but what it keeps does."""
     from wearlaw.cli.parsing import wear_law
     from wearlaw.parameters import numbers

@@ -16,7 +16,6 @@ from wearlaw.composition import needs_discs
 from wearlaw.errors import InputError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.fitting.result import Fit
-from wearlaw.line import LineProblem
 from wearlaw.notes import Notes
 from wearlaw.pipeline import Pipeline
 from wearlaw.tangential import Model
@@ -25,7 +24,7 @@ from wearlaw.wear_tests.tests import WearTests
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-Predictor: TypeAlias = Pipeline[..., LineProblem] | Fit
+Predictor: TypeAlias = Pipeline[...] | Fit
 """What predicts a wear rate."""
 
 
@@ -129,7 +128,7 @@ def _labels(models: Sequence[Model]) -> list[str]:
     return [found[distinct.index(model)] for model in models]
 
 
-def _pipeline(predictor: Predictor) -> Pipeline[..., LineProblem]:
+def _pipeline(predictor: Predictor) -> Pipeline[...]:
     found = predictor.predict if isinstance(predictor, Fit) else predictor
     assert isinstance(found, Pipeline)
     needs_discs(found.rig, "compare")

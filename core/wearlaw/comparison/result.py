@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from wearlaw.line import LineProblem
 
 COUNTS = ("tests", "without_ratio", "fitted")
 """The columns of a table that hold whole numbers."""
@@ -52,7 +51,7 @@ class Compared:
     """
 
     names: Names
-    pipeline: Pipeline[..., LineProblem]
+    pipeline: Pipeline[...]
     predicted: Array
     agreement: Agreement
     information: Information | None = None

@@ -9,7 +9,7 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.fitting.observations import Observations, predictions, wear_index_density
-from wearlaw.line import LineProblem
+from wearlaw.problem import Problem
 from wearlaw.units import Q, in_unit
 from wearlaw.variables import UNITS, label
 
@@ -74,12 +74,12 @@ def _fitted(fit: Fit, one: Observations, x: str) -> Curve:
     return Curve("fitted", along[order], best, low=low, high=high, points=not together)
 
 
-def _one_series(problem: LineProblem) -> bool:
+def _one_series(problem: Problem) -> bool:
     arrays = (problem.normal_force_per_width, problem.friction_coefficient)
     return all(np.ptp(array) <= SAME * np.abs(array).mean() for array in arrays)
 
 
-def _between(fit: Fit, one: Observations) -> LineProblem:
+def _between(fit: Fit, one: Observations) -> Problem:
     """Return operating points at the tests and between them, in the order of their creepage."""
     problem = one.problem
     order = np.argsort(np.abs(problem.creepage), kind="stable")
@@ -96,11 +96,11 @@ def _between(fit: Fit, one: Observations) -> LineProblem:
     }
     if problem.traction_coefficient is not None:
         conditions["traction_coefficient"] = filled(problem.traction_coefficient)
-    found: LineProblem = fit.predict.rig.checked_problem(conditions)
+    found: Problem = fit.predict.rig.checked_problem(conditions)
     return found
 
 
-def _along(fit: Fit, problem: LineProblem, x: str) -> Array:
+def _along(fit: Fit, problem: Problem, x: str) -> Array:
     si = np.abs(problem.creepage) if x == "creepage" else wear_index_density(fit.predict, problem)
     return in_unit(si, UNITS[x])
 

@@ -17,7 +17,6 @@ from wearlaw.fitting.observations import named
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.summary import summarise
 from wearlaw.fitting.task import Task
-from wearlaw.line import LineProblem
 from wearlaw.pipeline import Pipeline
 from wearlaw.units import QuantityLike
 from wearlaw.wear_tests.tests import WearTests
@@ -30,7 +29,7 @@ USABLE = 0.95
 
 
 def fit(
-    predict: Pipeline[..., LineProblem],
+    predict: Pipeline[...],
     tests: WearTests,
     free: Sequence[str],
     *,

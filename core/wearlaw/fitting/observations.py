@@ -14,8 +14,8 @@ from wearlaw.arrays import Array
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.integrate import integrate_forces, integrate_wear, patch_area
-from wearlaw.line import LineProblem
 from wearlaw.pipeline import Pipeline
+from wearlaw.problem import Problem
 from wearlaw.units import in_unit
 from wearlaw.variables import UNITS
 from wearlaw.wear_tests.tests import WearTests
@@ -43,7 +43,7 @@ class Observations:
         Those in which it was measured, each with a label.
     measured : ndarray, (n,)
         In SI.
-    problem : LineProblem
+    problem : Problem
         Their contact problems, with a batch of one axis, (n,).
     scatter : str
         How the measurements scatter.
@@ -52,10 +52,10 @@ class Observations:
     """
 
     observable: Observable
-    pipeline: Pipeline[..., LineProblem]
+    pipeline: Pipeline[...]
     tests: WearTests
     measured: Array
-    problem: LineProblem
+    problem: Problem
     scatter: Scatter
     unit: Array
 
@@ -81,7 +81,7 @@ class Observations:
 
 
 def predictions(
-    observable: Observable, pipeline: Pipeline[..., LineProblem], problem: LineProblem, values: Mapping[str, Array]
+    observable: Observable, pipeline: Pipeline[...], problem: Problem, values: Mapping[str, Array]
 ) -> Array:
     """Return wear rates [kg/m/m²] or traction coefficients at n operating points for many parameter sets.
 
@@ -90,7 +90,7 @@ def predictions(
     observable : str
         Which of the two.
     pipeline : Pipeline
-    problem : LineProblem
+    problem : Problem
         With a batch of one axis, (n,).
     values : mapping of str to ndarray, (sets,)
         Parameters in SI.
@@ -102,7 +102,7 @@ def predictions(
     sets, points = len(next(iter(values.values()))), problem.creepage.size
     problem = problem[np.tile(np.arange(points), sets)]
     if FRICTION in values:
-        problem = dataclasses.replace(problem, friction_coefficient=np.repeat(values[FRICTION], points))
+        problem = problem.replaced(friction_coefficient=np.repeat(values[FRICTION], points))
     of_law = {name: np.repeat(value, points)[:, None] for name, value in values.items() if name != FRICTION}
     model = pipeline.contact_model
     if observable == "traction_coefficient":
@@ -113,7 +113,7 @@ def predictions(
     return predicted.reshape(sets, points)
 
 
-def wear_index_density(pipeline: Pipeline[..., LineProblem], problem: LineProblem) -> Array:
+def wear_index_density(pipeline: Pipeline[...], problem: Problem) -> Array:
     """Return the patch mean of Tγ/A [N/m²], of the batch shape."""
     model = pipeline.contact_model
     force = integrate_forces(model, problem).longitudinal
@@ -122,7 +122,7 @@ def wear_index_density(pipeline: Pipeline[..., LineProblem], problem: LineProble
 
 
 def observe(
-    pipeline: Pipeline[..., LineProblem],
+    pipeline: Pipeline[...],
     tests: WearTests,
     friction: float | None,
     fits_friction: bool,
@@ -146,7 +146,7 @@ def observe(
 
 def _observe(
     observable: Observable,
-    pipeline: Pipeline[..., LineProblem],
+    pipeline: Pipeline[...],
     tests: WearTests,
     friction: float | None,
     fits_friction: bool,

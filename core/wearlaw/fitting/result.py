@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from wearlaw.figures.curves import FigureData
-    from wearlaw.line import LineProblem
     from wearlaw.pipeline import Pipeline
 
 
@@ -75,7 +74,7 @@ class Fit:
     confidence: float
     covariance: Array
     law: WearLaw | None
-    predict: Pipeline[..., LineProblem]
+    predict: Pipeline[...]
     tests: WearTests
     scatter: Scatter
     chi2: float

@@ -80,7 +80,7 @@ def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observatio
     if FRICTION not in values:
         return one
     friction = np.broadcast_to(values[FRICTION], one.measured.shape)
-    return dataclasses.replace(one, problem=dataclasses.replace(one.problem, friction_coefficient=friction))
+    return dataclasses.replace(one, problem=one.problem.replaced(friction_coefficient=friction))
 
 
 def _fitted_law(

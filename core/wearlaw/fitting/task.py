@@ -17,7 +17,6 @@ from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, named
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
 from wearlaw.fitting.observations import Observations, Scatter, observe
-from wearlaw.line import LineProblem
 from wearlaw.pipeline import Pipeline
 from wearlaw.units import QuantityLike, coefficient
 from wearlaw.wear_tests.tests import WearTests
@@ -36,7 +35,7 @@ LEAST_GROUP = 4
 class Task:
     """What is fitted to what, and the weights of the residuals."""
 
-    predict: Pipeline[..., LineProblem]
+    predict: Pipeline[...]
     tests: WearTests
     scatter: Scatter
     free: FreeParameters
@@ -46,7 +45,7 @@ class Task:
     @classmethod
     def of(
         cls,
-        predict: Pipeline[..., LineProblem],
+        predict: Pipeline[...],
         tests: WearTests,
         free: Sequence[str],
         friction: float | None,

@@ -15,10 +15,9 @@ from wearlaw.base_rig import Body, Rig, check_sizes
 from wearlaw.conditions import TWIN_DISC, TwinDiscConditions, condition_arrays
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError, UnitError
-from wearlaw.line import LineProblem
 from wearlaw.material import Material, steel
+from wearlaw.problem import Geometry, Problem
 from wearlaw.specification import MaterialField
-from wearlaw.tangential import Geometry
 from wearlaw.units import (
     Length,
     Q,
@@ -126,7 +125,7 @@ class TwinDisc(Rig):
         """Return the names of the conditions, of which some exclude each other."""
         return TWIN_DISC.names
 
-    def problem(self, **conditions: Unpack[TwinDiscConditions]) -> LineProblem:
+    def problem(self, **conditions: Unpack[TwinDiscConditions]) -> Problem:
         """Return the contact problem that the conditions of a test pose.
 
         Parameters
@@ -154,16 +153,16 @@ class TwinDisc(Rig):
             half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
             max_pressure = hertz.max_pressure(per_width, half_width)
         check_sizes({"half width": half_width, "max pressure": max_pressure}, arrays["friction_coefficient"])
-        shape = arrays["creepage"].shape
-        same = {name: np.broadcast_to(value, shape) for name, value in constants.items()} if shape else constants
-        return LineProblem(
-            normal_force_per_width=per_width,
-            half_width=half_width,
+        shape, same = arrays["creepage"].shape, self._same
+        return Problem(
+            geometry="line",
+            a=half_width,
+            normal_force=per_width * constants["track_width"],
             max_pressure=max_pressure,
             friction_coefficient=arrays["friction_coefficient"],
-            creepage=arrays["creepage"],
+            longitudinal_creepage=arrays["creepage"],
             traction_coefficient=arrays.get("traction_coefficient"),
-            **same,
+            **({name: np.broadcast_to(value, shape) for name, value in same.items()} if shape else same),
         )
 
     @property
@@ -185,18 +184,29 @@ class TwinDisc(Rig):
 
     @cached_property
     def _constants(self) -> dict[str, Any]:
-        """The fields of `LineProblem` that are the same for all operating points, as SI scalars."""
+        """What the rig itself sets, as SI scalars."""
         discs = (self.disc_1, self.disc_2)
         radii = (0.5 * scalar_si(disc.diameter, "m") for disc in discs)
-        elastic = ((scalar_si(d.material.youngs_modulus, "Pa"), d.material.poisson_ratio) for d in discs)
+        (e_1, nu_1), (e_2, nu_2) = (
+            (scalar_si(d.material.youngs_modulus, "Pa"), d.material.poisson_ratio) for d in discs
+        )
         values = {
             "relative_radius": hertz.relative_radius(*radii),
-            "effective_modulus": hertz.effective_modulus(*next(elastic), *next(elastic)),
+            "effective_modulus": hertz.effective_modulus(e_1, nu_1, e_2, nu_2),
+            "poisson_ratio": hertz.mean_poisson_ratio(e_1, nu_1, e_2, nu_2),
             "rolling_speed": scalar_si(self.rolling_speed, "m/s"),
             "track_width": scalar_si(self.track_width, "m"),
             "density": scalar_si(self.disc_1.material.density, "kg/m^3"),
         }
         return {name: np.float64(value) for name, value in values.items()}
+
+    @cached_property
+    def _same(self) -> dict[str, Any]:
+        """The fields of `Problem` that are the same at all operating points, as SI scalars."""
+        constants = self._constants
+        kept = ("effective_modulus", "poisson_ratio", "rolling_speed", "density")
+        none, b = np.float64(0.0), 0.5 * constants["track_width"]
+        return {**{name: constants[name] for name in kept}, "b": b, "lateral_creepage": none, "spin": none}
 
 
 def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:

@@ -12,10 +12,9 @@ from pydantic import Field, model_validator
 from wearlaw import hertz, hertz_ellipse
 from wearlaw.base_rig import Body, Rig, check_sizes
 from wearlaw.conditions import WHEEL_RAIL, WheelRailConditions, condition_arrays
-from wearlaw.ellipse import EllipticProblem
 from wearlaw.material import Material
+from wearlaw.problem import Geometry, Problem
 from wearlaw.specification import MaterialField
-from wearlaw.tangential import Geometry
 from wearlaw.units import Length, Quantity, QuantityLike, Speed, Unit, scalar_si
 
 Radius = Annotated[Quantity, Unit("mm", positive=False, infinite=True)]
@@ -93,7 +92,7 @@ class WheelRail(Rig):
         """Return the names of the conditions, of which some exclude each other."""
         return WHEEL_RAIL.names
 
-    def problem(self, **conditions: Unpack[WheelRailConditions]) -> EllipticProblem:
+    def problem(self, **conditions: Unpack[WheelRailConditions]) -> Problem:
         """Return the contact problem that the conditions pose.
 
         Parameters
@@ -138,7 +137,7 @@ class WheelRail(Rig):
             "density": scalar_si(self.material.density, "kg/m^3"),
         }
         shape = arrays["longitudinal_creepage"].shape
-        return EllipticProblem.from_si(
+        return Problem.ellipse_from_si(
             a=a, b=b, **arrays, **{name: np.broadcast_to(np.float64(value), shape) for name, value in same.items()}
         )
 

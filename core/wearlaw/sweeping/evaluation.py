@@ -39,7 +39,7 @@ class Job:
         As in `wearlaw.accelerate`, which is set in one process only.
     """
 
-    pipeline: Pipeline[..., Any]
+    pipeline: Pipeline[...]
     units: Mapping[str, str]
     accelerate: bool | None = field(default_factory=kernels.chosen)
 
@@ -94,7 +94,7 @@ def checksum(seen: Seen, outputs: Iterable[Array]) -> int:
     return found
 
 
-def notes(pipeline: Pipeline[..., Any], blocks: Iterable[Seen]) -> list[str]:
+def notes(pipeline: Pipeline[...], blocks: Iterable[Seen]) -> list[str]:
     """Return what a prediction of all blocks together would warn of."""
     every = list(blocks)
     watch = pipeline.range_watch()
@@ -110,7 +110,7 @@ def notes(pipeline: Pipeline[..., Any], blocks: Iterable[Seen]) -> list[str]:
     return [str(one.message) for one in caught]
 
 
-def output_units(pipeline: Pipeline[..., Any], points: Points, outputs: list[str]) -> dict[str, str]:
+def output_units(pipeline: Pipeline[...], points: Points, outputs: list[str]) -> dict[str, str]:
     """Return the unit in which each output is written, found by evaluating the first operating point.
 
     Raises

@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from contextlib import closing
-from typing import Any
 
 from wearlaw.arrays import Array
 from wearlaw.errors import RangeWarning
@@ -46,9 +45,7 @@ class Evaluator:
         self._workers = workers
         self._checkpoint = checkpoint
 
-    def __call__(
-        self, key: str, pipeline: Pipeline[..., Any], points: Points, outputs: Sequence[str]
-    ) -> dict[str, Array]:
+    def __call__(self, key: str, pipeline: Pipeline[...], points: Points, outputs: Sequence[str]) -> dict[str, Array]:
         """Return outputs in the units of `variables.UNITS`, of the shape of the points; `key` names them in the run."""
         job = Job(pipeline, {name: UNITS[name] for name in outputs})
         workers = min(self._workers, len(points.blocks()))

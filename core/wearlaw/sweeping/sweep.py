@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def sweep(
-    predict: Pipeline[..., Any],
+    predict: Pipeline[...],
     /,
     table: pandas.DataFrame | xarray.Dataset | None = None,
     *,
@@ -110,7 +110,7 @@ def sweep(
         return target.finish(texts)
 
 
-def _checked_job(pipeline: Pipeline[..., Any], points: Points, outputs: Sequence[str], elsewhere: bool) -> Job:
+def _checked_job(pipeline: Pipeline[...], points: Points, outputs: Sequence[str], elsewhere: bool) -> Job:
     """Return what is done at every point, once the outputs are found to be possible.
 
     Raises
@@ -126,7 +126,7 @@ def _checked_job(pipeline: Pipeline[..., Any], points: Points, outputs: Sequence
     return Job(pipeline, output_units(pipeline, points, list(dict.fromkeys(names))))
 
 
-def check_importable(pipeline: Pipeline[..., Any]) -> None:
+def check_importable(pipeline: Pipeline[...]) -> None:
     """Refuse models that other processes could not find.
 
     Raises
@@ -142,7 +142,7 @@ def check_importable(pipeline: Pipeline[..., Any]) -> None:
             )
 
 
-def _check_conditions(pipeline: Pipeline[..., Any], points: Points, not_given: Mapping[str, None]) -> None:
+def _check_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapping[str, None]) -> None:
     """Find what cannot be before anything is evaluated: each dimension at the first values of the others."""
     for dim in points.dims:
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)

@@ -1,8 +1,7 @@
 """The conformance kit: what every wear law and contact model must keep, and strategies to test your own code with.
 
 `checks` yields the checks of a model, `conformance` makes pytest tests of them. The strategies are also what
-hypothesis draws from for arguments typed `Material`, `TwinDisc`, `WheelRail`, `LineProblem`, `EllipticProblem` and
-`Contact`.
+hypothesis draws from for arguments typed `Material`, `TwinDisc`, `WheelRail`, `Problem` and `Contact`.
 """
 
 try:
@@ -20,6 +19,7 @@ from wearlaw.testing.strategies import (
     elliptic_problems,
     line_problems,
     materials,
+    problems,
     rigs,
     wheel_rails,
 )
@@ -33,6 +33,7 @@ __all__ = [
     "elliptic_problems",
     "line_problems",
     "materials",
+    "problems",
     "rigs",
     "wheel_rails",
 ]

@@ -8,14 +8,13 @@ exact as their cells, declare that as `accuracy`.
 from __future__ import annotations
 
 import copy
-import dataclasses
 from functools import partial
 
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
+from wearlaw.problem import Problem
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import Contact
 from wearlaw.tangential import QUADRATURE, ContactModel
@@ -32,18 +31,17 @@ from wearlaw.testing.shared_checks import (
 from wearlaw.testing.strategies import LINE_PROBLEMS, TWO_LINE_PROBLEMS
 
 
-def with_creepage(problem: LineProblem, creepage: Array | float) -> LineProblem:
+def with_creepage(problem: Problem, creepage: Array | float) -> Problem:
     """Return the problem at another creepage."""
-    return dataclasses.replace(problem, creepage=np.asarray(creepage, dtype=np.float64))
+    return problem.replaced(longitudinal_creepage=np.asarray(creepage, dtype=np.float64))
 
 
-def repeated(problem: LineProblem, shape: tuple[int, ...]) -> LineProblem:
+def repeated(problem: Problem, shape: tuple[int, ...]) -> Problem:
     """Return one operating point many times."""
-    fields = {f.name: getattr(problem, f.name) for f in dataclasses.fields(problem)}
-    return LineProblem(**{name: np.full(shape, value) for name, value in fields.items() if value is not None})
+    return problem.broadcast_to(shape)
 
 
-def saturation(problem: LineProblem) -> Array:
+def saturation(problem: Problem) -> Array:
     """Return μa/R, at which Carter's theory slips everywhere."""
     return problem.friction_coefficient * problem.half_width / problem.relative_radius
 
@@ -61,7 +59,7 @@ def error_of_traction(model: ContactModel) -> float:
     return error_of_force(model) if model.scale == "patch" else SAME
 
 
-def solutions(model: ContactModel, problem: LineProblem) -> list[Contact]:
+def solutions(model: ContactModel, problem: Problem) -> list[Contact]:
     """Return the contact on the model's own nodes and, where its fields are known anywhere, on uniform cells."""
     contacts = [model.solve(problem)]
     if isinstance(model, LineContactModel):
@@ -72,7 +70,7 @@ def solutions(model: ContactModel, problem: LineProblem) -> list[Contact]:
 def contact_has_the_shape_of_the_problem(model: ContactModel) -> None:
     """Totals have the batch shape, fields one more axis; without a batch axis, with one and with two."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         for shape in ((), (1,), (2, 3)):
             contact = model.solve(repeated(problem, shape))
             for name in ("normal_force", "tangential_force", "wear_index", "rolling_speed", "density"):
@@ -89,7 +87,7 @@ def contact_has_the_shape_of_the_problem(model: ContactModel) -> None:
 def contact_is_finite(model: ContactModel) -> None:
     """Every field and total is a finite number; the traction bound may be infinite."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         assert_finite(model.solve(problem))
 
     for_each(LINE_PROBLEMS, examine)
@@ -98,7 +96,7 @@ def contact_is_finite(model: ContactModel) -> None:
 def contact_carries_the_conditions(model: ContactModel) -> None:
     """Rolling speed, density and normal force are those of the problem."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         contact = model.solve(problem)
         for name in ("rolling_speed", "density", "normal_force"):
             assert_close(getattr(contact, name), getattr(problem, name), f"the {name} of the contact")
@@ -109,7 +107,7 @@ def contact_carries_the_conditions(model: ContactModel) -> None:
 def nodes_cover_the_patch(model: ContactModel) -> None:
     """Nodes lie in the patch, none has a negative area, and their areas sum to that of the patch."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         contact = model.solve(problem)
         assert (contact.area >= 0).all(), f"an area is negative: {contact.area.min()!r}"
         inside = np.abs(contact.x) <= problem.half_width * (1.0 + SAME)
@@ -122,7 +120,7 @@ def nodes_cover_the_patch(model: ContactModel) -> None:
 def pressure_sums_to_the_load(model: ContactModel) -> None:
     """The pressure is never negative, and pressure times area sums to the normal force."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         contact = model.solve(problem)
         assert (contact.pressure >= 0).all(), f"a pressure is negative: {contact.pressure.min()!r}"
         load = contact.sum_over_nodes(contact.pressure * contact.area)
@@ -134,7 +132,7 @@ def pressure_sums_to_the_load(model: ContactModel) -> None:
 def tractions_sum_to_the_force(model: ContactModel) -> None:
     """Traction times area sums to the tangential force."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         contact = model.solve(problem)
         allowed = model.accuracy * friction_limit(problem)
         force = contact.sum_over_nodes(contact.traction * contact.area)
@@ -146,7 +144,7 @@ def tractions_sum_to_the_force(model: ContactModel) -> None:
 def traction_and_slip_follow_the_creepage(model: ContactModel) -> None:
     """Traction and slip have the sign of the creepage or are zero, so that q·s is never negative."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         for sign in (-1.0, 1.0):
             for contact in solutions(model, with_creepage(problem, sign * problem.creepage)):
                 # The slip of full slip is a difference that vanishes at the leading edge, to rounding of the creepage.
@@ -157,16 +155,14 @@ def traction_and_slip_follow_the_creepage(model: ContactModel) -> None:
     for_each(LINE_PROBLEMS, examine)
 
 
-def random_problems(points: int) -> LineProblem:
+def random_problems(points: int) -> Problem:
     """Return discs of many sizes and stiffnesses under many loads, frictions and speeds; always the same ones."""
     random = np.random.default_rng(5)
     radius, modulus = 10.0 ** random.uniform(-3, 1, points), 10.0 ** random.uniform(9, 12, points)
     half_width = 2.0 * radius * 10.0 ** random.uniform(-5, np.log10(3e-2), points)
     friction = random.uniform(0.01, 1.5, points)
-    return LineProblem(
+    return Problem.line_from_si(
         normal_force_per_width=0.25 * np.pi * modulus * half_width**2 / radius,
-        half_width=half_width,
-        max_pressure=0.5 * modulus * half_width / radius,
         relative_radius=radius,
         effective_modulus=modulus,
         friction_coefficient=friction,
@@ -180,7 +176,7 @@ def random_problems(points: int) -> LineProblem:
 def batch_equals_loop(model: ContactModel) -> None:
     """All operating points at once give what one at a time gives."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         # Stick, full slip and none in one batch: the points that a batch must keep apart.
         factors = np.array([[1.0, 0.0, -1.0], [1e-3, 1e3, 1.0 + 1e-9]])
         batch = with_creepage(repeated(problem, factors.shape), problem.creepage * factors)
@@ -198,7 +194,7 @@ def batch_equals_loop(model: ContactModel) -> None:
 def problem_is_not_changed(model: ContactModel) -> None:
     """The model leaves the arrays of the problem as they are."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         batch = repeated(problem, (2,))
         before = copy.deepcopy(batch)
         model.solve(batch)
@@ -210,7 +206,7 @@ def problem_is_not_changed(model: ContactModel) -> None:
 def solutions_agree_to_the_bit(model: ContactModel) -> None:
     """The same problem gives the same contact again, with another problem in between."""
 
-    def examine(problems: tuple[LineProblem, LineProblem]) -> None:
+    def examine(problems: tuple[Problem, Problem]) -> None:
         assert_solved_alike(model, *problems)
 
     for_each(TWO_LINE_PROBLEMS, examine)
@@ -222,14 +218,17 @@ def solution_is_in_double_precision(model: ContactModel) -> None:
     assert_double(model.solve(problem))
     # An iteration that ends at 1e-10 moves a change of 1e-8 by a fiftieth; single precision, by six of it.
     rounding = min(error_of_force(model), 1e-10)
-    for name in ("creepage", "friction_coefficient", "half_width"):
+    for name in ("longitudinal_creepage", "friction_coefficient", "a"):
         lost_digits(
             partial(_force_with, model, problem, name), f"the tangential force loses digits of {name}", rounding
         )
 
 
-def _force_with(model: ContactModel, problem: LineProblem, name: str, factor: float) -> Array:
-    return model.solve(dataclasses.replace(problem, **{name: getattr(problem, name) * factor})).tangential_force
+def _force_with(model: ContactModel, problem: Problem, name: str, factor: float) -> Array:
+    changed = {name: getattr(problem, name) * factor}
+    if name == "a":  # by the load, as Hertz has it
+        changed |= {"max_pressure": problem.max_pressure * factor, "normal_force": problem.normal_force * factor**2}
+    return model.solve(problem.replaced(**changed)).tangential_force
 
 
 CHECKS = (

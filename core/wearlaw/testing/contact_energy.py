@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.line import LineProblem
 from wearlaw.line_model import LineContactModel
+from wearlaw.problem import Problem
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import Contact
 from wearlaw.tangential import QUADRATURE, ContactModel
@@ -30,7 +30,7 @@ REFINEMENTS = 3
 def slip_dissipates_the_energy_fed_in(model: ContactModel) -> None:
     """Traction times slip, summed over the patch, is the tangential force times the creepage."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         contact = model.solve(problem)
         slipping = contact.slip_area / contact.patch_area
         # Positions are exact to the rounding of a, so in a short slip zone q·s is that much less exact.
@@ -48,7 +48,7 @@ def _dissipated(contact: Contact) -> Array:
     return contact.sum_over_nodes(contact.wear_index_density * contact.area)
 
 
-def _many_problems() -> LineProblem:
+def _many_problems() -> Problem:
     problem = random_problems(MANY)
     # Nearer to zero, the slip zone is shorter than a cell.
     return with_creepage(problem, np.linspace(0.1, 1.2, MANY) * saturation(problem))

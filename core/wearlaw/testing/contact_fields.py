@@ -7,8 +7,8 @@ from typing import get_args
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.line import LineProblem
 from wearlaw.line_model import FieldVariable, LineContactModel
+from wearlaw.problem import Problem
 from wearlaw.quadrature import Nodes
 from wearlaw.testing.contact_checks import random_problems
 from wearlaw.testing.examples import SAME, SUM, assert_close
@@ -45,7 +45,7 @@ def slip_lies_in_the_slip_zone(model: LineContactModel) -> None:
 class _SlipZone:
     """A variable in the slip zones of some problems, by distances from the trailing edge."""
 
-    def __init__(self, model: LineContactModel, problem: LineProblem, variable: str) -> None:
+    def __init__(self, model: LineContactModel, problem: Problem, variable: str) -> None:
         self.model, self.problem, self.variable = model, problem, variable
         self.length = model.slip_length(problem)[:, None]
 

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.line import LineProblem
+from wearlaw.problem import Problem
 from wearlaw.tangential import ContactModel
 from wearlaw.testing.bisection import Indices, find_jumps
 from wearlaw.testing.contact_checks import (
@@ -25,7 +25,7 @@ from wearlaw.testing.strategies import LINE_PROBLEMS
 def force_is_odd_in_creepage(model: ContactModel) -> None:
     """The opposite creepage gives the opposite force and the same wear index."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         ahead, back = model.solve(problem), model.solve(with_creepage(problem, -problem.creepage))
         assert_close(-back.tangential_force, ahead.tangential_force, "minus the force at the opposite creepage")
         assert_close(back.wear_index, ahead.wear_index, "the wear index at the opposite creepage")
@@ -36,7 +36,7 @@ def force_is_odd_in_creepage(model: ContactModel) -> None:
 def force_grows_with_creepage(model: ContactModel) -> None:
     """The tangential force never falls when the creepage grows."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         growing = np.concatenate([[1.0], 1.0 + np.logspace(-12, 3, 31)])
         force = model.solve(
             with_creepage(repeated(problem, growing.shape), problem.creepage * growing)
@@ -51,7 +51,7 @@ def force_grows_with_creepage(model: ContactModel) -> None:
 def force_stays_below_friction(model: ContactModel) -> None:
     """The tangential force does not exceed μN."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         creepage = problem.creepage * np.logspace(0, 4, 9)
         force = model.solve(with_creepage(repeated(problem, creepage.shape), creepage)).tangential_force
         limit = friction_limit(problem) * (1.0 + error_of_force(model))
@@ -87,7 +87,7 @@ def force_is_continuous(model: ContactModel) -> None:
 def zero_creepage_gives_nothing(model: ContactModel) -> None:
     """Free rolling has no traction, no slip and no wear index."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         contact = model.solve(with_creepage(problem, 0.0))
         for name in ("traction", "slip", "tangential_force", "wear_index"):
             value = getattr(contact, name)
@@ -99,7 +99,7 @@ def zero_creepage_gives_nothing(model: ContactModel) -> None:
 def wear_index_is_force_times_creepage(model: ContactModel) -> None:
     """Tγ is the tangential force times the creepage."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         contact = model.solve(problem)
         assert_close(contact.wear_index, contact.tangential_force * problem.creepage, "the wear index")
 

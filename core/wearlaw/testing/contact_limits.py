@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from wearlaw.arrays import Array
-from wearlaw.line import LineProblem
+from wearlaw.problem import Problem
 from wearlaw.records import Contact
 from wearlaw.tangential import ContactModel
 from wearlaw.testing.contact_checks import (
@@ -24,7 +24,7 @@ from wearlaw.testing.strategies import LINE_PROBLEMS, TWO_LINE_PROBLEMS, log_uni
 def traction_keeps_its_bound(model: ContactModel) -> None:
     """The magnitude of the traction does not exceed the bound at any node."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         for contact in solutions(model, problem):
             over = np.abs(contact.traction) > contact.traction_bound * (1.0 + error_of_traction(model))
             share = np.abs(contact.traction[over]) / contact.traction_bound[over]
@@ -36,7 +36,7 @@ def traction_keeps_its_bound(model: ContactModel) -> None:
 def what_sticks_does_not_slip(model: ContactModel) -> None:
     """There is no slip where the traction is below its bound."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         for contact in solutions(model, problem):
             below = np.abs(contact.traction) < contact.traction_bound * (1.0 - SAME)
             wrong = below & (contact.slip != 0)
@@ -48,7 +48,7 @@ def what_sticks_does_not_slip(model: ContactModel) -> None:
 def full_slip_is_reached(model: ContactModel) -> None:
     """At 100 times the creepage of Carter's full slip, μa/R, the force is μN and every node slips at its bound."""
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
         contact = model.solve(with_creepage(problem, 100.0 * saturation(problem)))
         assert_close(contact.tangential_force, friction_limit(problem), "the force in full slip", error_of_force(model))
         assert_close(contact.traction, contact.traction_bound, "the traction in full slip", error_of_traction(model))
@@ -65,7 +65,7 @@ def full_slip_is_met_from_both_sides(model: ContactModel) -> None:
     onset of the theories of contact: from 1e-4 to 1e-8 of it, to a hundredth.
     """
 
-    def examine(problem: LineProblem) -> None:
+    def examine(problem: Problem) -> None:
 
         def solved(creepage: Array) -> Contact:
             return model.solve(with_creepage(problem, creepage))
@@ -87,7 +87,7 @@ AT_SMALL_CREEPAGES = st.tuples(LINE_PROBLEMS, log_uniform(1e-9, 1e-4))
 def initial_slope_is_that_of_the_half_space(model: ContactModel) -> None:
     """For small creepage the force is (π/2) E* a ξ per width."""
 
-    def examine(case: tuple[LineProblem, float]) -> None:
+    def examine(case: tuple[Problem, float]) -> None:
         problem, reduced = case
         creepage = reduced * saturation(problem)
         whole, half = (
@@ -107,7 +107,7 @@ def initial_slope_is_that_of_the_half_space(model: ContactModel) -> None:
 def contacts_are_similar(model: ContactModel) -> None:
     """T/(μN) depends on ξR/(μa) alone."""
 
-    def examine(pair: tuple[LineProblem, LineProblem]) -> None:
+    def examine(pair: tuple[Problem, Problem]) -> None:
         problem, other = pair
         alike = with_creepage(other, problem.creepage / saturation(problem) * saturation(other))
         first, second = (model.solve(p).tangential_force / friction_limit(p) for p in (problem, alike))

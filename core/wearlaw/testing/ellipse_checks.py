@@ -14,8 +14,8 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.conditions import WheelRailConditions
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import TOTALS, EllipticContact
+from wearlaw.problem import CreepForces, Problem
 from wearlaw.records import NODE_VARIABLES
 from wearlaw.tangential import ContactModel
 from wearlaw.testing.acceleration import Ramps
@@ -26,7 +26,6 @@ from wearlaw.testing.ellipses import (
     assert_same_forces,
     error_of_sums,
     random_ellipses,
-    replaced,
     translation,
 )
 from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
@@ -58,10 +57,10 @@ def sums_of(contact: EllipticContact) -> CreepForces:
 def elliptic_contact_has_the_shape_of_the_problem(model: ContactModel) -> None:
     """On an ellipse totals have the batch shape and fields two more axes, of nodes and strips."""
 
-    def examine(problem: EllipticProblem) -> None:
+    def examine(problem: Problem) -> None:
         for shape in ((), (1,), (2, 3)):
             # As from conditions that broadcast: arrays without strides, which cannot be written to.
-            contact = model.solve(problem.broadcast_to(shape))
+            contact = model.solve_ellipse(problem.broadcast_to(shape))
             for name in TOTALS:
                 found = getattr(contact, name).shape
                 assert found == shape, f"{name} has the shape {found} for a batch of shape {shape}"
@@ -79,8 +78,8 @@ def elliptic_contact_has_the_shape_of_the_problem(model: ContactModel) -> None:
 def elliptic_contact_is_finite(model: ContactModel) -> None:
     """On an ellipse every field and total is a finite number; the traction bound may be infinite."""
 
-    def examine(problem: EllipticProblem) -> None:
-        assert_finite(model.solve(problem))
+    def examine(problem: Problem) -> None:
+        assert_finite(model.solve_ellipse(problem))
 
     for_each(ELLIPTIC_PROBLEMS, examine)
 
@@ -88,8 +87,8 @@ def elliptic_contact_is_finite(model: ContactModel) -> None:
 def elliptic_contact_carries_the_conditions(model: ContactModel) -> None:
     """On an ellipse rolling speed, density, normal force and the rms of the rigid slip are those of the problem."""
 
-    def examine(problem: EllipticProblem) -> None:
-        contact = model.solve(problem)
+    def examine(problem: Problem) -> None:
+        contact = model.solve_ellipse(problem)
         for name in ("rolling_speed", "density", "normal_force"):
             assert_close(getattr(contact, name), getattr(problem, name), f"the {name} of the contact")
         # Over the ellipse the mean of x² is a²/4, that of y² is b²/4, and those of x and y are zero.
@@ -102,8 +101,8 @@ def elliptic_contact_carries_the_conditions(model: ContactModel) -> None:
 def nodes_cover_the_ellipse(model: ContactModel) -> None:
     """Nodes lie in the ellipse, none has a negative area, and their areas sum to πab."""
 
-    def examine(problem: EllipticProblem) -> None:
-        contact = model.solve(problem)
+    def examine(problem: Problem) -> None:
+        contact = model.solve_ellipse(problem)
         assert (contact.area >= 0).all(), f"an area is negative: {contact.area.min()!r}"
         assert (contact.strip_width >= 0).all(), f"a strip's width is negative: {contact.strip_width.min()!r}"
         inside = (contact.x / problem.a) ** 2 + (contact.y / problem.b) ** 2 <= 1.0 + SAME
@@ -118,8 +117,8 @@ def nodes_cover_the_ellipse(model: ContactModel) -> None:
 def pressure_on_the_ellipse_sums_to_the_load(model: ContactModel) -> None:
     """On an ellipse the pressure is never negative, and pressure times area sums to the normal force."""
 
-    def examine(problem: EllipticProblem) -> None:
-        contact = model.solve(problem)
+    def examine(problem: Problem) -> None:
+        contact = model.solve_ellipse(problem)
         assert (contact.pressure >= 0).all(), f"a pressure is negative: {contact.pressure.min()!r}"
         load = contact.sum_over_nodes(contact.pressure * contact.area)
         assert_close(load, problem.normal_force, "the sum of the pressures", error_of_sums(model))
@@ -130,8 +129,8 @@ def pressure_on_the_ellipse_sums_to_the_load(model: ContactModel) -> None:
 def traction_vectors_sum_to_the_forces(model: ContactModel) -> None:
     """Traction times area sums to Fx and Fy, and on cells -(x qy + y qx) to the spin moment."""
 
-    def examine(problem: EllipticProblem) -> None:
-        contact = model.solve(problem)
+    def examine(problem: Problem) -> None:
+        contact = model.solve_ellipse(problem)
         due, sums = forces_of(contact), sums_of(contact)
         if model.scale == "patch":  # the means of a patch have no moment
             sums = dataclasses.replace(sums, spin_moment=due.spin_moment)
@@ -143,8 +142,8 @@ def traction_vectors_sum_to_the_forces(model: ContactModel) -> None:
 def magnitudes_are_those_of_the_vectors(model: ContactModel) -> None:
     """Traction, tangential force, and slip on cells are the magnitudes of their components."""
 
-    def examine(problem: EllipticProblem) -> None:
-        contact = model.solve(problem)
+    def examine(problem: Problem) -> None:
+        contact = model.solve_ellipse(problem)
         for name, components in MAGNITUDES.items():
             if (name, model.scale) == ("slip", "patch"):  # a mean of slips in many directions
                 continue
@@ -165,8 +164,8 @@ MAGNITUDES = {
 def no_node_gains_energy(model: ContactModel) -> None:
     """Traction times slip is negative at no node of an ellipse."""
 
-    def examine(problem: EllipticProblem) -> None:
-        contact = model.solve(problem)
+    def examine(problem: Problem) -> None:
+        contact = model.solve_ellipse(problem)
         gains = contact.wear_index_density < -4.0 * EPS * contact.traction * contact.slip
         where = contact.x[gains] / problem.a, contact.y[gains] / problem.b
         cosine = contact.wear_index_density[gains] / (contact.traction * contact.slip)[gains]
@@ -181,10 +180,10 @@ def batch_of_ellipses_equals_loop(model: ContactModel) -> None:
     # No slip, some and full slip in one batch: the points that a batch must keep apart.
     factors = np.array([0.0, 1.0, 1e3])[:, None]
     batch = problem.broadcast_to((3, 8)).with_creepages(*Creepages.of(problem).times(factors))
-    together = model.solve(batch)
+    together = model.solve_ellipse(batch)
     for index in np.ndindex(batch.batch_shape):
         part, message = batch[index], f"at operating point {index} of a batch"
-        alone = model.solve(part)
+        alone = model.solve_ellipse(part)
         found = CreepForces(
             longitudinal=together.force_x[index], lateral=together.force_y[index], spin_moment=together.moment_z[index]
         )
@@ -197,7 +196,7 @@ def elliptic_problem_is_not_changed(model: ContactModel) -> None:
     """The model leaves the arrays of an elliptic problem as they are."""
     problem = random_ellipses(8)
     before = copy.deepcopy(problem)
-    model.solve(problem)
+    model.solve_ellipse(problem)
     model.creep_forces(problem)
     assert_unchanged(problem, before)
 
@@ -205,7 +204,7 @@ def elliptic_problem_is_not_changed(model: ContactModel) -> None:
 def elliptic_solutions_agree_to_the_bit(model: ContactModel) -> None:
     """The same elliptic problem gives the same contact again, with another problem in between."""
 
-    def examine(problems: tuple[EllipticProblem, EllipticProblem]) -> None:
+    def examine(problems: tuple[Problem, Problem]) -> None:
         assert_solved_alike(model, *problems)
 
     for_each(TWO_ELLIPTIC_PROBLEMS, examine)
@@ -214,15 +213,15 @@ def elliptic_solutions_agree_to_the_bit(model: ContactModel) -> None:
 def elliptic_solution_is_in_double_precision(model: ContactModel) -> None:
     """On an ellipse all is float64, and the force exact to rounding, in steps of 1e-8 of creepage, friction and a."""
     problem = random_ellipses(64)
-    assert_double(model.solve(problem))
+    assert_double(model.solve_ellipse(problem))
     # An iteration that ends at 1e-10 moves a change of 1e-8 by a fiftieth; single precision, by six of it.
     rounding = min(error_of_sums(model), 1e-10)
     for name in ("longitudinal_creepage", "friction_coefficient", "a"):
         lost_digits(partial(_force_with, model, problem, name), f"the force loses digits of {name}", rounding)
 
 
-def _force_with(model: ContactModel, problem: EllipticProblem, name: str, factor: float) -> Array:
-    return model.creep_forces(replaced(problem, **{name: getattr(problem, name) * factor})).tangential
+def _force_with(model: ContactModel, problem: Problem, name: str, factor: float) -> Array:
+    return model.creep_forces(problem.replaced(**{name: getattr(problem, name) * factor})).tangential
 
 
 def wear_laws_run_on_the_ellipse(model: ContactModel) -> None:
@@ -232,7 +231,7 @@ def wear_laws_run_on_the_ellipse(model: ContactModel) -> None:
         "longitudinal_creepage": "0.3 %",
         "friction_coefficient": 0.4,
     }
-    contact = model.solve(WHEEL_RAIL.problem(**conditions))
+    contact = model.solve_ellipse(WHEEL_RAIL.problem(**conditions))
     for variable in NODE_VARIABLES:
         found = getattr(contact, variable).shape
         assert found == contact.pressure.shape, f"{variable} has the shape {found}, not {contact.pressure.shape}"

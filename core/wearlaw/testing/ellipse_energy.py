@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
+from wearlaw.problem import CreepForces, Problem
 from wearlaw.tangential import QUADRATURE, ContactModel
 from wearlaw.testing.contact_energy import CHANCE, REFINEMENTS, assert_improved, refinements
 from wearlaw.testing.ellipse_checks import forces_of, sums_of
@@ -34,9 +34,9 @@ STRIPS = 200
 def translation_dissipates_the_energy_fed_in(model: ContactModel) -> None:
     """Without spin, traction times slip, summed over the ellipse, is ξFx + ηFy."""
 
-    def examine(problem: EllipticProblem) -> None:
+    def examine(problem: Problem) -> None:
         straight = problem.with_creepages(*Creepages.of(problem).times(1.0, 1.0, 0.0))
-        contact = model.solve(straight)
+        contact = model.solve_ellipse(straight)
         due = straight.power(forces_of(contact))
         # A slip zone may be shorter than a cell: the error of sums over cells is a share of what full slip dissipates.
         allowed = error_of_sums(model) * np.maximum(sliding_power(straight), due)
@@ -70,26 +70,26 @@ def refined_strips_improve_the_forces(model: ContactModel) -> None:
     )
 
 
-Measure = Callable[[EllipticProblem, EllipticContact], Array]
+Measure = Callable[[Problem, EllipticContact], Array]
 
 
-def _each(measure: Measure, model: ContactModel, problem: EllipticProblem) -> Array:
+def _each(measure: Measure, model: ContactModel, problem: Problem) -> Array:
     """Return a measure of the contact of each patch, solved one at a time since the nodes may be many."""
     parts = (problem[index] for index in range(problem.size))
-    return np.array([measure(part, model.solve(part)) for part in parts])
+    return np.array([measure(part, model.solve_ellipse(part)) for part in parts])
 
 
-def _energy_error(problem: EllipticProblem, contact: EllipticContact) -> Array:
+def _energy_error(problem: Problem, contact: EllipticContact) -> Array:
     return np.abs(contact.cell_wear_index - problem.power(forces_of(contact))) / sliding_power(problem)
 
 
-def _traction_error(problem: EllipticProblem, contact: EllipticContact) -> Array:
+def _traction_error(problem: Problem, contact: EllipticContact) -> Array:
     sums = sums_of(contact)
     off: Array = np.hypot(sums.longitudinal - contact.force_x, sums.lateral - contact.force_y)
     return off / friction_limit(problem)
 
 
-def _forces(problem: EllipticProblem, contact: EllipticContact) -> Array:
+def _forces(problem: Problem, contact: EllipticContact) -> Array:
     return np.array([contact.force_x, contact.force_y]) / friction_limit(problem)
 
 
@@ -97,7 +97,7 @@ def other_strips_have_the_same_sums(model: ContactModel) -> None:
     """On the strips that are asked for, traction and energy sum to the same over y as on the model's own."""
     shares = (2.0 * np.arange(STRIPS) + 1.0) / STRIPS - 1.0
     problem = random_ellipses(PATCHES)
-    contact, own = model.on_strips(problem, shares), model.solve(problem)
+    contact, own = model.on_strips(problem, shares), model.solve_ellipse(problem)
     if contact is None:  # its nodes are where they are
         return
     assert_close(contact.y, shares * problem.b[:, None, None], "the position of a strip")

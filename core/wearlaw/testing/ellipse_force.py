@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
+from wearlaw.problem import CreepForces, Problem
 from wearlaw.tangential import ContactModel
 from wearlaw.testing.bisection import Indices, find_jumps
 from wearlaw.testing.ellipse_checks import forces_of
@@ -30,7 +30,7 @@ from wearlaw.testing.strategies import ELLIPTIC_PROBLEMS
 def forces_are_odd_in_the_creepages(model: ContactModel) -> None:
     """Opposite creepages and spin give opposite forces and moment, and the same wear index."""
 
-    def examine(problem: EllipticProblem) -> None:
+    def examine(problem: Problem) -> None:
         _compare_turned(model, problem, (-1.0, -1.0, -1.0), "at the opposite creepages")
 
     for_each(ELLIPTIC_PROBLEMS, examine)
@@ -39,17 +39,18 @@ def forces_are_odd_in_the_creepages(model: ContactModel) -> None:
 def forces_are_mirrored_with_the_creepages(model: ContactModel) -> None:
     """Opposite lateral creepage and spin give the same Fx and wear index, and opposite Fy and Mz, as y is mirrored."""
 
-    def examine(problem: EllipticProblem) -> None:
+    def examine(problem: Problem) -> None:
         _compare_turned(model, problem, (1.0, -1.0, -1.0), "at the mirrored creepages")
 
     for_each(ELLIPTIC_PROBLEMS, examine)
 
 
-def _compare_turned(
-    model: ContactModel, problem: EllipticProblem, signs: tuple[float, float, float], message: str
-) -> None:
+def _compare_turned(model: ContactModel, problem: Problem, signs: tuple[float, float, float], message: str) -> None:
     """Compare forces and wear index with those where creepages, and with them the forces, have other signs."""
-    contact, other = model.solve(problem), model.solve(problem.with_creepages(*Creepages.of(problem).times(*signs)))
+    contact, other = (
+        model.solve_ellipse(problem),
+        model.solve_ellipse(problem.with_creepages(*Creepages.of(problem).times(*signs))),
+    )
     due = CreepForces(
         longitudinal=signs[0] * contact.force_x,
         lateral=signs[1] * contact.force_y,
@@ -60,7 +61,7 @@ def _compare_turned(
     assert_close(other.wear_index, contact.wear_index, f"the wear index {message}", 0.0, rounding)
 
 
-def _parts_of_power(problem: EllipticProblem, contact: EllipticContact) -> Array:
+def _parts_of_power(problem: Problem, contact: EllipticContact) -> Array:
     """Return |ξFx| + |ηFy| + |φMz|, which the rounding of their sum is a share of."""
     return (
         np.abs(problem.longitudinal_creepage * contact.force_x)
@@ -72,7 +73,7 @@ def _parts_of_power(problem: EllipticProblem, contact: EllipticContact) -> Array
 def longitudinal_force_grows_with_creepage(model: ContactModel) -> None:
     """Fx never falls when a longitudinal creepage alone grows."""
 
-    def examine(problem: EllipticProblem) -> None:
+    def examine(problem: Problem) -> None:
         growing = np.concatenate([[1.0], 1.0 + np.logspace(-12, 3, 31)])
         creepage = translation(problem) / unit_creepages(problem).longitudinal
         force = model.creep_forces(at_reduced(problem, creepage * growing, 0.0, 0.0)).longitudinal
@@ -93,7 +94,9 @@ def forces_are_continuous(model: ContactModel) -> None:
 
     def solved(name: str, index: Indices, share: Array) -> Array:
         chosen = problem[index]
-        value: Array = getattr(model.solve(at_magnitude(chosen, low * (high / low) ** share, chosen.spin)), name)
+        value: Array = getattr(
+            model.solve_ellipse(at_magnitude(chosen, low * (high / low) ** share, chosen.spin)), name
+        )
         return value
 
     error = 0.0 if model.scale == "patch" else model.elliptic_accuracy
@@ -113,8 +116,8 @@ def forces_are_continuous(model: ContactModel) -> None:
 def zero_creepages_give_nothing(model: ContactModel) -> None:
     """Free rolling of a wheel has no traction, no slip, no forces and no wear index."""
 
-    def examine(problem: EllipticProblem) -> None:
-        contact = model.solve(problem.with_creepages(*Creepages.of(problem).times(0.0)))
+    def examine(problem: Problem) -> None:
+        contact = model.solve_ellipse(problem.with_creepages(*Creepages.of(problem).times(0.0)))
         for name in ("traction", "slip", "force_x", "force_y", "moment_z", "wear_index"):
             value = getattr(contact, name)
             assert (value == 0).all(), f"without creepage {name} reaches {np.abs(value).max():.3g} in SI units"
@@ -125,8 +128,8 @@ def zero_creepages_give_nothing(model: ContactModel) -> None:
 def wear_index_is_forces_times_creepages(model: ContactModel) -> None:
     """Tγ is ξFx + ηFy + φMz."""
 
-    def examine(problem: EllipticProblem) -> None:
-        contact = model.solve(problem)
+    def examine(problem: Problem) -> None:
+        contact = model.solve_ellipse(problem)
         due, rounding = problem.power(forces_of(contact)), SAME * _parts_of_power(problem, contact)
         assert_close(contact.wear_index, due, "the wear index", 0.0, rounding)
 
@@ -136,8 +139,10 @@ def wear_index_is_forces_times_creepages(model: ContactModel) -> None:
 def creep_forces_are_those_of_the_contact(model: ContactModel) -> None:
     """`creep_forces` gives what `solve` gives."""
 
-    def examine(problem: EllipticProblem) -> None:
-        assert_same_forces(problem, model.creep_forces(problem), forces_of(model.solve(problem)), "of `creep_forces`")
+    def examine(problem: Problem) -> None:
+        assert_same_forces(
+            problem, model.creep_forces(problem), forces_of(model.solve_ellipse(problem)), "of `creep_forces`"
+        )
 
     for_each(ELLIPTIC_PROBLEMS, examine)
 

@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 from wearlaw.arrays import Array
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.elliptic_contact import EllipticContact
+from wearlaw.problem import CreepForces, Problem
 from wearlaw.tangential import ContactModel
 from wearlaw.testing.ellipses import (
     Creepages,
@@ -16,7 +16,6 @@ from wearlaw.testing.ellipses import (
     at_reduced,
     error_of_sums,
     random_ellipses,
-    replaced,
     sliding_power,
     translation,
 )
@@ -37,8 +36,8 @@ SLOPE = 1e-3
 def traction_vector_keeps_its_bound(model: ContactModel) -> None:
     """The magnitude of the traction does not exceed the bound at any node of an ellipse."""
 
-    def examine(problem: EllipticProblem) -> None:
-        contact = model.solve(problem)
+    def examine(problem: Problem) -> None:
+        contact = model.solve_ellipse(problem)
         over = contact.traction > contact.traction_bound * (1.0 + SAME)
         share = contact.traction[over] / contact.traction_bound[over]
         assert not over.any(), f"the traction is {share} times its bound at x, y = {contact.x[over]}, {contact.y[over]}"
@@ -49,7 +48,7 @@ def traction_vector_keeps_its_bound(model: ContactModel) -> None:
 def forces_stay_below_friction(model: ContactModel) -> None:
     """The tangential force on an ellipse, of Fx and Fy, does not exceed μN."""
 
-    def examine(problem: EllipticProblem) -> None:
+    def examine(problem: Problem) -> None:
         growing = np.logspace(0, 4, 9)
         batch = problem.broadcast_to(growing.shape).with_creepages(*Creepages.of(problem).times(growing))
         share = model.creep_forces(batch).tangential / friction_limit(problem)
@@ -65,7 +64,7 @@ def nothing_slips_below_the_bound(model: ContactModel) -> None:
     times what the traction lacks to its bound, summed, as a share of the power in full slip.
     """
     problem = random_ellipses(POINTS)
-    contact = model.solve(problem)
+    contact = model.solve_ellipse(problem)
     lacking = np.maximum(contact.traction_bound - contact.traction, 0.0)
     share = contact.sum_over_nodes(contact.slip * lacking * contact.area) / sliding_power(problem)
     assert (share <= model.elliptic_accuracy).all(), (
@@ -82,7 +81,7 @@ def translation_reaches_full_slip(model: ContactModel) -> None:
     linear = np.array([[1.0, 1.0, 0.0, -1.0, -1.0, -1.0, 0.0, 1.0], [0.0, 1.0, 1.0, 1.0, 0.0, -1.0, -1.0, -1.0]])
     linear /= np.hypot(*linear)
     problem = at_reduced(random_ellipses(POINTS)[:, None], FAR * linear[0], FAR * linear[1], 0.0)
-    contact, slip, error = model.solve(problem), translation(problem), error_of_sums(model)
+    contact, slip, error = model.solve_ellipse(problem), translation(problem), error_of_sums(model)
     limit = np.broadcast_to(friction_limit(problem), slip.shape)
     assert_close(contact.tangential_force, limit, "the force in full slip", error)
     # At a node on the very edge the bound is rounding of that in the centre.
@@ -111,7 +110,7 @@ def full_slip_on_the_ellipse_is_met_from_both_sides(model: ContactModel) -> None
     problem = random_ellipses(POINTS)
 
     def solved(reduced: Array) -> EllipticContact:
-        return model.solve(at_magnitude(problem, reduced))
+        return model.solve_ellipse(at_magnitude(problem, reduced))
 
     full = full_slip(solved, np.full(POINTS, FAR))
     far, near = (steps_into_full_slip(solved, full, gap) for gap in (1e-4, 1e-8))
@@ -160,15 +159,16 @@ def _slope_error(model: ContactModel) -> float:
 def elliptic_contacts_are_similar(model: ContactModel) -> None:
     """Forces over μN and the moment over μN a depend on a/b, ν and Gξ/(μp0), Gη/(μp0), Gφa/(μp0) alone."""
 
-    def examine(case: tuple[EllipticProblem, tuple[float, float, float, float, float]]) -> None:
+    def examine(case: tuple[Problem, tuple[float, float, float, float, float]]) -> None:
         problem, (length, modulus, friction, creepage, speed) = case
-        other = replaced(
-            problem,
+        pressure = creepage * modulus / friction
+        other = problem.replaced(
             a=length * problem.a,
             b=length * problem.b,
-            shear_modulus=modulus * problem.shear_modulus,
+            effective_modulus=modulus * problem.effective_modulus,
+            max_pressure=pressure * problem.max_pressure,
             friction_coefficient=friction * problem.friction_coefficient,
-            normal_force=creepage * length**2 * modulus / friction * problem.normal_force,
+            normal_force=pressure * length**2 * problem.normal_force,
             rolling_speed=speed * problem.rolling_speed,
         )
         alike = other.with_creepages(*Creepages.of(problem).times(creepage, creepage, creepage / length))

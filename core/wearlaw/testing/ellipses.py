@@ -7,15 +7,14 @@ and at 32/(3π) in FASTSIM with a parabolic bound, where ξ/L1 is the steepest s
 
 from __future__ import annotations
 
-import dataclasses
 from typing import NamedTuple
 
 import numpy as np
 
 from wearlaw import kalker
 from wearlaw.arrays import Array
-from wearlaw.ellipse import CreepForces, EllipticProblem
 from wearlaw.material import steel
+from wearlaw.problem import CreepForces, Problem
 from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.tangential import ContactModel
 from wearlaw.testing.examples import SAME, SUM, assert_close
@@ -36,7 +35,7 @@ class Creepages(NamedTuple):
     spin: Array
 
     @classmethod
-    def of(cls, problem: EllipticProblem) -> Creepages:
+    def of(cls, problem: Problem) -> Creepages:
         """Return the creepages of a problem."""
         return cls(problem.longitudinal_creepage, problem.lateral_creepage, problem.spin)
 
@@ -47,7 +46,7 @@ class Creepages(NamedTuple):
         )
 
 
-def unit_creepages(problem: EllipticProblem) -> Creepages:
+def unit_creepages(problem: Problem) -> Creepages:
     """Return the creepages that are 1 when reduced: μN/(G ab C11), μN/(G ab C22) and μN/(G ab √(ab) C23)."""
     known = kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
     area = problem.a * problem.b
@@ -55,9 +54,7 @@ def unit_creepages(problem: EllipticProblem) -> Creepages:
     return Creepages(unit / known.c11, unit / known.c22, unit / (np.sqrt(area) * known.c23))
 
 
-def at_reduced(
-    problem: EllipticProblem, longitudinal: Array | float, lateral: Array | float, spin: Array | float
-) -> EllipticProblem:
+def at_reduced(problem: Problem, longitudinal: Array | float, lateral: Array | float, spin: Array | float) -> Problem:
     """Return the problem at reduced creepages, to which its batch broadcasts."""
     shape = np.broadcast_shapes(problem.batch_shape, np.shape(longitudinal), np.shape(lateral), np.shape(spin))
     problem = problem.broadcast_to(shape)
@@ -65,7 +62,7 @@ def at_reduced(
     return problem.with_creepages(longitudinal * units[0], lateral * units[1], spin * units[2])
 
 
-def at_magnitude(problem: EllipticProblem, reduced: Array | float, spin: Array | float = 0.0) -> EllipticProblem:
+def at_magnitude(problem: Problem, reduced: Array | float, spin: Array | float = 0.0) -> Problem:
     """Return the problem with creepages of the same direction and of a reduced magnitude, and with a spin in SI."""
     units = unit_creepages(problem)
     size = np.hypot(problem.longitudinal_creepage / units.longitudinal, problem.lateral_creepage / units.lateral)
@@ -74,12 +71,7 @@ def at_magnitude(problem: EllipticProblem, reduced: Array | float, spin: Array |
     return problem.with_creepages(*creepages, np.broadcast_to(np.float64(spin), problem.batch_shape))
 
 
-def replaced(problem: EllipticProblem, **arrays: Array) -> EllipticProblem:
-    """Return the problem with some of its arrays replaced."""
-    return problem.from_si(**{f.name: getattr(problem, f.name) for f in dataclasses.fields(problem)} | arrays)
-
-
-def random_ellipses(points: int) -> EllipticProblem:
+def random_ellipses(points: int) -> Problem:
     """Return patches of many shapes, loads and frictions; always the same ones.
 
     Reduced creepages go from 0.3, where the slip zone is a tenth of the patch, to 3.5, and have random directions.
@@ -92,7 +84,7 @@ def random_ellipses(points: int) -> EllipticProblem:
 
     size, ratio = between(1e-4, 2e-2), between(0.1, 10.0)
     a, b, shear_modulus = size * np.sqrt(ratio), size / np.sqrt(ratio), between(1e9, 1e12)
-    problem = EllipticProblem.from_si(
+    problem = Problem.ellipse_from_si(
         a=a,
         b=b,
         normal_force=2.0 / 3.0 * np.pi * a * b * between(1e-4, 2e-2) * shear_modulus,
@@ -110,19 +102,19 @@ def random_ellipses(points: int) -> EllipticProblem:
     return at_reduced(problem, size * np.cos(angle), size * np.sin(angle), spin)
 
 
-def translation(problem: EllipticProblem) -> Array:
+def translation(problem: Problem) -> Array:
     """Return the magnitude of the creepage, √(ξ²+η²)."""
     magnitude: Array = np.hypot(problem.longitudinal_creepage, problem.lateral_creepage)
     return magnitude
 
 
-def lever(problem: EllipticProblem) -> Array:
+def lever(problem: Problem) -> Array:
     """Return √((a²+b²)/5) [m], the rms distance from the centre that Hertz's pressure has."""
     arm: Array = np.hypot(problem.a, problem.b) / np.sqrt(5.0)
     return arm
 
 
-def sliding_power(problem: EllipticProblem) -> Array:
+def sliding_power(problem: Problem) -> Array:
     """Return what full slip dissipates per metre rolled, but for spin that lessens the slip [N]."""
     return friction_limit(problem) * (translation(problem) + np.abs(problem.spin) * lever(problem))
 
@@ -133,7 +125,7 @@ def error_of_sums(model: ContactModel) -> float:
 
 
 def assert_same_forces(
-    problem: EllipticProblem, found: CreepForces, due: CreepForces, message: str, error: float = SUM
+    problem: Problem, found: CreepForces, due: CreepForces, message: str, error: float = SUM
 ) -> None:
     """Assert that forces and moment agree to a share of μN, or of the force where it is larger."""
     size = np.maximum(friction_limit(problem), due.tangential)

@@ -12,8 +12,9 @@ import numpy as np
 import tomli_w
 
 from wearlaw.models import WearLaw
+from wearlaw.problem import Geometry
 from wearlaw.rigs.twin_disc import TwinDisc
-from wearlaw.tangential import ContactModel, Geometry, Model
+from wearlaw.tangential import ContactModel, Model
 from wearlaw.testing import fresh
 from wearlaw.testing.ellipses import random_ellipses
 from wearlaw.testing.examples import assert_close

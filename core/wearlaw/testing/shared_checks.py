@@ -10,8 +10,7 @@ from typing import TypeAlias
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.ellipse import EllipticProblem
-from wearlaw.line import LineProblem
+from wearlaw.problem import Problem
 from wearlaw.records import Contact
 from wearlaw.tangential import Claim, ContactModel
 from wearlaw.testing.examples import SAME, SUM
@@ -19,13 +18,12 @@ from wearlaw.testing.examples import SAME, SUM
 Claims: TypeAlias = Mapping[Claim, tuple[Callable[..., None], ...]]
 """The checks of each claim that a contact model may be exempt from."""
 
-ContactProblem: TypeAlias = LineProblem | EllipticProblem
 
 Solved: TypeAlias = Callable[[Array], Contact]
 """From the creepages of some problems, in SI or reduced, to the contacts."""
 
 
-def friction_limit(problem: ContactProblem) -> Array:
+def friction_limit(problem: Problem) -> Array:
     """Return μN."""
     return problem.friction_coefficient * problem.normal_force
 
@@ -45,14 +43,14 @@ def assert_double(contact: Contact) -> None:
         assert kind == np.float64, f"{field.name} is of type {kind}, not float64"
 
 
-def assert_unchanged(problem: ContactProblem, before: ContactProblem) -> None:
+def assert_unchanged(problem: Problem, before: Problem) -> None:
     """Assert that the arrays of a problem are those of the copy from before."""
     for field in dataclasses.fields(problem):
         same = np.array_equal(getattr(problem, field.name), getattr(before, field.name))
         assert same, f"the model changed the problem's {field.name}"
 
 
-def assert_solved_alike(model: ContactModel, problem: ContactProblem, other: ContactProblem) -> None:
+def assert_solved_alike(model: ContactModel, problem: Problem, other: Problem) -> None:
     """Assert that a problem has the same contact to the bit before and after another one is solved."""
     first = model.solve(problem)
     kept = copy.deepcopy(first)

@@ -16,9 +16,8 @@ from hypothesis.extra.numpy import arrays
 
 from wearlaw import hertz
 from wearlaw.arrays import Array
-from wearlaw.ellipse import EllipticProblem
-from wearlaw.line import LineProblem
 from wearlaw.material import Material
+from wearlaw.problem import Problem
 from wearlaw.records import Contact
 from wearlaw.rigs.twin_disc import Disc, TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
@@ -95,7 +94,7 @@ def conditions(draw: st.DrawFn) -> dict[str, Any]:
     }
 
 
-def line_problems(crowded: tuple[float, ...] = (1.0, 1.5)) -> st.SearchStrategy[LineProblem]:
+def line_problems(crowded: tuple[float, ...] = (1.0, 1.5)) -> st.SearchStrategy[Problem]:
     """Return one operating point of two discs of unlike sizes and materials; one may be flat.
 
     The load is drawn as p0/E* = a/(2R) from 1e-5 to 0.03. Half the creepages lie anywhere from 1e-7 to 1, half
@@ -130,7 +129,7 @@ def _line_problem(
     friction_coefficient: float,
     creepage: tuple[float, float],
     **conditions: float,
-) -> LineProblem:
+) -> Problem:
     """Return the problem of p0/E* and of a creepage given as itself, or over μa/R; none is above 1."""
     radius = hertz.relative_radius(*radii)
     modulus = hertz.effective_modulus(moduli[0], poisson_ratios[0], moduli[1], poisson_ratios[1])
@@ -139,15 +138,13 @@ def _line_problem(
     given, reduced = creepage
     values = {
         "normal_force_per_width": force,
-        "half_width": half_width,
-        "max_pressure": hertz.max_pressure(force, half_width),
         "relative_radius": radius,
         "effective_modulus": modulus,
         "friction_coefficient": friction_coefficient,
         "creepage": min(given + reduced * friction_coefficient * float(half_width) / radius, 1.0),
         **conditions,
     }
-    return LineProblem(**{name: np.asarray(value, dtype=np.float64) for name, value in values.items()})
+    return Problem.line_from_si(**{name: np.asarray(value, dtype=np.float64) for name, value in values.items()})
 
 
 LINE_PROBLEMS = line_problems()
@@ -158,7 +155,7 @@ _SIGNS = st.sampled_from([1.0, -1.0])
 
 
 @st.composite
-def elliptic_problems(draw: st.DrawFn, crowded: tuple[float, ...] = SATURATION) -> EllipticProblem:
+def elliptic_problems(draw: st.DrawFn, crowded: tuple[float, ...] = SATURATION) -> Problem:
     """Draw one operating point of two bodies of one material that touch in an ellipse.
 
     Axis ratios a/b go from 0.05 to 20, loads from p0/G = 1e-5 to 0.04. Half the creepages have a magnitude anywhere
@@ -203,7 +200,7 @@ def _elliptic_problem(
     spin: float,
     shear_modulus: float,
     **conditions: float,
-) -> EllipticProblem:
+) -> Problem:
     """Return the problem of √(ab), a/b, p0/G and reduced creepages, so small that nothing slips more than it rolls."""
     a, b = size * np.sqrt(axis_ratio), size / np.sqrt(axis_ratio)
     values = {
@@ -216,11 +213,16 @@ def _elliptic_problem(
         "spin": 0.0,
         **conditions,
     }
-    problem = EllipticProblem.from_si(**{name: np.asarray(value, dtype=np.float64) for name, value in values.items()})
+    problem = Problem.ellipse_from_si(**{name: np.asarray(value, dtype=np.float64) for name, value in values.items()})
     problem = at_reduced(problem, creepage * direction[0], creepage * direction[1], spin)
     creepages = Creepages.of(problem)
     fastest = np.hypot(creepages.longitudinal, creepages.lateral) + np.abs(creepages.spin) * max(a, b)
     return problem.with_creepages(*creepages.times(1.0 / np.maximum(fastest, 1.0)))
+
+
+def problems() -> st.SearchStrategy[Problem]:
+    """Return one operating point of a contact on a line or on an ellipse."""
+    return line_problems() | elliptic_problems()
 
 
 ELLIPTIC_PROBLEMS = elliptic_problems()

@@ -17,10 +17,11 @@ from wearlaw.arrays import Array
 from wearlaw.base_rig import Rig
 from wearlaw.errors import WearlawError
 from wearlaw.models import WearLaw
+from wearlaw.problem import Geometry
 from wearlaw.records import Contact
 from wearlaw.registry import application_registry
 from wearlaw.rigs.twin_disc import TwinDisc
-from wearlaw.tangential import ContactModel, Geometry, Model
+from wearlaw.tangential import ContactModel, Model
 from wearlaw.testing.contact_checks import random_problems
 from wearlaw.testing.ellipses import WHEEL_RAIL, random_ellipses
 from wearlaw.testing.examples import SAME, assert_close

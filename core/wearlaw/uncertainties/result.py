@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
     from wearlaw.conditions import FrictionLaw
     from wearlaw.figures.curves import FigureData
-    from wearlaw.line import LineProblem
     from wearlaw.pipeline import Pipeline
+    from wearlaw.problem import Problem
 
 MOST_SAMPLES = 2**22
 """The most samples that are taken on."""
@@ -42,7 +42,7 @@ INSIDE = 2.0**-54
 
 
 def uncertainty(
-    predict: Pipeline[..., LineProblem],
+    predict: Pipeline[...],
     /,
     *,
     law: Mapping[str, Distribution | PublishedRange] | None = None,
@@ -90,7 +90,7 @@ class Uncertainty:
 
     def __init__(
         self,
-        predict: Pipeline[..., LineProblem],
+        predict: Pipeline[...],
         conditions: Mapping[str, Any],
         law: Mapping[str, Distribution | PublishedRange],
         samples: int,
@@ -208,12 +208,12 @@ class Uncertainty:
         """The shape of the conditions that are not distributed."""
         return np.broadcast_shapes(*(array.shape for array in broadcast(self.known).values()))
 
-    def _problem(self, sampled: dict[str, Array]) -> LineProblem:
+    def _problem(self, sampled: dict[str, Array]) -> Problem:
         """Return the contact problem at all operating points and samples, the latter along the last axis."""
         known = {name: array[..., None] for name, array in self.known.items()}
         given: Any = with_units(known | sampled) | self._friction_law
         try:
-            problem: LineProblem = self._predict.rig.checked_problem(given)
+            problem: Problem = self._predict.rig.checked_problem(given)
             return problem
         except UnitError as error:
             raise InputError(f"{error}{OTHERS}") from None

@@ -13,7 +13,7 @@ rig = wl.TwinDisc.suros()
 assert_type(rig, wl.TwinDisc)
 assert_type(wl.contact_model("fastsim", bound="elliptic"), wl.ContactModel)
 assert_type(wl.wear_law("usfd", fitted_for="exact"), wl.WearLaw)
-on_lines: wl.Pipeline[..., wl.LineProblem] = rig | wl.contact_model("exact") | wl.patch_mean() | wl.wear_law("brr")
+on_lines: wl.Pipeline[...] = rig | wl.contact_model("exact") | wl.patch_mean() | wl.wear_law("brr")
 
 predict = rig | wl.contact_model("exact") | wl.wear_law("usfd")
 assert_type(predict.laws, tuple[wl.WearLaw, ...])
@@ -48,13 +48,13 @@ assert_type(wl.parse("47 mm"), wl.Quantity)
 
 wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius=Q(300, "mm"), material=wl.steel(), rolling_speed="30 m/s")
 on_rail = wheel | wl.contact_model("fastsim") | wl.wear_law("usfd")
-on_ellipses: wl.Pipeline[..., wl.EllipticProblem] = on_rail
+on_ellipses: wl.Pipeline[...] = on_rail
 worn = on_rail(normal_force="80 kN", longitudinal_creepage="0.2 %", spin="0.3 1/m", friction_coefficient=0.3)
 assert_type(worn, wl.Prediction)
 assert_type(worn.spin_moment, wl.Quantity)
 falling = wl.FallingFriction(static_coefficient=0.4, limit_ratio=0.5, decay="0.6 s/m")
 (wheel | wl.contact_model("polach"))(max_pressure="1 GPa", longitudinal_creepage="1 %", friction_coefficient=falling)
-ellipse = wl.EllipticProblem(
+ellipse = wl.Problem.ellipse(
     a=Q(6, "mm"),
     b=Q(6, "mm"),
     normal_force=Q(100, "kN"),
@@ -76,7 +76,7 @@ class Roller(wl.Rig):
     name: ClassVar[str] = "roller"
     source: ClassVar[str] = "made up"
 
-    def problem(self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.LineProblem:
+    def problem(self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.Problem:
         return rig.problem(max_pressure="1 GPa", creepage=creepage, friction_coefficient=0.4)
 
 

@@ -51,7 +51,7 @@ wl.uncertainty(on_rail, normal_force="80 kN")  # expect-error
 class Roller(wl.Rig):
     """A rig of one's own."""
 
-    def problem(self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.LineProblem:
+    def problem(self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.Problem:
         return rig.problem(max_pressure="1 GPa", creepage=creepage, friction_coefficient=0.4)
 
 

@@ -19,11 +19,11 @@ class Rigid(wl.LineContactModel):
         """Return what the model does not claim."""
         return {"initial_slope": "rigid bodies slip at any creepage"}
 
-    def slip_length(self, problem: wl.LineProblem) -> wl.Array:
+    def slip_length(self, problem: wl.Problem) -> wl.Array:
         """Return the length of the whole patch, or nothing at zero creepage."""
         return np.where(problem.creepage > 0, 2.0 * problem.half_width, 0.0)
 
-    def fields(self, problem: wl.LineProblem, nodes: wl.Nodes) -> wl.LineFields:
+    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
         """Return traction at its bound and slip equal to the creepage."""
         pressure = wl.hertz.pressure(nodes.x, problem.half_width, problem.max_pressure)
         bound = problem.friction_coefficient * pressure
@@ -31,6 +31,6 @@ class Rigid(wl.LineContactModel):
         slip = np.broadcast_to(problem.creepage, pressure.shape)
         return wl.LineFields(pressure=pressure, traction=traction, slip=slip, traction_bound=bound)
 
-    def tangential_force_per_width(self, problem: wl.LineProblem) -> wl.Array:
+    def tangential_force_per_width(self, problem: wl.Problem) -> wl.Array:
         """Return μP [N/m]."""
         return np.where(problem.creepage > 0, problem.friction_coefficient * problem.normal_force_per_width, 0.0)
