@@ -82,7 +82,7 @@ def test_checks_are_named_documented_and_frozen() -> None:
 
 
 def test_checks_of_something_else_are_an_error() -> None:
-    with pytest.raises(wl.InputError, match="needs a wear law or a contact model"):
+    with pytest.raises(wl.InputError, match="needs a rig, a contact model or a wear law"):
         list(checks(3))  # type: ignore[arg-type]
 
 

@@ -68,9 +68,14 @@ def _number(value: object) -> Quantity | float | None:
     return None
 
 
+def in_unit_of(value: Quantity | float, numbers: Array | float) -> Any:
+    """Return numbers in the unit of a condition, or as they are where it has none."""
+    return Q(numbers, str(value.units)) if isinstance(value, pint.Quantity) else numbers
+
+
 def times(value: Quantity | float, factors: Array | float) -> Any:
     """Return a condition multiplied by factors, in its own unit."""
-    return Q(value.magnitude * factors, str(value.units)) if isinstance(value, pint.Quantity) else value * factors
+    return in_unit_of(value, getattr(value, "magnitude", value) * factors)
 
 
 def values_of(problem: Any) -> dict[str, Any]:
@@ -214,9 +219,11 @@ def missing_conditions_are_named(rig: Rig) -> None:
 def values_that_are_no_numbers_are_refused(rig: Rig) -> None:
     """NaN in a condition is refused by an error that names it; infinity is refused, or gives a finite problem."""
     for name, value in varied(rig).items():
-        _assert_refused(rig, {name: times(value, np.array([1.0, np.nan]))}, InputError, name, f"NaN in {name}")
+        number = getattr(value, "magnitude", value)
+        nan, infinite = (in_unit_of(value, np.array([number, bad])) for bad in (np.nan, np.inf))
+        _assert_refused(rig, {name: nan}, InputError, name, f"NaN in {name}")
         try:
-            problem = _problem(rig, **{name: times(value, np.array([1.0, np.inf]))})
+            problem = _problem(rig, **{name: infinite})
         except InputError:
             continue
         for field, found in values_of(problem).items():
@@ -229,12 +236,13 @@ def _assert_refused(rig: Rig, changed: Conditions, kind: type[WearlawError], nam
     except WearlawError as error:
         _assert_names(error, kind, name, what)
     else:
-        raise AssertionError(f"{what} is taken, where a {kind.__name__} should name '{name}'")
+        raise AssertionError(f"{what} is taken; raise wearlaw.{kind.__name__} with a message that names '{name}'")
 
 
 def _assert_names(error: WearlawError, kind: type[WearlawError], name: str, what: str) -> None:
     named = isinstance(error, kind) and re.search(rf"\b{name}\b", str(error))
-    assert named, f"{what} raises {described(error)}, where a {kind.__name__} should name '{name}'"
+    wanted = f"raise wearlaw.{kind.__name__} with a message that names '{name}'"
+    assert named, f"{what} raises {described(error)}; {wanted}"
 
 
 def conditions_are_not_changed(rig: Rig) -> None:
