@@ -70,7 +70,7 @@ def new_plugin(name: str, kind: Kind | None, output: Path, licence: Licence) -> 
 
     It holds a module of about 30 lines, its entry point, its tests with the conformance checks, a README, a licence
     and a CI workflow, and passes its tests, ruff and mypy --strict as it is. NAME is what the model will be called in
-    wearlaw.wear_law("NAME") and in case files: lower-case letters, digits and underscores.
+    wearlaw.wear_law("NAME") or wearlaw.rig("NAME") and in case files: lower-case letters, digits and underscores.
     """
     from wearlaw.scaffold import write_plugin
 
