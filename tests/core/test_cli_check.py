@@ -96,10 +96,10 @@ def test_fields_that_are_missing_are_named_with_how_to_give_them(
     install_model: InstallModel, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     install_model(cases.Linear)
-    assert_refused(wearlaw("check", "linear"), "slope: is missing; give --option slope=VALUE")
+    assert_refused(wearlaw("check", "linear"), "slope: is missing\ngive --option slope=VALUE")
     monkeypatch.setattr(wl.TwinDisc, "example_fields", {**wl.TwinDisc.example_fields, "disc_1": {"diameter": "5 cm"}})
-    hint = "give --option disc_1=VALUE, or name values to try the rig with in TwinDisc.example_fields"
-    assert_refused(wearlaw("check", "twin_disc"), f"disc_1.material: is missing; {hint}")
+    hint = "give --option disc_1=VALUE, or values to try the rig with in TwinDisc.example_fields"
+    assert_refused(wearlaw("check", "twin_disc"), f"disc_1.material: is missing\n{hint}")
 
 
 def test_a_rig_is_checked_from_the_command_line() -> None:

@@ -32,7 +32,7 @@ class Weight(wl.Rig):
     """Length of the lever's arm [m]."""
 
     def problem(
-        self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike, friction_coefficient: ArrayLike = 0.4
+        self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike, friction_coefficient: ArrayLike
     ) -> wl.LineProblem:
         load = newtons(mass) * float((self.arm / wl.Q(0.25, "m")).m_as(""))
         return DISCS.problem(normal_force=load, creepage=creepage, friction_coefficient=friction_coefficient)
@@ -257,7 +257,7 @@ class TakesInfiniteSpeed(Weight):
     example: ClassVar[Mapping[str, Any]] = {**Weight.example, "speed": "1 m/s"}
 
     def problem(
-        self, *, speed: wl.QuantityLike, mass: Any, creepage: wl.QuantityLike, friction_coefficient: ArrayLike
+        self, *, mass: Any, creepage: wl.QuantityLike, friction_coefficient: ArrayLike, speed: wl.QuantityLike = "1 m/s"
     ) -> wl.LineProblem:
         problem = super().problem(mass=mass, creepage=creepage, friction_coefficient=friction_coefficient)
         speeds = wl.Unit("m/s", infinite=True).si(speed, "speed")

@@ -113,16 +113,17 @@ def _made(model: type[Model], options: dict[str, str]) -> Model:
     """Return the model with some fields, and a rig with those of its `example_fields` besides."""
     from wearlaw.base_rig import Rig
 
-    is_rig = issubclass(model, Rig)
+    own = model.example_fields if issubclass(model, Rig) else {}
     try:
-        return model(**{**model.example_fields, **options} if is_rig else options)
+        return model(**{**own, **options})
     except ConfigurationError as error:
-        missing = [problem.path[0] for problem in error.problems if problem.message == "is missing"]
+        missing = dict.fromkeys(problem.path[0] for problem in error.problems if problem.message == "is missing")
         if not missing:
             raise
         hint = f"give {' '.join(f'--option {field}=VALUE' for field in missing)}"
-        other = f", or name values to try the rig with in {model.__name__}.example_fields" if is_rig else ""
-        raise InputError(f"{error}; {hint}{other}") from None
+        if issubclass(model, Rig):
+            hint += f", or values to try the rig with in {model.__name__}.example_fields"
+        raise InputError(f"{error}\n{hint}") from None
 
 
 def _checks(model: Model) -> Iterable[Check]:
