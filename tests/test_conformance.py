@@ -14,6 +14,7 @@ from tests.testing.strips import Means, Strips
 from tests.testing.wrong_contacts import Wrapped
 from tests.testing.wrong_declarations import Ramps, Smooth
 from tests.testing.wrong_laws import Linear
+from tests.testing.wrong_rigs import Delegating, Weight
 from wearlaw.tangential import Model
 from wearlaw.testing import Check, checks
 from wearlaw.testing.roundtrip import RoundTrip
@@ -57,6 +58,14 @@ WEAR_LAWS: list[wl.WearLaw] = [
     wl.wear_law("brr"),
 ]
 
+FLAT = wl.Disc(diameter="inf mm", material=wl.steel(youngs_modulus="70 GPa", poisson_ratio=0.33))
+RIGS: dict[str, wl.Rig] = {
+    "suros": wl.TwinDisc.suros(),
+    "disc_on_flat": wl.TwinDisc.suros(disc_2=FLAT),
+    "conical_wheel": wl.rig("wheel_rail", **wl.WheelRail.example_fields),
+    "hollow_wheel": wl.rig("wheel_rail", **wl.WheelRail.example_fields, wheel_profile_radius="-400 mm"),
+}
+
 
 def named(model: Model) -> str:
     options = (
@@ -66,11 +75,12 @@ def named(model: Model) -> str:
     )
     own = ["own"] if getattr(model, "coefficient", "") not in ("", *PUBLISHED) else []
     name = type(model).__name__ if model in RIGHT else model.name  # of which some share one
+    name = next((key for key, rig in RIGS.items() if rig is model), name)
     return "-".join([name, *options, *own])
 
 
-RIGHT: list[Model] = [Cells(), Strips(), Means(), Wrapped(), Linear(), Smooth(), Ramps()]
-MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *RIGHT]
+RIGHT: list[Model] = [Cells(), Strips(), Means(), Wrapped(), Linear(), Smooth(), Ramps(), Weight(), Delegating()]
+MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *RIGS.values(), *RIGHT]
 
 CASES = [
     pytest.param(check, id=f"{named(model)}-{check.name}")
@@ -83,7 +93,7 @@ CASES = [
 @pytest.mark.validates(
     "invariants",
     (
-        "Every contact model and wear law, in all its options, passes the conformance kit: signs, units, "
+        "Every rig, contact model and wear law, in all its options, passes the conformance kit: signs, units, "
         "limits, energy, jumps, slopes, full slip, batches"
     ),
     source="what must hold of any model (see the page on the kit)",
@@ -108,7 +118,7 @@ def test_all_models_make_the_round_trip(way: Callable[[RoundTrip], None], trip: 
 
 def test_every_model_that_comes_with_wearlaw_is_checked() -> None:
     own = {entry_point.value for entry_point in distribution("wearlaw").entry_points if entry_point.group == "wearlaw"}
-    installed = {**wl.contact_models(), **wl.wear_laws()}
-    assert {model.name for model in [*CONTACT_MODELS, *WEAR_LAWS]} == {
-        name for name, cls in installed.items() if cls.__module__ in own
+    installed = {**wl.contact_models(), **wl.wear_laws(), **wl.rigs()}
+    assert {model.name for model in [*CONTACT_MODELS, *WEAR_LAWS, *RIGS.values()]} == {
+        name for name, cls in installed.items() if cls.__module__ in own or cls.__module__.rpartition(".")[0] in own
     }

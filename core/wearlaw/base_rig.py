@@ -72,6 +72,12 @@ class Rig(Model):
     creepage: ClassVar[str] = "creepage"
     """The condition that `creepage_for` looks for."""
 
+    example: ClassVar[Mapping[str, Any]] = {}
+    """Conditions of one test, to try the rig with, such as {"mass": "20 kg", "creepage": "1 %"}."""
+
+    example_fields: ClassVar[Mapping[str, Any]] = {}
+    """Values of the fields without a default, to try the rig with."""
+
     @classmethod
     def subject(cls) -> str:
         """Return what messages call this rig."""

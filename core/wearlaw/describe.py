@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -17,7 +18,7 @@ from wearlaw.models import WearLaw
 from wearlaw.records import UNITS
 from wearlaw.registry import symbol
 from wearlaw.tangential import ContactModel, Model
-from wearlaw.units import from_si
+from wearlaw.units import from_si, text_of
 
 
 def describe(model: type[Model]) -> str:
@@ -29,7 +30,8 @@ def describe(model: type[Model]) -> str:
         lines += _field(name, default, _choices(schema[name]), text)
     lines += [] if schema else ["  none"]
     if issubclass(model, Rig):
-        return "\n".join([*lines, "", "conditions:", *(f"  {name}" for name in model.conditions())])
+        conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
+        return "\n".join([*lines, *conditions, *_example(model)])
     lines += ["", "declares:", *(f"  {text}" for text in _declared(default))]
     return "\n".join(lines)
 
@@ -37,6 +39,34 @@ def describe(model: type[Model]) -> str:
 def _headline(model: type[Model]) -> str:
     found = plugins.installed()
     return f"{model.name}: a {model.kind} of {found.of_kind(model.kind).origin(model.name)}"
+
+
+def _example(rig: type[Rig]) -> Iterator[str]:
+    """Yield lines of Python that predict the wear of the example."""
+    if not rig.example:
+        return
+    yield from ("", "example:", "  import wearlaw as wl")
+    yield from _call("rig = wl.rig", json.dumps(rig.name), *_keywords(rig.example_fields))
+    yield '  predict = rig | wl.contact_model("fastsim") | wl.wear_law("kth")'
+    yield from _call("predict", *_keywords(rig.example))
+
+
+def _call(function: str, *arguments: str) -> Iterator[str]:
+    line = f"  {function}({', '.join(arguments)})"
+    if len(line) <= 100:
+        yield line
+    else:
+        yield from (f"  {function}(", *(f"      {argument}," for argument in arguments), "  )")
+
+
+def _keywords(values: Mapping[str, Any]) -> list[str]:
+    return [f"{name}={_literal(value)}" for name, value in values.items()]
+
+
+def _literal(value: Any) -> str:
+    """Return a value as it is written in Python, quantities as text."""
+    written = isinstance(value, str | pint.Quantity | Mapping)
+    return json.dumps(value, ensure_ascii=False, default=text_of) if written else repr(value)
 
 
 def _default(model: type[Model]) -> Model | None:

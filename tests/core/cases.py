@@ -18,6 +18,7 @@ from wearlaw import Array, plugins
 from wearlaw.case import Case, load_case
 from wearlaw.cli import main
 from wearlaw.shelf import Origin
+from wearlaw.tangential import Model
 
 Table = dict[str, Any]
 """A case as TOML gives it."""
@@ -113,7 +114,7 @@ class Coarse(wl.ContactModel):
         return wl.Contact.from_line(problem, fields, x=x, length=np.diff(edges), force_per_width=force)
 
 
-InstallModel = Callable[[type[wl.ContactModel] | type[wl.WearLaw]], None]
+InstallModel = Callable[[type[Model]], None]
 
 
 def installer(monkeypatch: pytest.MonkeyPatch) -> InstallModel:
@@ -121,8 +122,8 @@ def installer(monkeypatch: pytest.MonkeyPatch) -> InstallModel:
     found = plugins.installed()
     origin = Origin("testing", "wearlaw-testing", "9.8.7")
 
-    def install(model: type[wl.ContactModel] | type[wl.WearLaw]) -> None:
-        providers: Any = (found.wear_laws if issubclass(model, wl.WearLaw) else found.contact_models).providers
+    def install(model: type[Model]) -> None:
+        providers: Any = found.of_kind(model.kind).providers
         monkeypatch.setitem(providers, model.name, [(model, origin)])
 
     return install

@@ -28,7 +28,7 @@ class SaidCheck:
             raise AssertionError(self.message)
 
 
-Checked = list[wl.ContactModel | wl.WearLaw]
+Checked = list[wl.Rig | wl.ContactModel | wl.WearLaw]
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def said(monkeypatch: pytest.MonkeyPatch) -> tuple[list[SaidCheck], Checked]:
     given: list[SaidCheck] = []
     checked: Checked = []
 
-    def checks(model: wl.ContactModel | wl.WearLaw) -> Iterator[SaidCheck]:
+    def checks(model: wl.Rig | wl.ContactModel | wl.WearLaw) -> Iterator[SaidCheck]:
         checked.append(model)
         yield from given
 
@@ -81,6 +81,31 @@ def test_options_may_be_repeated_and_hold_an_equals_sign(said: tuple[list[SaidCh
     assert result.exit_code == 0
     assert said[1] == [wl.wear_law("usfd", fitted_for="exact", q_s="56 ug/m/mm^2")]
     assert_refused(wearlaw("check", "usfd", "--option", "q_s=a=b"), "usfd: q_s: 'a=b' is not a number with a unit")
+
+
+@pytest.mark.parametrize(("options", "width"), [((), "10 mm"), (("--option", "track_width=8 mm"), "8 mm")])
+def test_a_rig_is_checked_with_its_example_fields_unless_they_are_given(
+    said: tuple[list[SaidCheck], Checked], options: tuple[str, ...], width: str
+) -> None:
+    assert wearlaw("check", "twin_disc", *options).exit_code == 0
+    fields = {**wl.TwinDisc.example_fields, "track_width": width}
+    assert said[1] == [wl.rig("twin_disc", **fields)]
+
+
+def test_fields_that_are_missing_are_named_with_how_to_give_them(
+    install_model: InstallModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install_model(cases.Linear)
+    assert_refused(wearlaw("check", "linear"), "slope: is missing\ngive --option slope=VALUE")
+    monkeypatch.setattr(wl.TwinDisc, "example_fields", {**wl.TwinDisc.example_fields, "disc_1": {"diameter": "5 cm"}})
+    hint = "give --option disc_1=VALUE, or values to try the rig with in TwinDisc.example_fields"
+    assert_refused(wearlaw("check", "twin_disc"), f"disc_1.material: is missing\n{hint}")
+
+
+def test_a_rig_is_checked_from_the_command_line() -> None:
+    result = wearlaw("check", "wheel_rail")
+    assert result.exit_code == 0
+    assert "ok only_creepage_turns_with_its_sign\n" in result.stdout
 
 
 @pytest.mark.parametrize(

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import inspect
+import textwrap
 from collections.abc import Mapping
+from typing import Any
 
 import pytest
 
 import wearlaw as wl
 from tests.core import cases
+from tests.testing.wrong_rigs import Weight
 from wearlaw import plugins
 from wearlaw.describe import describe
 from wearlaw.docstrings import field_docstrings
@@ -169,3 +172,17 @@ def test_a_law_that_declares_nothing_or_must_be_given_a_field_is_described(monke
     assert said(Bounded).endswith("scale: patch means or cells stated for a mean pressure from 1.000 MPa to 2000 MPa")
     must = said(cases.Linear)
     assert "slope (must be given) Wear rate over p s [m], of no meaning. declares: what depends on its fields" in must
+
+
+@pytest.mark.parametrize("name", ["twin_disc", "wheel_rail", "weight"])
+def test_the_example_of_a_rig_is_a_script_that_runs(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    cases.installer(monkeypatch)(Weight)
+    monkeypatch.setattr(Weight, "example", {**Weight.example, "mass": wl.Q(20, "kg")})
+    rig = wl.rigs()[name]
+    script = textwrap.dedent(describe(rig).partition("\nexample:\n")[2])
+    made: dict[str, Any] = {}
+    exec(script.replace("predict(", "found = predict("), made)
+    assert made["rig"] == wl.rig(name, **rig.example_fields)
+    assert made["found"].problem.normal_force == made["rig"].problem(**rig.example).normal_force
+    monkeypatch.setattr(rig, "example", {})
+    assert describe(rig).endswith(f"\n  {rig.conditions()[-1]}")

@@ -21,7 +21,7 @@ from wearlaw.shelf import Origin
 
 pytestmark = pytest.mark.usefixtures("folder")
 
-KINDS: dict[Kind, str] = {"wear_law": "--wear-law", "contact_model": "--contact-model"}
+KINDS: dict[Kind, str] = {"wear_law": "--wear-law", "contact_model": "--contact-model", "rig": "--rig"}
 
 
 def new_plugin(*arguments: str) -> Result:
@@ -91,7 +91,7 @@ def test_a_name_that_is_no_lower_case_identifier_is_refused(name: str, folder: P
     assert files(folder.parent) == {"my work"}
 
 
-@pytest.mark.parametrize("name", ["none", "true", "field", "class_var", "test_law", "check"])
+@pytest.mark.parametrize("name", ["none", "true", "field", "class_var", "test_law", "check", "any"])
 def test_a_name_whose_class_would_mean_something_else_is_refused(name: str, folder: Path) -> None:
     assert_refused(new_plugin(name, "--wear-law"), f"name: {name!r} would name its class ")
     assert files(folder) == set()
@@ -102,10 +102,13 @@ def test_a_name_too_long_for_the_lines_is_refused() -> None:
 
 
 @pytest.mark.parametrize("flag", KINDS.values())
-@pytest.mark.parametrize("name", ["usfd", "kth", "brr", "exact", "fastsim"])
+@pytest.mark.parametrize("name", ["usfd", "kth", "brr", "exact", "fastsim", "twin_disc"])
 def test_a_taken_name_is_refused_with_who_has_it(name: str, flag: str, folder: Path) -> None:
-    kind = "wear law" if name in wl.wear_laws() else "contact model"
-    taker = f"the {kind} of wearlaw {wl.__version__} (plugin '{name}')"
+    kind = next(
+        kind for kind in ("wear law", "contact model", "rig") if name in plugins.installed().of_kind(kind).items()
+    )
+    plugin = "rigs" if kind == "rig" else name
+    taker = f"the {kind} of wearlaw {wl.__version__} (plugin '{plugin}')"
     assert_refused(new_plugin(name, flag), f"name: '{name}' is taken by {taker}; choose another")
     assert files(folder) == set()
 
@@ -195,6 +198,6 @@ def test_nothing_is_left_when_the_writing_fails(folder: Path, monkeypatch: pytes
     assert files(folder) == set()
 
 
-def test_without_a_kind_both_are_named(folder: Path) -> None:
-    assert_refused(new_plugin("zobory"), "say what it provides: --wear-law or --contact-model", exit_code=2)
+def test_without_a_kind_all_are_named(folder: Path) -> None:
+    assert_refused(new_plugin("zobory"), "say what it provides: --wear-law, --contact-model or --rig", exit_code=2)
     assert files(folder) == set()

@@ -9,6 +9,7 @@ import pytest
 
 import wearlaw as wl
 from tests.testing.wrong_laws import WrongSign
+from tests.testing.wrong_rigs import Weight
 from wearlaw.testing import Check, checks, conformance
 
 SUITE = """
@@ -82,8 +83,15 @@ def test_checks_are_named_documented_and_frozen() -> None:
 
 
 def test_checks_of_something_else_are_an_error() -> None:
-    with pytest.raises(wl.InputError, match="needs a wear law or a contact model"):
+    with pytest.raises(wl.InputError, match="needs a rig, a contact model or a wear law"):
         list(checks(3))  # type: ignore[arg-type]
+
+
+def test_a_rig_without_an_example_is_an_error_that_says_what_to_write(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Weight, "example", {})
+    with pytest.raises(wl.InputError, match=r"'weight' has no conditions to try it with.*class Weight") as refused:
+        list(checks(Weight()))
+    assert str(refused.value).endswith('  example = {"mass": ..., "creepage": ..., "friction_coefficient": ...}')
 
 
 def test_an_error_in_the_model_is_a_failure_that_names_it() -> None:

@@ -22,6 +22,7 @@ from tests.testing import (
     wrong_ellipses,
     wrong_fields,
     wrong_laws,
+    wrong_rigs,
     wrong_strips,
 )
 from wearlaw.testing import Check, checks, conformance, examples, fresh
@@ -36,10 +37,13 @@ WRONG: dict[Any, str] = {
     **wrong_ellipses.CAUGHT,
     **wrong_strips.CAUGHT,
     **wrong_creep_forces.CAUGHT,
+    **wrong_rigs.CAUGHT,
 }
 
 
 def made(mutant: Any) -> Any:
+    if issubclass(mutant, wrong_rigs.LosesArm):
+        return mutant(arm="1 m")
     return mutant(slope=wl.Q(7.0, "ug/m/N")) if issubclass(mutant, wrong_declarations.LosesField) else mutant()
 
 
@@ -70,7 +74,8 @@ def test_every_check_of_an_invariant_catches_a_mutant() -> None:
     # between them they are given every check.
     laws: list[Any] = [wrong_declarations.Ramps(), wl.wear_law("brr")]
     contact_models: list[Any] = [wl.contact_model("exact"), cells.Cells(), strips.Strips()]
-    names = {check.name for model in laws + contact_models for check in checks(model)}
+    rigs: list[Any] = [wrong_rigs.Weight()]
+    names = {check.name for model in laws + contact_models + rigs for check in checks(model)}
     assert names == set(WRONG.values())
 
 
@@ -104,6 +109,7 @@ MODELS_OF_THE_DOCUMENTATION = {
     "wearlaw_rigid": "Rigid",
     "wearlaw_rigid_ellipse": "RigidEllipse",
     "wearlaw_sliding": "Sliding",
+    "wearlaw_roller": "Roller",
 }
 
 

@@ -101,6 +101,7 @@ def generated(environment: Environment, tmp_path_factory: pytest.TempPathFactory
     plugins: dict[Kind, Path] = {
         "wear_law": folder / "wearlaw-my_wear_law",
         "contact_model": write_plugin("my_contact_model", "contact_model", folder),
+        "rig": write_plugin("my_rig", "rig", folder),
     }
     environment.install(*(argument for plugin in plugins.values() for argument in ("-e", plugin)))
     return plugins

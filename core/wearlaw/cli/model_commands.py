@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 from wearlaw import plugins
-from wearlaw.errors import PluginWarning, UnknownModelError, message_of
+from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
 from wearlaw.shelf import unknown
 
 if TYPE_CHECKING:
@@ -49,6 +49,7 @@ def show(name: str) -> None:
 @click.argument("name")
 @click.option("--wear-law", "kind", flag_value="wear_law", help="Start from a wear law: Archard's.")
 @click.option("--contact-model", "kind", flag_value="contact_model", help="Start from a contact model: full slip.")
+@click.option("--rig", "kind", flag_value="rig", help="Start from a rig: a weight on two rollers.")
 @click.option(
     "-o",
     "--output",
@@ -65,16 +66,16 @@ def show(name: str) -> None:
     help="Licence of the plugin; with none, LICENSE says how to choose one.",
 )
 def new_plugin(name: str, kind: Kind | None, output: Path, licence: Licence) -> None:
-    """Begin a plugin: write a small distribution, wearlaw-NAME, with a wear law or a contact model to replace.
+    """Begin a plugin: write a small distribution, wearlaw-NAME, with a wear law, a contact model or a rig to replace.
 
     It holds a module of about 30 lines, its entry point, its tests with the conformance checks, a README, a licence
     and a CI workflow, and passes its tests, ruff and mypy --strict as it is. NAME is what the model will be called in
-    wearlaw.wear_law("NAME") and in case files: lower-case letters, digits and underscores.
+    wearlaw.wear_law("NAME") or wearlaw.rig("NAME") and in case files: lower-case letters, digits and underscores.
     """
     from wearlaw.scaffold import write_plugin
 
     if kind is None:
-        raise click.UsageError("say what it provides: --wear-law or --contact-model")
+        raise click.UsageError("say what it provides: --wear-law, --contact-model or --rig")
     folder = write_plugin(name, kind, output, licence)
     click.echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}.py. Next:")
     click.echo(f"  cd {shlex.quote(str(folder))}")
@@ -93,11 +94,12 @@ def check(name: str, options: tuple[str, ...]) -> None:
     \b
     wearlaw check usfd
     wearlaw check usfd --option fitted_for=exact
+    wearlaw check twin_disc --option track_width="8 mm"
     """  # noqa: D301
     from wearlaw.cli.parsing import fields
     from wearlaw.tangential import ContactModel
 
-    model = _model_class(name)(**fields("--option", options))
+    model = _made(_model_class(name), fields("--option", options))
     outcomes = [_outcome(one) for one in _checks(model)]
     not_claimed = model.exemptions if isinstance(model, ContactModel) else {}
     for claim, reason in not_claimed.items():
@@ -105,6 +107,23 @@ def check(name: str, options: tuple[str, ...]) -> None:
     click.echo(f"{outcomes.count(True)} ok, {outcomes.count(False)} failed, {len(not_claimed)} not claimed")
     if not all(outcomes):
         click.get_current_context().exit(1)
+
+
+def _made(model: type[Model], options: dict[str, str]) -> Model:
+    """Return the model with some fields, and a rig with those of its `example_fields` besides."""
+    from wearlaw.base_rig import Rig
+
+    own = model.example_fields if issubclass(model, Rig) else {}
+    try:
+        return model(**{**own, **options})
+    except ConfigurationError as error:
+        missing = dict.fromkeys(problem.path[0] for problem in error.problems if problem.message == "is missing")
+        if not missing:
+            raise
+        hint = f"give {' '.join(f'--option {field}=VALUE' for field in missing)}"
+        if issubclass(model, Rig):
+            hint += f", or values to try the rig with in {model.__name__}.example_fields"
+        raise InputError(f"{error}\n{hint}") from None
 
 
 def _checks(model: Model) -> Iterable[Check]:

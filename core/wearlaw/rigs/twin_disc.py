@@ -54,6 +54,17 @@ class TwinDisc(Rig):
     name: ClassVar[str] = "twin_disc"
     source: ClassVar[str] = "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(c)"
     geometry: ClassVar[Geometry | None] = "line"
+    example: ClassVar[Mapping[str, Any]] = {
+        "max_pressure": "1500 MPa",
+        "creepage": "1 %",
+        "friction_coefficient": 0.46,
+    }
+    example_fields: ClassVar[Mapping[str, Any]] = {
+        "disc_1": {"diameter": "47 mm", "material": "steel"},
+        "disc_2": {"diameter": "47 mm", "material": "steel"},
+        "track_width": "10 mm",
+        "rolling_speed": "1 m/s",
+    }
 
     disc_1: Disc
     """The wheel disc."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, ClassVar, NamedTuple, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Unpack
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -42,6 +42,19 @@ class WheelRail(Rig):
     source: ClassVar[str] = "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(b)"
     geometry: ClassVar[Geometry | None] = "ellipse"
     creepage: ClassVar[str] = "longitudinal_creepage"
+    example: ClassVar[Mapping[str, Any]] = {
+        "normal_force": "80 kN",
+        "longitudinal_creepage": "0.2 %",
+        "lateral_creepage": "0.1 %",
+        "spin": "0.2 1/m",
+        "friction_coefficient": 0.3,
+    }
+    example_fields: ClassVar[Mapping[str, Any]] = {
+        "wheel_radius": "460 mm",
+        "rail_head_radius": "300 mm",
+        "material": "steel",
+        "rolling_speed": "30 m/s",
+    }
 
     wheel_radius: Length
     """Rolling radius of the wheel [m]."""

@@ -21,7 +21,7 @@ from wearlaw.output_folder import fresh_folder
 from wearlaw.shelf import Shelf
 from wearlaw.version import __version__
 
-Kind: TypeAlias = Literal["wear_law", "contact_model"]
+Kind: TypeAlias = Literal["wear_law", "contact_model", "rig"]
 """What the plugin is to provide."""
 
 Licence: TypeAlias = Literal["bsd-3-clause", "mit", "none"]
@@ -39,11 +39,17 @@ LONGEST_NAME = 24
 class _Example:
     text: str
     pipeline: str
+    conditions: str = 'max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.46'
 
 
 _EXAMPLES: dict[Kind, _Example] = {
-    "wear_law": _Example("Archard's law", 'wl.contact_model("exact") | wl.wear_law("{}")'),
-    "contact_model": _Example("full slip", 'wl.contact_model("{}") | wl.wear_law("usfd")'),
+    "wear_law": _Example("Archard's law", 'wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("{}")'),
+    "contact_model": _Example("full slip", 'wl.TwinDisc.suros() | wl.contact_model("{}") | wl.wear_law("usfd")'),
+    "rig": _Example(
+        "a weight on two rollers",
+        'wl.rig("{}") | wl.contact_model("exact") | wl.wear_law("kth")',
+        'mass="20 kg", creepage="1 %", friction_coefficient=0.4',
+    ),
 }
 
 
@@ -53,8 +59,8 @@ def write_plugin(name: str, kind: Kind, parent: Path, licence: Licence = "none")
     Parameters
     ----------
     name : str
-        The name of the wear law or contact model.
-    kind : {"wear_law", "contact_model"}
+        The name of the wear law, contact model or rig.
+    kind : {"wear_law", "contact_model", "rig"}
         What the plugin provides.
     parent : Path
         The folder in which the new folder is made.
@@ -97,7 +103,7 @@ def _check_name(name: str, kind: Kind) -> None:
     if len(name) > LONGEST_NAME:
         raise InputError(f"name: must have at most {LONGEST_NAME} characters, got {len(name)}: {name!r}")
     made = _class_name(name)
-    if made.startswith("Test") or made in {"None", "True", "False", "Check", "ClassVar", "Field", "Mapping"}:
+    if made.startswith("Test") or made in {"None", "True", "False", "Any", "Check", "ClassVar", "Field", "Mapping"}:
         raise InputError(f"name: {name!r} would name its class {made}, which means something else; choose another")
     for taker in _takers(name, kind):
         raise InputError(f"name: '{name}' is taken by {taker}; choose another")
@@ -106,11 +112,11 @@ def _check_name(name: str, kind: Kind) -> None:
 def _takers(name: str, kind: Kind) -> Iterator[str]:
     """Give what bears a name already, where a look-up would confuse the two.
 
-    `wearlaw show` and `check` take contact models and wear laws alike, and a wear law hides the parameter set of its
-    name. Materials and cases are looked up apart. A distribution replaces that of its name.
+    `wearlaw show` and `check` take rigs, contact models and wear laws alike, and a wear law hides the parameter set of
+    its name. Materials and cases are looked up apart. A distribution replaces that of its name.
     """
     found = plugins.installed()
-    shelves: list[Shelf[Any]] = [found.wear_laws, found.contact_models]
+    shelves: list[Shelf[Any]] = [found.wear_laws, found.contact_models, found.rigs]
     if kind == "wear_law":
         shelves.append(found.parameter_sets)
     for shelf in shelves:
@@ -130,6 +136,7 @@ def _files(name: str, kind: Kind, licence: Licence) -> dict[str, str]:
         "kind": kind.replace("_", " "),
         "example": example.text,
         "pipeline": example.pipeline.format(name),
+        "conditions": example.conditions,
         "version": __version__,
         "year": str(datetime.datetime.now(tz=datetime.UTC).year),
         "licence": f'license = "{_SPDX[licence]}"\n' if licence in _SPDX else "",

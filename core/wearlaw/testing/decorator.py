@@ -21,7 +21,7 @@ def conformance(
 
     Parameters
     ----------
-    model : WearLaw or ContactModel
+    model : Rig, ContactModel or WearLaw
         With the options that are to be checked.
     expected_failures : mapping of str to str, optional
         Names of checks that are known to fail, each with the reason; the test fails once one of them passes.

@@ -6,6 +6,7 @@ kit, which would cost more time than all of that.
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
 import pickle
 import sys
@@ -15,7 +16,11 @@ from typing import Any
 
 
 def computed(model: Any, arguments: list[Any]) -> list[Any]:
-    """Return what a wear law computes for contacts, or a contact model for problems."""
+    """Return what a wear law computes for contacts, a contact model for problems, or a rig for conditions."""
+    if hasattr(model, "problem"):
+        problems = [model.problem(**conditions) for conditions in arguments]
+        values = [getattr(problem, field.name) for problem in problems for field in dataclasses.fields(problem)]
+        return [value for value in values if hasattr(value, "dtype")]
     if hasattr(model, "rate"):
         return [model.rate(contact, model.numbers) for contact in arguments]
     contacts = [model.solve(problem) for problem in arguments]

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from wearlaw.base_rig import Rig
 from wearlaw.errors import InputError, described
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import WearLaw
@@ -27,6 +28,7 @@ from wearlaw.testing import (
     law_checks,
     law_shape,
     law_varies,
+    rig_checks,
     unit_checks,
 )
 from wearlaw.testing.roundtrip import RoundTrip
@@ -34,8 +36,8 @@ from wearlaw.testing.shared_checks import Claims
 
 CheckFunction: TypeAlias = Callable[..., None]
 
-COMMON: tuple[CheckFunction, ...] = (*declarations.COMMON, *unit_checks.CHECKS, *acceleration.CHECKS)
-"""Checks of wear laws and contact models."""
+COMMON: tuple[CheckFunction, ...] = (*declarations.COMMON, *unit_checks.CHECKS)
+"""Checks of every model."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,7 @@ class Check:
 
 
 def checks(model: Model) -> Iterator[Check]:
-    """Yield the checks of a wear law or contact model.
+    """Yield the checks of a rig, a contact model or a wear law.
 
     A check of what the model does not claim is left out: of a claim in `ContactModel.exemptions`, of the nodes of
     a law that is stated for the whole patch, of a shape of patch that a contact model does not solve, of what is
@@ -87,25 +89,34 @@ def checks(model: Model) -> Iterator[Check]:
 
     Parameters
     ----------
-    model : WearLaw or ContactModel
+    model : Rig, ContactModel or WearLaw
         With the options that are to be checked.
 
     Raises
     ------
     InputError
-        If it is neither.
+        If it is none of them, or a rig without an `example`.
     """
-    if isinstance(model, WearLaw):
+    if isinstance(model, Rig):
+        found = _of_rig(model)
+    elif isinstance(model, WearLaw):
         found = _of_law(model)
     elif isinstance(model, ContactModel):
         found = _of_contact_model(model)
     else:
-        raise InputError(f"checks: needs a wear law or a contact model, such as wl.wear_law('usfd'); got {model!r}")
+        raise InputError(
+            f"checks: needs a rig, a contact model or a wear law, such as wl.wear_law('usfd'); got {model!r}"
+        )
     for function in found:
         yield _check(function, model)
     trip = RoundTrip(model)
     for way in (trip.through_toml, trip.through_json, trip.through_pickle):
         yield Check(f"round_trip_{way.__name__}", inspect.getdoc(way) or "", way)
+
+
+def _of_rig(rig: Rig) -> list[CheckFunction]:
+    of_creepage = rig_checks.OF_CREEPAGE if rig.creepage in rig_checks.varied(rig) else ()
+    return [*rig_checks.CHECKS, *of_creepage, *COMMON]
 
 
 def _of_law(law: WearLaw) -> list[CheckFunction]:
@@ -115,14 +126,19 @@ def _of_law(law: WearLaw) -> list[CheckFunction]:
     if law.ramps(law.numbers) is None:
         idle += law_branches.OF_RAMPS
     functions = [*law_shape.CHECKS, *law_varies.CHECKS, *law_checks.CHECKS, *law_branches.CHECKS]
-    return [*(function for function in functions if function not in idle), *COMMON, *declarations.OF_LAWS]
+    return [
+        *(function for function in functions if function not in idle),
+        *COMMON,
+        *acceleration.CHECKS,
+        *declarations.OF_LAWS,
+    ]
 
 
 def _of_contact_model(model: ContactModel) -> list[CheckFunction]:
     geometries = model.geometries()
     of_line = _of_line_contacts(model) if "line" in geometries else []
     of_ellipse = _of_elliptic_contacts(model) if "ellipse" in geometries else []
-    return [*of_line, *of_ellipse, *COMMON, *declarations.OF_CONTACT_MODELS]
+    return [*of_line, *of_ellipse, *COMMON, *acceleration.CHECKS, *declarations.OF_CONTACT_MODELS]
 
 
 def _of_line_contacts(model: ContactModel) -> list[CheckFunction]:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from wearlaw.base_rig import Rig
 from wearlaw.models import WearLaw
 from wearlaw.problem import Geometry
 from wearlaw.rigs.twin_disc import TwinDisc
@@ -81,7 +82,9 @@ def _pickled(model: Model) -> bytes:
 
 
 def _arguments(model: Model) -> list[Any]:
-    """Return the contacts or problems for which the model computes something."""
+    """Return the contacts, problems or conditions for which the model computes something."""
+    if isinstance(model, Rig):
+        return [dict(model.example)]
     if isinstance(model, WearLaw):
         return [random_contacts(16)]
     assert isinstance(model, ContactModel)

@@ -25,6 +25,7 @@ from wearlaw.tangential import ContactModel, Model
 from wearlaw.testing.contact_checks import random_problems
 from wearlaw.testing.ellipses import WHEEL_RAIL, random_ellipses
 from wearlaw.testing.examples import SAME, assert_close
+from wearlaw.testing.rig_checks import values_of, varied
 from wearlaw.testing.sampling import EPS, random_contacts
 from wearlaw.units import Q
 
@@ -68,6 +69,8 @@ def _near(model: Model, name: str, value: Any) -> Iterator[Model]:
 
 
 def _computed(model: Model) -> Array:
+    if isinstance(model, Rig):
+        return _made(model, dict(model.example))
     if isinstance(model, WearLaw):
         return model.rate(random_contacts(POINTS), model.numbers)
     assert isinstance(model, ContactModel)
@@ -80,6 +83,9 @@ def units_of_conditions_do_not_matter(model: Model) -> None:
 
     A contact model sees them through a rig, a wear law through `Contact.from_arrays`.
     """
+    if isinstance(model, Rig):
+        _compare_conditions(model)
+        return
     if isinstance(model, WearLaw):
         _compare(_contacts(), lambda given: model.rate(Contact.from_arrays(**given), model.numbers), OF_CONTACTS)
         return
@@ -91,6 +97,23 @@ def units_of_conditions_do_not_matter(model: Model) -> None:
         for load, (low, high) in loads.items():
             values = {load: np.rint(random.uniform(low, high, POINTS)), **rolling}
             _compare(values, partial(_solved, rig | model), OF_CONDITIONS)
+
+
+def _made(rig: Rig, given: Mapping[str, Any]) -> Array:
+    """Return the numbers of the problem that a rig makes, along a first axis."""
+    return np.stack(np.broadcast_arrays(*values_of(rig.checked_problem(given)).values()))
+
+
+def _compare_conditions(rig: Rig) -> None:
+    """Compare the problem of the example in SI with that in its own units, or in hundredths of SI units."""
+    quantities = {name: value for name, value in varied(rig).items() if isinstance(value, pint.Quantity)}
+    in_si = {name: value.to_base_units() for name, value in quantities.items()}
+    values = {name: value.magnitude * np.ones(1) for name, value in in_si.items()}
+    units = {}
+    for name, value in in_si.items():
+        si, own = str(value.units), str(quantities[name].units)
+        units[name] = si, own if own != si else f"percent * {si}"
+    _compare(values, lambda given: _made(rig, {**rig.example, **given}), units)
 
 
 def _solved(pipeline: Any, given: dict[str, Any]) -> Array:
