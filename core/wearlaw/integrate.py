@@ -20,8 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
-from wearlaw.blocks import Columns, OfBlock, OnBlock, by_block
+from wearlaw.blocks import Columns, OfBlock, OnBlock, blocks, by_block
 from wearlaw.crossings import crossings
+from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.extremes import extremes
 from wearlaw.kernels import accelerated
 from wearlaw.line_model import LineContactModel
@@ -96,12 +97,15 @@ class WearTotals:
         The forces and the moment; None where the contact model knows them without nodes.
     patch_area : ndarray or None
         Area of the patch, the sum of its nodes' areas [m²]; None where that is the area of the problem.
+    contact : Contact or None
+        The contact as the model solved it, for a batch of one axis, where it is an ellipse and fits into one block.
     """
 
     wear_rate: Array
     wear_rate_error: Array | None = None
     forces: CreepForces | None = None
     patch_area: Array | None = None
+    contact: Contact | None = None
 
 
 def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
@@ -125,12 +129,14 @@ def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
     return CreepForces.of({"longitudinal": found["tangential_force"]})
 
 
-def integrate_slip(model: ContactModel, problem: Problem, scale: Scale) -> SlipTotals:
-    """Return how the patch slips."""
+def integrate_slip(
+    model: ContactModel, problem: Problem, scale: Scale, solved_before: Contact | None = None
+) -> SlipTotals:
+    """Return how the patch slips; of a contact that was `solved_before`, as `WearTotals.contact`, at no cost."""
     solver = Solver(model)
 
     def columns(part: Problem, _: slice) -> Columns:
-        solved = solver.solve(part)
+        solved = solved_before or solver.solve(part)
         contact = seen_by_law(model, solved, scale)
         slip_area, patch_area = contact.slip_area, contact.patch_area
         if scale == "cells" and isinstance(model, LineContactModel) and part.geometry == "line":
@@ -194,17 +200,25 @@ def _over_ellipse(
     p: Numbers,
 ) -> WearTotals:
     solver = Solver(model)
+    solved: list[Contact] = []
     across = {name: value[..., None] if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
     def columns(part: Problem, points: slice) -> Columns:
         contact = solver.solve(part)
+        if part.size == problem.size:
+            solved.append(contact)
         seen = seen_by_law(model, contact, scale)
         area = seen.patch_area
         rate = seen.sum_over_nodes(solver.rate(law, seen, part, _at_points(across, points)) * seen.area) / area
         return {"wear_rate": rate, "patch_area": area, **_columns(contact.forces)}
 
     found = _by_block(solver, problem, columns, on_block)
-    return WearTotals(wear_rate=found["wear_rate"], forces=CreepForces.of(found), patch_area=found["patch_area"])
+    return WearTotals(
+        wear_rate=found["wear_rate"],
+        forces=CreepForces.of(found),
+        patch_area=found["patch_area"],
+        contact=solved[0] if solved else None,
+    )
 
 
 def _over_line(
@@ -274,6 +288,56 @@ def wear_rate_error(model: ContactModel, law: WearLaw, problem: Problem, scale: 
         return {"error": thinning_error(contact, solver.rate(law, contact, part))}
 
     return _by_block(solver, problem, columns)["error"]
+
+
+def integrate_across(
+    model: ContactModel, law: WearLaw, problem: Problem, strips: int | None, solved_before: Contact | None = None
+) -> tuple[Array, Array, Array]:
+    """Return what happens along each strip of an ellipse, block by block, of the batch shape and an axis of strips.
+
+    Parameters
+    ----------
+    model : ContactModel
+    law : WearLaw
+    problem : Problem
+    strips : int, optional
+        How many strips of equal width; by default, and of a model that has strips of its own only, those of the model.
+    solved_before : Contact, optional
+        As in `WearTotals.contact`.
+
+    Returns
+    -------
+    y, wear, slid : ndarray, (batch, strips)
+        Place of each strip [m], ∫ rate dx [kg/m²] and ∫ |s| dx [m] along it.
+    """
+    solver, flat = Solver(model), problem.flatten()
+    edges = np.linspace(-1.0, 1.0, (strips or 0) + 1)
+    shares = 0.5 * (edges[1:] + edges[:-1])
+
+    def solved(part: Problem) -> EllipticContact:
+        chosen = None
+        if strips is not None:
+            with Blame(model):
+                chosen = model.on_strips(part, shares)
+        if chosen is None:
+            found = solver.solve(part)
+            assert isinstance(found, EllipticContact)
+            return found
+        solver.check(chosen, part, totals=False)
+        return chosen
+
+    def along(part: Problem, contact: EllipticContact) -> tuple[Array, Array, Array]:
+        wear = contact.over_strip(solver.rate(law, contact, part))
+        return contact.y[..., 0, :], wear, contact.over_strip(contact.slip)
+
+    if strips is None and isinstance(solved_before, EllipticContact):
+        found = [along(flat.replaced(density=solved_before.density), solved_before)]
+    else:
+        block = max(ELLIPSE_NODES // solved(flat[:1]).pressure.size, 1)
+        parts = (flat[points] for points in blocks(flat.size, block))
+        found = [along(part, solved(part)) for part in parts]
+    y, wear, slid = (np.concatenate(values).reshape(*problem.batch_shape, -1) for values in zip(*found, strict=True))
+    return y, wear, slid
 
 
 def _columns(forces: CreepForces) -> Columns:

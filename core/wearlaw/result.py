@@ -9,7 +9,6 @@ import numpy as np
 
 from wearlaw import integrate
 from wearlaw.arrays import Array
-from wearlaw.elliptic_contact import EllipticContact
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.integrate import SlipTotals, WearTotals
 from wearlaw.line_model import LineContactModel
@@ -17,7 +16,6 @@ from wearlaw.problem import CreepForces, Problem
 from wearlaw.quadrature import uniform_cells
 from wearlaw.records import UNITS, Contact
 from wearlaw.solving import Solver
-from wearlaw.tangential import Blame
 from wearlaw.units import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
 
 if TYPE_CHECKING:
@@ -27,9 +25,6 @@ if TYPE_CHECKING:
 
 PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
-
-PROFILE_STRIPS = 101
-"""Strips of a profile across the patch, where the contact model can choose them."""
 
 OF_LINE = ("tangential_force", "wear_index", "half_width", "max_pressure", "stick_ratio", "mean_slip")
 OF_ELLIPSE = (
@@ -190,6 +185,8 @@ class Prediction:
     def contact(self) -> Contact:
         """The solved contact as SI arrays, on nodes that suit the wear law, or that the contact model chose."""
         model, scale = self.pipeline.contact_model, self.pipeline.scale
+        if self._solved is not None:
+            return integrate.seen_by_law(model, self._solved.with_batch(self.problem.batch_shape), scale)
         if self.problem.geometry == "ellipse" or not self.pipeline.laws:
             return integrate.solve(model, self.problem, scale)
         contact = integrate.contact_for(model, self.pipeline.wear_law, self.problem.flatten(), scale)
@@ -226,8 +223,8 @@ class Prediction:
             return xarray.Dataset({k: v.rename(cell="x") for k, v in data.items()}, coords={"x": x.rename(cell="x")})
         return xarray.Dataset(data).set_coords("x")
 
-    def wear_profile(self, body: str) -> xarray.Dataset:
-        """Return the depth lost and the distance slid across the patch, over y.
+    def wear_profile(self, body: str, strips: int | None = None) -> xarray.Dataset:
+        """Return the depth lost and the distance slid across an elliptic patch, over y.
 
         A point of the wheel's tread is in contact once in each revolution, so the depth that it loses per metre rolled
         is ∫ rate dx / (ρ 2πR). A point of the rail is in contact once in each passage of a wheel; what it loses is
@@ -236,7 +233,10 @@ class Prediction:
         Parameters
         ----------
         body : str
-            "wheel" or "rail".
+            Its name in the rig, such as "wheel" or "rail".
+        strips : int, optional
+            How many strips of equal width, for a smoother profile; by default those of the contact model, which cost
+            nothing more. A contact model that cannot choose its strips keeps its own.
 
         Returns
         -------
@@ -251,18 +251,27 @@ class Prediction:
         CompositionError
             If the contact is not resolved across the patch, or is a line.
         """
-        radius = self.pipeline.rig.body(body).rolling_radius
-        density = self._density(body)
-        contact = self._across()
-        contact = contact.replaced(density=np.full_like(contact.density, density))
-        depth = contact.over_strip(self.pipeline.wear_law.checked_rate(contact)) / density
-        slid = contact.over_strip(contact.slip)
-        per_metre = {"depth": (depth, "um/km"), "sliding_distance": (slid, "mm/m")}
-        per_passage = {"depth": (depth, "nm"), "sliding_distance": (slid, "um")}
+        model, problem = self.pipeline.contact_model, self.problem
+        radius, density = self.pipeline.rig.body(body).rolling_radius, self._density(body)
+        if problem.geometry == "line":
+            raise CompositionError("wear_profile: a line wears evenly across its width; take depth_per_distance")
+        if self.pipeline.scale == "patch":
+            raise CompositionError(
+                f"wear_profile: {model!r} gives means of the whole patch; take a contact model that"
+                ' resolves it, such as wl.contact_model("fastsim")'
+            )
+        if strips is not None and (isinstance(strips, bool) or not isinstance(strips, int) or strips < 2):
+            raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
+        law, solved = self.pipeline.wear_law, self._solved
+        if not (problem.density == density).all():
+            problem = problem.replaced(density=np.full_like(problem.density, density))
+            solved = solved and solved.replaced(density=problem.density.reshape(-1))
+        y, wear, slid = integrate.integrate_across(model, law, problem, strips, solved)
         once = 2.0 * np.pi * radius if np.isfinite(radius) else 1.0
-        columns = per_metre if np.isfinite(radius) else per_passage
+        units = ("um/km", "mm/m") if np.isfinite(radius) else ("nm", "um")
         per = "metre rolled" if np.isfinite(radius) else "passage of a wheel"
-        return _across_patch(contact, {name: (value / once, unit) for name, (value, unit) in columns.items()}, per)
+        columns = {"depth": (wear / (density * once), units[0]), "sliding_distance": (slid / once, units[1])}
+        return _across_patch(y, columns, per)
 
     @property
     def wear_rate(self) -> Quantity:
@@ -339,7 +348,12 @@ class Prediction:
 
     @cached_property
     def _slip(self) -> SlipTotals:
-        return integrate.integrate_slip(self.pipeline.contact_model, self.problem, self.pipeline.scale)
+        return integrate.integrate_slip(self.pipeline.contact_model, self.problem, self.pipeline.scale, self._solved)
+
+    @property
+    def _solved(self) -> Contact | None:
+        """The contact that was solved for the wear, with one batch axis, where it was kept."""
+        return None if self._given_wear is None else self._given_wear.contact
 
     @cached_property
     def _patch_area(self) -> Array:
@@ -385,37 +399,18 @@ class Prediction:
         points = "1 operating point" if self.problem.size == 1 else f"{self.problem.size} operating points"
         return f"{type(self).__name__} of {points}{rows}"
 
-    def _across(self) -> EllipticContact:
-        """Return the contact on strips across the patch."""
-        model, problem = self.pipeline.contact_model, self.problem
-        if problem.geometry == "line":
-            raise CompositionError("wear_profile: a line wears evenly across its width; take depth_per_distance")
-        if self.pipeline.scale == "patch":
-            raise CompositionError(
-                f"wear_profile: {model!r} gives means of the whole patch; take a contact model that"
-                ' resolves it, such as wl.contact_model("fastsim")'
-            )
-        edges = np.linspace(-1.0, 1.0, PROFILE_STRIPS + 1)
-        with Blame(model):
-            chosen = model.on_strips(problem, 0.5 * (edges[1:] + edges[:-1]))
-        if chosen is None:
-            assert isinstance(self.contact, EllipticContact)
-            return self.contact
-        Solver(model).check(chosen, problem, totals=False)
-        return chosen
 
-
-def _across_patch(contact: EllipticContact, columns: dict[str, tuple[Array, str]], per: str) -> xarray.Dataset:
+def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str) -> xarray.Dataset:
     import xarray
 
-    batch = [f"point_{axis}" for axis in range(contact.rolling_speed.ndim)]
+    batch = [f"point_{axis}" for axis in range(y.ndim - 1)]
     dims = [*batch, "strip"] if batch else ["y"]
-    y = (dims, in_unit(contact.y[..., 0, :], "mm"), {"units": "mm", "long_name": "position across the patch"})
+    place = (dims, in_unit(y, "mm"), {"units": "mm", "long_name": "position across the patch"})
     data = {
         name: (dims, in_unit(values, unit), {"units": unit, "long_name": f"{name.replace('_', ' ')} per {per}"})
         for name, (values, unit) in columns.items()
     }
-    return xarray.Dataset(data, coords={"y": y})
+    return xarray.Dataset(data, coords={"y": place})
 
 
 def _brief(quantity: Quantity) -> str:

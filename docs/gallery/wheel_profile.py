@@ -22,7 +22,7 @@ for spin, line in zip((0.0, 0.3, 0.6), ("-", "--", ":"), strict=True):
     r = predict(
         normal_force=Q(80, "kN"), friction_coefficient=0.3, longitudinal_creepage=Q(0.2, "%"), spin=Q(spin, "1/m")
     )
-    profile = r.wear_profile("wheel")
+    profile = r.wear_profile("wheel", strips=101)
     axes.plot(profile.y, profile.depth, line, label=f"spin {spin} 1/m")
 
 axes.set(xlabel="y [mm]", ylabel="depth lost per distance rolled [µm/km]")

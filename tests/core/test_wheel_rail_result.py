@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -101,7 +101,7 @@ def test_many_points_are_the_same_as_one_after_the_other_and_keep_their_shape() 
 )
 def test_the_profile_of_the_wheel_sums_to_the_mass_it_loses(within: float) -> None:
     result = (RIG | FASTSIM | PER_ENERGY)(**CONDITIONS)
-    profile = result.wear_profile("wheel")
+    profile = result.wear_profile("wheel", strips=101)
     assert profile.depth.attrs["units"] == "um/km"
     assert profile.depth.attrs["long_name"] == "depth per metre rolled"
     # Depth × width × circumference × density is the mass lost per metre. The profile has strips of equal width, whose
@@ -133,7 +133,7 @@ def test_in_full_slip_without_spin_each_point_slides_by_the_creepage(within: flo
     # The mean slip over a strip in full slip is the creepage, so a point slides ν × the length of its strip.
     conditions = {**CONDITIONS, "longitudinal_creepage": Q(50, "%"), "lateral_creepage": Q(0, ""), "spin": Q(0, "1/m")}
     result = (RIG | FASTSIM | PER_ENERGY)(**conditions)
-    profile = result.wear_profile("rail")
+    profile = result.wear_profile("rail", strips=101)
     b, a = result.semi_axis_b.magnitude, result.semi_axis_a.magnitude
     due = 0.5 * 2.0 * a * np.sqrt(1.0 - (profile.y.values / b) ** 2)
     assert 1e-3 * profile.sliding_distance.values == pytest.approx(due, rel=within)
@@ -148,8 +148,54 @@ def test_profiles_of_many_points_have_an_axis_for_each_of_the_batch() -> None:
 
 def test_a_uniform_march_has_the_profile_of_its_own_strips() -> None:
     coarse = RIG | wl.contact_model("fastsim", march="uniform", strips=20) | PER_ENERGY
-    profile = coarse(**CONDITIONS).wear_profile("wheel")
-    assert profile.y.size == 20
+    assert coarse(**CONDITIONS).wear_profile("wheel").y.size == 20
+    assert coarse(**CONDITIONS).wear_profile("wheel", strips=50).y.size == 20
+
+
+def test_strips_of_a_profile_must_be_a_number_of_them() -> None:
+    result = (RIG | FASTSIM | PER_ENERGY)(**CONDITIONS)
+    for strips in (1, 0, True, 10.0):
+        with pytest.raises(wl.InputError, match="strips: must be a whole number from 2"):
+            result.wear_profile("wheel", strips=strips)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("points", [None, 3])
+def test_the_strips_of_the_contact_sum_to_the_mass_of_the_wheel(points: int | None) -> None:
+    load = Q(80.0, "kN") if points is None else Q(np.linspace(40.0, 90.0, points), "kN")
+    result = (RIG | FASTSIM | PER_ENERGY)(**{**CONDITIONS, "normal_force": load})
+    profile = result.wear_profile("wheel")
+    lost = 1e-9 * (profile.depth.values * result.contact.strip_width).sum(axis=-1) * 2 * np.pi * 0.46 * 7850
+    assert lost == pytest.approx(result.mass_per_distance.to("kg/m").magnitude, rel=64 * EPS)
+
+
+class Counted(type(wl.contact_model("fastsim"))):  # type: ignore[misc]
+    """FASTSIM that counts how often it solves."""
+
+    solved: ClassVar[list[int]] = []
+
+    def solve_ellipse(self, problem: wl.Problem) -> wl.EllipticContact:
+        self.solved.append(problem.size)
+        found: wl.EllipticContact = super().solve_ellipse(problem)
+        return found
+
+
+@pytest.mark.parametrize("use_patch_mean", [False, True])
+def test_a_contact_is_solved_once_whatever_is_read_of_it(use_patch_mean: bool) -> None:
+    contact = RIG | Counted() | wl.patch_mean() if use_patch_mean else RIG | Counted()
+    conditions = {**CONDITIONS, "normal_force": Q([[40.0, 60.0], [70.0, 90.0]], "kN")}
+    Counted.solved.clear()
+    result = (contact | PER_ENERGY)(**conditions)
+    values = [
+        getattr(result, name) for name in ("wear_rate", "mean_slip", "stick_ratio", "cell_wear_index", "patch_area")
+    ]
+    assert all(value.shape == (2, 2) for value in values)
+    assert result.contact.rolling_speed.shape == (2, 2)
+    if not use_patch_mean:
+        assert result.wear_profile("wheel").depth.shape == (2, 2, 10)
+    assert Counted.solved == [4]
+    alone = (contact | PER_ENERGY)(**{**conditions, "normal_force": Q(70.0, "kN")})
+    for name, value in zip(names, values, strict=True):
+        assert value[1, 0].magnitude == pytest.approx(getattr(alone, name).magnitude, rel=64 * EPS), name
 
 
 def test_a_body_that_is_not_there_is_named() -> None:
