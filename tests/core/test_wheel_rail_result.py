@@ -185,9 +185,8 @@ def test_a_contact_is_solved_once_whatever_is_read_of_it(use_patch_mean: bool) -
     conditions = {**CONDITIONS, "normal_force": Q([[40.0, 60.0], [70.0, 90.0]], "kN")}
     Counted.solved.clear()
     result = (contact | PER_ENERGY)(**conditions)
-    values = [
-        getattr(result, name) for name in ("wear_rate", "mean_slip", "stick_ratio", "cell_wear_index", "patch_area")
-    ]
+    names = ("wear_rate", "mean_slip", "stick_ratio", "cell_wear_index", "patch_area")
+    values = [getattr(result, name) for name in names]
     assert all(value.shape == (2, 2) for value in values)
     assert result.contact.rolling_speed.shape == (2, 2)
     if not use_patch_mean:
