@@ -57,22 +57,23 @@ def crossings(
     """
     columns = [np.empty((problem.creepage.size, 0))]
     for name, values in breakpoints.items():
-        searched = None
-        for value in values:
-            found = _in_closed_form(model, problem, zone, name, value)
-            if found is None:
-                searched = searched or _Variable(model, problem, zone, name)
-                found = zone.angle[:, None] * _searched(searched, np.broadcast_to(value, (zone.angle.size, 1)))
+        levels = [np.broadcast_to(value, (zone.angle.size, 1)) for value in values]
+        found = _in_closed_form(model, problem, zone, name, np.concatenate(levels, axis=-1)) if levels else None
+        if found is not None:
             columns.append(found)
+        elif levels:
+            searched = _Variable(model, problem, zone, name)
+            columns += [zone.angle[:, None] * _searched(searched, level) for level in levels]
     return np.sort(np.concatenate(columns, axis=-1), axis=-1)
 
 
-def _in_closed_form(model: LineContactModel, problem: Problem, zone: Zone, name: str, value: Any) -> Array | None:
-    level = np.broadcast_to(value, (problem.creepage.size, 1))[:, 0]
+def _in_closed_form(model: LineContactModel, problem: Problem, zone: Zone, name: str, levels: Array) -> Array | None:
+    """Return the ψ at which a variable crosses levels (points, k), of shape (points, m), or None if not known."""
+    each = problem[:, None]
     if name == "slip_speed":
-        name, level = "slip", level / problem.rolling_speed
-    distance = model.crossings(problem, cast(FieldVariable, name), level)
-    return None if distance is None else zone.angle_of(distance)
+        name, levels = "slip", levels / each.rolling_speed
+    distance = model.crossings(each.broadcast_to(levels.shape), cast(FieldVariable, name), levels)
+    return None if distance is None else zone.angle_of(distance.reshape(zone.angle.size, -1))
 
 
 class _Variable:

@@ -28,7 +28,7 @@ from wearlaw.kernels import accelerated
 from wearlaw.line_model import LineContactModel
 from wearlaw.models import Numbers, WearLaw
 from wearlaw.problem import CreepForces, Problem
-from wearlaw.quadrature import join, remainder
+from wearlaw.quadrature import Zone, join, remainder
 from wearlaw.records import NODE_VARIABLES, Contact
 from wearlaw.solving import Solver, check_columns, check_type
 from wearlaw.tangential import Blame, ContactModel, Scale
@@ -369,8 +369,8 @@ def contact_for(model: ContactModel, law: WearLaw, problem: Problem, scale: Scal
     if scale == "patch" or not isinstance(model, LineContactModel):
         return solve(model, problem, scale)
     with Blame(model):
-        slip, stick = model.slip_zone(problem), model.stick_zone(problem)
-        splits = splits_of(model, law, law.numbers, problem)
+        stick, slip = model.zones(problem)
+        splits = splits_of(model, law, law.numbers, problem, slip)
         nodes = slip.nodes(panels=PANELS_UNDECLARED) if splits is None else slip.nodes(splits)
     return Solver(model).at(problem, join(stick.nodes().reversed(), nodes), totals=True)
 
@@ -427,44 +427,47 @@ def _from_nodes(solver: Solver, law: WearLaw, p: Numbers, problem: Problem, scal
         found = {"wear_rate": mean, "wear_rate_error": error, "longitudinal": force}
         return found if isinstance(model, LineContactModel) else found | {"patch_area": contact.patch_area}
 
-    return by_block(problem.flatten(), NODE_BLOCK, columns)
+    return by_block(problem, NODE_BLOCK, columns)
 
 
 def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem) -> Columns:
     """Return the mean of a law's rate, with as many panels as each operating point needs."""
-    splits = splits_of(model, law, p, problem)
+    stick, slip = model.zones(problem)
+    splits = splits_of(model, law, p, problem, slip)
     totals = solver.block_is_summed()
-    rate, error = np.empty(problem.creepage.shape), np.empty(problem.creepage.shape)
+    force = model.tangential_force(problem)
     if splits is None:
-        rate, error = _over_panels(solver, model, law, p, problem, None, totals)
-    else:
-        end = model.slip_zone(problem).angle[:, None]
-        needed = np.sum((splits > 0.0) & (splits < end), axis=-1)
-        first = np.sum(splits <= 0.0, axis=-1)
-        for count in np.unique(needed):
-            points = np.flatnonzero(needed == count)
-            columns = first[points, None] + np.arange(count)
-            own, own_splits = _at_points(p, points), splits[points[:, None], columns]
-            rate[points], error[points] = _over_panels(solver, model, law, own, problem[points], own_splits, totals)
-    return {"wear_rate": rate, "wear_rate_error": error, "longitudinal": model.tangential_force(problem)}
+        rate, error = _over_panels(solver, law, p, problem, (stick, slip), None, totals)
+        return {"wear_rate": rate, "wear_rate_error": error, "longitudinal": force}
+    needed = np.sum((splits > 0.0) & (splits < slip.angle[:, None]), axis=-1)
+    first = np.sum(splits <= 0.0, axis=-1)
+    counts = np.unique(needed)
+    rate, error = np.empty(problem.creepage.shape), np.empty(problem.creepage.shape)
+    for count in counts:
+        points: Any = ALL if counts.size == 1 else np.flatnonzero(needed == count)
+        own_splits = np.take_along_axis(splits[points], first[points, None] + np.arange(count), axis=-1)
+        part, zones = (problem, (stick, slip)) if counts.size == 1 else (problem[points], (stick[points], slip[points]))
+        own = _at_points(p, points)
+        rate[points], error[points] = _over_panels(solver, law, own, part, zones, own_splits, totals)
+    return {"wear_rate": rate, "wear_rate_error": error, "longitudinal": force}
 
 
-def splits_of(model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem) -> Array | None:
+def splits_of(model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem, slip: Zone) -> Array | None:
     """Return ψ where a law branches in the slip zone, (points, k), or None if nothing is known of that."""
     with Blame(law, p):
         breakpoints = law.breakpoints(p)
     if breakpoints is None:
         return None
     per_node = {name: values for name, values in breakpoints.items() if name in NODE_VARIABLES}
-    return crossings(model, problem.forward(), model.slip_zone(problem), per_node)
+    return crossings(model, problem.forward(), slip, per_node)
 
 
 def _over_panels(
     solver: Solver,
-    model: LineContactModel,
     law: WearLaw,
     p: Numbers,
     problem: Problem,
+    zones: tuple[Zone, Zone],
     splits: Array | None,
     totals: bool,
 ) -> tuple[Array, Array]:
@@ -472,7 +475,7 @@ def _over_panels(
 
     Where nothing slips nothing wears, so that one node is enough there, unless sums are compared with `totals`.
     """
-    zone, stick = model.slip_zone(problem), model.stick_zone(problem)
+    stick, zone = zones
     nodes = zone.nodes(panels=PANELS_UNDECLARED) if splits is None else zone.nodes(splits)
     sticking = (stick.nodes() if totals else stick.middle()).reversed()
     contact = solver.at(problem, join(sticking, nodes), totals=totals)

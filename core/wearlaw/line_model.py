@@ -81,15 +81,11 @@ class LineContactModel(ContactModel):
     def _mirrored_force(self, problem: Problem) -> Array:
         return np.copysign(self.tangential_force_per_width(problem.forward()), problem.creepage)
 
-    def slip_zone(self, problem: Problem) -> Zone:
-        """Return the slip zone, by distances from the trailing edge."""
-        length = self.slip_length(problem.forward())
-        return Zone.of(problem.half_width, length, over_patch=self.square_roots_at == "patch")
-
-    def stick_zone(self, problem: Problem) -> Zone:
-        """Return what does not slip, by distances from the leading edge."""
-        length = 2.0 * problem.half_width - self.slip_length(problem.forward())
-        return Zone.of(problem.half_width, length, over_patch=self.square_roots_at == "patch")
+    def zones(self, problem: Problem) -> tuple[Zone, Zone]:
+        """Return what sticks, by distances from the leading edge, and what slips, by those from the trailing edge."""
+        over_patch, length = self.square_roots_at == "patch", self.slip_length(problem.forward())
+        stick = Zone.of(problem.half_width, 2.0 * problem.half_width - length, over_patch)
+        return stick, Zone.of(problem.half_width, length, over_patch)
 
     def at(self, problem: Problem, nodes: Nodes) -> Contact:
         """Return the contact on the given nodes, mirrored where the creepage is negative."""
@@ -101,5 +97,6 @@ class LineContactModel(ContactModel):
 
     def solve_line(self, problem: Problem) -> Contact:
         """Return the contact on quadrature nodes of the stick zone and the slip zone."""
-        stick, slip = self.stick_zone(problem), self.slip_zone(problem).nodes()
-        return self.at(problem, join(stick.nodes().reversed(), slip) if stick.length.any() else slip)
+        stick, slip = self.zones(problem)
+        sticks, nodes = stick.length.any(), slip.nodes()
+        return self.at(problem, join(stick.nodes().reversed(), nodes) if sticks else nodes)

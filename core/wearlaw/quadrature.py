@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 
@@ -74,6 +75,10 @@ class Zone:
     length: Array
     span: Array
     angle: Array
+
+    def __getitem__(self, points: NDArray[np.intp]) -> Self:
+        """Return the zones of some operating points."""
+        return type(self)(self.patch[points], self.length[points], self.span[points], self.angle[points])
 
     @classmethod
     def of(cls, half_width: Array, length: Array, over_patch: bool) -> Self:

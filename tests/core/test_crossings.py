@@ -35,7 +35,7 @@ def find(
     name: str, problem: wl.Problem, breakpoints: Mapping[str, tuple[float, ...]]
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Return the crossings of a batch of one axis as x, in the order of x, and which of them are there."""
-    zone = MODELS[name].slip_zone(problem)
+    zone = MODELS[name].zones(problem)[1]
     angles = crossings(MODELS[name], problem, zone, breakpoints)[:, ::-1]
     x = problem.half_width[:, None] - zone.span[:, None] * np.sin(0.5 * angles) ** 2
     return x, angles < zone.angle[:, None]
@@ -68,7 +68,7 @@ def test_there_is_a_column_for_each_possible_crossing() -> None:
 
 
 def test_crossings_are_in_ascending_order() -> None:
-    zone = LINE_MODELS["exact"].slip_zone(suros(0.1))
+    zone = LINE_MODELS["exact"].zones(suros(0.1))[1]
     found = crossings(LINE_MODELS["exact"], suros(0.1), zone, {"slip_speed": (0.1, 0.09), "pressure": (1e9, 5e8)})
     assert (np.diff(found[0]) >= 0.0).all()
     assert (found < zone.angle[:, None]).sum() > 3
@@ -173,7 +173,7 @@ class WithAHole(Searched):
 def test_a_model_whose_fields_are_not_finite_next_to_a_crossing_is_refused_by_name() -> None:
     model, problem = WithAHole(), suros(0.1)
     with pytest.raises(wl.ModelError, match="contact model 'exact': its pressure passes a breakpoint, but cannot be f"):
-        crossings(model, problem, model.slip_zone(problem), {"pressure": (1e9,)})
+        crossings(model, problem, model.zones(problem)[1], {"pressure": (1e9,)})
 
 
 @pytest.mark.parametrize("name", MODELS)
