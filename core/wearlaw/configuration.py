@@ -117,7 +117,7 @@ class Configuration(BaseModel):
         `deep` makes no difference, since nothing in a configuration can change.
         """
         aliases = {name: field.alias or name for name, field in type(self).model_fields.items()}
-        fields = {alias: getattr(self, name) for name, alias in aliases.items()}
+        fields = {alias: getattr(self, name) for name, alias in aliases.items()} | (self.model_extra or {})
         return type(self)(**fields | {aliases.get(name, name): value for name, value in (update or {}).items()})
 
     def __str__(self) -> str:

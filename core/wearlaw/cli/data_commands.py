@@ -18,10 +18,8 @@ if TYPE_CHECKING:
     from wearlaw.comparison.result import Comparison
     from wearlaw.figures.formats import FigureFormat
     from wearlaw.fitting.result import Fit
-    from wearlaw.line import LineProblem
     from wearlaw.pairs import Pair
     from wearlaw.pipeline import Pipeline
-    from wearlaw.rigs.twin_disc import TwinDisc
     from wearlaw.wear_tests.tests import WearTests
 
 
@@ -131,8 +129,8 @@ def _fit(
 
 
 def _with_law(
-    stage: Pipeline[..., LineProblem], text: str, given: dict[str, str], free: list[str], notes: Notes
-) -> Pipeline[..., LineProblem]:
+    stage: Pipeline[..., Any], text: str, given: dict[str, str], free: list[str], notes: Notes
+) -> Pipeline[..., Any]:
     """Return the pipeline with the law to fit; what it was fitted for does not matter, but what it keeps does."""
     from wearlaw.cli.parsing import wear_law
     from wearlaw.parameters import numbers
@@ -265,7 +263,7 @@ def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **
     return found
 
 
-def _rig(path: Path | None, notes: Notes) -> TwinDisc:
+def _rig(path: Path | None, notes: Notes) -> Any:
     from wearlaw.cli.parsing import read_rig
 
     if path is None:
