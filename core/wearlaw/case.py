@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import tomllib
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -247,30 +248,40 @@ def case_schema() -> dict[str, Any]:
     properties["sections"]["items"] = {"enum": list(found.sections.items())}
     rigs = found.rigs.items()
     bare = [name for name, rig in rigs.items() if not any(one.is_required() for one in rig.model_fields.values())]
-    properties["rig"] = {"anyOf": [{"enum": bare}, *_rigs(rigs, definitions)]}
-    conditions = {name: _conditions(rig, definitions) for name, rig in rigs.items() if rig.conditions()}
-    schema["allOf"] = [
-        {"if": {"properties": {"rig": {"anyOf": _named(name, rig)}}}, "then": {"properties": conditions[name]}}
-        for name, rig in rigs.items()
-        if name in conditions
-    ]
-    every = {condition for rig in rigs.values() for condition in rig.conditions()}
-    axis = definitions["FigureSpec"]["properties"]["x"]
-    axis["enum"] = list(dict.fromkeys([*axis["enum"], *sorted(every)]))
+    properties["rig"] = {"anyOf": [{"enum": bare}]}
+    axis, schema["allOf"] = definitions["FigureSpec"]["properties"]["x"], []
+    for name, rig in rigs.items():
+        with _left_out(found.rigs, name):
+            tables, known = list(_rig_tables(name, rig, definitions)), rig.conditions()
+            if known:
+                this = {"properties": {"rig": {"anyOf": _named(name, rig)}}}
+                schema["allOf"].append({"if": this, "then": {"properties": _conditions(rig, definitions)}})
+            properties["rig"]["anyOf"] += tables
+            axis["enum"] = list(dict.fromkeys([*axis["enum"], *known]))
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
-def _rigs(rigs: Mapping[str, type[Rig]], definitions: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Give the schema of each rig's table: that of its fields, and one of each preset."""
-    for name, rig in rigs.items():
-        fields = _model_schema(name, rig, definitions, "type")
-        yield fields
-        for preset in rig.presets():
-            table = preset_fields(rig, preset).model_json_schema(ref_template=f"#/$defs/{name}.{preset}.{{model}}")
-            definitions.update({f"{name}.{preset}.{key}": value for key, value in table.pop("$defs", {}).items()})
-            named = {"type": {"const": name}, "preset": {"const": preset}}
-            required = ["preset", *table.get("required", [])]
-            yield {**table, "properties": {**named, **table.get("properties", {})}, "required": required}
+@contextmanager
+def _left_out(shelf: Shelf[Any], name: str) -> Iterator[None]:
+    """Leave a model that fails to give its schema out of it, with a warning."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        reason = f"{shelf.kind} '{name}' of {shelf.origin(name)} is left out of the schema: {described(error)}"
+        warnings.warn(reason, PluginWarning, stacklevel=4)
+
+
+def _rig_tables(name: str, rig: type[Rig], definitions: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Give the schema of a rig's table: that of its fields, and one of each preset."""
+    yield _model_schema(name, rig, definitions, "type")
+    for preset in rig.presets():
+        table = preset_fields(rig, preset).model_json_schema(ref_template=f"#/$defs/{name}.{preset}.{{model}}")
+        definitions.update({f"{name}.{preset}.{key}": value for key, value in table.pop("$defs", {}).items()})
+        named = {"type": {"const": name}, "preset": {"const": preset}}
+        required = ["preset", *table.get("required", [])]
+        yield {**table, "properties": {**named, **table.get("properties", {})}, "required": required}
 
 
 def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
@@ -296,18 +307,13 @@ def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _tables(shelf: Shelf[Any], definitions: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Give the schema of each model's table; a model that fails to give one is left out with a warning."""
+def _tables(shelf: Shelf[Any], definitions: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the schema of each model's table."""
+    found = []
     for name, item in shelf.items().items():
-        try:
-            table = _model_schema(name, item if isinstance(item, type) else type(item), definitions)
-        except KeyboardInterrupt:
-            raise
-        except BaseException as error:
-            reason = f"{shelf.kind} '{name}' of {shelf.origin(name)} is left out of the schema: {described(error)}"
-            warnings.warn(reason, PluginWarning, stacklevel=3)
-        else:
-            yield table
+        with _left_out(shelf, name):
+            found.append(_model_schema(name, item if isinstance(item, type) else type(item), definitions))
+    return found
 
 
 def _model_schema(name: str, model: type[Model], definitions: dict[str, Any], key: str = "model") -> dict[str, Any]:

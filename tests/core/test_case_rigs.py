@@ -314,9 +314,9 @@ def test_its_uncertainty_is_refused_until_it_can_be_computed() -> None:
 def test_a_run_that_was_interrupted_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(points, "BLOCK", 4)
     cases.write(Path("c.toml"), ON_RAIL)
-    from wearlaw.sweeping import sweep
+    from wearlaw.sweeping import sweep, worker
 
-    evaluated, count = sweep.evaluated, []
+    evaluated, count = worker.evaluated, []
 
     def interrupt(*arguments: Any, **named: Any) -> Any:
         count.append(1)
@@ -460,3 +460,37 @@ def test_a_case_of_a_plugin_runs_again_from_what_it_wrote() -> None:
     assert wearlaw("run", "out/case.toml", "-o", "again").exit_code == 0
     assert Path("out/results.csv").read_bytes() == Path("again/results.csv").read_bytes()
     assert "roller" in Path("out/report.html").read_text(encoding="utf-8")
+
+
+BROKEN = """
+    import wearlaw as wl
+
+    class Broken(wl.Rig):
+        name = "broken"
+        source = "a test"
+
+        def problem(self, *, mass, creepage):
+            raise KeyError("lost")
+
+        @classmethod
+        def presets(cls):
+            raise KeyError("presets")
+
+    @wl.hookimpl
+    def wearlaw_rigs():
+        return [Broken]
+"""
+
+
+def test_a_rig_that_fails_is_named_and_leaves_the_others_alone(install: Install) -> None:
+    install("broken_rigs", BROKEN)
+    with pytest.warns(wl.PluginWarning, match="presets of rig 'broken' are left out: KeyError: 'presets'"):
+        assert Case(**{**cases.table(), "profiles": {}}).rig == wl.TwinDisc.suros()
+    said = "rig 'broken' of broken_rigs 1.0 .* is left out of the schema: KeyError: 'presets'"
+    with pytest.warns(wl.PluginWarning) as warned:
+        schema = case_schema()
+    assert any(re.search(said, str(one.message)) for one in warned)
+    assert jsonschema.Draft202012Validator(schema).is_valid(cases.table())
+    sweeps = {"one": {"mass": "1 kg", "creepage": "1 %"}}
+    with pytest.raises(wl.ConfigurationError, match=r"sweeps\.one: rig 'broken' failed: KeyError: 'lost'"):
+        Case(**{**cases.table(), "rig": {"type": "broken"}, "sweeps": sweeps, "profiles": {}})
