@@ -355,7 +355,7 @@ def main_axis(sweep: xarray.Dataset, creepage: str) -> str:
     """
     axes = axes_of(sweep)
     if creepage in axes or not axes:
-        return creepage if creepage in sweep else next(str(v) for v in sweep.data_vars if not sweep[v].dims)
+        return creepage if creepage in sweep else _other(sweep)
     return max(axes, key=lambda axis: sweep.sizes[axis])
 
 
@@ -367,4 +367,12 @@ def along_main_axis(sweep: xarray.Dataset, creepage: str) -> xarray.Dataset:
 def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
     """Return a sweep along an axis, with the others at their middle value; one point becomes an axis of length 1."""
     line = sweep.isel({other: sweep.sizes[other] // 2 for other in axes_of(sweep) if other != axis})
-    return line if axes_of(line) else line.set_coords(axis).expand_dims(axis)
+    if axes_of(line):
+        return line
+    at = axis if axis in line else _other(line)
+    return line.set_coords(at).expand_dims(at)
+
+
+def _other(point: xarray.Dataset) -> str:
+    """Return a variable of the operating point of a sweep without axes."""
+    return next(str(name) for name in point.data_vars if not point[name].dims)

@@ -339,7 +339,12 @@ def test_the_shipped_study_of_a_wheel_runs_from_the_command_line(validator: Any)
     ran = wearlaw("run", "wheel_on_rail", "-o", "out")
     assert ran.exit_code == 0, ran.output
     page = Path("out/report.html").read_text(encoding="utf-8")
-    for text in ("Wear across the profiles in a curve", "The patch and its pressure", "longitudinal force Fx", "rail"):
+    for text in (
+        "Wear across the profiles in a curve",
+        "The patch and its pressure",
+        "longitudinal force Fx",
+        "rail: greatest depth",
+    ):
         assert text in page
     rows = pd.read_csv("out/results.csv")
     assert set(rows.sweep) == {"creepage", "load", "curve"}
@@ -494,3 +499,62 @@ def test_a_rig_that_fails_is_named_and_leaves_the_others_alone(install: Install)
     sweeps = {"one": {"mass": "1 kg", "creepage": "1 %"}}
     with pytest.raises(wl.ConfigurationError, match=r"sweeps\.one: rig 'broken' failed: KeyError: 'lost'"):
         Case(**{**cases.table(), "rig": {"type": "broken"}, "sweeps": sweeps, "profiles": {}})
+
+
+ON_RAIL_OF_A_PLUGIN = """
+    import wearlaw as wl
+
+    class OnRail(wl.Rig):
+        name = "on_rail"
+        source = "a test"
+        creepage = "sliding"
+
+        def problem(self, *, mass, sliding="0.1 %", spin="0 1/m"):
+            wheel = wl.rig(
+                "wheel_rail",
+                wheel_radius="460 mm",
+                rail_head_radius="300 mm",
+                material=wl.steel(),
+                rolling_speed="30 m/s",
+            )
+            load = wl.Q(wl.Unit("kg").si(mass, "mass") * 9.81, "N")
+            return wheel.problem(normal_force=load, longitudinal_creepage=sliding, spin=spin, friction_coefficient=0.3)
+
+    @wl.hookimpl
+    def wearlaw_rigs():
+        return [OnRail]
+"""
+
+
+def test_a_rig_of_a_plugin_may_make_ellipses_and_leave_out_what_it_need_not_give(install: Install) -> None:
+    install("on_rails", ON_RAIL_OF_A_PLUGIN)
+    study = run(
+        Case(
+            title="A weight on a rail",
+            rig={"type": "on_rail"},  # type: ignore[arg-type]
+            contact_models=["exact", "fastsim"],  # type: ignore[arg-type]
+            wear_laws=["usfd"],  # type: ignore[arg-type]
+            sweeps={"one": {"mass": "5 t"}, "many": {"mass": "5 t", "sliding": ["0.1 %", "0.2 %"]}},  # type: ignore[dict-item]
+            profiles={"one": {"mass": "5 t"}},  # type: ignore[dict-item]
+        )
+    )
+    one, many = study.sweeps["one"], study.sweeps["many"]
+    assert list(one.contact_model.values) == ["fastsim"]
+    assert main_axis(one, "sliding") == "semi_axis_a"
+    assert main_axis(many, "sliding") == "sliding"
+    assert float(one.wear_rate[0]) == pytest.approx(float(many.wear_rate[0, 0]), rel=1e-12)  # in another block
+    for said in (
+        "usfd on exact is left out: contact model 'exact' solves line contacts only",
+        "usfd on fastsim: the parameters of wear law 'usfd' were fitted for line contacts, but are used with elliptic",
+        "profile 'one' is left out: rig 'on_rail' does not name its bodies",
+    ):
+        assert any(note.startswith(said) for note in study.notes), said
+    assert list(by_name(study)) == [
+        "one_wear_rate_against_wear_index",
+        "one_wear_rate_against_semi_axis_a",
+        "many_wear_rate_against_wear_index",
+        "many_wear_rate_against_sliding",
+        "many_traction_against_sliding",
+    ]
+    assert len(summaries(study)) == 2
+    assert list(results_table(study)["mass [t]"]) == [5.0] * 3

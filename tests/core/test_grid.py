@@ -211,6 +211,13 @@ def test_a_wrong_axis_is_refused_with_its_path(changes: dict[str, Any], message:
     assert f"Grid: {message}" in str(refusal.value)
 
 
+def test_a_condition_of_another_dimension_than_elsewhere_is_refused() -> None:
+    for creepage in ("1 %", ["1 %", "2 %"]):
+        read = grid(creepage=creepage)
+        with pytest.raises(wl.UnitError, match="creepage: is in %, and elsewhere in mm; use units of one dimension"):
+            read.level("creepage", {"creepage": "mm"})
+
+
 def test_a_grid_that_is_larger_than_any_memory_is_refused() -> None:
     axis = {"from": 0.1, "to": 0.2, "points": 4000}
     with pytest.raises(wl.ConfigurationError, match="the axes make a grid of 16000000 points; at most 10000000"):
