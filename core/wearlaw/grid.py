@@ -85,7 +85,7 @@ Condition = Annotated[float | str | tuple[float | str, ...] | Axis, BeforeValida
 class Grid(Configuration, extra="allow"):
     """Conditions of operating points, by the names that the rig gives them; those with several values are axes."""
 
-    __pydantic_extra__: dict[str, Condition]
+    __pydantic_extra__: dict[str, Condition]  # pyright: ignore[reportIncompatibleVariableOverride]
 
     @property
     def given(self) -> Mapping[str, Any]:

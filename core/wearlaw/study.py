@@ -339,8 +339,8 @@ def _seen(prediction: Any, rig: Rig) -> tuple[list[str], xarray.Dataset]:
     if not hasattr(prediction, "wear_profile"):
         return ["wear_rate"], prediction.profile
     across = {body: prediction.wear_profile(body) for body in rig.bodies}
-    named = [one.rename({str(v): f"{body}_{v}" for v in one.data_vars}) for body, one in across.items()]
-    return [f"{body}_depth" for body in across], xarray.merge(named)
+    named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
+    return [f"{body}_depth" for body in across], xarray.Dataset(named)
 
 
 def axes_of(sweep: xarray.Dataset) -> list[str]:

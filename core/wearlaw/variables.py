@@ -66,8 +66,6 @@ NAMES = {
     "traction_coefficient": "traction coefficient T/N",
     "x": "position x, leading edge left",
     "y": "position y across the patch",
-    "depth": "depth lost",
-    "sliding_distance": "sliding distance",
     "pressure": "pressure p",
     "traction": "traction q",
     "traction_bound": "traction bound",

@@ -194,8 +194,8 @@ def test_the_profile_runs_across_the_patch_for_both_bodies(on_rail: Study) -> No
 def test_the_profile_has_a_figure_and_a_table_of_both_bodies(on_rail: Study) -> None:
     figure = by_name(on_rail)["curve_across_the_patch"]
     assert [(panel.title, panel.y.label) for panel in figure.panels] == [
-        ("wheel", "depth lost [µm/km]"),
-        ("rail", "depth lost [nm]"),
+        ("wheel", "depth [µm/km]"),
+        ("rail", "depth [nm]"),
         ("wheel", "sliding distance [mm/m]"),
         ("rail", "sliding distance [µm]"),
     ]

@@ -71,7 +71,7 @@ class UncertainPoint(Configuration, extra="allow"):
     Some of them are distributed.
     """
 
-    __pydantic_extra__: dict[str, Condition]
+    __pydantic_extra__: dict[str, Condition]  # pyright: ignore[reportIncompatibleVariableOverride]
 
     laws: dict[str, dict[str, Parameter]] = Field(default_factory=dict)
     """For each wear law, by its name in the results, its parameters that are distributed."""
