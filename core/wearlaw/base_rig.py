@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import warnings
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, Protocol
@@ -70,7 +70,7 @@ class Rig(Model):
     problem tells."""
 
     creepage: ClassVar[str] = "creepage"
-    """The condition that `creepage_for` looks for."""
+    """The condition that is the creepage: `creepage_for` looks for it, and the tables of a case run along it."""
 
     example: ClassVar[Mapping[str, Any]] = {}
     """Conditions of one test, to try the rig with, such as {"mass": "20 kg", "creepage": "1 %"}."""
@@ -112,6 +112,21 @@ class Rig(Model):
         parameters = list(inspect.signature(cls.problem).parameters.values())[1:]
         return tuple(one.name for one in parameters if one.kind is not one.VAR_KEYWORD)
 
+    @classmethod
+    def needed(cls) -> tuple[str, ...]:
+        """Return the names of the conditions that must always be given: those of `problem` without a default."""
+        known = cls.conditions()
+        parameters = inspect.signature(cls.problem).parameters.values()
+        return tuple(one.name for one in parameters if one.default is one.empty and one.name in known)
+
+    @classmethod
+    def presets(cls) -> Mapping[str, Callable[..., Rig]]:
+        """Return functions that make known rigs of this class, by name; their arguments are what may be overridden.
+
+        Case files name them, as in ``preset = "suros"``. The arguments are checked by their annotations.
+        """
+        return {}
+
     def checked_problem(self, conditions: Mapping[str, Any]) -> Problem:
         """Return `problem` of the conditions, or raise an error that says whether they or the rig are wrong.
 
@@ -140,8 +155,8 @@ class Rig(Model):
                 raise ConditionsError(
                     f"{name}: unknown condition{did_you_mean(name, known)} The conditions are: {', '.join(known)}"
                 )
-        for name, parameter in inspect.signature(self.problem).parameters.items():
-            if parameter.default is parameter.empty and name in known and name not in conditions:
+        for name in self.needed():
+            if name not in conditions:
                 raise ConditionsError(f"{name}: is missing; rig '{self.name}' takes {', '.join(known)}")
 
     def __or__(self: Poses[P], model: ContactModel) -> Pipeline[P]:

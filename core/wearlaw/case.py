@@ -9,16 +9,28 @@ from __future__ import annotations
 import tomllib
 import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, TypeVar
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    TypeAdapter,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from wearlaw import plugins
+from wearlaw.base_rig import Rig
 from wearlaw.configuration import Configuration, known_as
 from wearlaw.errors import (
     CaseError,
     ConfigurationError,
+    Fault,
     InputError,
     PluginWarning,
     described,
@@ -26,58 +38,23 @@ from wearlaw.errors import (
     with_problems,
 )
 from wearlaw.figures.check import Contents
-from wearlaw.figures.measured_points import known_variables
+from wearlaw.figures.measured_points import check_rig, known_variables
 from wearlaw.figures.spec import FigureSpec
-from wearlaw.grid import Grid
+from wearlaw.grid import Condition, Grid
 from wearlaw.measurement import Measurement
-from wearlaw.rigs.twin_disc import Disc, TwinDisc
 from wearlaw.shelf import Shelf
-from wearlaw.specification import ContactModelField, MaterialField, WearLawField
+from wearlaw.specification import ContactModelField, RigField, WearLawField, known_presets, preset_fields
 from wearlaw.tangential import Model
 from wearlaw.text_files import read_text
+from wearlaw.uncertainties.specification import Condition as UncertainCondition
 from wearlaw.uncertainties.specification import UncertainPoint
-from wearlaw.units import Length, Quantity, Speed, Unit, shown
+from wearlaw.units import shown
+from wearlaw.variables import name_of
 
 ModelT = TypeVar("ModelT", bound=Model)
 
 CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
 """The names under which a run writes its case, and the tests that it was given as a file."""
-
-
-class Preset(Configuration):
-    """A rig that starts from a known one, with some of its values overridden; see `TwinDisc.suros`."""
-
-    preset: Literal["suros"]
-    """The rig to start from."""
-    diameter: Length | None = None
-    """Diameter of both discs [m]."""
-    material: MaterialField | None = None
-    """Material of both discs."""
-    disc_1: Disc | None = None
-    """The wheel disc, whole."""
-    disc_2: Disc | None = None
-    """The rail disc, whole."""
-    track_width: Length | None = None
-    """Width of the running track [m]."""
-    rotational_speed: Annotated[Quantity, Unit("rpm")] | None = None
-    """Speed of disc 1 [rad/s], from which the rolling speed follows."""
-    rolling_speed: Speed | None = None
-    """Rolling speed [m/s]."""
-
-    def rig(self) -> TwinDisc:
-        """Return the rig."""
-        given = {name: value for name, value in self if value is not None and name != "preset"}
-        return TwinDisc.suros(**given)
-
-
-def _rig(value: Any) -> Any:
-    if not isinstance(value, (dict, TwinDisc)):
-        raise InputError(f'must be a table, such as {{preset = "suros"}}; got {value!r}')
-    return Preset(**value).rig() if isinstance(value, dict) and "preset" in value else value
-
-
-RigField = Annotated[TwinDisc, BeforeValidator(_rig)]
-"""A field that takes a rig, a table of its fields, or one of a preset with what differs from it."""
 
 
 def _models(value: Any) -> Any:
@@ -103,7 +80,7 @@ class Case(Configuration):
     plugins: dict[str, str] = Field(default_factory=dict)
     """The distributions that the case needs, each with a version range such as ">=1.2,<2"; "" for any version."""
     rig: RigField
-    """The test rig; `preset = "suros"` starts from that rig and overrides what else is given."""
+    """The rig: its `type` and fields, or a `preset` such as "suros" with what differs from it."""
     contact_models: Annotated[tuple[ContactModelField, ...], *ModelList]
     """The contact models, each a name or a table of its name and options."""
     wear_laws: Annotated[tuple[WearLawField, ...], *ModelList]
@@ -111,7 +88,8 @@ class Case(Configuration):
     sweeps: Annotated[dict[str, Grid], Field(min_length=1)]
     """Grids of operating points, each under a name."""
     profiles: dict[str, Grid] = Field(default_factory=dict)
-    """Single operating points at which stresses and slip along the patch are shown, each under a name."""
+    """Single operating points at which the patch is shown, each under a name: stresses and slip along that of a line,
+    wear across that of an ellipse."""
     uncertainty: dict[str, UncertainPoint] = Field(default_factory=dict)
     """Operating points that are not known exactly, each under a name; for `wearlaw uncertainty`."""
     measured: Measurement | None = None
@@ -130,6 +108,31 @@ class Case(Configuration):
             if isinstance(needed, dict):
                 plugins.require({str(name): str(versions) for name, versions in needed.items()})
         return fields
+
+    @field_validator("sweeps", "profiles", "uncertainty")
+    @classmethod
+    def _fit_the_rig(cls, grids: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
+        """Find what is wrong with conditions when they are read, not when they are used."""
+        rig = info.data.get("rig")
+        if rig is None:  # it is wrong itself
+            return grids
+        checked, wrong = {}, []
+        for name, grid in grids.items():
+            try:
+                checked[name] = grid.checked(rig)
+            except ConfigurationError as error:
+                wrong += [Fault((name, *problem.path), problem.message) for problem in error.problems]
+        if wrong:
+            raise ConfigurationError(cls.subject(), wrong)
+        return checked
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """The unit in which results show each condition of the sweeps and profiles."""
+        found: dict[str, str] = {}
+        for grid in (*self.sweeps.values(), *self.profiles.values()):
+            found = {**grid.units(), **found}
+        return found
 
     @model_validator(mode="after")
     def _consistent(self) -> Case:
@@ -150,6 +153,17 @@ class Case(Configuration):
         twice = sorted({name for name in self.sections if self.sections.count(name) > 1})
         if twice:
             raise ValueError(f"sections: '{twice[0]}' is listed twice; leave one out")
+        for kind, grids in (("sweeps", self.sweeps), ("profiles", self.profiles)):
+            for name, grid in grids.items():
+                try:
+                    grid.points(self.units)
+                except InputError as error:
+                    raise ValueError(f"{kind}.{name}.{error}") from None
+        if self.measured:
+            try:
+                check_rig(self.measured.data, self.rig)
+            except InputError as error:
+                raise ValueError(f"measured: {error}") from None
         wrong = list(self._contents().problems(self.figures))
         if wrong:
             raise ConfigurationError(self.subject(), wrong)
@@ -162,6 +176,7 @@ class Case(Configuration):
             wear_laws=labelled(self.wear_laws),
             sweeps=self.sweeps,
             profiles=self.profiles,
+            units=self.units,
             measured=known_variables(self.measured.data) if self.measured else (),
         )
 
@@ -231,32 +246,82 @@ def case_schema() -> dict[str, Any]:
         *({**table, "required": ["model"]} for table in _tables(sets, definitions)),
     ]
     properties["sections"]["items"] = {"enum": list(found.sections.items())}
-    preset = Preset.model_json_schema()
-    definitions.update(preset.pop("$defs", {}))
-    properties["rig"] = {"anyOf": [{"$ref": "#/$defs/TwinDisc"}, preset]}
+    rigs = found.rigs.items()
+    bare = [name for name, rig in rigs.items() if not any(one.is_required() for one in rig.model_fields.values())]
+    properties["rig"] = {"anyOf": [{"enum": bare}]}
+    axis, schema["allOf"] = definitions["FigureSpec"]["properties"]["x"], []
+    for name, rig in rigs.items():
+        with _left_out(found.rigs, name):
+            tables, known = list(_rig_tables(name, rig, definitions)), rig.conditions()
+            if known:
+                this = {"properties": {"rig": {"anyOf": _named(name, rig)}}}
+                schema["allOf"].append({"if": this, "then": {"properties": _conditions(rig, definitions)}})
+            properties["rig"]["anyOf"] += tables
+            axis["enum"] = list(dict.fromkeys([*axis["enum"], *known]))
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
-def _tables(shelf: Shelf[Any], definitions: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Give the schema of each model's table; a model that fails to give one is left out with a warning."""
+@contextmanager
+def _left_out(shelf: Shelf[Any], name: str) -> Iterator[None]:
+    """Leave a model that fails to give its schema out of it, with a warning."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        reason = f"{shelf.kind} '{name}' of {shelf.origin(name)} is left out of the schema: {described(error)}"
+        warnings.warn(reason, PluginWarning, stacklevel=4)
+
+
+def _rig_tables(name: str, rig: type[Rig], definitions: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Give the schema of a rig's table: that of its fields, and one of each preset."""
+    yield _model_schema(name, rig, definitions, "type")
+    for preset in rig.presets():
+        table = preset_fields(rig, preset).model_json_schema(ref_template=f"#/$defs/{name}.{preset}.{{model}}")
+        definitions.update({f"{name}.{preset}.{key}": value for key, value in table.pop("$defs", {}).items()})
+        named = {"type": {"const": name}, "preset": {"const": preset}}
+        required = ["preset", *table.get("required", [])]
+        yield {**table, "properties": {**named, **table.get("properties", {})}, "required": required}
+
+
+def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
+    """Return the schemas of what names a rig: its name, a table with its type, or one with a preset of it alone."""
+    typed = {"type": "object", "properties": {"type": {"const": name}}, "required": ["type"]}
+    presets = [preset for preset, owners in known_presets().items() if owners == [rig]]
+    by_preset = {"type": "object", "properties": {"preset": {"enum": presets}}, "required": ["preset"]}
+    return [{"const": name}, typed, *([by_preset] if presets else [])]
+
+
+def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
+    """Return the schemas of the tables of a case that hold conditions of a rig."""
+    found = {}
+    kinds: dict[str, Any] = {"sweeps": Condition, "profiles": Condition, "uncertainty": UncertainCondition}
+    for field, annotation in kinds.items():
+        one = TypeAdapter(annotation).json_schema(ref_template="#/$defs/{model}")
+        definitions.update(one.pop("$defs", {}))
+        properties = {name: {**one, "description": name_of(name)} for name in rig.conditions()}
+        if field == "uncertainty":
+            properties["laws"] = definitions["UncertainPoint"]["properties"]["laws"]
+        table = {"properties": properties, "required": list(rig.needed()), "additionalProperties": False}
+        found[field] = {"additionalProperties": table}
+    return found
+
+
+def _tables(shelf: Shelf[Any], definitions: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the schema of each model's table."""
+    found = []
     for name, item in shelf.items().items():
-        try:
-            table = _model_schema(name, item if isinstance(item, type) else type(item), definitions)
-        except KeyboardInterrupt:
-            raise
-        except BaseException as error:
-            reason = f"{shelf.kind} '{name}' of {shelf.origin(name)} is left out of the schema: {described(error)}"
-            warnings.warn(reason, PluginWarning, stacklevel=3)
-        else:
-            yield table
+        with _left_out(shelf, name):
+            found.append(_model_schema(name, item if isinstance(item, type) else type(item), definitions))
+    return found
 
 
-def _model_schema(name: str, model: type[Model], definitions: dict[str, Any]) -> dict[str, Any]:
+def _model_schema(name: str, model: type[Model], definitions: dict[str, Any], key: str = "model") -> dict[str, Any]:
     """Return the schema of the table that configures a model; a model's own definitions join the others."""
     table = model.model_json_schema(ref_template=f"#/$defs/{name}.{{model}}")
-    definitions.update({f"{name}.{key}": value for key, value in table.pop("$defs", {}).items()})
-    table["properties"] = {"model": {"const": name}, **table.get("properties", {})}
-    table["required"] = ["model", *(field for field in table.get("required", []) if not _published(model, field))]
+    definitions.update({f"{name}.{inner}": value for inner, value in table.pop("$defs", {}).items()})
+    table["properties"] = {key: {"const": name}, **table.get("properties", {})}
+    table["required"] = [key, *(field for field in table.get("required", []) if not _published(model, field))]
     return table
 
 

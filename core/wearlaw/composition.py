@@ -28,13 +28,14 @@ def check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
         )
 
 
-def check_geometry(rig: Rig, model: ContactModel) -> None:
-    """Refuse a contact model of another geometry than the rig's."""
-    if rig.geometry is not None and rig.geometry not in model.geometries():
-        able = [name for name, one in plugins.contact_models().items() if rig.geometry in one.geometries()]
+def check_geometry(rig: Rig, model: ContactModel, geometry: Geometry | None = None) -> None:
+    """Refuse a contact model of another geometry than the rig's, or than that of a problem which the rig has made."""
+    geometry = geometry or rig.geometry
+    if geometry is not None and geometry not in model.geometries():
+        able = [name for name, one in plugins.contact_models().items() if geometry in one.geometries()]
         raise CompositionError(
             f"contact model '{model.name}' solves {' and '.join(PATCHES[known] for known in model.geometries())} only,"
-            f" but a {type(rig).__name__} makes {PATCHES[rig.geometry]}; those that solve them: {', '.join(able)}"
+            f" but a {type(rig).__name__} makes {PATCHES[geometry]}; those that solve them: {', '.join(able)}"
         )
 
 

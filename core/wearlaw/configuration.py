@@ -9,7 +9,7 @@ import pint
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from wearlaw.docstrings import field_docstrings, place_of_statement
-from wearlaw.errors import ConfigurationError, FrozenError, Problem, did_you_mean
+from wearlaw.errors import ConfigurationError, Fault, FrozenError, did_you_mean
 from wearlaw.units import shortened, shown
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ class Configuration(BaseModel):
         `deep` makes no difference, since nothing in a configuration can change.
         """
         aliases = {name: field.alias or name for name, field in type(self).model_fields.items()}
-        fields = {alias: getattr(self, name) for name, alias in aliases.items()}
+        fields = {alias: getattr(self, name) for name, alias in aliases.items()} | (self.model_extra or {})
         return type(self)(**fields | {aliases.get(name, name): value for name, value in (update or {}).items()})
 
     def __str__(self) -> str:
@@ -173,14 +173,14 @@ class _Text(str):
 
 def configuration_error(subject: str, model: type[BaseModel], error: ValidationError) -> ConfigurationError:
     """Return the wearlaw error that says the same as a pydantic error, in the words of the user."""
-    problems: list[Problem] = []
+    problems: list[Fault] = []
     for details in error.errors(include_url=False):
         path = tuple(str(part) for part in details["loc"])
         cause = details.get("ctx", {}).get("error")
         if isinstance(cause, ConfigurationError):
-            problems += [Problem(path + inner.path, inner.message) for inner in cause.problems]
+            problems += [Fault(path + inner.path, inner.message) for inner in cause.problems]
         else:
-            problems.append(Problem(path, _message(details, model)))
+            problems.append(Fault(path, _message(details, model)))
     return ConfigurationError(subject, problems)
 
 

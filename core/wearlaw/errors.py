@@ -86,7 +86,7 @@ class ModelError(WearlawError, RuntimeError):
 
 
 @dataclass(frozen=True)
-class Problem:
+class Fault:
     """One wrong field of a configuration: the path to it and what is wrong there."""
 
     path: tuple[str, ...]
@@ -104,11 +104,11 @@ class ConfigurationError(InputError):
     ----------
     subject : str
         What was being configured, such as the name of a model.
-    problems : tuple of Problem
+    problems : tuple of Fault
         Every wrong field with its path, not only the first one.
     """
 
-    def __init__(self, subject: str, problems: Iterable[Problem]) -> None:
+    def __init__(self, subject: str, problems: Iterable[Fault]) -> None:
         self.subject = subject
         self.problems = tuple(problems)
         super().__init__(subject, self.problems)

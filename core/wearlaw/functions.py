@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field, create_model
 
 from wearlaw.arrays import Array
-from wearlaw.errors import ConfigurationError, Problem, UnitError, did_you_mean
+from wearlaw.errors import ConfigurationError, Fault, UnitError, did_you_mean
 from wearlaw.models import BreakpointMap, Numbers, WearLaw
 from wearlaw.records import NODE_VARIABLES, UNITS, Contact
 from wearlaw.registry import unit_in_si
@@ -219,4 +219,4 @@ def _listed(known: Iterable[object]) -> str:
 
 
 def _error(subject: str, path: str, message: str) -> ConfigurationError:
-    return ConfigurationError(subject, [Problem((path,), message)])
+    return ConfigurationError(subject, [Fault((path,), message)])

@@ -1,24 +1,24 @@
-"""Grids of operating points, as a case file describes them: conditions of which some are axes."""
+"""Operating points as a case file describes them: conditions of a rig, of which some are axes of a grid."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import cached_property
 from typing import Annotated, Any, Literal
 
 import numpy as np
+import pint
 from pydantic import BeforeValidator, Field, model_validator
 
 from wearlaw.arrays import Array
-from wearlaw.conditions import TWIN_DISC
+from wearlaw.base_rig import Rig
 from wearlaw.configuration import Configuration
-from wearlaw.errors import InputError
-from wearlaw.problem import Problem
-from wearlaw.rigs.twin_disc import TwinDisc
-from wearlaw.units import Q
-
-SI_UNITS = {"normal_force": "N", "normal_force_per_width": "N/m", "max_pressure": "Pa", "creepage": ""}
-"""The coherent SI units of the conditions that have a unit."""
+from wearlaw.errors import ConfigurationError, Fault, InputError, UnitError, WearlawError, did_you_mean
+from wearlaw.registry import symbol
+from wearlaw.sweeping.points import Points, Varying
+from wearlaw.units import Q, Quantity, parse
+from wearlaw.variables import UNITS
 
 MOST_POINTS = 10_000_000
 """The largest grid that is taken on."""
@@ -49,14 +49,20 @@ class Axis(Configuration):
     spacing: Literal["log", "linear"] = "linear"
     """Whether neighbours stand in a constant ratio or at a constant distance."""
 
-    def values(self, name: str) -> Array:
-        """Return the values of the condition `name` in SI."""
-        first, last = float(TWIN_DISC.si(name, self.start)), float(TWIN_DISC.si(name, self.stop))
+    def values(self) -> tuple[Array, str | None]:
+        """Return the values, and the unit of the first of them, None for plain numbers.
+
+        Raises
+        ------
+        InputError
+            If the ends do not go together.
+        """
+        (first, last), unit = _in_one_unit((self.start, self.stop))
         if self.spacing == "linear":
-            return np.linspace(first, last, self.points)
+            return np.linspace(first, last, self.points), unit
         if first * last <= 0:
-            raise InputError(f"{name}: a log axis cannot touch or cross zero; use spacing = 'linear'")
-        return np.geomspace(first, last, self.points)
+            raise InputError("a log axis cannot touch or cross zero; use spacing = 'linear'")
+        return np.geomspace(first, last, self.points), unit
 
 
 def _condition(value: Any) -> Any:
@@ -76,66 +82,193 @@ Condition = Annotated[float | str | tuple[float | str, ...] | Axis, BeforeValida
 """A value, a list of values, or an axis."""
 
 
-class Grid(Configuration):
-    """Conditions of operating points; those with several values are the axes of a grid.
+class Grid(Configuration, extra="allow"):
+    """Conditions of operating points, by the names that the rig gives them; those with several values are axes."""
 
-    Exactly one of `normal_force`, `normal_force_per_width` and `max_pressure` gives the load.
-    """
+    __pydantic_extra__: dict[str, Condition]  # pyright: ignore[reportIncompatibleVariableOverride]
 
-    normal_force: Condition | None = None
-    """N, with its unit."""
-    normal_force_per_width: Condition | None = None
-    """P, with its unit."""
-    max_pressure: Condition | None = None
-    """p0, with its unit."""
-    creepage: Condition
-    """ξ, in percent or as a ratio: "1 %" or "0.01 dimensionless"."""
-    friction_coefficient: Condition
-    """μ, a plain number."""
-    traction_coefficient: Condition | None = None
-    """Measured T/N, a plain number; for contact models that can use it."""
+    @property
+    def given(self) -> Mapping[str, Any]:
+        """The conditions as they were written."""
+        return self.__pydantic_extra__
 
     @model_validator(mode="after")
-    def _possible(self) -> Grid:
-        """Find what is wrong with the conditions when they are read, not when they are used."""
-        extremes = {name: np.array([values.min(), values.max()]) for name, values in self.conditions().items()}
-        TwinDisc.suros().problem(**with_units(extremes))
+    def _has_axes(self) -> Grid:
+        """Find what is wrong with the axes by themselves, whatever the rig is."""
+        wrong = []
+        for name, value in self.given.items():
+            try:
+                _values(value)
+            except InputError as error:
+                wrong.append(Fault((name,), str(error)))
+        if wrong:
+            raise ConfigurationError("Grid", wrong)
         if self.size > MOST_POINTS:
             raise InputError(f"the axes make a grid of {self.size} points; at most {MOST_POINTS} are possible")
         return self
 
-    def conditions(self) -> dict[str, Array]:
-        """Return the SI values of each condition that is given, of shape () or (values,)."""
-        given = {name: getattr(self, name) for name in TWIN_DISC.names}
-        return {name: _values(name, value) for name, value in given.items() if value is not None}
+    @cached_property
+    def _axes(self) -> dict[str, Varying]:
+        """The conditions that are axes, each in the unit of its first value."""
+        read = ((name, _values(value)) for name, value in self.given.items())
+        return {name: Varying(name, *found) for name, found in read if found is not None}
 
-    def axes(self) -> dict[str, Array]:
-        """Return the SI values of the conditions that are axes, in the order of the grid."""
-        return {name: values for name, values in self.conditions().items() if values.ndim == 1}
+    def axes(self) -> dict[str, int]:
+        """Return how many values each condition has that is an axis, in the order of the grid."""
+        return {name: axis.values.size for name, axis in self._axes.items()}
 
     @property
     def size(self) -> int:
         """The number of operating points."""
-        return math.prod(values.size for values in self.axes().values())
+        return math.prod(self.axes().values())
 
-    def problem(self, rig: TwinDisc) -> Problem:
-        """Return the contact problem at all points of the grid."""
-        axes = list(self.axes())
-        shaped = {
-            name: values.reshape([-1 if axis == name else 1 for axis in axes]) if name in axes else values
-            for name, values in self.conditions().items()
+    def checked(self, rig: Rig) -> Grid:
+        """Return the grid with its conditions in the order in which the rig names them.
+
+        Raises
+        ------
+        ConfigurationError
+            If the rig does not take the conditions, which are tried at both ends of the axes.
+        """
+        for end in (np.min, np.max):
+            ends = {name: axis.given(float(end(axis.values))) for name, axis in self._axes.items()}
+            wrong = list(wrong_conditions(rig, {**self.given, **ends}))
+            if wrong:
+                raise ConfigurationError("Grid", wrong)
+        known = rig.conditions()
+        return Grid(**{name: self.given[name] for name in known or self.given if name in self.given})
+
+    def units(self) -> dict[str, str]:
+        """Return the units in which results show the conditions: as tables of results do, else as they were written."""
+        found = {}
+        for name, value in self.given.items():
+            written = self._axes[name].unit if name in self._axes else _unit(value)
+            found[name] = shown_unit(name, written)
+        return found
+
+    def points(self, units: Mapping[str, str]) -> Points:
+        """Return the operating points, with the axes in these units.
+
+        Raises
+        ------
+        UnitError
+            If a condition is of another dimension there.
+        """
+        varying = {
+            name: Varying(name, *_converted(name, axis.values, axis.unit, units[name]))
+            for name, axis in self._axes.items()
         }
-        return rig.problem(**with_units(shaped))
+        return Points({name: value for name, value in self.given.items() if name not in varying}, varying)
+
+    def level(self, name: str, units: Mapping[str, str]) -> float | str:
+        """Return the value of a condition in the unit given for it, that in the middle of an axis; or its bare text."""
+        if name in self._axes:
+            axis = self._axes[name]
+            return float(_converted(name, axis.values[axis.values.size // 2], axis.unit, units[name])[0])
+        value = self.given[name]
+        quantity = _quantity(value)
+        if quantity is None:
+            return value  # type: ignore[no-any-return]
+        return float(_converted(name, quantity.magnitude, _symbol(quantity), units[name])[0])
+
+    def problem(self, rig: Rig) -> Any:
+        """Return the contact problem of the first operating point."""
+        first = {name: axis.given(float(axis.values[0])) for name, axis in self._axes.items()}
+        return rig.checked_problem({**self.given, **first})
+
+
+def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
+    """Give what a rig finds wrong with conditions of one operating point, each under its name."""
+    known = rig.conditions()
+    unknown = [name for name in given if known and name not in known]
+    missing = [name for name in rig.needed() if name not in given]
+    for name in unknown:
+        hint = did_you_mean(name, known)
+        yield Fault((name,), f"unknown condition{hint} The conditions of the rig are: {', '.join(known)}")
+    for name in missing:
+        yield Fault((name,), "is missing")
+    if unknown or missing:
+        return
+    try:
+        rig.checked_problem(given)
+    except WearlawError as error:
+        text = str(error)
+        about = next((name for name in given if text.startswith(f"{name}: ")), None)
+        yield Fault((), text) if about is None else Fault((about,), text.removeprefix(f"{about}: "))
 
 
 def with_units(conditions: Mapping[str, Array]) -> dict[str, Any]:
-    """Return conditions in SI as a rig takes them."""
-    return {name: Q(si, SI_UNITS[name]) if name in SI_UNITS else si for name, si in conditions.items()}
+    """Return conditions of discs in SI as a rig takes them."""
+    units = {"normal_force": "N", "normal_force_per_width": "N/m", "max_pressure": "Pa", "creepage": ""}
+    return {name: Q(si, units[name]) if name in units else si for name, si in conditions.items()}
 
 
-def _values(name: str, value: Any) -> Array:
+def shown_unit(name: str, written: str | None) -> str:
+    """Return the unit in which results show a condition that was written in some unit, None for plain numbers."""
+    usual = UNITS.get(name)
+    if usual is None or written is None:
+        return written or ""
+    try:
+        Q(1.0, written).to(usual)
+    except pint.DimensionalityError:  # a rig may give the name to something else
+        return written
+    return usual
+
+
+def _values(value: Any) -> tuple[Array, str | None] | None:
+    """Return the values of an axis, or None if it is none."""
     if isinstance(value, Axis):
-        return value.values(name)
+        return value.values()
     if isinstance(value, tuple):
-        return np.array([float(TWIN_DISC.si(name, item)) for item in value])
-    return TWIN_DISC.si(name, value)
+        return _in_one_unit(value)
+    return None
+
+
+def _in_one_unit(values: tuple[float | str, ...]) -> tuple[Array, str | None]:
+    """Return the numbers of values, all in the unit of the first one."""
+    if not any(isinstance(value, str) for value in values):
+        return np.array(values, dtype=np.float64), None
+    for value in values:
+        if not isinstance(value, str):
+            with_unit = next(one for one in values if isinstance(one, str))
+            raise UnitError(
+                f"got the bare number {value!r}, which has no unit, beside {with_unit!r}; give all values one"
+            )
+    quantities = [parse(str(value)) for value in values]
+    unit = _symbol(quantities[0])
+    for quantity, value in zip(quantities, values, strict=True):
+        if not quantity.is_compatible_with(quantities[0]):
+            raise UnitError(f"'{values[0]}' and '{value}' are not of one dimension")
+    numbers = [quantity.to(quantities[0].units).magnitude for quantity in quantities]
+    return np.array(numbers, dtype=np.float64), unit
+
+
+def _quantity(value: Any) -> Quantity | None:
+    """Return a value with its unit, or None for a text that is no quantity, such as the name of something."""
+    try:
+        return parse(value) if isinstance(value, str) else Q(value, "")
+    except UnitError:
+        return None
+
+
+def _unit(value: Any) -> str | None:
+    """Return the unit that a value was written in."""
+    quantity = _quantity(value) if isinstance(value, str) else None
+    return None if quantity is None else _symbol(quantity)
+
+
+def _symbol(quantity: Quantity) -> str:
+    """Return the unit of a quantity in the way of `variables.UNITS`."""
+    return symbol(quantity.units, "~C").replace("µ", "u").replace("**", "^")
+
+
+def _converted(name: str, values: Any, unit: str | None, wanted: str) -> tuple[Any, str | None]:
+    """Return numbers in the unit wanted, and that unit; plain numbers stay what they are."""
+    if unit is None or unit == wanted:
+        return values, unit
+    try:
+        return Q(values, unit).to(wanted).magnitude, wanted
+    except pint.DimensionalityError:
+        raise UnitError(
+            f"{name}: is in {unit}, and elsewhere in {wanted or 'no unit'}; use units of one dimension"
+        ) from None

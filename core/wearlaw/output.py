@@ -12,7 +12,7 @@ from wearlaw.errors import OutputError
 from wearlaw.figures.formats import FigureFormat as FigureFormat
 from wearlaw.report.latex import latex_table
 from wearlaw.report.tables import tables
-from wearlaw.study import BAND, RATES, Study
+from wearlaw.study import Study, numbers
 from wearlaw.sweeping.space import check_disk, check_memory
 from wearlaw.sweeping.targets import ITEM
 from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
@@ -45,12 +45,10 @@ def check_room(case: Case, folder: Path) -> None:
     InputError
         With the size that is needed.
     """
-    contacts, pairs = len(case.contact_models), len(case.contact_models) * len(case.wear_laws)
-    points = sum(grid.size for grid in case.sweeps.values())
-    numbers = points * (len(OF_POINT) + len(OF_CONTACT) * contacts + (len(RATES) + len(BAND)) * pairs)
-    rows = points * pairs
-    check_memory(COPIES * ITEM * numbers + ROW_IN_MEMORY * rows, "give the sweeps fewer points")
-    check_disk(2 * ITEM * numbers + ROW_ON_DISK * rows, folder)
+    count = numbers(case)
+    rows = sum(grid.size for grid in case.sweeps.values()) * len(case.contact_models) * len(case.wear_laws)
+    check_memory(COPIES * ITEM * count + ROW_IN_MEMORY * rows, "give the sweeps fewer points")
+    check_disk(2 * ITEM * count + ROW_ON_DISK * rows, folder)
 
 
 def write(
@@ -167,17 +165,25 @@ def write_netcdf(study: Study, path: Path) -> None:
 
 
 def table(study: Study) -> pd.DataFrame:
-    """Return the results of all sweeps as one tidy table, a row for each pair at each operating point."""
+    """Return the results of all sweeps as one tidy table, a row for each pair at each operating point.
+
+    What a sweep does not have stays empty there.
+    """
     import pandas as pd
 
     rows = pd.concat([_rows(name, sweep) for name, sweep in study.sweeps.items()], ignore_index=True)
-    return rows.rename(columns={name: f"{name} [{UNITS[name]}]" for name in rows.columns if UNITS.get(name)})
+    units = {**UNITS, **study.case.units}
+    of_point = [name for name in (*OF_POINT, *study.case.units) if name in rows and name not in OF_CONTACT]
+    rates = [str(column) for column in rows.columns if str(column).startswith("wear_rate")]
+    of_contact = [name for name in OF_CONTACT if name in rows]
+    names = dict.fromkeys(("sweep", "contact_model", "wear_law", *of_point, *rates, *of_contact))
+    return rows[list(names)].rename(columns={name: f"{name} [{units[name]}]" for name in names if units.get(name)})
 
 
 def _rows(name: str, sweep: xarray.Dataset) -> pd.DataFrame:
-    by_contact = sweep[list(OF_CONTACT)].sel(contact_model=sweep.pair_contact_model).drop_vars("contact_model")
+    of_contact = [v for v in sweep.data_vars if "contact_model" in sweep[v].dims]
+    by_contact = sweep[of_contact].sel(contact_model=sweep.pair_contact_model).drop_vars("contact_model")
     flat = sweep.drop_dims("contact_model").assign(by_contact.data_vars).to_dataframe().reset_index()
     flat = flat.rename(columns={"pair_contact_model": "contact_model", "pair_wear_law": "wear_law"})
     flat.insert(0, "sweep", name)
-    rates = [column for column in flat.columns if column.startswith("wear_rate")]
-    return flat[["sweep", "contact_model", "wear_law", *OF_POINT, *rates, *OF_CONTACT]]
+    return flat.drop(columns="pair")

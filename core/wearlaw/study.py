@@ -13,7 +13,8 @@ import numpy as np
 
 from wearlaw import plugins
 from wearlaw.arrays import Array
-from wearlaw.case import Case, labelled
+from wearlaw.base_rig import Rig
+from wearlaw.case import Case
 from wearlaw.configuration import known_name, parts
 from wearlaw.errors import (
     InputError,
@@ -27,15 +28,15 @@ from wearlaw.errors import (
 from wearlaw.material import Material
 from wearlaw.models import WearLaw
 from wearlaw.notes import Notes
-from wearlaw.pairs import Pair, compose
+from wearlaw.pairs import Pair, pairs_of
 from wearlaw.pipeline import Pipeline
+from wearlaw.result import Prediction
 from wearlaw.sections import Section
 from wearlaw.sweeping.checkpoint import Checkpoint
-from wearlaw.sweeping.evaluator import Evaluator, points_of
+from wearlaw.sweeping.evaluator import Evaluator
 from wearlaw.sweeping.points import Points
 from wearlaw.tangential import Model
-from wearlaw.units import from_si
-from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
+from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS, offered
 from wearlaw.version import __version__
 
 if TYPE_CHECKING:
@@ -47,6 +48,10 @@ if TYPE_CHECKING:
 
 RATES, BAND = ("wear_rate", "wear_rate_error"), ("wear_rate_low", "wear_rate_high")
 """What differs from pair to pair: the wear rate, and its ends over the published range of the law's parameters."""
+
+
+PROFILE_STRIPS = 101
+"""Strips of a profile across the patch, where the contact model can choose them."""
 
 
 @dataclass(frozen=True)
@@ -115,8 +120,8 @@ def run(
     """
     notes = Notes()
     evaluator = Evaluator(on_block, workers, checkpoint)
-    pairs = compose(case.rig, labelled(case.contact_models), labelled(case.wear_laws), notes)
-    sweeps = {name: _sweep(name, grid, pairs, notes, evaluator) for name, grid in case.sweeps.items()}
+    pairs = pairs_of(case, notes)
+    sweeps = {name: _sweep(name, grid, case, pairs, notes, evaluator) for name, grid in case.sweeps.items()}
     profiles = {name: _profile(name, grid, case, pairs, notes) for name, grid in case.profiles.items()}
     for dataset in (*sweeps.values(), *profiles.values()):
         dataset.attrs.update(title=case.title, provenance=json.dumps(provenance(case)))
@@ -148,7 +153,7 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
 
 def evaluations(case: Case) -> int:
     """Return how many evaluations of a pair at an operating point a case needs."""
-    pairs = compose(case.rig, labelled(case.contact_models), labelled(case.wear_laws), Notes())
+    pairs = pairs_of(case, Notes())
     return sum(
         grid.size * (1 + len(_band_ends(pair.pipeline)))
         for name, grid in case.sweeps.items()
@@ -180,42 +185,99 @@ def used(case: Case) -> dict[str, dict[str, str]]:
     return {kind: dict(sorted(names.items())) for kind, names in origins.items()}
 
 
-def _sweep(name: str, grid: Grid, pairs: list[Pair], notes: Notes, evaluator: Evaluator) -> xarray.Dataset:
+def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: Evaluator) -> xarray.Dataset:
     """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
     import xarray
 
-    points = points_of(grid)
+    points = grid.points(case.units)
     axes = points.dims
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
+    found_in = _variables(grid, case, usable)
     rates: list[dict[str, Array]] = []
     contacts: dict[str, dict[str, Array]] = {}
-    of_contact, of_point = ([v for v in variables if v not in axes] for variables in (OF_CONTACT, OF_POINT))
     for number, pair in enumerate(usable):
-        new = pair.contact_model not in contacts
-        outputs = [*RATES, *(of_contact if new else []), *(of_point if not contacts else [])]
+        new = found_in.of_contact[pair.contact_model] if pair.contact_model not in contacts else ()
+        outputs = [*RATES, *new, *(found_in.of_point if not contacts else ())]
         with notes.of(f"sweep '{name}'"):
             found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs)
         contacts.setdefault(pair.contact_model, found)
         rates.append(_with_band(f"{name}-{number}", pair.pipeline, points, found, evaluator))
     any_contact = next(iter(contacts.values()))
-    variables = {
+    missing = np.full(points.shape, np.nan)
+    variables: dict[str, Any] = {
         **{v: (("pair", *axes), np.stack([rate[v] for rate in rates])) for v in (*RATES, *BAND)},
-        **{v: (("contact_model", *axes), np.stack([c[v] for c in contacts.values()])) for v in of_contact},
-        **{v: (axes, any_contact[v]) for v in of_point},
+        **{
+            v: (("contact_model", *axes), np.stack([c.get(v, missing) for c in contacts.values()]))
+            for v in OF_CONTACT
+            if any(v in offered for offered in found_in.of_contact.values())
+        },
+        **{v: (axes, any_contact[v]) for v in found_in.of_point},
+        **{v: (axes, np.full(points.shape, level)) for v, level in found_in.conditions.items()},
     }
-    dataset = xarray.Dataset({v: (dims, values, {"units": UNITS[v]}) for v, (dims, values) in variables.items()})
-    grid_values = {axis: from_si(values, UNITS[axis]).magnitude for axis, values in grid.axes().items()}
+    units = {**UNITS, **case.units}
+    dataset = xarray.Dataset({v: (dims, values, {"units": units[v]}) for v, (dims, values) in variables.items()})
     return dataset.assign_coords(
-        {axis: (axis, values, {"units": UNITS[axis]}) for axis, values in grid_values.items()}
+        {axis: (axis, one.values, {"units": units[axis]}) for axis, one in points.varying.items()}
         | {"pair": [pair.label for pair in usable], "contact_model": list(contacts)}
         | {"pair_contact_model": ("pair", [pair.contact_model for pair in usable])}
         | {"pair_wear_law": ("pair", [pair.wear_law for pair in usable])}
     )
 
 
+@dataclass(frozen=True)
+class _Variables:
+    """What a sweep has besides the rates of its pairs.
+
+    Attributes
+    ----------
+    of_contact : dict of str to list of str
+        For each contact model, the variables that its predictions have.
+    of_point : list of str
+        Those of the operating points.
+    conditions : dict of str to float
+        The other conditions, which are the same at all points.
+    """
+
+    of_contact: dict[str, list[str]]
+    of_point: list[str]
+    conditions: dict[str, float]
+
+
+def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
+    """Return what a sweep has, as predictions of its first operating point tell."""
+    problem, axes = grid.problem(case.rig), grid.axes()
+    of_contact: dict[str, list[str]] = {}
+    of_point: dict[str, None] = {}
+    for pair in {pair.contact_model: pair for pair in pairs}.values():
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", WearlawWarning)  # the sweep gives them
+            prediction = pair.pipeline.without_law().predict(problem)
+        of_contact[pair.contact_model] = [v for v in offered(prediction, OF_CONTACT) if v not in axes]
+        # A rig may give the name of a variable to something else.
+        same = (v for v in offered(prediction, OF_POINT) if case.units.get(v, UNITS[v]) == UNITS[v])
+        of_point |= dict.fromkeys(v for v in same if v not in axes)
+    known = {*axes, *of_point, *(v for variables in of_contact.values() for v in variables)}
+    levels = {name: grid.level(name, case.units) for name in grid.given if name not in known}
+    conditions = {name: level for name, level in levels.items() if isinstance(level, float)}
+    return _Variables(of_contact, [v for v in OF_POINT if v in of_point], conditions)
+
+
+def numbers(case: Case) -> int:
+    """Return how many numbers the results of the sweeps of a case hold."""
+    pairs, total = pairs_of(case, Notes()), 0
+    for name, grid in case.sweeps.items():
+        usable = _usable(f"sweep '{name}'", grid, pairs, Notes())
+        found = _variables(grid, case, usable)
+        of_contact = sum(len(variables) for variables in found.of_contact.values())
+        of_pair = len(usable) * len((*RATES, *BAND))
+        total += grid.size * (len(found.of_point) + len(found.conditions) + of_contact + of_pair)
+        total += sum(grid.axes().values())
+    return total
+
+
 def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[Pair]:
     """Leave out the pairs that have no use for a measured traction coefficient."""
-    if grid.traction_coefficient is None:
+    if "traction_coefficient" not in grid.given:
         return pairs
     usable = [pair for pair in pairs if pair.pipeline.contact_model.uses_measured_traction]
     for pair in pairs:
@@ -245,27 +307,45 @@ def _band_ends(pipeline: Pipeline[...]) -> list[Pipeline[...]]:
 
 
 def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes) -> xarray.Dataset:
-    """Return stresses and slip along the patch for each contact model, and the wear rate for each pair."""
+    """Return what is seen in the patch: fields of each contact model, and the wear of each pair."""
     import xarray
 
     problem = grid.problem(case.rig)
     contacts: dict[str, xarray.Dataset] = {}
-    rates: list[xarray.DataArray] = []
+    wear: list[xarray.Dataset] = []
     usable = _usable(f"profile '{name}'", grid, pairs, notes)
     resolved = [pair for pair in usable if pair.pipeline.scale == "cells"]
-    for pair in resolved:
-        with notes.of(f"profile '{name}'"):
-            profile = pair.pipeline.predict(problem).profile
-        contacts[pair.contact_model] = profile.drop_vars("wear_rate")
-        rates.append(profile["wear_rate"])
     if not resolved:
         notes.add(f"profile '{name}' is left out: no contact model of the case resolves the patch")
         return xarray.Dataset()
-    # Models with nodes of their own, not on the uniform cells, have no value where only others have a node.
+    for pair in resolved:
+        with notes.of(f"profile '{name}'"):
+            of_pair, whole = _seen(pair.pipeline.predict(problem), case.rig)
+        if not whole:
+            notes.add(f"profile '{name}' is left out: rig '{case.rig.name}' does not name its bodies")
+            return xarray.Dataset()
+        contacts[pair.contact_model] = whole.drop_vars(of_pair)
+        wear.append(whole[of_pair])
+    # Models with nodes of their own have no value where only others have a node.
     dataset = xarray.concat(list(contacts.values()), xarray.Variable("contact_model", list(contacts)), join="outer")
-    return dataset.assign(wear_rate=xarray.concat(rates, "pair", join="outer")).assign_coords(
+    return dataset.assign(xarray.concat(wear, "pair", join="outer").data_vars).assign_coords(
         pair=[pair.label for pair in resolved]
     )
+
+
+def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
+    """Return the profile of a prediction, and which of its variables differ from law to law.
+
+    It runs along the patch of a line, over x. That of an ellipse runs across the patch, over y, with the wear of each
+    body.
+    """
+    import xarray
+
+    if prediction.problem.geometry == "line":
+        return ["wear_rate"], prediction.profile
+    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in rig.bodies}
+    named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
+    return [f"{body}_depth" for body in across], xarray.Dataset(named)
 
 
 def axes_of(sweep: xarray.Dataset) -> list[str]:
@@ -273,18 +353,31 @@ def axes_of(sweep: xarray.Dataset) -> list[str]:
     return [str(dim) for dim in sweep.dims if dim not in ("pair", "contact_model")]
 
 
-def main_axis(sweep: xarray.Dataset) -> str:
-    """Return the axis that tables and figures run along: creepage if it is one, else the longest."""
+def main_axis(sweep: xarray.Dataset, creepage: str) -> str:
+    """Return the axis that tables and figures run along: the creepage of the rig if it is one, else the longest.
+
+    Where a sweep has no axis it is the creepage, or else another condition, of its one point.
+    """
     axes = axes_of(sweep)
-    return "creepage" if "creepage" in axes or not axes else max(axes, key=lambda axis: sweep.sizes[axis])
+    if creepage in axes or not axes:
+        return creepage if creepage in sweep else _other(sweep)
+    return max(axes, key=lambda axis: sweep.sizes[axis])
 
 
-def along_main_axis(sweep: xarray.Dataset) -> xarray.Dataset:
+def along_main_axis(sweep: xarray.Dataset, creepage: str) -> xarray.Dataset:
     """Return a sweep along its main axis, with the other axes at their middle value."""
-    return along(sweep, main_axis(sweep))
+    return along(sweep, main_axis(sweep, creepage))
 
 
 def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
-    """Return a sweep along an axis, with the others at their middle value; along its creepage if it has none."""
+    """Return a sweep along an axis, with the others at their middle value; one point becomes an axis of length 1."""
     line = sweep.isel({other: sweep.sizes[other] // 2 for other in axes_of(sweep) if other != axis})
-    return line if axes_of(line) else line.set_coords("creepage").expand_dims("creepage")
+    if axes_of(line):
+        return line
+    at = axis if axis in line else _other(line)
+    return line.set_coords(at).expand_dims(at)
+
+
+def _other(point: xarray.Dataset) -> str:
+    """Return a variable of the operating point of a sweep without axes."""
+    return next(str(name) for name in point.data_vars if not point[name].dims)

@@ -30,6 +30,20 @@ def borders(law: str, variable: str) -> tuple[float, ...]:
     return (of.breakpoints(of.numbers) or {})[variable]
 
 
+def discs_of(study: wl.Study) -> wl.TwinDisc:
+    """Return the rig of a study.
+
+    Raises
+    ------
+    InputError
+        If it is none of two discs.
+    """
+    rig = study.case.rig
+    if not isinstance(rig, wl.TwinDisc):
+        raise wl.InputError(f"rig: must be a twin_disc, as that of the paper, not a {rig.name}")
+    return rig
+
+
 @dataclass(frozen=True)
 class Bench:
     """A rig under one load and with one friction coefficient, at the creepages of the paper, 0.001 to 25 %."""
@@ -45,13 +59,15 @@ class Bench:
         Raises
         ------
         InputError
-            If the study has no such sweep, several loads in it, or not all wear regimes up to 25 % creepage.
+            If the study is of another rig, has no such sweep, several loads in it, or not all wear regimes up to 25 %
+            creepage.
         """
+        rig = discs_of(study)
         sweep = study.sweep("creepage")
         loads, frictions = sweep["normal_force_per_width"], np.unique(sweep["friction_coefficient"])
         if np.unique(loads).size > 1 or frictions.size > 1:
             raise wl.InputError("sweeps.creepage: must have one load and one friction_coefficient; give a single one")
-        bench = cls(study.case.rig, Q(float(loads.values.flat[0]), loads.attrs["units"]), float(frictions[0]))
+        bench = cls(rig, Q(float(loads.values.flat[0]), loads.attrs["units"]), float(frictions[0]))
         _, catastrophic = bench.usfd_borders
         if not (bench.full_slip < HIGHEST and bench.wear_index[-1] > catastrophic):
             raise wl.InputError(

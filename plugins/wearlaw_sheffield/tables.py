@@ -5,6 +5,7 @@ from __future__ import annotations
 import pandas as pd
 
 import wearlaw as wl
+from wearlaw_sheffield.bench import discs_of
 
 TEXT = """\
 The tables are made from the laws as they compute, not typed in again.
@@ -24,7 +25,7 @@ def section(study: wl.Study) -> wl.Section:
     kth = dict(wl.wear_law("kth"))
     return wl.Section(
         title="Tables 1 to 4 of the paper",
-        text=TEXT.format(hardness=f"{kth['hardness']:~P}", ratio=printed_slip(study.case.rig)),
+        text=TEXT.format(hardness=f"{kth['hardness']:~P}", ratio=printed_slip(discs_of(study))),
         tables={
             "table_1_brr": table_1(),
             "table_2_kth": table_2(),

@@ -77,7 +77,8 @@ def test_a_case_with_shipped_tests_is_written_without_them() -> None:
 
 RAIL = {**STEEL, "elastic_limit": "1 GPa"}
 OWN_K = {"high_pressure": 0.03, "low_speed": 1e-4, "mid_speed": 1e-3, "high_speed": 2e-4}
-OWN_RIG = {
+OWN_RIG: dict[str, Any] = {
+    "type": "twin_disc",
     "disc_1": {"diameter": "47 mm", "material": STEEL},
     "disc_2": {"diameter": "inf mm", "material": RAIL},
     "track_width": "1 cm",
@@ -156,7 +157,7 @@ def test_a_preset_is_the_rig_with_what_is_overridden() -> None:
     material = wl.Material(**STEEL)  # type: ignore[arg-type]
     rig = Case(**ACCEPTED["preset, overridden"]).rig
     assert rig == wl.TwinDisc.suros(diameter="100 mm", material=material, track_width="5 mm", rolling_speed="1 m/s")
-    by_disc = Case(**ACCEPTED["preset, disc by disc"]).rig
+    by_disc: Any = Case(**ACCEPTED["preset, disc by disc"]).rig
     assert by_disc.disc_2 == wl.Disc(diameter="inf mm", material=wl.Material(**RAIL))  # type: ignore[arg-type]
     assert by_disc.rolling_speed.to("m/s").magnitude == pytest.approx(np.pi * 0.047 * 10.0, rel=1e-14)
 

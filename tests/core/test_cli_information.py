@@ -91,7 +91,7 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
         ),
         *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("brr", "kth", "usfd")),
         ["material", "steel", "wearlaw", wl.__version__],
-        ["case", "tassini2010", "wearlaw", wl.__version__],
+        *(["case", name, "wearlaw", wl.__version__] for name in ("tassini2010", "wheel_on_rail")),
         ["test", "set", "lewis2004", "wearlaw", wl.__version__],
         *(["section", f"tassini2010_{name}", "wearlaw", wl.__version__] for name in ("claims", "table_4", "tables")),
     ]

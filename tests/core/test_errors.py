@@ -9,7 +9,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import errors
-from wearlaw.errors import Problem, did_you_mean
+from wearlaw.errors import Fault, did_you_mean
 
 CLASSES = [found for _, found in inspect.getmembers(errors, inspect.isclass) if issubclass(found, Exception)]
 
@@ -40,13 +40,13 @@ def test_generic_code_may_catch_the_builtin_error(error: type[Exception], builti
 
 
 def test_a_configuration_error_lists_every_problem_with_its_path() -> None:
-    error = wl.ConfigurationError("TwinDisc", [Problem(("disc_1", "diameter"), "is missing"), Problem((), "is odd")])
+    error = wl.ConfigurationError("TwinDisc", [Fault(("disc_1", "diameter"), "is missing"), Fault((), "is odd")])
     assert str(error) == "TwinDisc:\n  disc_1.diameter: is missing\n  is odd"
-    assert str(wl.ConfigurationError("Disc", [Problem(("diameter",), "is odd")])) == "Disc: diameter: is odd"
+    assert str(wl.ConfigurationError("Disc", [Fault(("diameter",), "is odd")])) == "Disc: diameter: is odd"
 
 
 def test_a_configuration_error_survives_pickling() -> None:
-    error = wl.ConfigurationError("Disc", [Problem(("diameter",), "is odd")])
+    error = wl.ConfigurationError("Disc", [Fault(("diameter",), "is odd")])
     loaded = pickle.loads(pickle.dumps(error))
     assert (loaded.subject, loaded.problems, str(loaded)) == (error.subject, error.problems, str(error))
 

@@ -9,15 +9,26 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw.conditions import TWIN_DISC
-from wearlaw.grid import MOST_POINTS, SI_UNITS, Axis, Grid
+from wearlaw.arrays import Array
+from wearlaw.grid import MOST_POINTS, Axis, Grid, with_units
+from wearlaw.variables import UNITS
 
 RIG = wl.TwinDisc.suros()
 
 
 def grid(**changes: Any) -> Grid:
     conditions = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46, **changes}
-    return Grid(**{name: value for name, value in conditions.items() if value is not None})
+    return Grid(**{name: value for name, value in conditions.items() if value is not None}).checked(RIG)
+
+
+def along(read: Grid, name: str) -> Array:
+    """Return the values of an axis as results show them."""
+    return read.points(read.units()).varying[name].values
+
+
+def problem(read: Grid) -> Any:
+    """Return the contact problem at all points of a grid."""
+    return RIG.problem(**read.points(read.units()).conditions())
 
 
 @pytest.mark.parametrize(
@@ -36,26 +47,30 @@ def grid(**changes: Any) -> Grid:
 )
 def test_a_condition_is_a_value_a_list_or_an_axis(creepage: Any, expected: Any) -> None:
     read = grid(creepage=creepage)
-    np.testing.assert_allclose(read.conditions()["creepage"], expected, rtol=1e-14, atol=0)  # rounding
-    assert read.conditions()["creepage"].shape == np.shape(expected)
     assert ("creepage" in read.axes()) == isinstance(expected, list)
+    percent = along(read, "creepage") if read.axes() else np.array(read.level("creepage", read.units()))
+    np.testing.assert_allclose(percent, 100.0 * np.array(expected), rtol=1e-14, atol=0)  # rounding
+    assert percent.shape == np.shape(expected)
+    np.testing.assert_allclose(problem(read).creepage, expected, rtol=1e-14, atol=0)
     assert read.size == np.size(expected)
 
 
 def test_an_axis_keeps_its_ends_to_the_last_digit() -> None:
     for spacing in ("log", "linear"):
         axis = grid(friction_coefficient={"from": 0.1, "to": 0.7, "points": 11, "spacing": spacing})
-        values = axis.conditions()["friction_coefficient"]
+        values = along(axis, "friction_coefficient")
         assert (values[0], values[-1]) == (0.1, 0.7)
 
 
 def test_a_log_axis_has_a_constant_ratio_and_a_linear_one_a_constant_distance() -> None:
     log, linear = (
-        grid(friction_coefficient={"from": 0.1, "to": 0.8, "points": 4, "spacing": spacing}).conditions()
+        along(
+            grid(friction_coefficient={"from": 0.1, "to": 0.8, "points": 4, "spacing": spacing}), "friction_coefficient"
+        )
         for spacing in ("log", "linear")
     )
-    np.testing.assert_allclose(np.diff(np.log(log["friction_coefficient"])), np.log(2.0), rtol=1e-14)
-    np.testing.assert_allclose(np.diff(linear["friction_coefficient"]), 0.7 / 3.0, rtol=1e-14)
+    np.testing.assert_allclose(np.diff(np.log(log)), np.log(2.0), rtol=1e-14)
+    np.testing.assert_allclose(np.diff(linear), 0.7 / 3.0, rtol=1e-14)
 
 
 def test_an_axis_made_in_python_is_that_of_its_table() -> None:
@@ -80,18 +95,14 @@ def test_an_axis_is_linear_unless_it_says_log() -> None:
 def test_every_load_is_read_with_its_unit(load: str, text: str, other_unit: str, si: float) -> None:
     for given in (text, other_unit):
         conditions: dict[str, Any] = {load: given, "creepage": "1 %", "friction_coefficient": 0.46}
-        read = Grid(**conditions)
-        np.testing.assert_allclose(read.conditions()[load], si, rtol=1e-15)
-        direct: Any = {load: Q(si, SI_UNITS[load]), "creepage": Q(1, "%"), "friction_coefficient": 0.46}
+        read = Grid(**conditions).checked(RIG)
+        assert read.units()[load] == UNITS[load]
+        shown = Q(read.level(load, read.units()), UNITS[load]).to_base_units().magnitude
+        np.testing.assert_allclose(shown, si, rtol=4e-15)  # three conversions of units
+        direct: Any = {**with_units({load: np.array(si)}), "creepage": Q(1, "%"), "friction_coefficient": 0.46}
         for field in ("normal_force_per_width", "max_pressure", "half_width", "creepage", "friction_coefficient"):
             here, there = getattr(read.problem(RIG), field), getattr(RIG.problem(**direct), field)
             np.testing.assert_allclose(here, there, rtol=1e-15)  # one conversion of units
-
-
-def test_units_of_conditions_agree_with_their_si_units() -> None:
-    assert TWIN_DISC.units.keys() == SI_UNITS.keys()
-    for name, unit in TWIN_DISC.units.items():
-        assert unit.si(Q(0.5, SI_UNITS[name]), name) == 0.5
 
 
 def test_several_axes_make_a_grid_in_the_order_of_the_conditions_whatever_the_order_in_the_file() -> None:
@@ -100,12 +111,13 @@ def test_several_axes_make_a_grid_in_the_order_of_the_conditions_whatever_the_or
         "creepage": ["1 %", "2 %"],
         "normal_force": {"from": "1 kN", "to": "3 kN", "points": 3},
     }
-    read = Grid(**conditions)
+    read = Grid(**conditions).checked(RIG)
     assert list(read.axes()) == ["normal_force", "creepage", "friction_coefficient"]
-    problem = read.problem(RIG)
-    assert problem.batch_shape == (3, 2, 4)
+    points = read.points(read.units())
+    assert points.shape == (3, 2, 4)
     assert read.size == 24
-    for index in np.ndindex(3, 2, 4):
+    many = problem(read)
+    for number, index in enumerate(np.ndindex(3, 2, 4)):
         one = RIG.problem(
             normal_force=Q(1.0 + index[0], "kN"),
             creepage=Q(1.0 + index[1], "%"),
@@ -113,17 +125,17 @@ def test_several_axes_make_a_grid_in_the_order_of_the_conditions_whatever_the_or
         )
         for field in ("normal_force_per_width", "half_width", "max_pressure", "creepage", "friction_coefficient"):
             np.testing.assert_allclose(
-                getattr(problem, field)[index], getattr(one, field), rtol=1e-15
+                getattr(many, field)[number], getattr(one, field), rtol=1e-15
             )  # rounding of 0.2 + 0.1 i
 
 
 def test_a_measured_traction_coefficient_reaches_the_problem_and_may_be_an_axis() -> None:
-    assert grid().problem(RIG).traction_coefficient is None
-    given = grid(traction_coefficient=0.3).problem(RIG).traction_coefficient
+    assert problem(grid()).traction_coefficient is None
+    given = problem(grid(traction_coefficient=0.3)).traction_coefficient
     assert given is not None and given == 0.3  # noqa: PT018  (narrows the type)
     several = grid(traction_coefficient=[0.1, 0.2], creepage=["1 %", "2 %", "3 %"])
     assert list(several.axes()) == ["creepage", "traction_coefficient"]
-    assert several.problem(RIG).batch_shape == (3, 2)
+    assert several.points(several.units()).shape == (3, 2)
 
 
 SHAPE = "must be a value, a list of values, or a table with from, to and points; got "
@@ -144,6 +156,9 @@ CREEPAGE_FIX = "give creepage in percent or as a ratio"
         ("friction_coefficient", 0, "friction_coefficient: must be a positive finite number, got 0"),
         ("friction_coefficient", -0.1, "friction_coefficient: must be a positive finite number, got -0.1"),
         ("traction_coefficient", -0.1, "traction_coefficient: must be a positive finite number, got -0.1"),
+        ("creepage", ["1 %", 2], "creepage: got the bare number 2.0, which has no unit, beside '1 %'; give all"),
+        ("creepage", ["1 %", "2 mm"], "creepage: '1 %' and '2 mm' are not of one dimension"),
+        ("friction_coefficient", ["0.4"], "friction_coefficient: '0.4' is not a number with a unit"),
         ("friction_coefficient", None, "Grid: friction_coefficient: is missing"),
         ("creepage", None, "Grid: creepage: is missing"),
         ("creepage", 1, f"creepage: got the bare number 1.0, which has no unit; {CREEPAGE_FIX}"),
@@ -157,7 +172,7 @@ CREEPAGE_FIX = "give creepage in percent or as a ratio"
         ("max_pressure", "0 MPa", "max_pressure: must be greater than zero"),
         ("max_pressure", None, "give exactly one of normal_force, normal_force_per_width, max_pressure; got none"),
         ("normal_force", "1 kN", "give exactly one of normal_force, normal_force_per_width, max_pressure; got norm"),
-        ("max_presure", "1 GPa", "Grid: max_presure: unknown field; did you mean 'max_pressure'?"),
+        ("max_presure", "1 GPa", "Grid: max_presure: unknown condition; did you mean 'max_pressure'?"),
         ("max_pressure", ["1 MPa", "1e200 MPa"], "which no contact has; check the units of the load"),
     ],
 )
@@ -194,6 +209,13 @@ def test_a_wrong_axis_is_refused_with_its_path(changes: dict[str, Any], message:
     with pytest.raises(wl.ConfigurationError) as refusal:
         grid(creepage={name: value for name, value in axis.items() if value is not None})
     assert f"Grid: {message}" in str(refusal.value)
+
+
+def test_a_condition_of_another_dimension_than_elsewhere_is_refused() -> None:
+    for creepage in ("1 %", ["1 %", "2 %"]):
+        read = grid(creepage=creepage)
+        with pytest.raises(wl.UnitError, match="creepage: is in %, and elsewhere in mm; use units of one dimension"):
+            read.level("creepage", {"creepage": "mm"})
 
 
 def test_a_grid_that_is_larger_than_any_memory_is_refused() -> None:

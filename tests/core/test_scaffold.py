@@ -161,7 +161,7 @@ def test_the_name_of_a_material_or_a_case_is_free_since_they_are_looked_up_apart
     assert "title = " in case_text("tassini2010")
     read = case(contact_models=["exact"], wear_laws=[name], rig={"preset": "suros", "material": "steel"})
     assert read.wear_laws == (wl.wear_law(name),)
-    assert read.rig.disc_1.material == wl.steel()
+    assert read.rig == wl.TwinDisc.suros(material=wl.steel())
 
 
 @pytest.mark.parametrize("content", ["folder", "empty folder", "file", "dangling link"])

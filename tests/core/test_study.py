@@ -17,7 +17,7 @@ from tests.core.studies import FRICTIONS, LOADS, MEASURED, lattice_study
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.study import Study, along_main_axis, axes_of, main_axis, run
-from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
+from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS, offered
 
 MODELS = {"global": wl.contact_model("global"), "exact": wl.contact_model("exact")}
 LAWS = {"usfd": wl.wear_law("usfd"), "kth": wl.wear_law("kth"), "brr": wl.wear_law("brr")}
@@ -106,7 +106,10 @@ def test_totals_and_conditions_are_those_of_direct_predictions(study: Study) -> 
         for index, conditions in lattice_points():
             one = lattice.sel(contact_model=model).isel(index)
             prediction = direct(model, LAWS["usfd"], **conditions)
-            for name in (*OF_CONTACT, *OF_POINT):
+            assert set(offered(prediction, (*OF_CONTACT, *OF_POINT))) == {
+                name for name in (*OF_CONTACT, *OF_POINT) if name in lattice
+            }
+            for name in (name for name in (*OF_CONTACT, *OF_POINT) if name in lattice):
                 expected = getattr(prediction, name).to(UNITS[name]).magnitude
                 # mean_slip and stick_ratio are sums over nodes of a share of at most 1 (100 %).
                 np.testing.assert_allclose(one[name].item(), expected, rtol=1e-12, atol=1e-12, err_msg=name)
@@ -168,8 +171,8 @@ def test_one_operating_point_is_a_sweep_without_axes() -> None:
     assert axes_of(sweep) == []
     assert sweep.wear_rate.dims == ("pair",)
     assert_same_rate(sweep.wear_rate.sel(pair="kth on exact").item(), direct("exact", LAWS["kth"], **cases.POINT))
-    assert main_axis(sweep) == "creepage"
-    line = along_main_axis(sweep)
+    assert main_axis(sweep, "creepage") == "creepage"
+    line = along_main_axis(sweep, "creepage")
     assert line.wear_rate.sel(pair="kth on exact").dims == ("creepage",)
     assert line.creepage.values == pytest.approx([0.5], rel=1e-14)
 
@@ -181,8 +184,8 @@ def test_tables_and_figures_run_along_creepage_or_else_the_longest_axis_at_the_m
         "b": {**cases.POINT, "max_pressure": loads, "friction_coefficient": frictions},
     }
     study = run(case(contact_models=["global"], wear_laws=["usfd"], profiles={}, sweeps=sweeps))
-    assert [main_axis(study.sweeps[name]) for name in "ab"] == ["creepage", "friction_coefficient"]
-    by_creepage, by_friction = (along_main_axis(study.sweeps[name]) for name in "ab")
+    assert [main_axis(study.sweeps[name], "creepage") for name in "ab"] == ["creepage", "friction_coefficient"]
+    by_creepage, by_friction = (along_main_axis(study.sweeps[name], "creepage") for name in "ab")
     assert by_creepage.friction_coefficient == 0.4
     xarray.testing.assert_equal(by_creepage.wear_rate, study.sweeps["a"].wear_rate[:, :, 2])
     assert by_friction.max_pressure == pytest.approx(1000.0, rel=1e-14)

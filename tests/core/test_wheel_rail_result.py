@@ -164,7 +164,8 @@ def test_the_strips_of_the_contact_sum_to_the_mass_of_the_wheel(points: int | No
     load = Q(80.0, "kN") if points is None else Q(np.linspace(40.0, 90.0, points), "kN")
     result = (RIG | FASTSIM | PER_ENERGY)(**{**CONDITIONS, "normal_force": load})
     profile = result.wear_profile("wheel")
-    lost = 1e-9 * (profile.depth.values * result.contact.strip_width).sum(axis=-1) * 2 * np.pi * 0.46 * 7850
+    contact: Any = result.contact
+    lost = 1e-9 * (profile.depth.values * contact.strip_width).sum(axis=-1) * 2 * np.pi * 0.46 * 7850
     assert lost == pytest.approx(result.mass_per_distance.to("kg/m").magnitude, rel=64 * EPS)
 
 

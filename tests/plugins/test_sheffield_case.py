@@ -11,25 +11,26 @@ import wearlaw as wl
 import wearlaw_sheffield
 from tests.plugins.sheffield import HEAT, SPEED
 from wearlaw import plugins
-from wearlaw.case import case_text, labels, load_case
+from wearlaw.case import Case, case_text, labels, load_case
+from wearlaw.study import run
 from wearlaw.wear_tests.reader import text_of_tests
 
 
 def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:
-    assert list(plugins.installed().cases.items()) == ["tassini2010"]
+    assert list(plugins.installed().cases.items()) == ["tassini2010", "wheel_on_rail"]
     package = Path(wearlaw_sheffield.__file__).parent
     assert case_text("tassini2010") == (package / "tassini2010.toml").read_text(encoding="utf-8")
 
 
 def test_the_shipped_case_sweeps_what_section_5_2_of_the_paper_sweeps() -> None:
     shipped = load_case("tassini2010")
-    creepage, load = shipped.sweeps["creepage"].conditions(), shipped.sweeps["load"].conditions()
+    creepage, load = (shipped.sweeps[name].points(shipped.units) for name in ("creepage", "load"))
     # Tassini et al., Wear 268 (2010) 660-667, section 5.2: 0.001 to 25 % at 741.43 kN/m; 74.14 to 14829 kN/m at 1 %.
-    np.testing.assert_allclose(creepage["creepage"][[0, -1]], [1e-5, 0.25], rtol=1e-14)
-    assert creepage["normal_force_per_width"] == pytest.approx(741.43e3, rel=1e-14)
-    np.testing.assert_allclose(load["normal_force_per_width"][[0, -1]], [74.14e3, 14829e3], rtol=1e-14)
-    assert load["creepage"] == pytest.approx(0.01, rel=1e-14)
-    assert creepage["friction_coefficient"] == load["friction_coefficient"] == 0.46
+    np.testing.assert_array_equal(creepage.varying["creepage"].values[[0, -1]], [0.001, 25.0])
+    assert creepage.fixed["normal_force_per_width"] == "741.43 kN/m"
+    np.testing.assert_array_equal(load.varying["normal_force_per_width"].values[[0, -1]], [74.14, 14829.0])
+    assert load.fixed["creepage"] == "1 %"
+    assert creepage.fixed["friction_coefficient"] == load.fixed["friction_coefficient"] == 0.46
     assert shipped.rig == wl.TwinDisc.suros()
     assert labels(shipped.contact_models) == ["global", "exact", "fastsim"]
     assert labels(shipped.wear_laws) == ["usfd", "kth", "brr"]
@@ -59,3 +60,24 @@ def test_the_shipped_tests_are_at_the_pressure_and_speed_of_the_rig() -> None:
     np.testing.assert_allclose(problem.max_pressure, 1.5e9, rtol=0.5 * 0.05 / 7414.3)
     (speed,) = {float(line.split(",")[3]) for line in text_of_tests("lewis2004").splitlines()[4:]}
     assert speed == pytest.approx(wl.scalar_si(rig.rolling_speed, "m/s"), rel=4e-16)  # the order of products rounds
+
+
+def test_the_sections_refuse_another_rig() -> None:
+    fields = {
+        "title": "A wheel",
+        "rig": {
+            "type": "wheel_rail",
+            "wheel_radius": "460 mm",
+            "rail_head_radius": "300 mm",
+            "material": "steel",
+            "rolling_speed": "30 m/s",
+        },
+        "contact_models": ["polach"],
+        "wear_laws": ["kth"],
+        "sweeps": {
+            "creepage": {"normal_force": "50 kN", "longitudinal_creepage": "1 %", "friction_coefficient": 0.3},
+        },
+    }
+    for section in ("tables", "claims", "table_4"):
+        with pytest.raises(wl.InputError, match="rig: must be a twin_disc, as that of the paper, not a wheel_rail"):
+            run(Case(**{**fields, "sections": [f"tassini2010_{section}"]}))  # type: ignore[arg-type]

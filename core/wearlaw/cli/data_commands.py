@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from wearlaw.fitting.result import Fit
     from wearlaw.pairs import Pair
     from wearlaw.pipeline import Pipeline
-    from wearlaw.rigs.twin_disc import TwinDisc
     from wearlaw.wear_tests.tests import WearTests
 
 
@@ -262,7 +261,7 @@ def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **
     return found
 
 
-def _rig(path: Path | None, notes: Notes) -> TwinDisc:
+def _rig(path: Path | None, notes: Notes) -> Any:
     from wearlaw.cli.parsing import read_rig
 
     if path is None:

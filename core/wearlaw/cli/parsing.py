@@ -7,12 +7,12 @@ from pathlib import Path
 import click
 
 from wearlaw import plugins
-from wearlaw.case import RigField
+from wearlaw.base_rig import Rig
 from wearlaw.configuration import Configuration
 from wearlaw.errors import ConfigurationError, InputError, with_problems
 from wearlaw.fitting.law_files import read_toml, read_wear_law
 from wearlaw.models import WearLaw
-from wearlaw.rigs.twin_disc import TwinDisc
+from wearlaw.specification import RigField
 from wearlaw.tangential import ContactModel
 
 
@@ -23,7 +23,7 @@ class _WithRig(Configuration, extra="ignore"):
     """The test rig."""
 
 
-def read_rig(path: Path | None) -> TwinDisc:
+def read_rig(path: Path | None) -> Rig:
     """Return the rig of the table [rig] in a TOML file, or SUROS without one.
 
     Raises
@@ -32,7 +32,7 @@ def read_rig(path: Path | None) -> TwinDisc:
         If there is no such file, or no such table in it, or its fields are wrong.
     """
     if path is None:
-        return TwinDisc.suros()
+        return _WithRig(rig={"preset": "suros"}).rig  # type: ignore[arg-type]
     try:
         return _WithRig(**read_toml("the rig", path)).rig
     except ConfigurationError as error:

@@ -44,7 +44,7 @@ def run(
     figure_formats: tuple[FigureFormat, ...],
     latex: bool,
 ) -> None:
-    """Run a study: CASE is a case file, or the name of one that is shipped (tassini2010).
+    """Run a study: CASE is a case file, or the name of one that is shipped (tassini2010, wheel_on_rail).
 
     Every contact model of the case is paired with every wear law. Results are written as report.html, a page to open in
     a browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default
@@ -93,7 +93,7 @@ def _kept(checkpoint: Checkpoint) -> Iterator[None]:
 @click.command()
 @click.argument("name")
 def case(name: str) -> None:
-    """Print a case file: NAME is the name of a shipped one (tassini2010), or a path."""
+    """Print a case file: NAME is the name of a shipped one (tassini2010, wheel_on_rail), or a path."""
     from wearlaw.case import case_text
 
     click.echo(case_text(name).encode(), nl=False)  # TOML is UTF-8, whatever the terminal speaks

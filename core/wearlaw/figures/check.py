@@ -4,16 +4,36 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
+from wearlaw.base_rig import Rig
+from wearlaw.composition import check_geometry
 from wearlaw.conditions import LOADS
-from wearlaw.errors import CompositionError, Problem, WearlawWarning, did_you_mean
-from wearlaw.figures.spec import OF_LOAD, FigureSpec, axis_along
+from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean
+from wearlaw.figures.spec import ACROSS, OF_LOAD, OF_PROFILE, FigureSpec, Window, axis_along, wrong_range
 from wearlaw.grid import Grid
 from wearlaw.models import WearLaw
-from wearlaw.rigs.twin_disc import TwinDisc
+from wearlaw.result import Prediction
 from wearlaw.tangential import ContactModel
-from wearlaw.variables import OF_POINT
+from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS, offered
+
+
+@dataclass(frozen=True)
+class Variables:
+    """What a figure can show of a sweep or a profile.
+
+    Attributes
+    ----------
+    x, y : tuple of str
+        Along its axes.
+    units : mapping of str to str
+        In which unit; those of wear across a patch differ from body to body, as in "wheel_depth".
+    """
+
+    x: tuple[str, ...]
+    y: tuple[str, ...]
+    units: Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -22,28 +42,32 @@ class Contents:
 
     Attributes
     ----------
-    rig : TwinDisc
+    rig : Rig
     contact_models, wear_laws : mapping of str to Model
         By their labels in results.
     sweeps, profiles : mapping of str to Grid
+    units : mapping of str to str
+        The unit in which each condition is shown.
     measured : collection of str
         The variables that its measured tests have.
     """
 
-    rig: TwinDisc
+    rig: Rig
     contact_models: Mapping[str, ContactModel]
     wear_laws: Mapping[str, WearLaw]
     sweeps: Mapping[str, Grid]
     profiles: Mapping[str, Grid]
+    units: Mapping[str, str]
     measured: Collection[str]
+    _known: dict[tuple[str, str], Variables] = field(default_factory=dict)
 
-    def problems(self, figures: Mapping[str, FigureSpec]) -> Iterator[Problem]:
+    def problems(self, figures: Mapping[str, FigureSpec]) -> Iterator[Fault]:
         """Give what figures ask for and the case does not have."""
         for name, spec in figures.items():
             if not name.isidentifier():
-                yield Problem(("figures", name), "the name must be made of letters, digits and underscores")
-            for field, message in self._problems(spec):
-                yield Problem(("figures", name, field), message)
+                yield Fault(("figures", name), "the name must be made of letters, digits and underscores")
+            for path, message in self._problems(spec):
+                yield Fault(("figures", name, *path.split(".")), message)
 
     def _problems(self, spec: FigureSpec) -> Iterator[tuple[str, str]]:
         kind, grids = ("sweep", self.sweeps) if spec.sweep else ("profile", self.profiles)
@@ -51,14 +75,99 @@ class Contents:
         if asked not in grids:
             yield kind, f"the case has no {kind} {_choice(asked, grids)}"
             return
-        if spec.sweep:
-            yield from _constant(spec.x, grids[asked])
+        grid = grids[asked]
+        known = self._variables(kind, asked, grid)
+        yield from _unknown("x", [spec.x], known.x)
+        for number, window in enumerate(spec.windows()):
+            path = f"panels.{number}." if spec.panels else ""
+            for name, message in self._of_window(spec.x, window, known, across=bool(spec.profile)):
+                yield f"{path}{name}", message
+        if spec.sweep and spec.x in known.x:
+            yield from self._constant(spec.x, grid)
         yield from self._of_models(spec, grids[asked])
         shown = {spec.x, *(variable for window in spec.windows() for variable in window.shown)}
         missing = sorted(shown.difference(self.measured))
         if spec.measured and missing:
             has = f"have only {', '.join(self.measured)}" if self.measured else "are missing; add [measured]"
             yield "measured", f"cannot show {' and '.join(missing)} of the measured tests, which {has}"
+
+    def _variables(self, kind: str, name: str, grid: Grid) -> Variables:
+        """Return what a sweep or profile has, as predictions of its first operating point tell."""
+        if (kind, name) not in self._known:
+            problem = grid.problem(self.rig)
+            predictions = list(self._predictions(problem))
+            found = self._of_sweep(grid, predictions) if kind == "sweep" else self._of_profile(predictions)
+            self._known[kind, name] = found
+        return self._known[kind, name]
+
+    def _predictions(self, problem: Any) -> Iterator[Any]:
+        """Give a prediction of every contact model that solves a problem, with the first law that goes with it.
+
+        What is wrong with others is said where they are run.
+        """
+        for model in self.contact_models.values():
+            found = next(filter(None, (self._prediction(model, law, problem) for law in self.wear_laws.values())), None)
+            if found is not None:
+                yield found
+
+    def _prediction(self, model: ContactModel, law: WearLaw, problem: Any) -> Any:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", WearlawWarning)  # running the case gives them
+                check_geometry(self.rig, model, problem.geometry)
+                return (self.rig | model | law).predict(problem)
+        except WearlawError:
+            return None
+
+    def _of_sweep(self, grid: Grid, predictions: list[Prediction]) -> Variables:
+        every = {name for one in predictions for name in offered(one, (*OF_CONTACT, *OF_POINT))}
+        levels = {name: grid.level(name, self.units) for name in grid.given}
+        conditions = [name for name, level in levels.items() if isinstance(level, float)]
+        of_contact, of_point = ([name for name in names if name in every] for names in (OF_CONTACT, OF_POINT))
+        x = tuple(dict.fromkeys((*of_contact, *of_point, *conditions)))
+        return Variables(x, ("wear_rate", *of_contact, *of_point), {**UNITS, **self.units})
+
+    def _of_profile(self, predictions: list[Prediction]) -> Variables:
+        across = [one for one in predictions if one.problem.geometry == "ellipse"]
+        if not across:
+            return Variables(("x",), OF_PROFILE, UNITS)
+        units = dict(UNITS)
+        resolved = [one for one in across if one.pipeline.scale == "cells"]
+        for body in self.rig.bodies if resolved else ():
+            columns = resolved[0].wear_profile(body).data_vars.items()
+            units |= {f"{body}_{name}": column.attrs["units"] for name, column in columns}
+        return Variables(("x", "y"), ACROSS, units)
+
+    def _of_window(self, x: str, window: Window, known: Variables, across: bool) -> Iterator[tuple[str, str]]:
+        """Give what is wrong with a panel."""
+        yield from _unknown("y", window.shown, known.y)
+        across = across and known.y == ACROSS
+        bodies = tuple(self.rig.bodies)
+        if window.body is not None and not across:
+            yield "body", "only wear across the patch is of one body; leave it out"
+        if window.body is not None and window.body not in bodies:
+            yield "body", f"there is no {_choice(window.body, bodies)}"
+            return
+        body = f"{window.body or bodies[0]}_" if across and bodies else ""
+        units = {name: known.units[f"{body}{name}"] for name in window.shown if f"{body}{name}" in known.units}
+        if len(set(units.values())) > 1:
+            each = ", ".join(f"{variable} in {unit or 'no unit'}" for variable, unit in units.items())
+            yield "y", f"one axis has one unit, but these are {each}; give each a panel of its own"
+        if x in known.units:
+            for message in wrong_range(x, known.units[x], window.x_range, window.x_scale):
+                yield "x_range", message
+        first = window.shown[0]
+        if first in units:
+            for message in wrong_range(first, units[first], window.y_range, window.y_scale):
+                yield "y_range", message
+
+    def _constant(self, x: str, grid: Grid) -> Iterator[tuple[str, str]]:
+        """Refuse an x axis along which nothing changes."""
+        axis = axis_along(grid, x, self.rig.creepage)
+        of_point = x in OF_POINT or x in grid.given
+        varies = not of_point or x == axis or axis not in UNITS or (x in OF_LOAD and axis in LOADS)
+        if grid.axes() and not varies:
+            yield "x", f"{x} is the same at all points of the sweep; give {axis}, or what follows from it"
 
     def _of_models(self, spec: FigureSpec, grid: Grid) -> Iterator[tuple[str, str]]:
         refusals = {
@@ -85,24 +194,24 @@ class Contents:
     def _refusal(self, model: str, law: str, spec: FigureSpec, grid: Grid) -> str:
         """Return why a pair has no results that the figure could show; nothing if it has."""
         contact_model = self.contact_models[model]
-        if grid.traction_coefficient is not None and not contact_model.uses_measured_traction:
+        if "traction_coefficient" in grid.given and not contact_model.uses_measured_traction:
             return f"{model} is left out there, since it computes the traction itself"
         if spec.profile and contact_model.scale != "cells":
             return f"{model} does not resolve the patch"
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", WearlawWarning)  # running the case gives them
+                check_geometry(self.rig, contact_model, grid.problem(self.rig).geometry)
                 _ = self.rig | contact_model | self.wear_laws[law]
         except CompositionError as error:
             return str(error)
         return ""
 
 
-def _constant(x: str, grid: Grid) -> Iterator[tuple[str, str]]:
-    axis = axis_along(grid, x)
-    varies = x not in OF_POINT or x == axis or (x in OF_LOAD and axis in LOADS)
-    if grid.axes() and not varies:
-        yield "x", f"{x} is the same at all points of the sweep; give {axis}, or what follows from it"
+def _unknown(path: str, given: Collection[str], known: Collection[str]) -> Iterator[tuple[str, str]]:
+    for name in given:
+        if name not in known:
+            yield path, f"'{name}' cannot be shown{did_you_mean(name, known)} It can be: {', '.join(known)}"
 
 
 def _choice(asked: str, known: Collection[str]) -> str:

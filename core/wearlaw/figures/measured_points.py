@@ -7,12 +7,16 @@ from typing import Any
 import numpy as np
 
 from wearlaw.arrays import Array
+from wearlaw.base_rig import Rig
 from wearlaw.conditions import LOADS
-from wearlaw.rigs.twin_disc import TwinDisc
+from wearlaw.errors import InputError
 from wearlaw.units import from_si, in_unit
-from wearlaw.variables import OF_POINT, UNITS
+from wearlaw.variables import UNITS
 from wearlaw.wear_tests.columns import COLUMNS
 from wearlaw.wear_tests.tests import WearTests
+
+OF_TESTS = ("half_width", "max_pressure", "normal_force", "normal_force_per_width", "creepage", "friction_coefficient")
+"""What is known of the conditions of tests, on a rig whose contact is a line."""
 
 OF_TRACTION = (
     "traction_coefficient", "tangential_force", "wear_index", "averaged_wear_index", "wear_index_density",
@@ -22,25 +26,48 @@ OF_TRACTION = (
 
 def known_variables(tests: WearTests) -> tuple[str, ...]:
     """Return the variables that are known of tests."""
-    conditions = [name for name in OF_POINT if name != "friction_coefficient" or name in tests.columns]
+    conditions = [name for name in OF_TESTS if name != "friction_coefficient" or name in tests.columns]
     traction = OF_TRACTION if "traction_coefficient" in tests.columns else ()
     return (*conditions, *traction, *(("wear_rate",) if "wear_rate" in tests.columns else ()))
 
 
-def measured_points(tests: WearTests, rig: TwinDisc) -> dict[str, Array]:
+def check_rig(tests: WearTests, rig: Rig) -> None:
+    """Refuse tests that are not of a rig.
+
+    Raises
+    ------
+    InputError
+        If it does not take their conditions, or its contact is no line.
+    """
+    given, known = _conditions(tests), rig.conditions()
+    other = [name for name in given if known and name not in known]
+    if other:
+        raise InputError(
+            f"the tests give {', '.join(given)}, but rig '{rig.name}' takes {', '.join(known)}; leave [measured] out"
+        )
+    if rig.checked_problem(given).geometry != "line":
+        raise InputError(f"the tests are of line contacts, but rig '{rig.name}' makes others; leave [measured] out")
+
+
+def _conditions(tests: WearTests) -> dict[str, Any]:
+    """Return the conditions of tests as a rig takes them."""
+    load = next(name for name in LOADS if name in tests.columns)
+    friction = tests.columns.get("friction_coefficient", np.ones(len(tests)))  # nothing here depends on it
+    given = from_si(tests.columns[load], COLUMNS[load].unit)
+    return {load: given, "creepage": tests.creepage, "friction_coefficient": friction}
+
+
+def measured_points(tests: WearTests, rig: Rig) -> dict[str, Array]:
     """Return the variables of tests, each of shape (tests,), in the unit in which it is shown; NaN where unknown.
 
     The averaged wear index, which no test measures, is Tγ: so Tassini et al. (2010) compare them.
     """
-    load = next(name for name in LOADS if name in tests.columns)
-    friction = tests.columns.get("friction_coefficient", np.ones(len(tests)))  # nothing here depends on it
-    given: Any = {load: from_si(tests.columns[load], COLUMNS[load].unit)}
-    problem = rig.problem(creepage=tests.creepage, friction_coefficient=friction, **given)
+    problem = rig.checked_problem(_conditions(tests))
     force = tests.traction_coefficient.magnitude * problem.normal_force
     wear_index = force * abs(problem.creepage)
     values = {
         **tests.columns,
-        **{name: getattr(problem, name) for name in OF_POINT},
+        **{name: getattr(problem, name) for name in OF_TESTS},
         "tangential_force": force,
         "wear_index": wear_index,
         "averaged_wear_index": wear_index,

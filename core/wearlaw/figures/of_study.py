@@ -7,7 +7,7 @@ parameters.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,10 +15,9 @@ import numpy as np
 from wearlaw.case import labels
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.measured_points import measured_points
-from wearlaw.figures.spec import OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
+from wearlaw.figures.spec import ACROSS, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
 from wearlaw.study import along, main_axis
-from wearlaw.units import from_si
-from wearlaw.variables import NAMES, UNITS, label
+from wearlaw.variables import UNITS, label, name_of
 
 if TYPE_CHECKING:
     import xarray
@@ -36,42 +35,57 @@ def figures_of(study: Study) -> tuple[FigureData, ...]:
 
 def _usual(study: Study) -> Iterator[tuple[str, FigureSpec]]:
     """Give the figures of a case that asks for none: wear and traction over each sweep, and each patch."""
+    creepage = study.case.rig.creepage
     for name, sweep in study.sweeps.items():
-        axis = main_axis(sweep)
+        axis = main_axis(sweep, creepage)
         for x in ("wear_index", axis):
             spec = FigureSpec(sweep=name, x=x, y=("wear_rate",), x_scale="log", y_scale="log")
             yield f"{name}_wear_rate_against_{x}", spec
-        if axis == "creepage":
+        if axis == creepage:
             measured = study.case.measured is not None
             spec = FigureSpec(sweep=name, x=axis, y=("traction_coefficient",), x_scale="log", measured=measured)
-            yield f"{name}_traction_against_creepage", spec
+            yield f"{name}_traction_against_{axis}", spec
     for name, profile in study.profiles.items():
-        if profile:
+        if "y" in profile.coords:
+            across = tuple(Window(title=body, y=(y,), body=body) for y in ACROSS for body in study.case.rig.bodies)
+            yield f"{name}_across_the_patch", FigureSpec(profile=name, x="y", panels=across)
+        elif profile:
             panels = (Window(y=("pressure", "traction", "traction_bound")), Window(y=("slip",)))
             yield f"{name}_along_the_patch", FigureSpec(profile=name, panels=panels)
 
 
 def _figure(study: Study, name: str, spec: FigureSpec) -> FigureData:
     grid = study.case.sweeps[spec.sweep] if spec.sweep else study.case.profiles[spec.profile or ""]
-    axis = axis_along(grid, spec.x) if spec.sweep else ""
-    fixed = _conditions(grid, axis)
+    axis = axis_along(grid, spec.x, study.case.rig.creepage) if spec.sweep else ""
+    fixed = _conditions(grid, axis, study.case.units)
     heads = [text for condition, text in fixed.items() if condition in grid.axes()]
     panels = []
     for window in spec.windows():
-        curves = _over_sweep(study, spec, window, axis) if spec.sweep else _along_the_patch(study, spec, window)
+        units = {**UNITS, **study.case.units}
+        x = spec.x
+        if spec.sweep:
+            curves = _over_sweep(study, spec, window, axis)
+        elif "y" in study.profiles[spec.profile or ""].coords:
+            x, body = "y", window.body or next(iter(study.case.rig.bodies))
+            curves = _across_the_patch(study, spec, window, body)
+            profile = study.profiles[spec.profile or ""]
+            units |= {name: profile[f"{body}_{name}"].attrs["units"] for name in window.shown}
+        else:
+            curves = _along_the_patch(study, spec, window)
         title = ", ".join(filter(None, (window.title, *heads)))
-        panels.append(Panel(*_axes(spec.x, window, curves), curves=tuple(curves), title=title))
+        panels.append(Panel(*_axes(x, window, curves, units), curves=tuple(curves), title=title))
     caption = spec.caption or f"At {', '.join(fixed.values())}."
     return FigureData(name=name, title=spec.title or study.case.title, panels=tuple(panels), caption=caption)
 
 
-def _conditions(grid: Grid, axis: str) -> dict[str, str]:
+def _conditions(grid: Grid, axis: str, units: Mapping[str, str]) -> dict[str, str]:
     """Return the conditions that a figure does not run along, each with its value; other axes at their middle."""
     found = {}
-    for name, si in grid.conditions().items():
+    for name in grid.given:
         if name != axis:
-            value = from_si(si if si.ndim == 0 else si[si.size // 2], UNITS[name]).magnitude
-            found[name] = f"{NAMES[name]} {value:.5g} {UNITS[name]}".rstrip()
+            level = grid.level(name, units)
+            shown = level if isinstance(level, str) else f"{level:.5g} {units[name]}"
+            found[name] = f"{name_of(name)} {shown}".rstrip()
     return found
 
 
@@ -83,7 +97,10 @@ def _over_sweep(study: Study, spec: FigureSpec, window: Window, axis: str) -> li
         curves = [_rate(study, line, spec.x, pair) for pair in spec.pairs or line.pair.values.tolist()]
     else:
         models = spec.contact_models or line.contact_model.values.tolist()
-        curves = [_of_contact(study, line, spec.x, shown, y, model) for y in shown for model in models]
+        curves = []
+        for y in shown:
+            alike = None if "contact_model" in line[y].dims or "contact_model" in line[spec.x].dims else 1
+            curves += [_of_contact(study, line, spec.x, shown, y, model, alike) for model in models[:alike]]
     return curves + [_measured(study, spec.x, y) for y in shown if spec.measured]
 
 
@@ -101,11 +118,15 @@ def _rate(study: Study, line: xarray.Dataset, x: str, pair: str) -> Curve:
     )
 
 
-def _of_contact(study: Study, line: xarray.Dataset, x: str, shown: tuple[str, ...], variable: str, model: str) -> Curve:
+def _of_contact(
+    study: Study, line: xarray.Dataset, x: str, shown: tuple[str, ...], variable: str, model: str, alike: int | None
+) -> Curve:
+    """Return a variable of one contact model, or of all where they are alike."""
     along = _magnitude(line, x, model)
-    dash = _dash(study, model)
+    dash = 0 if alike else _dash(study, model)
+    several = name_of(variable) if alike else f"{name_of(variable)}, {model}"
     return Curve(
-        label=model if len(shown) == 1 else f"{NAMES[variable]}, {model}",
+        label=model if len(shown) == 1 and not alike else several,
         x=along,
         y=np.broadcast_to(_magnitude(line, variable, model), along.shape),
         colour=dash if len(shown) == 1 else shown.index(variable),
@@ -146,9 +167,9 @@ def _along_the_patch(study: Study, spec: FigureSpec, window: Window) -> list[Cur
     curves = []
     for variable in window.shown:
         if variable == "creepage":
-            creepage = from_si(study.case.profiles[spec.profile or ""].conditions()[variable], UNITS[variable])
-            level = np.full(2, creepage.magnitude)
-            curves.append(Curve(NAMES[variable], profile.x.values[[0, -1]], level, OF_PROFILE.index(variable)))
+            grid = study.case.profiles[spec.profile or ""]
+            level = np.full(2, grid.level(study.case.rig.creepage, study.case.units))
+            curves.append(Curve(name_of(variable), profile.x.values[[0, -1]], level, OF_PROFILE.index(variable)))
         elif variable == "wear_rate":
             for pair in spec.pairs or profile.pair.values.tolist():
                 one = profile.wear_rate.sel(pair=pair).dropna("x")
@@ -160,13 +181,30 @@ def _along_the_patch(study: Study, spec: FigureSpec, window: Window) -> list[Cur
     return curves
 
 
+def _across_the_patch(study: Study, spec: FigureSpec, window: Window, body: str) -> list[Curve]:
+    """Return the wear of a body across the patch: the depth for each pair, the distance slid for each contact model."""
+    profile = study.profiles[spec.profile or ""]
+    curves = []
+    for variable in window.shown:
+        values = profile[f"{body}_{variable}"]
+        if "pair" in values.dims:
+            for pair in spec.pairs or profile.pair.values.tolist():
+                one = values.sel(pair=pair).dropna("y")
+                curves.append(Curve(pair, one.y.values, one.values, *_style(study, pair)))
+        else:
+            for model in spec.contact_models or profile.contact_model.values.tolist():
+                one = values.sel(contact_model=model).dropna("y")
+                curves.append(Curve(model, one.y.values, one.values, _dash(study, model), _dash(study, model)))
+    return curves
+
+
 def _field(study: Study, profile: xarray.Dataset, variable: str, model: str) -> Curve:
     """Return a field along the patch; the pressure is Hertz's for all contact models alike."""
     one = profile[variable].sel(contact_model=model).dropna("x")
     colour = OF_PROFILE.index(variable)
     if variable == "pressure":
-        return Curve(NAMES[variable], one.x.values, one.values, colour)
-    return Curve(f"{NAMES[variable]}, {model}", one.x.values, one.values, colour, _dash(study, model))
+        return Curve(name_of(variable), one.x.values, one.values, colour)
+    return Curve(f"{name_of(variable)}, {model}", one.x.values, one.values, colour, _dash(study, model))
 
 
 def _dash(study: Study, model: str) -> int:
@@ -179,9 +217,9 @@ def _style(study: Study, label_of_pair: str) -> tuple[int, int]:
     return labels(study.case.wear_laws).index(pair.wear_law), _dash(study, pair.contact_model)
 
 
-def _axes(x: str, window: Window, curves: list[Curve]) -> tuple[PlotAxis, PlotAxis]:
+def _axes(x: str, window: Window, curves: list[Curve], units: Mapping[str, str]) -> tuple[PlotAxis, PlotAxis]:
     """Return the axes of a panel."""
-    x_ends = ends(x, window.x_range) if window.x_range else None
+    x_ends = ends(x, units[x], window.x_range) if window.x_range else None
     seen = _seen(curves, x_ends)
     positive = seen[seen > 0]
     # A logarithmic axis would hide all that is not positive, as at zero creepage.
@@ -189,12 +227,14 @@ def _axes(x: str, window: Window, curves: list[Curve]) -> tuple[PlotAxis, PlotAx
     y_scale: Scale = "log" if window.y_scale == "log" and positive.size else "linear"
     y_ends: tuple[float, float] | None
     if window.y_range:
-        y_ends = ends(window.shown[0], window.y_range)
+        y_ends = ends(window.shown[0], units[window.shown[0]], window.y_range)
     elif y_scale == "log":
         y_ends = (positive.min() / 1.5, positive.max() * 1.5) if x_ends else None
     else:
         y_ends = (0.0, 1.05 * seen.max()) if positive.size and seen.min() >= 0.0 else None
-    return PlotAxis(label(x), x_scale, x_ends), PlotAxis(label(*window.shown), y_scale, y_ends)
+    return PlotAxis(label(x, units=units), x_scale, x_ends), PlotAxis(
+        label(*window.shown, units=units), y_scale, y_ends
+    )
 
 
 def _seen(curves: list[Curve], x_ends: tuple[float, float] | None) -> Array:

@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from wearlaw.conditions import LOADS
 from wearlaw.configuration import Configuration
-from wearlaw.errors import ConfigurationError, Problem, UnitError, did_you_mean
+from wearlaw.errors import ConfigurationError, Fault, UnitError
 from wearlaw.grid import Grid
 from wearlaw.units import Unit, from_si
 from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
 
-OF_SWEEP = ("wear_rate", *OF_CONTACT)
-"""What a figure can show of a sweep."""
-
 OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "creepage")
-"""What a figure can show along the patch; the creepage of the operating point is a level line there."""
+"""What a figure can show along the patch of a line; the creepage of the operating point is a level line there."""
 
-OF_LOAD = (*LOADS, "half_width")
+ACROSS = ("depth", "sliding_distance")
+"""What a figure can show across the patch of an ellipse, of one of the bodies."""
+
+OF_PAIRS = ("wear_rate", "depth")
+"""The variables that differ from law to law."""
+
+OF_LOAD = (*LOADS, "half_width", "semi_axis_a", "semi_axis_b")
 """The variables that the load alone determines."""
-
-OF_AXIS = (*OF_CONTACT, *OF_POINT)
-"""What the x axis of a figure of a sweep can be."""
 
 Scale = Literal["linear", "log"]
 
@@ -33,7 +33,7 @@ def _variables(value: Any) -> Any:
     return (value,) if isinstance(value, str) else value
 
 
-_VARIABLE = {"enum": list(dict.fromkeys((*OF_SWEEP, *OF_PROFILE)))}
+_VARIABLE = {"enum": list(dict.fromkeys(("wear_rate", *OF_CONTACT, *OF_POINT, *OF_PROFILE, *ACROSS)))}
 
 Variables = Annotated[
     tuple[str, ...],
@@ -54,6 +54,8 @@ class Window(Configuration):
     """What stands above it."""
     y: Variables | None = None
     """What it shows: a variable, or several of one unit."""
+    body: str | None = None
+    """The body whose wear across the patch it shows, such as "wheel"; the first of the rig where not given."""
     x_range: Range | None = None
     """Where the x axis begins and ends, as in ["0 N", "70 N"]; with the curves where not given."""
     y_range: Range | None = None
@@ -70,7 +72,7 @@ class Window(Configuration):
 
 
 class FigureSpec(Window):
-    """A figure of a sweep, or of a profile along the patch."""
+    """A figure of a sweep, or of a profile of the patch."""
 
     caption: str = ""
     """What a reader must know; the conditions where not given."""
@@ -78,8 +80,8 @@ class FigureSpec(Window):
     """The sweep that it shows; give this or `profile`."""
     profile: str | None = None
     """The profile that it shows."""
-    x: Annotated[str, Field(json_schema_extra={"enum": ["x", *OF_AXIS]})] = "x"
-    """The variable along the x axis; "x" is the position along the patch, for a profile."""
+    x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", *OF_CONTACT, *OF_POINT]})] = "x"
+    """The variable along the x axis; for a profile the position, "x" along the patch or "y" across it."""
     pairs: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """The pairs whose wear rate it shows, such as "usfd on exact"; all where not given."""
     contact_models: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
@@ -91,14 +93,14 @@ class FigureSpec(Window):
 
     @model_validator(mode="after")
     def _possible(self) -> FigureSpec:
-        wrong = [Problem(path, message) for path, message in self._problems()]
+        wrong = [Fault(path, message) for path, message in self._problems()]
         if wrong:
             raise ConfigurationError("figure", wrong)
         return self
 
     def windows(self) -> tuple[Window, ...]:
         """Return the panels, each with all that it shows."""
-        inherited = ("y", "x_range", "y_range", "x_scale", "y_scale")
+        inherited = ("y", "body", "x_range", "y_range", "x_scale", "y_scale")
         common = {name: getattr(self, name) for name in inherited}
         own = [{name: value for name, value in panel if value is not None} for panel in self.panels] or [{}]
         return tuple(Window(**{**common, **window}) for window in own)
@@ -108,47 +110,27 @@ class FigureSpec(Window):
         if (self.sweep is None) == (self.profile is None):
             yield ("sweep",), "give either sweep or profile, which the figure shows"
             return
-        yield from _unknown(("x",), [self.x], ["x"] if self.profile else OF_AXIS)
         for number, window in enumerate(self.windows()):
-            yield from self._window_problems(("panels", str(number)) if self.panels else (), window)
+            path = ("panels", str(number)) if self.panels else ()
+            if window.y is None:
+                yield (*path, "y"), "is missing"
+            elif len(set(window.y)) < len(window.y):
+                yield (*path, "y"), "names a variable twice"
         shown = {variable for window in self.windows() for variable in window.shown}
-        if self.pairs and "wear_rate" not in shown:
+        if self.pairs and not shown.intersection(OF_PAIRS):
             yield ("pairs",), "the figure does not show wear_rate; choose among contact_models instead"
         if self.contact_models and shown == {"wear_rate"}:
             yield ("contact_models",), "the figure shows only wear_rate; choose among pairs instead"
         if self.measured and self.profile:
             yield ("measured",), "tests are measured over the whole patch; show them in a figure of a sweep"
 
-    def _window_problems(self, path: tuple[str, ...], window: Window) -> Iterator[tuple[tuple[str, ...], str]]:
-        if window.y is None:
-            yield (*path, "y"), "is missing"
-            return
-        yield from _unknown((*path, "y"), window.y, OF_PROFILE if self.profile else OF_SWEEP)
-        if len(set(window.y)) < len(window.y):
-            yield (*path, "y"), "names a variable twice"
-        units = {variable: UNITS[variable] for variable in window.y if variable in UNITS}
-        if len(set(units.values())) > 1:
-            each = ", ".join(f"{variable} in {unit or 'no unit'}" for variable, unit in units.items())
-            yield (*path, "y"), f"one axis has one unit, but these are {each}; give each a panel of its own"
-        for message in _wrong_range(self.x, window.x_range, window.x_scale):
-            yield (*path, "x_range"), message
-        for message in _wrong_range(window.y[0], window.y_range, window.y_scale):
-            yield (*path, "y_range"), message
 
-
-def _unknown(
-    path: tuple[str, ...], given: Sequence[str], known: Sequence[str]
-) -> Iterator[tuple[tuple[str, ...], str]]:
-    for name in given:
-        if name not in known:
-            yield path, f"'{name}' cannot be shown{did_you_mean(name, known)} It can be: {', '.join(known)}"
-
-
-def _wrong_range(variable: str, given: Range | None, scale: Scale | None) -> Iterator[str]:
-    if given is None or variable not in UNITS:
+def wrong_range(variable: str, unit: str, given: Range | None, scale: Scale | None) -> Iterator[str]:
+    """Give what is wrong with the ends of an axis whose variable is shown in a unit."""
+    if given is None:
         return
     try:
-        low, high = ends(variable, given)
+        low, high = ends(variable, unit, given)
     except UnitError as error:
         yield str(error)
         return
@@ -158,7 +140,7 @@ def _wrong_range(variable: str, given: Range | None, scale: Scale | None) -> Ite
         yield f"a logarithmic axis must begin above zero, got {given[0]}"
 
 
-def ends(variable: str, given: Range) -> tuple[float, float]:
+def ends(variable: str, unit: str, given: Range) -> tuple[float, float]:
     """Return the ends of an axis in the unit in which its variable is shown.
 
     Raises
@@ -166,7 +148,6 @@ def ends(variable: str, given: Range) -> tuple[float, float]:
     UnitError
         If an end lacks a unit, or has one of another dimension.
     """
-    unit = UNITS[variable]
     due = Unit(unit, positive=False)
     plain = [isinstance(end, float) and not unit for end in given]
     low, high = (
@@ -175,12 +156,15 @@ def ends(variable: str, given: Range) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def axis_along(grid: Grid, x: str) -> str:
-    """Return the axis of a grid that a figure runs along: what its x says, else creepage, else the longest."""
-    axes = {name: values.size for name, values in grid.axes().items()}
-    loads = [name for name in axes if name in LOADS]
+def axis_along(grid: Grid, x: str, creepage: str) -> str:
+    """Return the axis of a grid that a figure runs along: what its x says, else the creepage, else the longest.
+
+    Where only a rig of other people knows what the load is, the axes that it names itself come before the creepage.
+    """
+    axes = grid.axes()
+    loads = [name for name in axes if name in LOADS] or [name for name in axes if name not in UNITS]
     if x in axes:
         return x
     if x in OF_LOAD and loads:
         return loads[0]
-    return "creepage" if "creepage" in axes or not axes else max(axes, key=lambda name: axes[name])
+    return creepage if creepage in axes or not axes else max(axes, key=lambda name: axes[name])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from wearlaw.figures.curves import FigureData
 from wearlaw.report.interactive import plotly_figure
-from wearlaw.report.tables import Cell, cell, models, parameters, summaries
+from wearlaw.report.tables import Cell, cell, models, parameters, profiles, summaries
 from wearlaw.study import Study, used
 from wearlaw.version import __version__
 
@@ -39,7 +39,7 @@ def report(study: Study, case_text: str) -> str:
         case_text=case_text,
         claims=claims,
         holding=sum(claim.holds for claim in claims),
-        summaries=summaries(study),
+        summaries=[*summaries(study), *profiles(study)],
         parameters=parameters(study),
         models=models(study),
         used=[(kind, name, origin) for kind, names in used(study.case).items() for name, origin in names.items()],

@@ -18,8 +18,8 @@ from wearlaw.docstrings import field_docstrings
 from wearlaw.registry import symbol
 from wearlaw.study import Study, along_main_axis, axes_of, main_axis, used
 from wearlaw.tangential import Model
-from wearlaw.variables import NAMES, UNITS
 from wearlaw.variables import label as label_of
+from wearlaw.variables import name_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -64,31 +64,33 @@ def cell(value: Any) -> Cell:
 def tables(study: Study) -> list[NamedTable]:
     """Return all tables of a study."""
     of_sections = [NamedTable(n, n, frame) for section in study.sections for n, frame in section.tables.items()]
-    return [*summaries(study), parameters(study), models(study), *of_sections]
+    return [*summaries(study), *profiles(study), parameters(study), models(study), *of_sections]
 
 
 def summaries(study: Study) -> list[NamedTable]:
     """Return a short table of wear rates for each sweep."""
+    creepage = study.case.rig.creepage
     return [
-        NamedTable(f"wear_rate_{name}", f"Sweep '{name}'{_fixed(sweep)}", summary(sweep))
+        NamedTable(f"wear_rate_{name}", f"Sweep '{name}'{_fixed(sweep, creepage)}", summary(sweep, creepage))
         for name, sweep in study.sweeps.items()
     ]
 
 
-def _fixed(sweep: xarray.Dataset) -> str:
+def _fixed(sweep: xarray.Dataset, creepage: str) -> str:
     """Return at which values of its other axes a sweep is shown."""
-    line = along_main_axis(sweep)
-    others = [axis for axis in axes_of(sweep) if axis != main_axis(sweep)]
-    at = (f"{NAMES[axis]} {line[axis].item():.4g} {UNITS[axis]}".rstrip() for axis in others)
+    main = main_axis(sweep, creepage)
+    line = along_main_axis(sweep, creepage)
+    others = [axis for axis in axes_of(sweep) if axis != main]
+    at = (f"{name_of(axis)} {line[axis].item():.4g} {line[axis].attrs['units']}".rstrip() for axis in others)
     return f" at {', '.join(at)}" if others else ""
 
 
-def summary(sweep: xarray.Dataset) -> pd.DataFrame:
+def summary(sweep: xarray.Dataset, creepage: str) -> pd.DataFrame:
     """Return wear rates at a few values of a sweep's main axis: a row for each pair, and for the ends of its band."""
     import pandas as pd
 
-    axis = main_axis(sweep)
-    line = along_main_axis(sweep)
+    axis = main_axis(sweep, creepage)
+    line = along_main_axis(sweep, creepage)
     count = line.sizes[axis]
     line = line.isel({axis: sorted({round(step * (count - 1) / (COLUMNS - 1)) for step in range(COLUMNS)})})
     rows: dict[str, Any] = {}
@@ -98,8 +100,31 @@ def summary(sweep: xarray.Dataset) -> pd.DataFrame:
         if (one.wear_rate_high > one.wear_rate_low).any():
             rows |= {f"{pair}, low end": one.wear_rate_low.values, f"{pair}, high end": one.wear_rate_high.values}
     frame = pd.DataFrame(list(rows.values()), columns=[_four_digits(value) for value in line[axis].values])
-    frame.insert(0, f"{label_of('wear_rate')} by {label_of(axis)}", list(rows))
+    frame.insert(0, f"{label_of('wear_rate')} by {label_of(axis, units={axis: line[axis].attrs['units']})}", list(rows))
     return frame
+
+
+def profiles(study: Study) -> list[NamedTable]:
+    """Return a short table for each profile across the patch: where each body loses most, by pair."""
+    import pandas as pd
+
+    found = []
+    for name, profile in study.profiles.items():
+        columns: dict[str, Any] = {"pair": profile.pair.values} if "y" in profile.coords else {}
+        for body in study.case.rig.bodies if columns else ():
+            depth = profile[f"{body}_depth"]
+            unit = depth.attrs["units"].replace("um", "µm")
+            columns[f"{body}: greatest depth [{unit}]"] = depth.max("y").values
+            columns[f"{body}: at y [mm]"] = depth.fillna(0.0).idxmax("y").values
+        if columns:
+            title = f"Profile '{name}': wear across the patch, {_per(profile, study)}"
+            found.append(NamedTable(f"profile_{name}", title, pd.DataFrame(columns)))
+    return found
+
+
+def _per(profile: xarray.Dataset, study: Study) -> str:
+    """Return what the depths of the bodies are lost in."""
+    return ", ".join(f"{body} {profile[f'{body}_depth'].attrs['long_name']}" for body in study.case.rig.bodies)
 
 
 def _four_digits(value: float) -> str:

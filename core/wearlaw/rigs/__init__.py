@@ -1,4 +1,6 @@
-"""The rigs that ship with wearlaw: a plugin like anyone's."""
+"""The rigs that ship with wearlaw, and a study of one: a plugin like anyone's."""
+
+from pathlib import Path
 
 from wearlaw.base_rig import Rig
 from wearlaw.hookspecs import hookimpl
@@ -10,3 +12,9 @@ from wearlaw.rigs.wheel_rail import WheelRail
 def wearlaw_rigs() -> list[type[Rig]]:
     """Return the rigs of this plugin."""
     return [TwinDisc, WheelRail]
+
+
+@hookimpl
+def wearlaw_cases() -> dict[str, str]:
+    """Return the study of a wheel on a rail."""
+    return {"wheel_on_rail": Path(__file__).with_name("wheel_on_rail.toml").read_text(encoding="utf-8")}

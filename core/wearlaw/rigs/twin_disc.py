@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Unpack
 
@@ -91,13 +91,13 @@ class TwinDisc(Rig):
     def suros(
         cls,
         *,
-        diameter: QuantityLike = "47 mm",
-        material: Material | None = None,
+        diameter: Annotated[QuantityLike, Unit("mm")] = "47 mm",
+        material: MaterialField | None = None,
         disc_1: Disc | None = None,
         disc_2: Disc | None = None,
-        track_width: QuantityLike = "10 mm",
-        rotational_speed: QuantityLike | None = None,
-        rolling_speed: QuantityLike | None = None,
+        track_width: Annotated[QuantityLike, Unit("mm")] = "10 mm",
+        rotational_speed: Annotated[QuantityLike, Unit("rpm")] | None = None,
+        rolling_speed: Annotated[QuantityLike, Unit("m/s")] | None = None,
     ) -> TwinDisc:
         """Return the rig of the University of Sheffield: steel discs of 47 mm, a 10 mm track, 400 rpm.
 
@@ -135,6 +135,16 @@ class TwinDisc(Rig):
     def conditions(cls) -> tuple[str, ...]:
         """Return the names of the conditions, of which some exclude each other."""
         return TWIN_DISC.names
+
+    @classmethod
+    def needed(cls) -> tuple[str, ...]:
+        """Return the names of the conditions that must be given, besides one of the loads."""
+        return tuple(TWIN_DISC.examples)
+
+    @classmethod
+    def presets(cls) -> Mapping[str, Callable[..., Rig]]:
+        """Return the rig of the University of Sheffield."""
+        return {"suros": cls.suros}
 
     def problem(self, **conditions: Unpack[TwinDiscConditions]) -> Problem:
         """Return the contact problem that the conditions of a test pose.

@@ -105,6 +105,11 @@ class WheelRail(Rig):
         """Return the names of the conditions, of which some exclude each other."""
         return WHEEL_RAIL.names
 
+    @classmethod
+    def needed(cls) -> tuple[str, ...]:
+        """Return the names of the conditions that must be given, besides one of the loads."""
+        return tuple(WHEEL_RAIL.examples)
+
     def problem(self, **conditions: Unpack[WheelRailConditions]) -> Problem:
         """Return the contact problem that the conditions pose.
 

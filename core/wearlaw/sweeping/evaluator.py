@@ -8,23 +8,13 @@ from contextlib import closing
 
 from wearlaw.arrays import Array
 from wearlaw.errors import RangeWarning
-from wearlaw.grid import SI_UNITS, Grid
 from wearlaw.pipeline import Pipeline
 from wearlaw.sweeping.checkpoint import Checkpoint
 from wearlaw.sweeping.evaluation import Job
-from wearlaw.sweeping.points import Points, Varying
+from wearlaw.sweeping.points import Points
 from wearlaw.sweeping.sweep import check_importable, run
 from wearlaw.sweeping.targets import Memory
-from wearlaw.units import Q
 from wearlaw.variables import UNITS
-
-
-def points_of(grid: Grid) -> Points:
-    """Return the operating points of a grid, in SI."""
-    conditions = grid.conditions()
-    varying = {name: Varying(name, conditions.pop(name), SI_UNITS.get(name)) for name in grid.axes()}
-    fixed = {name: Q(float(si), SI_UNITS[name]) if name in SI_UNITS else float(si) for name, si in conditions.items()}
-    return Points(fixed, varying)
 
 
 class Evaluator:

@@ -50,7 +50,7 @@ class Varying:
         """Return some of the values."""
         return Varying(self.dim, self.values[part], self.unit)
 
-    def given(self, values: Array) -> Any:
+    def given(self, values: Array | float) -> Any:
         """Return values as a prediction takes them."""
         return values if self.unit is None else Q(values, self.unit)
 

@@ -10,7 +10,7 @@ import pint
 
 from wearlaw.arrays import Array
 from wearlaw.errors import InputError, UnitError
-from wearlaw.units import Quantity, QuantityLike, coefficient, parse, real_array, shortened, shown
+from wearlaw.units import Q, Quantity, QuantityLike, coefficient, parse, real_array, shortened, shown
 
 Value = Quantity | float
 """A value with its unit, or a plain number where the thing has none."""
@@ -43,6 +43,19 @@ class Distribution:
             return first + second * deviates
         values: Array = first * np.exp(np.log(second) * deviates)
         return values
+
+    def fault(self) -> str:
+        """Return what is wrong with its two numbers, whatever they are of; nothing if they may be right."""
+        first, second = (one.magnitude if isinstance(one, pint.Quantity) else one for one in (self.first, self.second))
+        if self.kind == "lognormal":
+            return "" if first > 0.0 else f"the median of {self} must be positive"
+        units = [one.units if isinstance(one, pint.Quantity) else Q(1.0, "").units for one in (self.first, self.second)]
+        if not units[0].is_compatible_with(units[1]):
+            return f"the two numbers of {self} are not of one dimension"
+        second = Q(second, str(units[1])).to(units[0]).magnitude
+        if self.kind == "uniform":
+            return "" if second > first else f"the upper end of {self} must lie above the lower one"
+        return "" if second > 0.0 else f"the standard deviation of {self} must be positive"
 
     def __str__(self) -> str:
         return f"{self.kind}({_shown(self.first)}, {_shown(self.second)})"

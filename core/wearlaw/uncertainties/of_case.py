@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wearlaw.case import Case, labelled
+from wearlaw.case import Case
 from wearlaw.errors import InputError
 from wearlaw.notes import Notes
-from wearlaw.pairs import Pair, compose
+from wearlaw.pairs import Pair, pairs_of
 from wearlaw.uncertainties.figure import CONFIDENCE
-from wearlaw.uncertainties.result import Uncertainty
+from wearlaw.uncertainties.result import Uncertainty, uncertainty
 from wearlaw.units import WEAR_RATE
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def uncertainty_of(
     import pandas as pd
 
     notes = Notes()
-    pairs = compose(case.rig, labelled(case.contact_models), labelled(case.wear_laws), notes)
+    pairs = pairs_of(case, notes)
     if not any(point.varies(pair.wear_law) for point in case.uncertainty.values() for pair in pairs):
         raise InputError(
             "nothing in the case is uncertain; add a table such as [uncertainty.scatter] with conditions of which some"
@@ -92,7 +92,8 @@ def uncertainty_of(
             on_pair(1)
             continue
         with notes.of(subject):
-            one = Uncertainty(pair.pipeline, point.conditions(), point.parameters(pair.wear_law), samples, seed)
+            law = point.parameters(pair.wear_law)
+            one = uncertainty(pair.pipeline, law=law, samples=samples, seed=seed, **point.conditions())
             rates.append({"point": name, "pair": pair.label, **_interval(one)})
         if np.ptp(one.wear_rate.magnitude) == 0.0:
             notes.add(f"{subject}: the wear rate is the same in all samples")

@@ -7,12 +7,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from wearlaw.conditions import TWIN_DISC
+from wearlaw.base_rig import Rig
 from wearlaw.configuration import Configuration
-from wearlaw.errors import InputError, did_you_mean
-from wearlaw.grid import Value
+from wearlaw.errors import ConfigurationError, Fault, InputError, did_you_mean
+from wearlaw.grid import Value, wrong_conditions
 from wearlaw.models import WearLaw
-from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.uncertainties.distributions import (
     Distribution,
     PublishedRange,
@@ -21,7 +20,7 @@ from wearlaw.uncertainties.distributions import (
     published_range,
     uniform,
 )
-from wearlaw.uncertainties.inputs import parameter, split
+from wearlaw.uncertainties.inputs import parameter
 
 
 class Spread(Configuration):
@@ -66,43 +65,50 @@ Parameter = Annotated[Literal["published_range"] | Spread, BeforeValidator(_unce
 """The distribution of a parameter of a law."""
 
 
-class UncertainPoint(Configuration):
-    """An operating point at which some conditions, or parameters of the laws, are distributed.
+class UncertainPoint(Configuration, extra="allow"):
+    """Conditions of an operating point, by the names that the rig gives them, and parameters of the laws.
 
-    Exactly one of `normal_force`, `normal_force_per_width` and `max_pressure` gives the load.
+    Some of them are distributed.
     """
 
-    normal_force: Condition | None = None
-    """N, with its unit."""
-    normal_force_per_width: Condition | None = None
-    """P, with its unit."""
-    max_pressure: Condition | None = None
-    """p0, with its unit."""
-    creepage: Condition
-    """ξ, in percent or as a ratio."""
-    friction_coefficient: Condition
-    """μ, a plain number."""
-    traction_coefficient: Condition | None = None
-    """Measured T/N, a plain number; for contact models that can use it."""
+    __pydantic_extra__: dict[str, Condition]  # pyright: ignore[reportIncompatibleVariableOverride]
+
     laws: dict[str, dict[str, Parameter]] = Field(default_factory=dict)
     """For each wear law, by its name in the results, its parameters that are distributed."""
 
-    @model_validator(mode="after")
-    def _possible(self) -> UncertainPoint:
-        """Find what is wrong with the conditions when they are read, not when they are used."""
-        known, uncertain = split(self.conditions())
-        middle: dict[str, Any] = {one.name: one.distribution.first for one in uncertain}
-        TwinDisc.suros().problem(**known, **middle)
-        return self
+    @property
+    def given(self) -> Mapping[str, Any]:
+        """The conditions as they were written."""
+        return self.__pydantic_extra__
+
+    def checked(self, rig: Rig) -> UncertainPoint:
+        """Return the point with its conditions in the order in which the rig names them.
+
+        Raises
+        ------
+        ConfigurationError
+            If the rig does not take the conditions, which are tried at the first number of each distribution, or a
+            distribution is none.
+        """
+        conditions = self.conditions()
+        spread = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
+        middle = {name: one.first for name, one in spread.items()}
+        wrong = list(wrong_conditions(rig, {**conditions, **middle}))
+        if not wrong:
+            wrong = [Fault((name,), fault) for name, one in spread.items() if (fault := one.fault())]
+        if wrong:
+            raise ConfigurationError("UncertainPoint", wrong)
+        known = rig.conditions()
+        ordered = {name: self.given[name] for name in known or self.given if name in self.given}
+        return UncertainPoint(laws=self.laws, **ordered)
 
     def conditions(self) -> dict[str, Any]:
         """Return the conditions as `uncertainty` takes them."""
-        given = {name: getattr(self, name) for name in TWIN_DISC.names}
-        return {name: _distribution(value) for name, value in given.items() if value is not None}
+        return {name: _distribution(value) for name, value in self.given.items()}
 
     def varies(self, law: str) -> bool:
         """Return whether anything is distributed that a prediction with this law depends on."""
-        return bool(split(self.conditions())[1] or self.laws.get(law))
+        return bool(any(isinstance(value, Spread) for value in self.given.values()) or self.laws.get(law))
 
     def parameters(self, law: str) -> dict[str, Distribution | PublishedRange]:
         """Return the parameters of a law that are distributed."""
