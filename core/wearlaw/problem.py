@@ -64,8 +64,11 @@ class CreepForces:
     @classmethod
     def of(cls, columns: Mapping[str, Array]) -> Self:
         """Return the forces that are among some columns; those of a line have no lateral force and no moment."""
-        none = np.broadcast_to(0.0, columns["longitudinal"].shape)
-        return cls(**{field.name: columns.get(field.name, none) for field in dataclasses.fields(cls)})
+        along = columns["longitudinal"]
+        if "lateral" in columns:
+            return cls(longitudinal=along, lateral=columns["lateral"], spin_moment=columns["spin_moment"])
+        none = np.broadcast_to(0.0, along.shape)
+        return cls(longitudinal=along, lateral=none, spin_moment=none)
 
     @property
     def tangential(self) -> Array:
