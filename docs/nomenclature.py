@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import wearlaw as wl
-from wearlaw.conditions import TwinDiscConditions, WheelRailConditions
-from wearlaw.docstrings import field_docstrings
-from wearlaw.parameters import numbers
-from wearlaw.plugins import installed
-from wearlaw.variables import NAMES, label
+from wearlaw.contact.conditions import TwinDiscConditions, WheelRailConditions
+from wearlaw.pipeline.variables import NAMES, label
+from wearlaw.plugins.loader import installed
+from wearlaw.settings.docstrings import field_docstrings
+from wearlaw.settings.parameters import numbers
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")

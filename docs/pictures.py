@@ -23,7 +23,7 @@ from wearlaw import Q
 from wearlaw.figures.curves import BLACK
 from wearlaw.figures.drawing import LINES, PALETTE, STYLE
 from wearlaw.figures.drawing import draw as drawing_of
-from wearlaw.output import write
+from wearlaw.output.results import write
 
 FOLDER = Path(__file__).parent / "pictures"
 GALLERY = Path(__file__).parent / "gallery"

@@ -15,7 +15,7 @@ from tests.testing.wrong_contacts import Wrapped
 from tests.testing.wrong_declarations import Ramps, Smooth
 from tests.testing.wrong_laws import Linear
 from tests.testing.wrong_rigs import Delegating, Weight
-from wearlaw.tangential import Model
+from wearlaw.models.contact_model import Model
 from wearlaw.testing import Check, checks
 from wearlaw.testing.roundtrip import RoundTrip
 from wearlaw_kth import PUBLISHED

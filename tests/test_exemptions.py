@@ -10,7 +10,7 @@ import pytest
 import wearlaw as wl
 from tests.strategies import EPS, MODELS
 from wearlaw import Q
-from wearlaw.tangential import Claim
+from wearlaw.models.contact_model import Claim
 
 
 def exempt(claim: Claim) -> list[str]:

@@ -44,7 +44,7 @@ def test_a_method_that_goes_or_comes_or_takes_other_arguments_changes_the_interf
         def cooled(self) -> Law:
             return self
 
-    Law.__module__ = "wearlaw.models"
+    Law.__module__ = "wearlaw.models.wear_law"
     assert lines_of("WearLaw", Law) == {
         "WearLaw() < WearLaw < Configuration",
         "WearLaw.cooled(self)",

@@ -31,8 +31,8 @@ from tests.strategies import (
     with_creepage,
 )
 from wearlaw import Q
-from wearlaw.quadrature import uniform_cells
-from wearlaw.tangential import Claim
+from wearlaw.contact.quadrature import uniform_cells
+from wearlaw.models.contact_model import Claim
 
 GRAZING = 5e-8
 """Relative error of an integral of Hertz's pressure next to full slip, at most."""

@@ -13,8 +13,9 @@ import wearlaw as wl
 from docs import nomenclature
 from docs.nomenclature import Documented, read
 from tests.environments import ROOT
-from wearlaw import records, variables
-from wearlaw.conditions import TWIN_DISC, WHEEL_RAIL
+from wearlaw.contact import contact as records
+from wearlaw.contact.conditions import TWIN_DISC, WHEEL_RAIL
+from wearlaw.pipeline import variables
 
 SYMBOLS_OF_SEVERAL_NAMES = {
     "k": "KTH's map has a wear coefficient in each of its four fields",

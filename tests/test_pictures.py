@@ -15,9 +15,9 @@ import wearlaw as wl
 from docs import pictures
 from docs.conventions import conventions
 from tests.environments import ROOT
-from wearlaw.case import Case, case_text
 from wearlaw.figures.drawing import draw as drawing_of
-from wearlaw.study import run
+from wearlaw.study.case import Case, case_text
+from wearlaw.study.study import run
 
 
 def test_the_theory_states_the_errors_that_are_computed() -> None:

@@ -15,5 +15,5 @@ def test_a_public_name_is_in_the_reference(name: str) -> None:
     page = (ROOT / "docs" / "reference.md").read_text(encoding="utf-8")
     directive = rf"^\.\. auto(class|function):: {name}$"
     row = rf"^\|[^|]*`{name}`[^|]*\|"
-    module = rf"^\.\. automodule:: wearlaw\.{name}$"
+    module = rf"^\.\. automodule:: wearlaw\.contact\.{name}$"
     assert re.search(rf"{directive}|{row}|{module}", page, re.MULTILINE)

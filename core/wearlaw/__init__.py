@@ -11,12 +11,15 @@ import sys as _sys
 from importlib import import_module as _import_module
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
-from wearlaw import hertz, hertz_ellipse, kalker
-from wearlaw.arrays import Array
-from wearlaw.base_rig import Body, Rig
-from wearlaw.configuration import Configuration
-from wearlaw.creep_force_model import CreepForceModel
-from wearlaw.elliptic_contact import EllipticContact
+from wearlaw.arrays.array import Array
+from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop, kernel
+from wearlaw.contact import hertz, hertz_ellipse, kalker
+from wearlaw.contact.contact import Contact, LineFields
+from wearlaw.contact.elliptic_contact import EllipticContact
+from wearlaw.contact.friction import FallingFriction
+from wearlaw.contact.material import Material, steel
+from wearlaw.contact.problem import CreepForces, Geometry, Problem
+from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import (
     CalibrationWarning,
     CaseError,
@@ -41,15 +44,17 @@ from wearlaw.errors import (
     WorkerWarning,
 )
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.friction import FallingFriction
-from wearlaw.functions import as_wear_law
 from wearlaw.hookspecs import INTERFACE_VERSION, hookimpl
-from wearlaw.kernels import accelerate, accelerated, compiled_loop, kernel
-from wearlaw.line_model import FieldVariable, LineContactModel
-from wearlaw.material import Material, steel
-from wearlaw.models import BreakpointMap, Calibration, LocalWear, Numbers, WearLaw
-from wearlaw.pipeline import PatchMean, Pipeline, patch_mean
-from wearlaw.plugins import (
+from wearlaw.models.contact_model import Claim, ContactModel, Scale
+from wearlaw.models.creep_force_model import CreepForceModel
+from wearlaw.models.functions import as_wear_law
+from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
+from wearlaw.models.rig import Body, Rig
+from wearlaw.models.wear_law import BreakpointMap, Calibration, LocalWear, Numbers, WearLaw
+from wearlaw.pipeline.pipeline import PatchMean, Pipeline, patch_mean
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.plugins.fields import ContactModelField, WearLawField
+from wearlaw.plugins.loader import (
     contact_model,
     contact_models,
     material,
@@ -60,17 +65,12 @@ from wearlaw.plugins import (
     wear_law,
     wear_laws,
 )
-from wearlaw.problem import CreepForces, Geometry, Problem
-from wearlaw.quadrature import Nodes
-from wearlaw.records import Contact, LineFields
-from wearlaw.result import Prediction
 from wearlaw.rigs.twin_disc import Disc, TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
-from wearlaw.sections import CheckedClaim, Section
-from wearlaw.specification import ContactModelField, WearLawField
-from wearlaw.tangential import Claim, ContactModel, Scale
+from wearlaw.settings.configuration import Configuration
+from wearlaw.study.sections import CheckedClaim, Section
 from wearlaw.uncertainties.distributions import lognormal, normal, published_range, uniform
-from wearlaw.units import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
+from wearlaw.units.quantities import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
 from wearlaw.version import __version__
 from wearlaw.wear_tests.reader import read_tests
 from wearlaw.wear_tests.tests import WearTests
@@ -189,26 +189,26 @@ __all__ = [
 ]
 
 if _TYPE_CHECKING:
-    from wearlaw.case import Case, load_case
     from wearlaw.comparison.compare import compare
     from wearlaw.comparison.result import Comparison
     from wearlaw.fitting.fit import fit
     from wearlaw.fitting.law_files import read_wear_law
     from wearlaw.fitting.result import Fit
-    from wearlaw.inverse import creepage_for
-    from wearlaw.study import Study, run
+    from wearlaw.pipeline.inverse import creepage_for
+    from wearlaw.study.case import Case, load_case
+    from wearlaw.study.study import Study, run
     from wearlaw.sweeping.sweep import sweep
     from wearlaw.uncertainties.result import Uncertainty, uncertainty
 
 _LATER = {
-    "Case": "wearlaw.case",
-    "load_case": "wearlaw.case",
-    "Study": "wearlaw.study",
-    "run": "wearlaw.study",
+    "Case": "wearlaw.study.case",
+    "load_case": "wearlaw.study.case",
+    "Study": "wearlaw.study.study",
+    "run": "wearlaw.study.study",
     "Uncertainty": "wearlaw.uncertainties.result",
     "uncertainty": "wearlaw.uncertainties.result",
     "sweep": "wearlaw.sweeping.sweep",
-    "creepage_for": "wearlaw.inverse",
+    "creepage_for": "wearlaw.pipeline.inverse",
     "Comparison": "wearlaw.comparison.result",
     "compare": "wearlaw.comparison.compare",
     "Fit": "wearlaw.fitting.result",

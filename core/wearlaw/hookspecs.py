@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
-    from wearlaw.base_rig import Rig
-    from wearlaw.material import Material
-    from wearlaw.models import WearLaw
-    from wearlaw.sections import Section
-    from wearlaw.study import Study
-    from wearlaw.tangential import ContactModel
+    from wearlaw.contact.material import Material
+    from wearlaw.models.contact_model import ContactModel
+    from wearlaw.models.rig import Rig
+    from wearlaw.models.wear_law import WearLaw
+    from wearlaw.study.sections import Section
+    from wearlaw.study.study import Study
 
 PROJECT = "wearlaw"
 

@@ -21,7 +21,7 @@ from tests.benchmarks import report
 from tests.benchmarks.report import Gate
 from tests.benchmarks.timing import in_mode, modes
 from wearlaw import Q
-from wearlaw.solving import Solver
+from wearlaw.numerics.solving import Solver
 
 ROUNDS = 15
 LIMIT = 1.03

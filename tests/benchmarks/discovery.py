@@ -3,7 +3,7 @@
 Usage: python tests/benchmarks/discovery.py [ROUNDS], in an environment in which wearlaw alone is installed, as a user
 has it: the entry points of every other distribution are read too.
 
-Discovery is one call of `wearlaw.plugins.installed`: it reads the entry points of all distributions, imports the
+Discovery is one call of `wearlaw.plugins.loader.installed`: it reads the entry points of all distributions, imports the
 modules of wearlaw's own plugins and of the others, which makes their classes, and calls their hooks. It is timed after
 `import wearlaw` and a first rig, for which pint reads its table of units whatever is installed. Of the lines below it,
 one is without the imports of the plugins' modules, which leaves what wearlaw itself does; one is with the table; the
@@ -61,7 +61,7 @@ def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
 
 NUMPY = "import numpy"
 DISCOVERY = "discovery"
-FOUND = "wearlaw.plugins.installed()"
+FOUND = "wearlaw.plugins.loader.installed()"
 BESIDES = "  besides wearlaw's own"
 MODULES = [*(point.value for point in entry_points(group="wearlaw")), *(f"benchmark_{n}" for n in range(OTHERS))]
 PROBES = {

@@ -14,11 +14,12 @@ import tomli_w
 from click.testing import CliRunner, Result
 
 import wearlaw as wl
-from wearlaw import Array, plugins
-from wearlaw.case import Case, load_case
+from wearlaw import Array
 from wearlaw.cli import main
-from wearlaw.shelf import Origin
-from wearlaw.tangential import Model
+from wearlaw.models.contact_model import Model
+from wearlaw.plugins import loader
+from wearlaw.plugins.shelf import Origin
+from wearlaw.study.case import Case, load_case
 
 Table = dict[str, Any]
 """A case as TOML gives it."""
@@ -119,7 +120,7 @@ InstallModel = Callable[[type[Model]], None]
 
 def installer(monkeypatch: pytest.MonkeyPatch) -> InstallModel:
     """Return what puts a model among the installed ones until the test ends, as one of the plugin "testing"."""
-    found = plugins.installed()
+    found = loader.installed()
     origin = Origin("testing", "wearlaw-testing", "9.8.7")
 
     def install(model: type[Model]) -> None:

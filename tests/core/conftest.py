@@ -16,9 +16,10 @@ import wearlaw as wl
 from tests.core import cli_data
 from tests.core.cases import POINT, InstallModel, case, installer
 from tests.core.distributions import Install, write_distribution
-from wearlaw import kernels, plugins
-from wearlaw.case import case_schema
-from wearlaw.study import Study, run
+from wearlaw.arrays import kernels
+from wearlaw.plugins import loader
+from wearlaw.study.case import case_schema
+from wearlaw.study.study import Study, run
 from wearlaw.sweeping import points
 
 
@@ -31,9 +32,9 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
     def write(name: str, source: str, version: str = "1.0") -> None:
         write_distribution(tmp_path, name, source, version)
         importlib.invalidate_caches()
-        plugins._search.cache_clear()
+        loader._search.cache_clear()
 
-    plugins._search.cache_clear()
+    loader._search.cache_clear()
     yield write
     for module in set(sys.modules) - known:
         if (
@@ -41,7 +42,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
             and tmp_path in Path(str(sys.modules[module].__file__)).parents
         ):
             del sys.modules[module]
-    plugins._search.cache_clear()
+    loader._search.cache_clear()
 
 
 @pytest.fixture

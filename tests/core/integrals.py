@@ -11,8 +11,9 @@ import numpy as np
 import wearlaw as wl
 from tests import reference
 from tests.strategies import LINE_MODELS
-from wearlaw import Array, Q, integrate
-from wearlaw.integrate import integrate_forces
+from wearlaw import Array, Q
+from wearlaw.numerics import integrate
+from wearlaw.numerics.integrate import integrate_forces
 
 Solve = Callable[[reference.Point], reference.Solution]
 REFERENCE: dict[str, Solve] = {

@@ -14,8 +14,8 @@ import tomli_w
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import OWN_TESTS, STEEL, InstallModel, case, changed, load, table
-from wearlaw import plugins
-from wearlaw.case import Case, case_schema, case_text, labels, load_case, written
+from wearlaw.plugins import loader
+from wearlaw.study.case import Case, case_schema, case_text, labels, load_case, written
 
 
 def rewritten(read: Case) -> str:
@@ -235,7 +235,7 @@ def test_the_schema_knows_the_options_of_every_installed_model(install_model: In
 
 @pytest.mark.parametrize("kind", ["contact_models", "wear_laws"])
 def test_the_schema_accepts_each_installed_model_by_name_and_as_a_table(validator: Any, kind: str) -> None:
-    for name in getattr(plugins, kind)():
+    for name in getattr(loader, kind)():
         assert validator.is_valid(table(**{kind: [name]}))
         assert validator.is_valid(table(**{kind: [{"model": name}]}))
         assert not validator.is_valid(table(**{kind: [{"model": name, "nonsense": 1}]}))

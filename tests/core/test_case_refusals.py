@@ -10,7 +10,7 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import OWN_TESTS, STEEL, changed, load, table
-from wearlaw.case import load_case
+from wearlaw.study.case import load_case
 
 WRONG: list[tuple[str, Any, str]] = [
     ("title", None, "title: is missing"),

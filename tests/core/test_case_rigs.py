@@ -21,12 +21,12 @@ from tests.core.distributions import Install
 from tests.core.panels import by_label, by_name
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.case import Case, case_schema, case_text, load_case, written
-from wearlaw.output import table as results_table
+from wearlaw.output.results import table as results_table
+from wearlaw.pipeline.variables import UNITS
 from wearlaw.report.tables import summaries, tables
-from wearlaw.study import Study, axes_of, main_axis, run
+from wearlaw.study.case import Case, case_schema, case_text, load_case, written
+from wearlaw.study.study import Study, axes_of, main_axis, run
 from wearlaw.sweeping import points
-from wearlaw.variables import UNITS
 
 WHEEL = {
     "type": "wheel_rail",

@@ -13,8 +13,8 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import assert_refused, table, wearlaw, write
 from tests.core.distributions import Install
-from wearlaw import plugins
-from wearlaw.case import case_schema, case_text
+from wearlaw.plugins import loader
+from wearlaw.study.case import case_schema, case_text
 
 # case, schema, show, help
 
@@ -114,7 +114,7 @@ def test_a_plugin_that_ends_the_program_ends_no_command(install: Install, folder
         ["case", "own.toml"],
         ["run", "own.toml", "--figure-format", "svg"],
     ):
-        plugins._search.cache_clear()
+        loader._search.cache_clear()
         with pytest.warns(wl.PluginWarning, match=r"left out: ending 1\.0 \(plugin 'ending'\): SystemExit: 0"):
             result = wearlaw(*arguments)
         assert result.exit_code == 0

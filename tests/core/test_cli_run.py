@@ -15,7 +15,7 @@ from click.testing import Result
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import assert_refused, files, table, wearlaw, write
-from wearlaw import output
+from wearlaw.output import results as output
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 

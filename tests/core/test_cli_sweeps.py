@@ -18,7 +18,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
 from tests.core.sweeps import contents, interrupted_after, overwrite
-from wearlaw import output
+from wearlaw.output import results as output
 from wearlaw.sweeping import checkpoint, space
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
@@ -202,7 +202,7 @@ def test_a_changed_case_or_version_is_not_resumed_and_told_what_changed(
         wearlaw("run", case, "-o", "out", "--resume"), "case.sweeps.long.friction_coefficient: was 0.46, is 0.3"
     )
     long_case(folder / "big.toml")
-    monkeypatch.setattr("wearlaw.study.__version__", "99.0")
+    monkeypatch.setattr("wearlaw.study.study.__version__", "99.0")
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "is 99.0")
     assert contents(folder / "out.partial") == before
 

@@ -18,7 +18,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import Linear
 from wearlaw import Q
-from wearlaw.grid import Axis
+from wearlaw.study.grid import Axis
 
 STEEL = wl.steel()
 IN_MM = 'give it in mm or another unit of that dimension, such as Q(1.0, "mm") or "1.0 mm"'

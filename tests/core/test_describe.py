@@ -12,10 +12,10 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.testing.wrong_rigs import Weight
-from wearlaw import plugins
-from wearlaw.describe import describe
-from wearlaw.docstrings import field_docstrings
-from wearlaw.tangential import Model
+from wearlaw.cli.describe import describe
+from wearlaw.models.contact_model import Model
+from wearlaw.plugins import loader
+from wearlaw.settings.docstrings import field_docstrings
 
 MODELS: dict[str, type[Model]] = {**wl.contact_models(), **wl.wear_laws()}
 
@@ -107,7 +107,7 @@ EXPECTED: dict[str, list[str]] = {
 
 def test_there_is_an_expectation_for_every_model_of_the_package() -> None:
     ours = {
-        name for shelf in (plugins.installed().contact_models, plugins.installed().wear_laws)
+        name for shelf in (loader.installed().contact_models, loader.installed().wear_laws)
         for name in shelf.items() if shelf.origin(name).distribution == "wearlaw"
     }  # fmt: skip
     assert ours == EXPECTED.keys()

@@ -14,8 +14,8 @@ import pytest
 from pydantic import Field
 
 import wearlaw as wl
-from wearlaw.docstrings import field_docstrings
-from wearlaw.pipeline import Pipeline
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.settings.docstrings import field_docstrings
 
 CLASS = '''
 class Toy(wl.Configuration):

@@ -11,7 +11,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw.extremes import extremes
+from wearlaw.arrays.extremes import extremes
 
 numba = pytest.param(
     True, marks=pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="numba is not installed")

@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import Table, case, table
-from wearlaw.case import Case
+from wearlaw.study.case import Case
 
 WEAR = {"sweep": "creepage", "x": "wear_index", "y": "wear_rate"}
 PATCH = {"profile": "partial_slip", "y": "slip"}

@@ -15,7 +15,7 @@ from tests.core import cases
 from tests.core.cases import case
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.drawing import LINES, MARKERS, PALETTE, draw, marked_points
-from wearlaw.study import run
+from wearlaw.study.study import run
 
 X = np.array([1.0, 2.0, 4.0])
 SVG = "{http://www.w3.org/2000/svg}"

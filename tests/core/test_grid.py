@@ -9,9 +9,9 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw.arrays import Array
-from wearlaw.grid import MOST_POINTS, Axis, Grid, with_units
-from wearlaw.variables import UNITS
+from wearlaw.arrays.array import Array
+from wearlaw.pipeline.variables import UNITS
+from wearlaw.study.grid import MOST_POINTS, Axis, Grid, with_units
 
 RIG = wl.TwinDisc.suros()
 

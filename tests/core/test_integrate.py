@@ -13,8 +13,9 @@ from tests import reference
 from tests.core.integrals import FULL_SLIP, MEANS, REFERENCE, RIG, SPEED, Points, compare, integrate_wear
 from tests.roots import brentq
 from tests.strategies import EPS, LINE_MODELS
-from wearlaw import Array, Q, integrate
-from wearlaw.integrate import BLOCK, NODE_BLOCK, integrate_forces, integrate_slip
+from wearlaw import Array, Q
+from wearlaw.numerics import integrate
+from wearlaw.numerics.integrate import BLOCK, NODE_BLOCK, integrate_forces, integrate_slip
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 

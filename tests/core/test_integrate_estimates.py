@@ -14,8 +14,8 @@ from tests import reference
 from tests.core.integrals import MEANS, REFERENCE, Points, integrate_wear
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array
-from wearlaw.integrate import integrate_forces
-from wearlaw.quadrature import uniform_cells
+from wearlaw.contact.quadrature import uniform_cells
+from wearlaw.numerics.integrate import integrate_forces
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tests.half_spaces import HalfSpaces
-from wearlaw import kalker
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
+from wearlaw.contact import kalker
 
 
 def values(axis_ratio: float, poisson_ratio: float) -> list[float]:

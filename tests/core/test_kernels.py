@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from wearlaw import Array, kernels
-from wearlaw.kernels import WORTHWHILE, Kernel
+from wearlaw import Array
+from wearlaw.arrays import kernels
+from wearlaw.arrays.kernels import WORTHWHILE, Kernel
 
 pytestmark = pytest.mark.usefixtures("by_size_again")
 

@@ -13,8 +13,9 @@ from hypothesis import given
 import wearlaw as wl
 from tests.core.cases import Linear
 from tests.strategies import EPS, LINE_MODELS, line_problems
-from wearlaw import Array, Q, result
-from wearlaw.quadrature import ORDER
+from wearlaw import Array, Q
+from wearlaw.contact.quadrature import ORDER
+from wearlaw.pipeline import prediction as result
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 

@@ -14,9 +14,9 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import case, table, wearlaw
 from tests.core.distributions import LAB, Install
-from wearlaw import plugins
-from wearlaw.case import Case, case_schema, case_text, load_case
-from wearlaw.study import provenance, run
+from wearlaw.plugins import loader
+from wearlaw.study.case import Case, case_schema, case_text, load_case
+from wearlaw.study.study import provenance, run
 
 POINT: Any = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46}
 RIG = wl.TwinDisc.suros()
@@ -25,7 +25,7 @@ RIG = wl.TwinDisc.suros()
 def test_the_steel_and_the_study_come_from_a_plugin_like_any_other() -> None:
     assert wl.material("steel") == wl.steel()
     assert list(wl.materials()) == ["steel"]
-    assert plugins.installed().cases.origin("tassini2010").entry_point == "sheffield"
+    assert loader.installed().cases.origin("tassini2010").entry_point == "sheffield"
 
 
 def test_a_parameter_set_is_looked_up_like_a_law_and_takes_options(install: Install) -> None:
@@ -171,7 +171,7 @@ def test_a_run_says_what_it_used(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("wearlaw.output.write_figures", lambda *_: [])
+    monkeypatch.setattr("wearlaw.output.results.write_figures", lambda *_: [])
     install("lab", LAB, version="1.2.3")
     (tmp_path / "own.toml").write_text(LAB_STUDY)
     monkeypatch.chdir(tmp_path)
@@ -205,7 +205,7 @@ def test_what_is_not_of_its_kind_is_left_out_with_the_reason(
     assert old in LAB
     install("lab", LAB.replace(old, new))
     with pytest.warns(wl.PluginWarning, match="left out: lab 1.0"):
-        found = plugins.installed()
+        found = loader.installed()
     assert cause in found.broken[0].cause
 
 

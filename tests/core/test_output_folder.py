@@ -19,9 +19,9 @@ from matplotlib.figure import Figure
 import wearlaw as wl
 from tests.core.cases import full_disk, tree
 from tests.core.sweeps import contents
-from wearlaw.output import CSV, RESULTS, write
-from wearlaw.output_folder import MANIFEST, fresh_folder
-from wearlaw.study import Study
+from wearlaw.output.folder import MANIFEST, fresh_folder
+from wearlaw.output.results import CSV, RESULTS, write
+from wearlaw.study.study import Study
 
 
 def fill(folder: Path, text: str = "new") -> None:
@@ -402,7 +402,7 @@ RACER = """
 import sys, time
 from pathlib import Path
 import wearlaw as wl
-from wearlaw.output_folder import fresh_folder
+from wearlaw.output.folder import fresh_folder
 
 while folder := sys.stdin.readline().strip():
     try:

@@ -18,7 +18,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import wearlaw
 from tests.core.distributions import FIRST_PARTY_LAWS, FIRST_PARTY_MODELS, LAW, Install, write_distribution
-from wearlaw import plugins
+from wearlaw.plugins import loader
 
 BROKEN = {
     "import_that_fails": ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named"),
@@ -118,8 +118,8 @@ BROKEN = {
 def test_the_first_party_plugins_are_found_by_name_in_order() -> None:
     assert list(wl.contact_models()) == sorted(FIRST_PARTY_MODELS)
     assert list(wl.wear_laws()) == sorted(FIRST_PARTY_LAWS)
-    assert {origin.distribution for origin in plugins.installed().plugins} == {"wearlaw"}
-    assert not plugins.installed().broken
+    assert {origin.distribution for origin in loader.installed().plugins} == {"wearlaw"}
+    assert not loader.installed().broken
 
 
 def test_look_ups_return_instances_with_their_options() -> None:
@@ -133,7 +133,7 @@ def test_an_outside_law_is_found_beside_the_others(install: Install) -> None:
     install("outside_plugin", LAW.format(name="outside"), version="3.2")
     assert wl.wear_law("outside").name == "outside"
     assert set(wl.wear_laws()) == FIRST_PARTY_LAWS | {"outside"}
-    assert str(plugins.installed().wear_laws.origin("outside")) == "outside_plugin 3.2 (plugin 'outside_plugin')"
+    assert str(loader.installed().wear_laws.origin("outside")) == "outside_plugin 3.2 (plugin 'outside_plugin')"
 
 
 def test_a_plugin_for_this_interface_is_loaded(install: Install) -> None:
@@ -227,7 +227,7 @@ def test_one_module_of_two_distributions_is_an_error_that_names_both(install: In
 def test_a_plugin_answers_for_itself_alone(install: Install) -> None:
     install("one_plugin", LAW.format(name="one"))
     install("other_plugin", LAW.format(name="other"))
-    found = plugins.installed().wear_laws
+    found = loader.installed().wear_laws
     assert [str(found.origin(name)).split()[0] for name in ("one", "other")] == ["one_plugin", "other_plugin"]
     assert set(wl.wear_laws()) == FIRST_PARTY_LAWS | {"one", "other"}
 
@@ -255,13 +255,13 @@ def test_a_long_readme_does_not_disguise_a_distribution(install: Install, tmp_pa
     install("outside_plugin", LAW.format(name="outside"), version="3.2")
     with (tmp_path / "outside_plugin-3.2.dist-info" / "METADATA").open("a") as file:
         file.write("Summary: Name: another\n\nName: a-third\nVersion: 9\n")
-    assert str(plugins.installed().wear_laws.origin("outside")).startswith("outside_plugin 3.2 ")
+    assert str(loader.installed().wear_laws.origin("outside")).startswith("outside_plugin 3.2 ")
 
 
 def test_a_distribution_without_metadata_stands_in_nobodys_way(install: Install, tmp_path: Path) -> None:
     install("outside_plugin", LAW.format(name="outside"))
     (tmp_path / "outside_plugin-1.0.dist-info" / "METADATA").unlink()
-    assert str(plugins.installed().wear_laws.origin("outside")).startswith("unnamed unknown ")
+    assert str(loader.installed().wear_laws.origin("outside")).startswith("unnamed unknown ")
 
 
 def test_an_outside_model_cannot_take_a_first_party_name_silently(install: Install) -> None:
@@ -274,7 +274,7 @@ def test_an_outside_model_cannot_take_a_first_party_name_silently(install: Insta
 def test_plugins_are_loaded_in_the_order_of_their_distributions(install: Install) -> None:
     for name in ("zebra_plugin", "ant_plugin", "mole_plugin"):
         install(name, LAW.format(name=name))
-    names = [origin.distribution for origin in plugins.installed().plugins]
+    names = [origin.distribution for origin in loader.installed().plugins]
     assert names == sorted(names)
     assert {"zebra_plugin", "ant_plugin", "mole_plugin"} < set(names)
 
@@ -285,7 +285,7 @@ def test_of_two_copies_of_a_distribution_the_first_on_the_path_counts(
     install("doubled_plugin", LAW.format(name="doubled"), version="2.0")
     write_distribution(tmp_path / "later", "doubled_plugin", LAW.format(name="doubled"), version="1.0")
     monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path / "later")])
-    assert str(plugins.installed().wear_laws.origin("doubled")).startswith("doubled_plugin 2.0 ")
+    assert str(loader.installed().wear_laws.origin("doubled")).startswith("doubled_plugin 2.0 ")
     assert wl.wear_law("doubled").name == "doubled"
 
 
@@ -333,7 +333,7 @@ def test_a_wrong_option_is_named_with_what_is_allowed() -> None:
 
 def test_threads_that_need_plugins_at_once_all_find_them(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:
     install("slow", "")
-    found, together = plugins._entry_points, Barrier(4)
+    found, together = loader._entry_points, Barrier(4)
 
     def slowly() -> Iterable[Any]:
         sleep(0.1)
@@ -343,6 +343,6 @@ def test_threads_that_need_plugins_at_once_all_find_them(install: Install, monke
         together.wait()
         return wl.contact_model("exact").name
 
-    monkeypatch.setattr(plugins, "_entry_points", slowly)
+    monkeypatch.setattr(loader, "_entry_points", slowly)
     with ThreadPoolExecutor(4) as pool, pytest.warns(wl.PluginWarning, match="slow"):
         assert list(pool.map(look_up, range(4))) == ["exact"] * 4

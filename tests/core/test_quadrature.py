@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw.quadrature import ORDER, Nodes, Zone, join, remainder, uniform_cells
+from wearlaw.contact.quadrature import ORDER, Nodes, Zone, join, remainder, uniform_cells
 
 HALF_WIDTH, LENGTH = np.array(1.1), np.array(1.4)
 

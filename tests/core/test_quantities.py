@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.core.units import TO_SI
 from wearlaw import Q
-from wearlaw.units import from_si, shown, text_of
+from wearlaw.units.quantities import from_si, shown, text_of
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 

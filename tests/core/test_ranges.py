@@ -14,8 +14,8 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Array, Q
-from wearlaw.integrate import BLOCK, NODE_BLOCK
-from wearlaw.ranges import RangeWatch, mean_over_patch
+from wearlaw.numerics.integrate import BLOCK, NODE_BLOCK
+from wearlaw.pipeline.ranges import RangeWatch, mean_over_patch
 
 RIG = wl.TwinDisc.suros(rolling_speed="2 m/s")
 EXACT = wl.contact_model("exact")

@@ -22,7 +22,7 @@ from tests.core.report_data import CLAIMS, EVIL, ODD, ONE, SECTION, THREE, small
 from wearlaw.report.interactive import plotly_figure
 from wearlaw.report.page import cells, paragraphs, report
 from wearlaw.report.tables import Cell
-from wearlaw.study import Study, run
+from wearlaw.study.study import Study, run
 
 VOID = {"meta"}
 """Elements of the page that are never closed."""

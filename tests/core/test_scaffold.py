@@ -14,10 +14,10 @@ from click.testing import Result
 import wearlaw as wl
 from tests.core.cases import Coarse, Linear, assert_refused, case, installer, wearlaw
 from tests.core.distributions import LAB, LAW, Install
-from wearlaw import plugins
-from wearlaw.case import case_text
+from wearlaw.plugins import loader
+from wearlaw.plugins.shelf import Origin
 from wearlaw.scaffold import Kind, Licence, write_plugin
-from wearlaw.shelf import Origin
+from wearlaw.study.case import case_text
 
 pytestmark = pytest.mark.usefixtures("folder")
 
@@ -105,7 +105,7 @@ def test_a_name_too_long_for_the_lines_is_refused() -> None:
 @pytest.mark.parametrize("name", ["usfd", "kth", "brr", "exact", "fastsim", "twin_disc"])
 def test_a_taken_name_is_refused_with_who_has_it(name: str, flag: str, folder: Path) -> None:
     kind = next(
-        kind for kind in ("wear law", "contact model", "rig") if name in plugins.installed().of_kind(kind).items()
+        kind for kind in ("wear law", "contact model", "rig") if name in loader.installed().of_kind(kind).items()
     )
     plugin = "rigs" if kind == "rig" else name
     taker = f"the {kind} of wearlaw {wl.__version__} (plugin '{plugin}')"
@@ -134,7 +134,7 @@ def test_the_name_of_a_plugin_or_a_distribution_that_is_broken_is_taken(
     name: str, taker: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     installed = [Origin("crumbling", "wearlaw-dust", "1.0"), Origin("other", "Wearlaw.Lab-of-two", "1.0")]
-    monkeypatch.setattr(plugins.installed(), "plugins", [*plugins.installed().plugins, *installed])
+    monkeypatch.setattr(loader.installed(), "plugins", [*loader.installed().plugins, *installed])
     assert_refused(new_plugin(name, "--wear-law"), f"'{name}' is taken by the plugin {taker}; choose another")
     assert new_plugin("lab", "--wear-law").exit_code == 0
 

@@ -14,8 +14,8 @@ import wearlaw as wl
 from tests.testing.cells import Cells
 from tests.testing.strips import Strips
 from wearlaw import Array, Q
-from wearlaw.solving import EVERY, Solver
-from wearlaw.tangential import QUADRATURE
+from wearlaw.models.contact_model import QUADRATURE
+from wearlaw.numerics.solving import EVERY, Solver
 
 RIG = wl.TwinDisc.suros()
 RAIL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")

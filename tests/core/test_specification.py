@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
-from wearlaw.specification import specification
+from wearlaw.plugins.fields import specification
 
 
 class Holder(wl.Configuration):

@@ -10,7 +10,7 @@ import pytest
 from tests.core import cases
 from tests.core.cases import InstallModel, case
 from tests.core.panels import LOADS, assert_shows, by_label, by_name, one_panel
-from wearlaw.study import Study, run
+from wearlaw.study.study import Study, run
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from tests.core import cases
 from tests.core.cases import case
 from tests.core.panels import assert_shows, by_label, one_panel, shown
 from tests.strategies import EPS
-from wearlaw.study import run
+from wearlaw.study.study import run
 
 WEAR = {"sweep": "creepage", "x": "wear_index", "y": "wear_rate"}
 

@@ -15,7 +15,7 @@ from tests.core.panels import LOADS, by_name, one_panel, shown
 from tests.strategies import EPS
 from wearlaw.figures.curves import Curve
 from wearlaw.figures.drawing import draw
-from wearlaw.study import run
+from wearlaw.study.study import run
 
 TESTS = """creepage [%],normal_force [kN],tangential_force [N],wear_rate [ug/m/mm^2],wear_rate_uncertainty [ug/m/mm^2]
 1,7,2100,20,2

@@ -13,8 +13,8 @@ from tests.core import cases
 from tests.core.cases import InstallModel, case
 from tests.core.studies import lattice_study
 from wearlaw import Array
-from wearlaw.case import Case
-from wearlaw.study import evaluations, provenance, run
+from wearlaw.study.case import Case
+from wearlaw.study.study import evaluations, provenance, run
 
 
 def test_what_is_left_out_and_every_warning_is_noted_once() -> None:

@@ -261,7 +261,7 @@ def test_a_changed_law_or_version_is_not_resumed(tmp_path: Path, monkeypatch: py
         patched.setattr(journal, "__version__", "99.0")
         with pytest.raises(wl.OutputError, match=r"wearlaw: was .*, is 99\.0"):
             wl.sweep(predictor(), **GIVEN, store=store, resume=True)
-    monkeypatch.setattr("wearlaw.shelf.Shelf.distribution", lambda *_: "another 1.2.3")
+    monkeypatch.setattr("wearlaw.plugins.shelf.Shelf.distribution", lambda *_: "another 1.2.3")
     with pytest.raises(wl.OutputError, match=r"plugins.wear law usfd: was wearlaw .*, is another 1.2.3"):
         wl.sweep(predictor(), **GIVEN, store=store, resume=True)
 

@@ -14,7 +14,8 @@ import xarray as xr
 
 import wearlaw as wl
 from tests.core.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, ending, predictor
-from wearlaw import Q, kernels
+from wearlaw import Q
+from wearlaw.arrays import kernels
 from wearlaw.sweeping import processes
 
 pytestmark = pytest.mark.usefixtures("small_blocks")

@@ -11,7 +11,7 @@ import wearlaw as wl
 from tests.core import cases
 from tests.core.report_data import SECTION, TABLE
 from wearlaw.report.tables import models, parameters, summaries, summary, tables
-from wearlaw.study import Study, run
+from wearlaw.study.study import Study, run
 
 
 @pytest.fixture(scope="module")

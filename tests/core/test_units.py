@@ -14,7 +14,7 @@ from pydantic import TypeAdapter
 import wearlaw as wl
 from tests.core.units import LENGTH, TO_SI
 from wearlaw import Q
-from wearlaw.units import coefficient, from_si, in_unit, real_array, shortened
+from wearlaw.units.quantities import coefficient, from_si, in_unit, real_array, shortened
 
 CREEPAGE = wl.Unit("", positive=False, limit=1.0)
 

@@ -12,8 +12,8 @@ import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.errors import InputError
-from wearlaw.integrate import BLOCK, integrate_wear
-from wearlaw.parameters import changed, number_in_si, number_like, numbers
+from wearlaw.numerics.integrate import BLOCK, integrate_wear
+from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 
 RIG = wl.TwinDisc.suros()
 

@@ -13,7 +13,7 @@ import mpmath  # type: ignore[import-untyped]
 import numpy as np
 
 from wearlaw import Array
-from wearlaw.kernels import Kernel
+from wearlaw.arrays.kernels import Kernel
 
 DIGITS = 50  # with thirty, mpmath ends some integrals at 1e-14
 BISECTIONS = 180  # 2^-180 = 1e-54

@@ -14,7 +14,7 @@ from typing import Any
 import wearlaw as wl
 from tests.core.cases import case
 from tests.plugins.sheffield import FRICTION
-from wearlaw.study import run
+from wearlaw.study.study import run
 from wearlaw_sheffield import claims, table_4, tables
 
 AGREED = Path(__file__).with_suffix(".txt")

@@ -13,7 +13,7 @@ import wearlaw as wl
 from tests.line import crossings_meet, fields_at, slip_zone
 from tests.strategies import EPS, line_problems, saturation_creepage
 from wearlaw import Array, Q
-from wearlaw.quadrature import uniform_cells
+from wearlaw.contact.quadrature import uniform_cells
 
 Bound = Literal["parabolic", "elliptic"]
 Flexibility = Literal["line", "kalker"]

@@ -10,14 +10,14 @@ import pytest
 import wearlaw as wl
 import wearlaw_sheffield
 from tests.plugins.sheffield import HEAT, SPEED
-from wearlaw import plugins
-from wearlaw.case import Case, case_text, labels, load_case
-from wearlaw.study import run
+from wearlaw.plugins import loader
+from wearlaw.study.case import Case, case_text, labels, load_case
+from wearlaw.study.study import run
 from wearlaw.wear_tests.reader import text_of_tests
 
 
 def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:
-    assert list(plugins.installed().cases.items()) == ["tassini2010", "wheel_on_rail"]
+    assert list(loader.installed().cases.items()) == ["tassini2010", "wheel_on_rail"]
     package = Path(wearlaw_sheffield.__file__).parent
     assert case_text("tassini2010") == (package / "tassini2010.toml").read_text(encoding="utf-8")
 

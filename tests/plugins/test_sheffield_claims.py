@@ -12,7 +12,7 @@ import wearlaw as wl
 from tests.core.cases import case
 from tests.plugins.sheffield import AREA, FORCE, FULL_SLIP, SPEED, STEP
 from tests.plugins.sheffield_report import SWEEP, study_of
-from wearlaw.study import run
+from wearlaw.study.study import run
 from wearlaw_sheffield import claims as claims_module
 from wearlaw_sheffield.bench import Bench
 from wearlaw_sheffield.wording import first_crossing, largest, percent

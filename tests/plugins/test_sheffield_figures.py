@@ -11,9 +11,9 @@ import pytest
 from tests.core.panels import assert_shows, by_label, by_name, one_panel
 from tests.plugins.sheffield import AREA, FORCE, FRICTION, FULL_SLIP, HALF_WIDTH, HEAT, LOAD, MODULUS, RADIUS, SPEED
 from tests.strategies import EPS
-from wearlaw.case import Case, case_text, load_case
 from wearlaw.figures.curves import Curve, FigureData
-from wearlaw.study import run
+from wearlaw.study.case import Case, case_text, load_case
+from wearlaw.study.study import run
 
 WEAR_INDICES = np.array([50.0, 150.0, 199.9, 200.0001, 700.0])
 

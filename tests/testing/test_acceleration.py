@@ -10,7 +10,7 @@ import pytest
 import wearlaw as wl
 from tests.testing.wrong_fields import KernelOfExcessDiffers
 from tests.testing.wrong_laws import SLOPE, Linear
-from wearlaw.kernels import WORTHWHILE, accelerated
+from wearlaw.arrays.kernels import WORTHWHILE, accelerated
 from wearlaw.testing import Check, checks
 
 

@@ -10,7 +10,7 @@ import click
 from wearlaw.cli.formats import CommandT, written_formats
 from wearlaw.cli.printing import print_notes, print_results
 from wearlaw.errors import FitError
-from wearlaw.notes import Notes
+from wearlaw.pipeline.notes import Notes
 from wearlaw.sweeping.progress import Bar
 
 if TYPE_CHECKING:
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from wearlaw.comparison.result import Comparison
     from wearlaw.figures.formats import FigureFormat
     from wearlaw.fitting.result import Fit
-    from wearlaw.pairs import Pair
-    from wearlaw.pipeline import Pipeline
+    from wearlaw.pipeline.pipeline import Pipeline
+    from wearlaw.study.pairs import Pair
     from wearlaw.wear_tests.tests import WearTests
 
 
@@ -78,8 +78,8 @@ def fit(
     The folder then holds law.toml, the fitted law, to be used wherever a law is asked for; parameters.csv with
     confidence intervals; residuals.csv; a figure; and fit.json with all that the fit comes from.
     """  # noqa: D301
-    from wearlaw.data_output import FIT, write_fit
-    from wearlaw.output_folder import fresh_folder
+    from wearlaw.output.data import FIT, write_fit
+    from wearlaw.output.folder import fresh_folder
 
     folder = output if output is not None else Path(f"{Path(tests).stem}-fit")
     notes = Notes()
@@ -131,7 +131,7 @@ def _fit(
 def _with_law(stage: Pipeline[...], text: str, given: dict[str, str], free: list[str], notes: Notes) -> Pipeline[...]:
     """Return the pipeline with the law to fit; what it was fitted for does not matter, but what it keeps does."""
     from wearlaw.cli.parsing import wear_law
-    from wearlaw.parameters import numbers
+    from wearlaw.settings.parameters import numbers
 
     law = wear_law(text, given)
     kept = [f"{name} = {value!r}" for name, value in numbers(law.explicit()).items() if name not in free]
@@ -172,8 +172,8 @@ def compare(
     contact. The folder then holds ranking.csv, the table that is printed; predictions.csv; a figure of measured against
     predicted wear rates; and comparison.json with all models.
     """  # noqa: D301
-    from wearlaw.data_output import COMPARISON, write_comparison
-    from wearlaw.output_folder import fresh_folder
+    from wearlaw.output.data import COMPARISON, write_comparison
+    from wearlaw.output.folder import fresh_folder
 
     folder = output if output is not None else Path(f"{Path(tests).stem}-comparison")
     notes = Notes()
@@ -200,7 +200,7 @@ def _compare(
     from wearlaw.cli.parsing import contact_model, listed, wear_law
     from wearlaw.comparison.compare import compare_named
     from wearlaw.comparison.result import Names
-    from wearlaw.pairs import compose
+    from wearlaw.study.pairs import compose
 
     tests = _tests(path, friction, False, notes)
     named = {text: wear_law(text) for text in listed("--laws", laws)}

@@ -12,13 +12,13 @@ import click
 from rich.console import Console
 from rich.table import Table
 
-from wearlaw import plugins
 from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
-from wearlaw.shelf import unknown
+from wearlaw.plugins import loader
+from wearlaw.plugins.shelf import unknown
 
 if TYPE_CHECKING:
+    from wearlaw.models.contact_model import Model
     from wearlaw.scaffold import Kind, Licence
-    from wearlaw.tangential import Model
     from wearlaw.testing import Check
 
 
@@ -27,7 +27,7 @@ def list_plugins() -> None:
     """List what the installed plugins provide, by kind and name, and what failed to load."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PluginWarning)  # what is left out is listed below
-        found = plugins.installed()
+        found = loader.installed()
     table = Table("kind", "name", "distribution", "version", box=None, pad_edge=False)
     for kind, name, origin in found.listing():
         table.add_row(kind, name, origin.distribution, origin.version)
@@ -40,7 +40,7 @@ def list_plugins() -> None:
 @click.argument("name")
 def show(name: str) -> None:
     """Explain a rig, a contact model or a wear law: its fields with units and defaults, its source and its range."""
-    from wearlaw.describe import describe
+    from wearlaw.cli.describe import describe
 
     click.echo(describe(_model_class(name)))
 
@@ -97,7 +97,7 @@ def check(name: str, options: tuple[str, ...]) -> None:
     wearlaw check twin_disc --option track_width="8 mm"
     """  # noqa: D301
     from wearlaw.cli.parsing import fields
-    from wearlaw.tangential import ContactModel
+    from wearlaw.models.contact_model import ContactModel
 
     model = _made(_model_class(name), fields("--option", options))
     outcomes = [_outcome(one) for one in _checks(model)]
@@ -111,7 +111,7 @@ def check(name: str, options: tuple[str, ...]) -> None:
 
 def _made(model: type[Model], options: dict[str, str]) -> Model:
     """Return the model with some fields, and a rig with those of its `example_fields` besides."""
-    from wearlaw.base_rig import Rig
+    from wearlaw.models.rig import Rig
 
     own = model.example_fields if issubclass(model, Rig) else {}
     try:
@@ -150,7 +150,7 @@ def _outcome(check: Check) -> bool:
 
 def _model_class(name: str) -> type[Model]:
     """Return the rig, the contact model or the wear law of a name."""
-    found = plugins.installed()
+    found = loader.installed()
     shelves = (found.wear_laws, found.contact_models, found.rigs)
     for shelf in shelves:
         if name in shelf.providers:

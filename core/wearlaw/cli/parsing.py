@@ -6,14 +6,14 @@ from pathlib import Path
 
 import click
 
-from wearlaw import plugins
-from wearlaw.base_rig import Rig
-from wearlaw.configuration import Configuration
 from wearlaw.errors import ConfigurationError, InputError, with_problems
 from wearlaw.fitting.law_files import read_toml, read_wear_law
-from wearlaw.models import WearLaw
-from wearlaw.specification import RigField
-from wearlaw.tangential import ContactModel
+from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.rig import Rig
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.plugins import loader
+from wearlaw.plugins.fields import RigField
+from wearlaw.settings.configuration import Configuration
 
 
 class _WithRig(Configuration, extra="ignore"):
@@ -58,7 +58,7 @@ def fields(option: str, settings: tuple[str, ...]) -> dict[str, str]:
 def contact_model(text: str) -> ContactModel:
     """Return the contact model that "NAME" or "NAME:FIELD=VALUE:..." stands for."""
     name, *settings = text.split(":")
-    return plugins.contact_model(name, **fields(text, tuple(settings)))
+    return loader.contact_model(name, **fields(text, tuple(settings)))
 
 
 def wear_law(text: str, fixed: dict[str, str] | None = None) -> WearLaw:
@@ -75,4 +75,4 @@ def wear_law(text: str, fixed: dict[str, str] | None = None) -> WearLaw:
         law = read_wear_law(text)
         return law.model_copy(update=fixed) if fixed else law
     name, *settings = text.split(":")
-    return plugins.wear_law(name, **fields(text, tuple(settings)) | (fixed or {}))
+    return loader.wear_law(name, **fields(text, tuple(settings)) | (fixed or {}))

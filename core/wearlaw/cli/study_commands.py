@@ -22,7 +22,7 @@ from wearlaw.version import __version__
 if TYPE_CHECKING:
     from wearlaw.figures.formats import FigureFormat
     from wearlaw.report.tables import NamedTable
-    from wearlaw.study import Study
+    from wearlaw.study.study import Study
     from wearlaw.sweeping.checkpoint import Checkpoint
 
 
@@ -50,12 +50,12 @@ def run(
     a browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default
     spelt out.
     """
-    from wearlaw.case import load_case
-    from wearlaw.output import RESULTS, check_room, write
-    from wearlaw.output_folder import fresh_folder
+    from wearlaw.output.folder import fresh_folder
+    from wearlaw.output.results import RESULTS, check_room, write
     from wearlaw.report.tables import summaries
-    from wearlaw.study import evaluations, provenance
-    from wearlaw.study import run as run_case
+    from wearlaw.study.case import load_case
+    from wearlaw.study.study import evaluations, provenance
+    from wearlaw.study.study import run as run_case
     from wearlaw.sweeping.checkpoint import Checkpoint
 
     loaded = load_case(case)
@@ -76,7 +76,7 @@ def run(
 @contextmanager
 def _kept(checkpoint: Checkpoint) -> Iterator[None]:
     """Keep a checkpoint until the results are in a folder, and say after an interrupt where it is."""
-    from wearlaw.output_folder import ElsewhereError
+    from wearlaw.output.folder import ElsewhereError
 
     try:
         yield
@@ -94,7 +94,7 @@ def _kept(checkpoint: Checkpoint) -> Iterator[None]:
 @click.argument("name")
 def case(name: str) -> None:
     """Print a case file: NAME is the name of a shipped one (tassini2010, wheel_on_rail), or a path."""
-    from wearlaw.case import case_text
+    from wearlaw.study.case import case_text
 
     click.echo(case_text(name).encode(), nl=False)  # TOML is UTF-8, whatever the terminal speaks
 
@@ -102,14 +102,14 @@ def case(name: str) -> None:
 @click.command()
 def schema() -> None:
     """Print the JSON Schema of a case file with the options of the installed models."""
-    from wearlaw.case import case_schema
+    from wearlaw.study.case import case_schema
 
     click.echo(json.dumps(case_schema(), indent=2, ensure_ascii=False).encode())
 
 
 def _print_used(study: Study) -> None:
     """Print the version of wearlaw, and a line for each other distribution with what came from it."""
-    from wearlaw.study import used
+    from wearlaw.study.study import used
 
     provided: dict[str, list[str]] = {f"wearlaw {__version__}": []}
     for kind, names in used(study.case).items():

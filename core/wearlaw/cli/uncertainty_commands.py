@@ -38,8 +38,8 @@ def uncertainty(
     Every contact model of the case is paired with every wear law. Written are wear_rates.csv with medians and 95 %
     intervals, sobol_indices.csv with the share of the variance that each input explains, and a figure of each pair.
     """
-    from wearlaw.case import load_case
-    from wearlaw.output_folder import fresh_folder
+    from wearlaw.output.folder import fresh_folder
+    from wearlaw.study.case import load_case
     from wearlaw.uncertainties.of_case import uncertainty_of
     from wearlaw.uncertainties.written import UNCERTAINTY, write_uncertainty
 

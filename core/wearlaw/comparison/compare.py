@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.case import labels
+from wearlaw.arrays.array import Array
 from wearlaw.comparison.agreement import Information, agreement
 from wearlaw.comparison.result import Compared, Comparison, Names
-from wearlaw.composition import needs_discs
 from wearlaw.errors import InputError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.fitting.result import Fit
-from wearlaw.notes import Notes
-from wearlaw.pipeline import Pipeline
-from wearlaw.tangential import Model
+from wearlaw.models.contact_model import Model
+from wearlaw.pipeline.composition import needs_discs
+from wearlaw.pipeline.notes import Notes
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.study.case import labels
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.comparison.agreement import Agreement, Information
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
-from wearlaw.pipeline import Pipeline
-from wearlaw.units import WEAR_RATE, in_unit
-from wearlaw.variables import label
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.variables import label
+from wearlaw.units.quantities import WEAR_RATE, in_unit
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:

@@ -7,16 +7,16 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from wearlaw.base_rig import Rig
-from wearlaw.composition import check_geometry
-from wearlaw.conditions import LOADS
+from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean
 from wearlaw.figures.spec import ACROSS, OF_LOAD, OF_PROFILE, FigureSpec, Window, axis_along, wrong_range
-from wearlaw.grid import Grid
-from wearlaw.models import WearLaw
-from wearlaw.result import Prediction
-from wearlaw.tangential import ContactModel
-from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS, offered
+from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.rig import Rig
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.composition import check_geometry
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS, offered
+from wearlaw.study.grid import Grid
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 
 BLACK = 6
 """The number of black, the last colour of the palette: of what was measured, and of lines to compare with."""

@@ -12,7 +12,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.figures.curves import has_band
 
 if TYPE_CHECKING:

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.base_rig import Rig
-from wearlaw.conditions import LOADS
+from wearlaw.arrays.array import Array
+from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import InputError
-from wearlaw.units import from_si, in_unit
-from wearlaw.variables import UNITS
+from wearlaw.models.rig import Rig
+from wearlaw.pipeline.variables import UNITS
+from wearlaw.units.quantities import from_si, in_unit
 from wearlaw.wear_tests.columns import COLUMNS
 from wearlaw.wear_tests.tests import WearTests
 

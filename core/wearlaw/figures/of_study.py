@@ -12,19 +12,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wearlaw.case import labels
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.measured_points import measured_points
 from wearlaw.figures.spec import ACROSS, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
-from wearlaw.study import along, main_axis
-from wearlaw.variables import UNITS, label, name_of
+from wearlaw.pipeline.variables import UNITS, label, name_of
+from wearlaw.study.case import labels
+from wearlaw.study.study import along, main_axis
 
 if TYPE_CHECKING:
     import xarray
 
-    from wearlaw.arrays import Array
-    from wearlaw.grid import Grid
-    from wearlaw.study import Study
+    from wearlaw.arrays.array import Array
+    from wearlaw.study.grid import Grid
+    from wearlaw.study.study import Study
 
 
 def figures_of(study: Study) -> tuple[FigureData, ...]:

@@ -7,12 +7,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from wearlaw.conditions import LOADS
-from wearlaw.configuration import Configuration
+from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import ConfigurationError, Fault, UnitError
-from wearlaw.grid import Grid
-from wearlaw.units import Unit, from_si
-from wearlaw.variables import OF_CONTACT, OF_POINT, UNITS
+from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS
+from wearlaw.settings.configuration import Configuration
+from wearlaw.study.grid import Grid
+from wearlaw.units.quantities import Unit, from_si
 
 OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "creepage")
 """What a figure can show along the patch of a line; the creepage of the operating point is a level line there."""

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
+from wearlaw.contact.problem import Problem
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.fitting.observations import Observations, predictions, wear_index_density
-from wearlaw.problem import Problem
-from wearlaw.units import Q, in_unit
-from wearlaw.variables import UNITS, label
+from wearlaw.pipeline.variables import UNITS, label
+from wearlaw.units.quantities import Q, in_unit
 
 if TYPE_CHECKING:
     from wearlaw.fitting.result import Fit

@@ -17,8 +17,8 @@ from wearlaw.fitting.observations import named
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.summary import summarise
 from wearlaw.fitting.task import Task
-from wearlaw.pipeline import Pipeline
-from wearlaw.units import QuantityLike
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.units.quantities import QuantityLike
 from wearlaw.wear_tests.tests import WearTests
 
 AT_BOUND = 1e-6

@@ -10,14 +10,14 @@ import numpy as np
 import pint
 from numpy.typing import NDArray
 
-from wearlaw.arrays import Array
-from wearlaw.configuration import Configuration
+from wearlaw.arrays.array import Array
 from wearlaw.errors import FitError, UnitError, did_you_mean
 from wearlaw.fitting.least_squares import Bounds
-from wearlaw.models import WearLaw
-from wearlaw.parameters import number_in_si, number_like, numbers
-from wearlaw.registry import symbol
-from wearlaw.units import Quantity, QuantityLike, Unit, from_si
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.settings.configuration import Configuration
+from wearlaw.settings.parameters import number_in_si, number_like, numbers
+from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
+from wearlaw.units.registry import symbol
 
 FRICTION = "friction_coefficient"
 """The one parameter that is no field of the law."""

@@ -11,8 +11,8 @@ from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FreeParameters
 from wearlaw.fitting.least_squares import Solutions
 from wearlaw.fitting.observations import Observations, wear_index_density
-from wearlaw.units import from_si
-from wearlaw.variables import UNITS
+from wearlaw.pipeline.variables import UNITS
+from wearlaw.units.quantities import from_si
 
 UNSEEN = 1e-6
 """Influence of a parameter, over the greatest, that counts as none; a hundred times the error of the derivatives."""

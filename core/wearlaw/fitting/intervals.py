@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.fitting.least_squares import Bounds, Model, Solutions, fit_many
 
 BATCH = 250

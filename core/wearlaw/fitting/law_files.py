@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from wearlaw import plugins
 from wearlaw.errors import ConfigurationError, InputError, OutputError, with_problems
-from wearlaw.models import WearLaw
-from wearlaw.specification import specification
-from wearlaw.text_files import read_text
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.plugins import loader
+from wearlaw.plugins.fields import specification
+from wearlaw.settings.text_files import read_text
 
 
 def write_wear_law(path: str | os.PathLike[str], law: WearLaw, provenance: Mapping[str, Any]) -> None:
@@ -73,6 +73,6 @@ def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
         raise InputError(f"wear law '{path}' needs a table [wear_law] with the name of the law, as in model = \"usfd\"")
     name = fields.pop("model")
     try:
-        return plugins.wear_law(name, **fields)
+        return loader.wear_law(name, **fields)
     except ConfigurationError as error:
         raise InputError(with_problems(f"wear law '{path}' is wrong in:", error.problems)) from None

@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 
 Model: TypeAlias = Callable[[Array], Array]
 """From parameter sets (sets, p) to predictions (sets, n)."""

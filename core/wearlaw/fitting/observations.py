@@ -10,14 +10,14 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION
-from wearlaw.integrate import integrate_forces, integrate_wear, patch_area
-from wearlaw.pipeline import Pipeline
-from wearlaw.problem import Problem
-from wearlaw.units import in_unit
-from wearlaw.variables import UNITS
+from wearlaw.numerics.integrate import integrate_forces, integrate_wear, patch_area
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.variables import UNITS
+from wearlaw.units.quantities import in_unit
 from wearlaw.wear_tests.tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.errors import FitError
 from wearlaw.fitting.law_files import write_wear_law
 from wearlaw.fitting.observations import Observations, Scatter
-from wearlaw.models import WearLaw
-from wearlaw.registry import si_factor
-from wearlaw.units import Quantity, from_si
-from wearlaw.variables import UNITS
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.variables import UNITS
+from wearlaw.units.quantities import Quantity, from_si
+from wearlaw.units.registry import si_factor
 from wearlaw.wear_tests.columns import head
 from wearlaw.wear_tests.tests import WearTests
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from wearlaw.figures.curves import FigureData
-    from wearlaw.pipeline import Pipeline
+    from wearlaw.pipeline.pipeline import Pipeline
 
 
 @dataclass(frozen=True, eq=False, repr=False)

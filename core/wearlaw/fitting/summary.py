@@ -9,10 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw import plugins
-from wearlaw.arrays import Array
-from wearlaw.base_rig import Rig
-from wearlaw.configuration import known_name
+from wearlaw.arrays.array import Array
 from wearlaw.errors import ConfigurationError, FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
 from wearlaw.fitting.intervals import Replicates, covariance, student_intervals, studentised_intervals
@@ -20,10 +17,13 @@ from wearlaw.fitting.least_squares import Solutions
 from wearlaw.fitting.observations import FLOOR, Observations, named, wear_index_density
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.task import Task
-from wearlaw.models import Calibration, WearLaw
-from wearlaw.parameters import changed
-from wearlaw.tangential import Model
-from wearlaw.units import Quantity, in_unit
+from wearlaw.models.contact_model import Model
+from wearlaw.models.rig import Rig
+from wearlaw.models.wear_law import Calibration, WearLaw
+from wearlaw.plugins import loader
+from wearlaw.settings.configuration import known_name
+from wearlaw.settings.parameters import changed
+from wearlaw.units.quantities import Quantity, in_unit
 from wearlaw.version import __version__
 
 DIGITS = 4
@@ -158,7 +158,7 @@ def _provenance(
 ) -> dict[str, Any]:
     """Return where a fit comes from, as a table that TOML can hold."""
     model = task.predict.contact_model
-    found = plugins.installed()
+    found = loader.installed()
     origin = {} if law is None else {"wear_law": found.wear_laws.distribution(law.name, type(law))}
     return {
         "wearlaw": __version__,

@@ -10,15 +10,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays import Array
-from wearlaw.composition import needs_discs
+from wearlaw.arrays.array import Array
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, named
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
 from wearlaw.fitting.observations import Observations, Scatter, observe
-from wearlaw.pipeline import Pipeline
-from wearlaw.units import QuantityLike, coefficient
+from wearlaw.pipeline.composition import needs_discs
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.units.quantities import QuantityLike, coefficient
 from wearlaw.wear_tests.tests import WearTests
 
 NEAR = 10.0

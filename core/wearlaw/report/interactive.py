@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis, has_band
 from wearlaw.figures.drawing import LINES, MARKERS, PALETTE, has_markers, marked_points
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from wearlaw.figures.curves import FigureData
 from wearlaw.report.interactive import plotly_figure
 from wearlaw.report.tables import Cell, cell, models, parameters, profiles, summaries
-from wearlaw.study import Study, used
+from wearlaw.study.study import Study, used
 from wearlaw.version import __version__
 
 if TYPE_CHECKING:

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pint
 
-from wearlaw.configuration import Configuration
-from wearlaw.docstrings import field_docstrings
-from wearlaw.registry import symbol
-from wearlaw.study import Study, along_main_axis, axes_of, main_axis, used
-from wearlaw.tangential import Model
-from wearlaw.variables import label as label_of
-from wearlaw.variables import name_of
+from wearlaw.models.contact_model import Model
+from wearlaw.pipeline.variables import label as label_of
+from wearlaw.pipeline.variables import name_of
+from wearlaw.settings.configuration import Configuration
+from wearlaw.settings.docstrings import field_docstrings
+from wearlaw.study.study import Study, along_main_axis, axes_of, main_axis, used
+from wearlaw.units.registry import symbol
 
 if TYPE_CHECKING:
     import pandas as pd

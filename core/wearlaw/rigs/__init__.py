@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from wearlaw.base_rig import Rig
 from wearlaw.hookspecs import hookimpl
+from wearlaw.models.rig import Rig
 from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
 

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Unpack
 import numpy as np
 from pydantic import model_validator
 
-from wearlaw import hertz
-from wearlaw.arrays import Array
-from wearlaw.base_rig import Body, Rig, check_sizes
-from wearlaw.conditions import TWIN_DISC, TwinDiscConditions, condition_arrays
-from wearlaw.configuration import Configuration
+from wearlaw.arrays.array import Array
+from wearlaw.contact import hertz
+from wearlaw.contact.conditions import TWIN_DISC, TwinDiscConditions, condition_arrays
+from wearlaw.contact.material import Material, steel
+from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import InputError, UnitError
-from wearlaw.material import Material, steel
-from wearlaw.problem import Geometry, Problem
-from wearlaw.specification import MaterialField
-from wearlaw.units import (
+from wearlaw.models.rig import Body, Rig, check_sizes
+from wearlaw.plugins.fields import MaterialField
+from wearlaw.settings.configuration import Configuration
+from wearlaw.units.quantities import (
     Length,
     Q,
     Quantity,

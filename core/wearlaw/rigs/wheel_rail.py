@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Unpack
 import numpy as np
 from pydantic import Field, model_validator
 
-from wearlaw import hertz, hertz_ellipse
-from wearlaw.base_rig import Body, Rig, check_sizes
-from wearlaw.conditions import WHEEL_RAIL, WheelRailConditions, condition_arrays
-from wearlaw.material import Material
-from wearlaw.problem import Geometry, Problem
-from wearlaw.specification import MaterialField
-from wearlaw.units import Length, Quantity, QuantityLike, Speed, Unit, scalar_si
+from wearlaw.contact import hertz, hertz_ellipse
+from wearlaw.contact.conditions import WHEEL_RAIL, WheelRailConditions, condition_arrays
+from wearlaw.contact.material import Material
+from wearlaw.contact.problem import Geometry, Problem
+from wearlaw.models.rig import Body, Rig, check_sizes
+from wearlaw.plugins.fields import MaterialField
+from wearlaw.units.quantities import Length, Quantity, QuantityLike, Speed, Unit, scalar_si
 
 Radius = Annotated[Quantity, Unit("mm", positive=False, infinite=True)]
 

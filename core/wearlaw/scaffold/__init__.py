@@ -15,10 +15,10 @@ from typing import Any, Literal, TypeAlias
 
 from packaging.utils import canonicalize_name
 
-from wearlaw import plugins
 from wearlaw.errors import InputError, OutputError
-from wearlaw.output_folder import fresh_folder
-from wearlaw.shelf import Shelf
+from wearlaw.output.folder import fresh_folder
+from wearlaw.plugins import loader
+from wearlaw.plugins.shelf import Shelf
 from wearlaw.version import __version__
 
 Kind: TypeAlias = Literal["wear_law", "contact_model", "rig"]
@@ -115,7 +115,7 @@ def _takers(name: str, kind: Kind) -> Iterator[str]:
     `wearlaw show` and `check` take rigs, contact models and wear laws alike, and a wear law hides the parameter set of
     its name. Materials and cases are looked up apart. A distribution replaces that of its name.
     """
-    found = plugins.installed()
+    found = loader.installed()
     shelves: list[Shelf[Any]] = [found.wear_laws, found.contact_models, found.rigs]
     if kind == "wear_law":
         shelves.append(found.parameter_sets)

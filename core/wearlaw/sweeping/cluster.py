@@ -6,7 +6,7 @@ import time
 from collections.abc import Generator, Iterable
 from typing import Any
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.errors import ModelError, SweepError, described
 from wearlaw.sweeping.evaluation import Seen
 from wearlaw.sweeping.points import Block, Points

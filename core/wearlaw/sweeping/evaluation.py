@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 import pint
 
-from wearlaw import kernels
-from wearlaw.arrays import Array
+from wearlaw.arrays import kernels
+from wearlaw.arrays.array import Array
+from wearlaw.arrays.extremes import extremes
 from wearlaw.errors import CompositionError, InputError, did_you_mean
-from wearlaw.extremes import extremes
-from wearlaw.pipeline import Pipeline
-from wearlaw.registry import symbol
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.variables import UNITS
 from wearlaw.sweeping.points import Points
-from wearlaw.units import Quantity
-from wearlaw.variables import UNITS
+from wearlaw.units.quantities import Quantity
+from wearlaw.units.registry import symbol
 
 Outputs = dict[str, Array]
 """Results of a block by name, (points,) each, in the units of its job."""

@@ -6,15 +6,15 @@ import warnings
 from collections.abc import Callable, Sequence
 from contextlib import closing
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.errors import RangeWarning
-from wearlaw.pipeline import Pipeline
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.variables import UNITS
 from wearlaw.sweeping.checkpoint import Checkpoint
 from wearlaw.sweeping.evaluation import Job
 from wearlaw.sweeping.points import Points
 from wearlaw.sweeping.sweep import check_importable, run
 from wearlaw.sweeping.targets import Memory
-from wearlaw.variables import UNITS
 
 
 class Evaluator:

@@ -15,14 +15,14 @@ from typing import Any, Self
 import pint
 from pydantic import TypeAdapter
 
-from wearlaw import plugins
-from wearlaw.configuration import parts
+from wearlaw.arrays.kernels import WORTHWHILE, accelerated
 from wearlaw.errors import OutputError
-from wearlaw.kernels import WORTHWHILE, accelerated
+from wearlaw.models.contact_model import Model
+from wearlaw.plugins import loader
+from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, Seen
 from wearlaw.sweeping.points import Points, Varying
-from wearlaw.tangential import Model
-from wearlaw.units import text_of
+from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 
 Run = dict[str, Any]
@@ -34,7 +34,7 @@ SYNC_S = 1.0
 
 def run_of(job: Job, points: Points) -> Run:
     """Return what decides about the results of a sweep: versions, pipeline, conditions, outputs and blocks."""
-    found = plugins.installed()
+    found = loader.installed()
     provided = {}
     for part in parts(job.pipeline):
         if isinstance(part, Model):

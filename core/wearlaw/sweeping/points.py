@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pint
 
-from wearlaw.arrays import Array
-from wearlaw.conditions import is_friction_law
+from wearlaw.arrays.array import Array
+from wearlaw.contact.conditions import is_friction_law
 from wearlaw.errors import ConditionsError, UnitError
-from wearlaw.registry import symbol
-from wearlaw.units import Q, parse, real_array
+from wearlaw.units.quantities import Q, parse, real_array
+from wearlaw.units.registry import symbol
 
 if TYPE_CHECKING:
     import xarray

@@ -15,7 +15,7 @@ from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from typing import IO, TypeAlias
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.errors import SweepError
 from wearlaw.sweeping.evaluation import Seen
 from wearlaw.sweeping.points import Block, Points

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, OutputError
 from wearlaw.sweeping.evaluation import Job
 from wearlaw.sweeping.journal import Journal, check_same, run_of, sync_file

@@ -10,10 +10,10 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wearlaw.composition import warn_of_geometry
-from wearlaw.configuration import parts
 from wearlaw.errors import InputError, RangeWarning, ResumeWarning, WorkerWarning
-from wearlaw.pipeline import Pipeline
+from wearlaw.pipeline.composition import warn_of_geometry
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.cluster import on_cluster
 from wearlaw.sweeping.evaluation import Job, notes, output_units
 from wearlaw.sweeping.points import Block, Points, outer_product
@@ -23,7 +23,7 @@ from wearlaw.sweeping.store import Store, finished
 from wearlaw.sweeping.tables import from_table
 from wearlaw.sweeping.targets import Memory, Target, damage
 from wearlaw.sweeping.worker import evaluated
-from wearlaw.units import shortened
+from wearlaw.units.quantities import shortened
 
 if TYPE_CHECKING:
     import pandas

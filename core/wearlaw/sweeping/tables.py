@@ -10,9 +10,9 @@ import numpy as np
 import pint
 
 from wearlaw.errors import ConditionsError, DataError, UnitError
-from wearlaw.registry import symbol
 from wearlaw.sweeping.points import Points, Varying, axis, split
-from wearlaw.units import HEAD, Q
+from wearlaw.units.quantities import HEAD, Q
+from wearlaw.units.registry import symbol
 
 ROW = "row"
 """The dimension of the rows of a table that has no name for them."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.sweeping.evaluation import Job, Seen, checksum
 from wearlaw.sweeping.journal import Journal, Run, run_of
 from wearlaw.sweeping.points import Block, Points

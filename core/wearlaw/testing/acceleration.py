@@ -6,17 +6,17 @@ from typing import ClassVar
 
 import numpy as np
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
+from wearlaw.arrays.kernels import accelerate
+from wearlaw.contact.contact import Contact
 from wearlaw.errors import InputError
-from wearlaw.kernels import accelerate
-from wearlaw.models import BreakpointMap, Numbers, WearLaw
-from wearlaw.records import Contact
+from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.wear_law import BreakpointMap, Numbers, WearLaw
 from wearlaw.rigs.twin_disc import TwinDisc
-from wearlaw.tangential import ContactModel, Model
 from wearlaw.testing.ellipses import WHEEL_RAIL
 from wearlaw.testing.examples import SAME, SUM, assert_close
 from wearlaw.testing.sampling import random_contacts, rows
-from wearlaw.units import Q
+from wearlaw.units.quantities import Q
 
 
 class Ramps(WearLaw):

@@ -12,12 +12,12 @@ from functools import partial
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.line_model import LineContactModel
-from wearlaw.problem import Problem
-from wearlaw.quadrature import uniform_cells
-from wearlaw.records import Contact
-from wearlaw.tangential import QUADRATURE, ContactModel
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import Problem
+from wearlaw.contact.quadrature import uniform_cells
+from wearlaw.models.contact_model import QUADRATURE, ContactModel
+from wearlaw.models.line_contact_model import LineContactModel
 from wearlaw.testing.bisection import lost_digits
 from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
 from wearlaw.testing.sampling import EPS

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.line_model import LineContactModel
-from wearlaw.problem import Problem
-from wearlaw.quadrature import uniform_cells
-from wearlaw.records import Contact
-from wearlaw.tangential import QUADRATURE, ContactModel
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import Problem
+from wearlaw.contact.quadrature import uniform_cells
+from wearlaw.models.contact_model import QUADRATURE, ContactModel
+from wearlaw.models.line_contact_model import LineContactModel
 from wearlaw.testing.contact_checks import random_problems, saturation, with_creepage
 from wearlaw.testing.examples import SUM, assert_close, for_each
 from wearlaw.testing.shared_checks import Claims, friction_limit

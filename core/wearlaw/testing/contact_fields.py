@@ -6,10 +6,10 @@ from typing import get_args
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.line_model import FieldVariable, LineContactModel
-from wearlaw.problem import Problem
-from wearlaw.quadrature import Nodes
+from wearlaw.arrays.array import Array
+from wearlaw.contact.problem import Problem
+from wearlaw.contact.quadrature import Nodes
+from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
 from wearlaw.testing.contact_checks import random_problems
 from wearlaw.testing.examples import SAME, SUM, assert_close
 

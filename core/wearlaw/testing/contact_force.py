@@ -6,9 +6,9 @@ from functools import partial
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.problem import Problem
-from wearlaw.tangential import ContactModel
+from wearlaw.arrays.array import Array
+from wearlaw.contact.problem import Problem
+from wearlaw.models.contact_model import ContactModel
 from wearlaw.testing.bisection import Indices, find_jumps
 from wearlaw.testing.contact_checks import (
     error_of_force,

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from wearlaw.arrays import Array
-from wearlaw.problem import Problem
-from wearlaw.records import Contact
-from wearlaw.tangential import ContactModel
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import Problem
+from wearlaw.models.contact_model import ContactModel
 from wearlaw.testing.contact_checks import (
     error_of_force,
     error_of_traction,

@@ -8,11 +8,11 @@ from typing import Any, get_args
 import numpy as np
 import pint
 
-from wearlaw.docstrings import field_docstrings
-from wearlaw.functions import VARIABLES
-from wearlaw.models import WearLaw
-from wearlaw.records import Contact
-from wearlaw.tangential import Claim, ContactModel, Model
+from wearlaw.contact.contact import Contact
+from wearlaw.models.contact_model import Claim, ContactModel, Model
+from wearlaw.models.functions import VARIABLES
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.testing.examples import for_each
 from wearlaw.testing.law_shape import contacts_for
 from wearlaw.testing.sampling import forward

@@ -9,7 +9,7 @@ from wearlaw.errors import InputError, did_you_mean
 from wearlaw.testing.kit import Check, checks
 
 if TYPE_CHECKING:
-    from wearlaw.tangential import Model
+    from wearlaw.models.contact_model import Model
 
 TestFunction = TypeVar("TestFunction", bound=Callable[[Check], None])
 

@@ -12,12 +12,12 @@ from functools import partial
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.conditions import WheelRailConditions
-from wearlaw.elliptic_contact import TOTALS, EllipticContact
-from wearlaw.problem import CreepForces, Problem
-from wearlaw.records import NODE_VARIABLES
-from wearlaw.tangential import ContactModel
+from wearlaw.arrays.array import Array
+from wearlaw.contact.conditions import WheelRailConditions
+from wearlaw.contact.contact import NODE_VARIABLES
+from wearlaw.contact.elliptic_contact import TOTALS, EllipticContact
+from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.models.contact_model import ContactModel
 from wearlaw.testing.acceleration import Ramps
 from wearlaw.testing.bisection import lost_digits
 from wearlaw.testing.ellipses import (
@@ -32,7 +32,7 @@ from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
 from wearlaw.testing.sampling import EPS
 from wearlaw.testing.shared_checks import assert_double, assert_finite, assert_solved_alike, assert_unchanged
 from wearlaw.testing.strategies import ELLIPTIC_PROBLEMS, TWO_ELLIPTIC_PROBLEMS
-from wearlaw.units import Q
+from wearlaw.units.quantities import Q
 
 FIELDS = (
     "pressure", "traction", "slip", "traction_bound", "area", "x", "y", "traction_x", "traction_y", "slip_x", "slip_y",

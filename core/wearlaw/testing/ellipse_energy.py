@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.elliptic_contact import EllipticContact
-from wearlaw.problem import CreepForces, Problem
-from wearlaw.tangential import QUADRATURE, ContactModel
+from wearlaw.arrays.array import Array
+from wearlaw.contact.elliptic_contact import EllipticContact
+from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.models.contact_model import QUADRATURE, ContactModel
 from wearlaw.testing.contact_energy import CHANCE, REFINEMENTS, assert_improved, refinements
 from wearlaw.testing.ellipse_checks import forces_of, sums_of
 from wearlaw.testing.ellipses import (

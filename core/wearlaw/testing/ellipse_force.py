@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.elliptic_contact import EllipticContact
-from wearlaw.problem import CreepForces, Problem
-from wearlaw.tangential import ContactModel
+from wearlaw.arrays.array import Array
+from wearlaw.contact.elliptic_contact import EllipticContact
+from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.models.contact_model import ContactModel
 from wearlaw.testing.bisection import Indices, find_jumps
 from wearlaw.testing.ellipse_checks import forces_of
 from wearlaw.testing.ellipses import (

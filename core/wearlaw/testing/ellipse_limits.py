@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from wearlaw.arrays import Array
-from wearlaw.elliptic_contact import EllipticContact
-from wearlaw.problem import CreepForces, Problem
-from wearlaw.tangential import ContactModel
+from wearlaw.arrays.array import Array
+from wearlaw.contact.elliptic_contact import EllipticContact
+from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.models.contact_model import ContactModel
 from wearlaw.testing.ellipses import (
     Creepages,
     assert_same_forces,

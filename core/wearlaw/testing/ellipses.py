@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wearlaw import kalker
-from wearlaw.arrays import Array
-from wearlaw.material import steel
-from wearlaw.problem import CreepForces, Problem
+from wearlaw.arrays.array import Array
+from wearlaw.contact import kalker
+from wearlaw.contact.material import steel
+from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.models.contact_model import ContactModel
 from wearlaw.rigs.wheel_rail import WheelRail
-from wearlaw.tangential import ContactModel
 from wearlaw.testing.examples import SAME, SUM, assert_close
 from wearlaw.testing.shared_checks import friction_limit
 

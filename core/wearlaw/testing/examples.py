@@ -10,7 +10,7 @@ import numpy as np
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.testing.sampling import EPS
 
 T = TypeVar("T")

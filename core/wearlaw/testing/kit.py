@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from wearlaw.base_rig import Rig
 from wearlaw.errors import InputError, described
-from wearlaw.line_model import LineContactModel
-from wearlaw.models import WearLaw
-from wearlaw.tangential import ContactModel, Model
+from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.rig import Rig
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.testing import (
     acceleration,
     contact_checks,

@@ -8,10 +8,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
 from wearlaw.errors import CompositionError
-from wearlaw.models import WearLaw
-from wearlaw.records import Contact
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.testing.examples import SAME, assert_close, for_each
 from wearlaw.testing.law_shape import contacts_for
 from wearlaw.testing.sampling import aimed, at_nodes, forward, random_contacts, retotalled, rows

@@ -10,9 +10,9 @@ from functools import cache
 import numpy as np
 from hypothesis import strategies as st
 
-from wearlaw.arrays import Array
-from wearlaw.models import WearLaw
-from wearlaw.records import Contact
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.testing.examples import assert_close, for_each
 from wearlaw.testing.sampling import retotalled
 from wearlaw.testing.strategies import contacts

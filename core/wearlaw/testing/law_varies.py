@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
 from wearlaw.errors import WearlawError
-from wearlaw.models import Numbers, WearLaw
-from wearlaw.parameters import changed, number_like, numbers
-from wearlaw.records import Contact
+from wearlaw.models.wear_law import Numbers, WearLaw
+from wearlaw.settings.parameters import changed, number_like, numbers
 from wearlaw.testing.examples import assert_close, for_each
 from wearlaw.testing.law_shape import contacts_for
 from wearlaw.testing.sampling import rows

@@ -13,13 +13,13 @@ from typing import Any, TypeAlias
 import numpy as np
 import pint
 
-from wearlaw.arrays import Array
-from wearlaw.base_rig import Body, Rig
+from wearlaw.arrays.array import Array
+from wearlaw.contact.material import Material
+from wearlaw.contact.problem import Geometry
 from wearlaw.errors import ConditionsError, InputError, UnitError, WearlawError, described
-from wearlaw.material import Material
-from wearlaw.problem import Geometry
+from wearlaw.models.rig import Body, Rig
 from wearlaw.testing.examples import assert_close
-from wearlaw.units import Q, Quantity, parse, scalar_si
+from wearlaw.units.quantities import Q, Quantity, parse, scalar_si
 
 Conditions: TypeAlias = dict[str, Any]
 

@@ -11,16 +11,16 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from wearlaw.base_rig import Rig
-from wearlaw.models import WearLaw
-from wearlaw.problem import Geometry
+from wearlaw.contact.problem import Geometry
+from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.rig import Rig
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.rigs.twin_disc import TwinDisc
-from wearlaw.tangential import ContactModel, Model
 from wearlaw.testing import fresh
 from wearlaw.testing.ellipses import random_ellipses
 from wearlaw.testing.examples import assert_close
 from wearlaw.testing.sampling import random_contacts
-from wearlaw.units import Q
+from wearlaw.units.quantities import Q
 
 
 class RoundTrip:

@@ -6,8 +6,8 @@ import dataclasses
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.records import Contact
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
 
 EPS = float(np.finfo(np.float64).eps)
 

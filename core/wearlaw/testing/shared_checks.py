@@ -9,10 +9,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.problem import Problem
-from wearlaw.records import Contact
-from wearlaw.tangential import Claim, ContactModel
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import Problem
+from wearlaw.models.contact_model import Claim, ContactModel
 from wearlaw.testing.examples import SAME, SUM
 
 Claims: TypeAlias = Mapping[Claim, tuple[Callable[..., None], ...]]

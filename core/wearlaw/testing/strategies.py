@@ -14,16 +14,16 @@ import numpy as np
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from wearlaw import hertz
-from wearlaw.arrays import Array
-from wearlaw.material import Material
-from wearlaw.problem import Problem
-from wearlaw.records import Contact
+from wearlaw.arrays.array import Array
+from wearlaw.contact import hertz
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.material import Material
+from wearlaw.contact.problem import Problem
 from wearlaw.rigs.twin_disc import Disc, TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.testing.ellipses import SATURATION, Creepages, at_reduced
 from wearlaw.testing.sampling import CONDITIONS_DRAWN, NODE_VALUES_DRAWN, aimed, contact_from_shares
-from wearlaw.units import Q
+from wearlaw.units.quantities import Q
 
 
 @cache  # hypothesis validates each new strategy, which costs more than drawing from it

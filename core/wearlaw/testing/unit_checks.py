@@ -13,21 +13,21 @@ from typing import Any, TypeAlias
 import numpy as np
 import pint
 
-from wearlaw.arrays import Array
-from wearlaw.base_rig import Rig
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import Geometry
 from wearlaw.errors import WearlawError
-from wearlaw.models import WearLaw
-from wearlaw.problem import Geometry
-from wearlaw.records import Contact
-from wearlaw.registry import application_registry
+from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.rig import Rig
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.rigs.twin_disc import TwinDisc
-from wearlaw.tangential import ContactModel, Model
 from wearlaw.testing.contact_checks import random_problems
 from wearlaw.testing.ellipses import WHEEL_RAIL, random_ellipses
 from wearlaw.testing.examples import SAME, assert_close
 from wearlaw.testing.rig_checks import values_of, varied
 from wearlaw.testing.sampling import EPS, random_contacts
-from wearlaw.units import Q
+from wearlaw.units.quantities import Q
+from wearlaw.units.registry import application_registry
 
 CONVERTED = 2.0 * EPS
 """Relative error of a value that was converted to another unit and back."""

@@ -8,9 +8,9 @@ from typing import Literal
 import numpy as np
 import pint
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, UnitError
-from wearlaw.units import Q, Quantity, QuantityLike, coefficient, parse, real_array, shortened, shown
+from wearlaw.units.quantities import Q, Quantity, QuantityLike, coefficient, parse, real_array, shortened, shown
 
 Value = Quantity | float
 """A value with its unit, or a plain number where the thing has none."""

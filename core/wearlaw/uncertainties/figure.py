@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.units import Quantity, from_si
-from wearlaw.variables import UNITS, label
+from wearlaw.pipeline.variables import UNITS, label
+from wearlaw.units.quantities import Quantity, from_si
 
 if TYPE_CHECKING:
     from wearlaw.uncertainties.result import Uncertainty

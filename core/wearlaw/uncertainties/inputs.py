@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import pint
 
-from wearlaw.arrays import Array
-from wearlaw.conditions import TWIN_DISC
+from wearlaw.arrays.array import Array
+from wearlaw.contact.conditions import TWIN_DISC
 from wearlaw.errors import InputError, did_you_mean
-from wearlaw.models import WearLaw
-from wearlaw.parameters import changed, number_in_si, number_like, numbers
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange, uniform
-from wearlaw.units import Unit, coefficient, shortened
+from wearlaw.units.quantities import Unit, coefficient, shortened
 
 
 @dataclass(frozen=True)

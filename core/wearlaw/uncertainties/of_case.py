@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wearlaw.case import Case
 from wearlaw.errors import InputError
-from wearlaw.notes import Notes
-from wearlaw.pairs import Pair, pairs_of
+from wearlaw.pipeline.notes import Notes
+from wearlaw.study.case import Case
+from wearlaw.study.pairs import Pair, pairs_of
 from wearlaw.uncertainties.figure import CONFIDENCE
 from wearlaw.uncertainties.result import Uncertainty, uncertainty
-from wearlaw.units import WEAR_RATE
+from wearlaw.units.quantities import WEAR_RATE
 
 if TYPE_CHECKING:
     import pandas as pd

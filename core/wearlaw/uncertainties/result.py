@@ -8,28 +8,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.composition import check_traction, needs_discs
-from wearlaw.conditions import TWIN_DISC, broadcast, is_friction_law
+from wearlaw.arrays.array import Array
+from wearlaw.contact.conditions import TWIN_DISC, broadcast, is_friction_law
 from wearlaw.errors import InputError, UnitError
-from wearlaw.grid import with_units
-from wearlaw.integrate import integrate_forces, integrate_wear, patch_area
-from wearlaw.models import Numbers
-from wearlaw.ranges import RangeWatch, mean_over_patch
+from wearlaw.models.wear_law import Numbers
+from wearlaw.numerics.integrate import integrate_forces, integrate_wear, patch_area
+from wearlaw.pipeline.composition import check_traction, needs_discs
+from wearlaw.pipeline.ranges import RangeWatch, mean_over_patch
+from wearlaw.study.grid import with_units
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
 from wearlaw.uncertainties.figure import CONFIDENCE, figure_data
 from wearlaw.uncertainties.inputs import OTHERS, Uncertain, check_samples, parameter, split
-from wearlaw.units import WEAR_RATE, Q, Quantity, QuantityLike, from_si, shortened
+from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, QuantityLike, from_si, shortened
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from wearlaw.conditions import FrictionLaw
+    from wearlaw.contact.conditions import FrictionLaw
+    from wearlaw.contact.problem import Problem
     from wearlaw.figures.curves import FigureData
-    from wearlaw.pipeline import Pipeline
-    from wearlaw.problem import Problem
+    from wearlaw.pipeline.pipeline import Pipeline
 
 MOST_SAMPLES = 2**22
 """The most samples that are taken on."""

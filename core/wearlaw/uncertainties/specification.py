@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from wearlaw.base_rig import Rig
-from wearlaw.configuration import Configuration
 from wearlaw.errors import ConfigurationError, Fault, InputError, did_you_mean
-from wearlaw.grid import Value, wrong_conditions
-from wearlaw.models import WearLaw
+from wearlaw.models.rig import Rig
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.settings.configuration import Configuration
+from wearlaw.study.grid import Value, wrong_conditions
 from wearlaw.uncertainties.distributions import (
     Distribution,
     PublishedRange,

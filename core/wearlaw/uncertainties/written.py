@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from wearlaw.case import Case, written
 from wearlaw.errors import OutputError
-from wearlaw.output import FigureFormat, save_figure, save_table
-from wearlaw.study import provenance
+from wearlaw.output.results import FigureFormat, save_figure, save_table
+from wearlaw.study.case import Case, written
+from wearlaw.study.study import provenance
 from wearlaw.uncertainties.of_case import CaseUncertainty
 
 UNCERTAINTY = "uncertainty.json"

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from wearlaw.arrays import Array
-from wearlaw.conditions import LOADS
+from wearlaw.arrays.array import Array
+from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import UnitError
-from wearlaw.registry import si_factor
-from wearlaw.units import WEAR_RATE, Q
+from wearlaw.units.quantities import WEAR_RATE, Q
+from wearlaw.units.registry import si_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wearlaw.errors import DataError, UnitError, did_you_mean
-from wearlaw.units import HEAD
+from wearlaw.units.quantities import HEAD
 from wearlaw.wear_tests.columns import COLUMNS, factor, faulty_columns, head
 
 TEXTS = ("label", "comment")

@@ -10,11 +10,11 @@ from typing import NoReturn
 
 import numpy as np
 
-from wearlaw import plugins
-from wearlaw.arrays import Array
+from wearlaw.arrays.array import Array
 from wearlaw.errors import DataError, did_you_mean
-from wearlaw.text_files import UTF_16, decoded
-from wearlaw.units import shortened
+from wearlaw.plugins import loader
+from wearlaw.settings.text_files import UTF_16, decoded
+from wearlaw.units.quantities import shortened
 from wearlaw.wear_tests.columns import COLUMNS, faulty, with_traction
 from wearlaw.wear_tests.csv_table import TEXTS, Head, Problems, Table, table_of
 from wearlaw.wear_tests.tests import WearTests
@@ -52,7 +52,7 @@ def text_of_tests(path_or_name: str | Path) -> str:
     DataError
         If there is neither, or the file is no text.
     """
-    found = plugins.installed()
+    found = loader.installed()
     if path_or_name in found.test_sets.providers:
         return found.test_sets.find(str(path_or_name), found.broken)
     path = Path(path_or_name)

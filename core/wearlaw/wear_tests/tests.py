@@ -14,18 +14,18 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 import pint
 
-from wearlaw.arrays import Array
-from wearlaw.conditions import LOADS
+from wearlaw.arrays.array import Array
+from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import ConditionsError, DataError, UnitError
-from wearlaw.registry import symbol
-from wearlaw.units import Quantity, QuantityLike, from_si, parse, real_array
+from wearlaw.units.quantities import Quantity, QuantityLike, from_si, parse, real_array
+from wearlaw.units.registry import symbol
 from wearlaw.wear_tests.columns import COLUMNS, factor, faulty, faulty_columns, head, with_traction
 
 if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import ArrayLike
 
-    from wearlaw.tangential import ContactModel
+    from wearlaw.models.contact_model import ContactModel
 
 
 @dataclass(frozen=True, eq=False, repr=False)

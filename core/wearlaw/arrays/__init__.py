@@ -1,0 +1,1 @@
+"""Arrays of SI values: their type, their extremes, and loops over them that numba compiles."""

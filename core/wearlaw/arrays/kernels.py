@@ -1,0 +1,157 @@
+"""Kernels: formulas for one operating point that run compiled where numba is installed.
+
+A kernel is written twice, as a scalar function that numba can compile and as a function of NumPy arrays. Single
+operating points take the scalar function as it is; arrays take the compiled one if numba is installed and not turned
+off, else the NumPy one. All three agree to rounding.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Callable
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.errors import InputError
+
+SETTING = "WEARLAW_ACCELERATE"
+"""The environment variable that turns compiled kernels off with "0"."""
+
+WORTHWHILE = 10_000
+"""Operating points from which on compiled kernels are chosen; loading numba takes longer than fewer take in NumPy."""
+
+_chosen: bool | None = None
+
+
+def accelerate(on: bool | None) -> None:
+    """Turn compiled kernels on or off in this process; None returns to the choice by size and environment.
+
+    Raises
+    ------
+    InputError
+        If they are turned on, but numba is not installed.
+    """
+    global _chosen
+    if on and _numba() is None:
+        raise InputError('accelerate: numba is not installed; python -m pip install "wearlaw[fast]"')
+    _chosen = on
+
+
+def chosen() -> bool | None:
+    """Return what `accelerate` was last told."""
+    return _chosen
+
+
+def accelerated(points: int) -> bool:
+    """Return whether an array of so many operating points runs through compiled kernels."""
+    if _chosen is not None:
+        return _chosen
+    return points >= WORTHWHILE and os.environ.get(SETTING, "1") != "0" and _numba() is not None
+
+
+class Kernel:
+    """A formula for one operating point, as made by `kernel`."""
+
+    def __init__(self, scalar: Callable[..., float], arrays: Callable[..., Array]) -> None:
+        self.scalar = scalar
+        self.arrays = arrays
+
+    def __call__(self, first: Array, *others: Array | float) -> Array:
+        """Return the formula of float64 arrays of one shape, of which all but the first may be single numbers."""
+        arguments = (first, *others)
+        if first.ndim == 0:
+            value: Any = np.float64(self.scalar(*map(float, arguments)))  # computes as an array without axes does
+            return value  # type: ignore[no-any-return]
+        if first.size == 1:
+            return np.full(first.shape, self.scalar(*map(_number, arguments)))
+        with np.errstate(over="ignore"):  # a threshold may lie infinitely far above what there is
+            return self.compiled(*arguments) if accelerated(first.size) else self.arrays(*arguments)
+
+    @functools.cached_property
+    def compiled(self) -> Callable[..., Array]:
+        """The scalar function, compiled by numba for arrays."""
+        numba = _numba()
+        options = {"fastmath": {"contract"}}  # a multiplication and an addition with one rounding, as C compilers do
+        function = _with_compiled(self.scalar, numba.njit(**options))
+        signature = numba.float64(*[numba.float64] * function.__code__.co_argcount)
+        made: Callable[..., Array] = compiled("vectorize", function, signature, **options)
+        return made
+
+
+def kernel(arrays: Callable[..., Array]) -> Callable[[Callable[..., float]], Kernel]:
+    """Return a decorator that makes a kernel of a scalar function.
+
+    Parameters
+    ----------
+    arrays : callable
+        The same formula of float64 arrays of one shape, of which all but the first may be single numbers. The scalar
+        function takes as many floats and returns one; it uses only what numba can compile, such as `math` and
+        functions of its module that do the same.
+    """
+    return lambda scalar: Kernel(scalar, arrays)
+
+
+def compiled_loop(signature: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Return a decorator that makes a compiled function of loops over arrays, which fills some of them.
+
+    It is compiled when it is first called, so it is called only where `accelerated` says so. Division by zero gives
+    infinity or NaN, as in NumPy.
+
+    Parameters
+    ----------
+    signature : str
+        Types of the arguments, as numba reads them. The function uses only what numba can compile, such as `math`
+        and functions of its module that do the same.
+    """
+    options = {"fastmath": {"contract"}, "error_model": "numpy"}
+
+    def decorate(function: Callable[..., None]) -> Callable[..., None]:
+        @functools.cache
+        def made() -> Any:
+            return compiled("njit", _with_compiled(function, _numba().njit(**options)), signature, **options)
+
+        @functools.wraps(function)
+        def run(*arguments: object) -> None:
+            made()(*arguments)
+
+        return run
+
+    return decorate
+
+
+def compiled(compiler: str, function: Callable[..., Any], signature: object, **options: Any) -> Any:
+    """Return what a compiler of numba makes of a function, kept on disk for later processes where there is room."""
+    compile_ = getattr(_numba(), compiler)
+    try:
+        return compile_([signature], cache=True, **options)(function)
+    except (RuntimeError, OSError):  # no folder that numba may write to, or no room there
+        return compile_([signature], **options)(function)
+
+
+def _with_compiled(function: Any, compiler: Callable[[FunctionType], Any]) -> FunctionType:
+    """Return a copy of a function that calls compiled copies of the functions of its module."""
+    namespace = dict(function.__globals__)
+    for name in function.__code__.co_names:
+        if isinstance(namespace.get(name), FunctionType):
+            namespace[name] = compiler(_with_compiled(namespace[name], compiler))
+    copy = FunctionType(function.__code__, namespace, function.__name__, function.__defaults__, function.__closure__)
+    copy.__module__ = function.__module__
+    return copy
+
+
+def _number(value: Array | float) -> float:
+    return float(value.item()) if isinstance(value, np.ndarray) else value
+
+
+@functools.cache
+def _numba() -> Any:
+    """Return numba, or None where it is not installed or does not fit the rest of the environment."""
+    try:
+        import numba
+    except ImportError:
+        return None
+    return numba

@@ -1,0 +1,137 @@
+"""Describing a model in words, from what its class declares."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import pint
+
+from wearlaw.contact.contact import UNITS
+from wearlaw.errors import InputError
+from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.rig import Rig
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.plugins import loader
+from wearlaw.settings.docstrings import field_docstrings
+from wearlaw.units.quantities import from_si, text_of
+from wearlaw.units.registry import symbol
+
+
+def describe(model: type[Model]) -> str:
+    """Return what a user must know of a model: theory, source, fields with defaults, and what it declares."""
+    lines = [_headline(model), "", inspect.getdoc(model) or "", "", *_wrapped("source: ", model.source), "", "fields:"]
+    default = _default(model)
+    schema = model.model_json_schema(by_alias=False).get("properties", {})
+    for name, text in field_docstrings(model).items():
+        lines += _field(name, default, _choices(schema[name]), text)
+    lines += [] if schema else ["  none"]
+    if issubclass(model, Rig):
+        conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
+        return "\n".join([*lines, *conditions, *_example(model)])
+    lines += ["", "declares:", *(f"  {text}" for text in _declared(default))]
+    return "\n".join(lines)
+
+
+def _headline(model: type[Model]) -> str:
+    found = loader.installed()
+    return f"{model.name}: a {model.kind} of {found.of_kind(model.kind).origin(model.name)}"
+
+
+def _example(rig: type[Rig]) -> Iterator[str]:
+    """Yield lines of Python that predict the wear of the example."""
+    if not rig.example:
+        return
+    yield from ("", "example:", "  import wearlaw as wl")
+    yield from _call("rig = wl.rig", json.dumps(rig.name), *_keywords(rig.example_fields))
+    yield '  predict = rig | wl.contact_model("fastsim") | wl.wear_law("kth")'
+    yield from _call("predict", *_keywords(rig.example))
+
+
+def _call(function: str, *arguments: str) -> Iterator[str]:
+    line = f"  {function}({', '.join(arguments)})"
+    if len(line) <= 100:
+        yield line
+    else:
+        yield from (f"  {function}(", *(f"      {argument}," for argument in arguments), "  )")
+
+
+def _keywords(values: Mapping[str, Any]) -> list[str]:
+    return [f"{name}={_literal(value)}" for name, value in values.items()]
+
+
+def _literal(value: Any) -> str:
+    """Return a value as it is written in Python, quantities as text."""
+    written = isinstance(value, str | pint.Quantity | Mapping)
+    return json.dumps(value, ensure_ascii=False, default=text_of) if written else repr(value)
+
+
+def _default(model: type[Model]) -> Model | None:
+    """Return the model with its defaults, or None where fields must be given."""
+    try:
+        return model()
+    except InputError:
+        return None
+
+
+def _field(name: str, default: Model | None, choices: Sequence[str], description: str) -> Iterator[str]:
+    yield f"  {name} = {_shown(getattr(default, name))}" if default is not None else f"  {name} (must be given)"
+    if choices:
+        yield f"      one of {', '.join(choices)}"
+    yield from _wrapped("      ", description)
+
+
+def _shown(value: Any) -> str:
+    return (
+        f"{value.magnitude} {symbol(value.units, '~P')}".rstrip() if isinstance(value, pint.Quantity) else repr(value)
+    )
+
+
+def _choices(schema: Mapping[str, Any]) -> list[str]:
+    """Return the words that a field may be, from its JSON Schema."""
+    options: list[Mapping[str, Any]] = [schema, *schema.get("anyOf", [])]
+    return [repr(word) for option in options for word in option.get("enum", [])]
+
+
+def _declared(default: Model | None) -> Iterator[str]:
+    if default is None:
+        yield "what depends on its fields"
+    elif isinstance(default, WearLaw):
+        yield from _of_law(default)
+    elif isinstance(default, ContactModel):
+        yield "scale: the means of the patch" if default.scale == "patch" else "scale: the patch resolved into cells"
+        if default.uses_measured_traction:
+            yield "takes a measured traction_coefficient"
+        yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
+
+
+def _of_law(law: WearLaw) -> Iterator[str]:
+    yield "scale: means of the whole patch only" if law.scale == "patch" else "scale: patch means or cells"
+    if law.calibration is not None:
+        yield f"fitted for: {law.calibration}; {law.calibration.materials}; {law.calibration.source}"
+    if law.monotone_in:
+        yield f"never falls with: {', '.join(law.monotone_in)}"
+    breakpoints = law.breakpoints(law.numbers)
+    if breakpoints is None:
+        yield "branches: not declared"
+    for variable, values in (breakpoints or {}).items():
+        yield f"branches in {variable} at {', '.join(_si(variable, value) for value in values)}"
+    for variable, values in law.jumps(law.numbers).items():
+        yield f"jumps in {variable} at {', '.join(_si(variable, value) for value in values)}"
+    for variable, (low, high) in law.valid_range.items():
+        yield f"stated for a mean {variable} from {_si(variable, low)} to {_si(variable, high)}"
+    if law.band() is not None:
+        yield "band: published parameter ranges give a low, a middle and a high law"
+
+
+def _si(variable: str, value: float) -> str:
+    return repr(from_si(value, UNITS[variable]))
+
+
+def _wrapped(prefix: str, text: str) -> list[str]:
+    """Return a text in lines of at most 100 characters, behind a prefix."""
+    indent = " " * (len(prefix) if not prefix.strip() else 2)
+    return textwrap.wrap(" ".join(text.split()), 100, initial_indent=prefix, subsequent_indent=indent)

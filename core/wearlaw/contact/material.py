@@ -1,0 +1,65 @@
+"""The materials of the bodies in contact."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field
+
+from wearlaw.settings.configuration import Configuration
+from wearlaw.units.quantities import Density, QuantityLike, Stress
+
+
+class Material(Configuration):
+    """An isotropic elastic material."""
+
+    youngs_modulus: Stress
+    """Young's modulus, E [Pa]."""
+    poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5, strict=True)]
+    """Poisson's ratio, ν [-]."""
+    density: Density
+    """Mass density, ρ [kg/m³]."""
+    elastic_limit: Stress | None = None
+    """Maximum Hertz pressure [Pa] up to which the contact may be taken as elastic; None if not known."""
+
+    if TYPE_CHECKING:  # checkers do not know that a text is accepted for a quantity
+
+        def __init__(
+            self,
+            *,
+            youngs_modulus: QuantityLike,
+            poisson_ratio: float,
+            density: QuantityLike,
+            elastic_limit: QuantityLike | None = None,
+        ) -> None: ...
+
+
+def steel(
+    *,
+    youngs_modulus: QuantityLike = "206.47742 GPa",
+    poisson_ratio: float = 0.28,
+    density: QuantityLike = "7850 kg/m^3",
+    elastic_limit: QuantityLike | None = "1.68 GPa",
+) -> Material:
+    """Return the wheel and rail steel of the twin-disc tests, with any value overridden.
+
+    Parameters
+    ----------
+    youngs_modulus : Quantity or str
+        E [Pa]. Tassini et al. (Wear 268 (2010) 660-667) print neither E nor ν, but 741.43 kN/m for 1500 MPa on
+        discs of 47 mm, which needs E* = 112.0212 GPa; this E gives it with ν = 0.28.
+    poisson_ratio : float
+        ν [-].
+    density : Quantity or str
+        ρ [kg/m³].
+    elastic_limit : Quantity or str, optional
+        Maximum Hertz pressure [Pa] up to which the work-hardened surface stays elastic. An estimate: the
+        hardness 2.625 GPa that the KTH wear map implies, yield at H/2.8 (Tabor, The Hardness of Metals, 1951),
+        first yield in line contact at p0 = 1.79 Y (Johnson, Contact Mechanics, 1985, section 4.4).
+    """
+    return Material(
+        youngs_modulus=youngs_modulus,
+        poisson_ratio=poisson_ratio,
+        density=density,
+        elastic_limit=elastic_limit,
+    )

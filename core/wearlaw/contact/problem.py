@@ -1,0 +1,411 @@
+"""The contact problem: two bodies that are pressed together and roll, as SI arrays with one entry an operating point.
+
+x runs along the rolling direction, from the leading to the trailing edge, and y across it. Creepages are those of body
+1, an upper disc or a wheel, relative to body 2; the rigid slip is (ξ - φy, η - φx).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact import hertz
+from wearlaw.contact.conditions import CREEPAGE, SPIN, broadcast
+from wearlaw.errors import CompositionError, InputError, UnitError
+from wearlaw.units.quantities import QuantityLike, Unit, coefficient, real_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+Geometry: TypeAlias = Literal["line", "ellipse"]
+"""The shape of a contact patch: discs with parallel axes touch in a line, a wheel and a rail in an ellipse."""
+
+UNITS = {
+    "a": Unit("mm"),
+    "b": Unit("mm"),
+    "normal_force": Unit("kN"),
+    "track_width": Unit("mm"),
+    "relative_radius": Unit("mm"),
+    "shear_modulus": Unit("GPa"),
+    "creepage": CREEPAGE,
+    "longitudinal_creepage": CREEPAGE,
+    "lateral_creepage": CREEPAGE,
+    "spin": SPIN,
+    "rolling_speed": Unit("m/s"),
+    "density": Unit("kg/m^3"),
+}
+"""The units expected in `Problem.line` and `Problem.ellipse`."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CreepForces:
+    """The forces and the moment that a contact transmits, as SI arrays of the batch shape.
+
+    Attributes
+    ----------
+    longitudinal : ndarray
+        Longitudinal force [N], with the sign of the longitudinal creepage.
+    lateral : ndarray
+        Lateral force [N], with the sign of the lateral creepage and of the spin.
+    spin_moment : ndarray
+        Spin moment, Mz [N m], -∫ (x qy + y qx) dA, with the sign of the spin.
+    """
+
+    longitudinal: Array
+    lateral: Array
+    spin_moment: Array
+
+    @classmethod
+    def of(cls, columns: Mapping[str, Array]) -> Self:
+        """Return the forces that are among some columns; those of a line have no lateral force and no moment."""
+        along = columns["longitudinal"]
+        if "lateral" in columns:
+            return cls(longitudinal=along, lateral=columns["lateral"], spin_moment=columns["spin_moment"])
+        none = np.broadcast_to(0.0, along.shape)
+        return cls(longitudinal=along, lateral=none, spin_moment=none)
+
+    @property
+    def tangential(self) -> Array:
+        """Magnitude of the tangential force [N]."""
+        force: Array = np.hypot(self.longitudinal, self.lateral)
+        return force
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Problem:
+    """Hertzian contact of two rolling bodies, on a line or an ellipse: what a contact model is asked to solve.
+
+    The arrays are of one shape, the *batch*, with one entry an operating point. `Problem.line` and `Problem.ellipse`
+    make a problem of quantities. Unlike materials enter by the effective modulus and by Kalker's mean of ν/G; the
+    coupling of normal and tangential displacement between them is neglected.
+
+    Attributes
+    ----------
+    geometry : {"line", "ellipse"}
+        The shape of the patch.
+    a : ndarray
+        Half the patch's length in the rolling direction [m], of an ellipse its semi-axis.
+    b : ndarray
+        Half the patch's width across the rolling direction [m], of an ellipse its semi-axis.
+    normal_force : ndarray
+        Normal force, N [N].
+    max_pressure : ndarray
+        Hertz's maximum pressure, p0 [Pa].
+    effective_modulus : ndarray
+        Effective modulus, E* [Pa], 1/E* = (1-ν1²)/E1 + (1-ν2²)/E2.
+    poisson_ratio : ndarray
+        Poisson's ratio, ν [-].
+    friction_coefficient : ndarray
+        Friction coefficient, μ [-].
+    longitudinal_creepage : ndarray
+        Longitudinal creepage, ξ [-], positive where body 1 is the faster one.
+    lateral_creepage : ndarray
+        Lateral creepage, η [-].
+    spin : ndarray
+        Spin, φ [1/m], the relative angular velocity about the normal over the rolling speed.
+    rolling_speed : ndarray
+        Rolling speed, V [m/s].
+    density : ndarray
+        Mass density of the body whose wear is predicted, ρ [kg/m³].
+    traction_coefficient : ndarray or None
+        Measured tangential over normal force, T/N [-], where the test gave one.
+    """
+
+    geometry: Geometry
+    a: Array
+    b: Array
+    normal_force: Array
+    max_pressure: Array
+    effective_modulus: Array
+    poisson_ratio: Array
+    friction_coefficient: Array
+    longitudinal_creepage: Array
+    lateral_creepage: Array
+    spin: Array
+    rolling_speed: Array
+    density: Array
+    traction_coefficient: Array | None = None
+
+    @classmethod
+    def line(
+        cls,
+        *,
+        normal_force: QuantityLike,
+        track_width: QuantityLike,
+        relative_radius: QuantityLike,
+        shear_modulus: QuantityLike,
+        poisson_ratio: ArrayLike,
+        friction_coefficient: ArrayLike,
+        creepage: QuantityLike,
+        rolling_speed: QuantityLike = "1 m/s",
+        density: QuantityLike = "7850 kg/m^3",
+    ) -> Self:
+        """Return the problem of two bodies of like materials with parallel axes; arguments broadcast.
+
+        Parameters
+        ----------
+        normal_force : Quantity or str
+            Normal force on the whole width, N [N].
+        track_width : Quantity or str
+            Width of the patch across the rolling direction [m].
+        relative_radius : Quantity or str
+            R [m], 1/R = 1/R1 + 1/R2.
+        shear_modulus : Quantity or str
+            G [Pa].
+        poisson_ratio, friction_coefficient : array_like of float
+            ν and μ [-].
+        creepage : Quantity or str
+            ξ, a ratio or in percent.
+        rolling_speed : Quantity or str
+            V [m/s]; it matters to what reads the slip speed.
+        density : Quantity or str
+            Of the body whose wear is predicted, ρ [kg/m³].
+
+        Raises
+        ------
+        UnitError
+            If an argument lacks its unit or is out of bounds.
+        ConditionsError
+            If the arguments do not broadcast.
+        """
+        given = {
+            "normal_force": normal_force,
+            "track_width": track_width,
+            "relative_radius": relative_radius,
+            "shear_modulus": shear_modulus,
+            "creepage": creepage,
+            "rolling_speed": rolling_speed,
+            "density": density,
+        }
+        si = _si(given, friction_coefficient, poisson_ratio)
+        modulus = si.pop("shear_modulus") / (1.0 - si["poisson_ratio"])
+        per_width = si.pop("normal_force") / si["track_width"]
+        return cls.line_from_si(normal_force_per_width=per_width, effective_modulus=modulus, **si)
+
+    @classmethod
+    def line_from_si(
+        cls,
+        *,
+        normal_force_per_width: Array,
+        track_width: Array,
+        relative_radius: Array,
+        effective_modulus: Array,
+        creepage: Array,
+        **arrays: Array,
+    ) -> Self:
+        """Return the problem of a line contact under P [N/m], of SI arrays of one shape, by Hertz's theory."""
+        a = hertz.half_width(normal_force_per_width, relative_radius, effective_modulus)
+        none = np.broadcast_to(0.0, creepage.shape)
+        return cls(
+            geometry="line",
+            a=a,
+            b=0.5 * track_width,
+            normal_force=normal_force_per_width * track_width,
+            max_pressure=hertz.max_pressure(normal_force_per_width, a),
+            effective_modulus=effective_modulus,
+            longitudinal_creepage=creepage,
+            **{"lateral_creepage": none, "spin": none, "poisson_ratio": none, **arrays},
+        )
+
+    @classmethod
+    def ellipse(
+        cls,
+        *,
+        a: QuantityLike,
+        b: QuantityLike,
+        normal_force: QuantityLike,
+        shear_modulus: QuantityLike,
+        poisson_ratio: ArrayLike,
+        friction_coefficient: ArrayLike,
+        longitudinal_creepage: QuantityLike,
+        lateral_creepage: QuantityLike,
+        spin: QuantityLike,
+        rolling_speed: QuantityLike = "1 m/s",
+        density: QuantityLike = "7850 kg/m^3",
+    ) -> Self:
+        """Return the problem of two bodies of like materials that touch in a known ellipse; arguments broadcast.
+
+        Parameters
+        ----------
+        a, b : Quantity or str
+            Semi-axes of the patch in and across the rolling direction [m].
+        normal_force : Quantity or str
+            N [N].
+        shear_modulus : Quantity or str
+            G [Pa].
+        poisson_ratio, friction_coefficient : array_like of float
+            ν and μ [-].
+        longitudinal_creepage, lateral_creepage : Quantity or str
+            ξ and η, ratios or in percent.
+        spin : Quantity or str
+            φ [1/m].
+        rolling_speed : Quantity or str
+            V [m/s]; it matters to what reads the slip speed.
+        density : Quantity or str
+            Of the body whose wear is predicted, ρ [kg/m³].
+
+        Raises
+        ------
+        UnitError
+            If an argument lacks its unit or is out of bounds.
+        ConditionsError
+            If the arguments do not broadcast.
+        """
+        given = {
+            "a": a,
+            "b": b,
+            "normal_force": normal_force,
+            "shear_modulus": shear_modulus,
+            "longitudinal_creepage": longitudinal_creepage,
+            "lateral_creepage": lateral_creepage,
+            "spin": spin,
+            "rolling_speed": rolling_speed,
+            "density": density,
+        }
+        return cls.ellipse_from_si(**_si(given, friction_coefficient, poisson_ratio))
+
+    @classmethod
+    def ellipse_from_si(cls, *, shear_modulus: Array, poisson_ratio: Array, **arrays: Array) -> Self:
+        """Return the problem of an elliptic contact, of SI arrays of one shape: the arguments of `ellipse`."""
+        return cls(
+            geometry="ellipse",
+            max_pressure=1.5 * arrays["normal_force"] / (np.pi * arrays["a"] * arrays["b"]),
+            effective_modulus=shear_modulus / (1.0 - poisson_ratio),
+            poisson_ratio=poisson_ratio,
+            **arrays,
+        )
+
+    @property
+    def batch_shape(self) -> tuple[int, ...]:
+        """The shape of the batch, () for one operating point."""
+        return self.longitudinal_creepage.shape
+
+    @property
+    def size(self) -> int:
+        """The number of operating points."""
+        return math.prod(self.batch_shape)
+
+    @property
+    def creepage(self) -> Array:
+        """Longitudinal creepage, ξ [-], with its sign; positive where body 1 is the faster one."""
+        return self.longitudinal_creepage
+
+    @property
+    def half_width(self) -> Array:
+        """Half the patch's length in the rolling direction, a [m]."""
+        return self.a
+
+    @property
+    def track_width(self) -> Array:
+        """Width of a line's patch across the rolling direction [m]."""
+        return 2.0 * self.b
+
+    @property
+    def normal_force_per_width(self) -> Array:
+        """Normal force per unit width of a line, P [N/m]."""
+        self.needs("line", "normal_force_per_width")
+        return 0.5 * self.normal_force / self.b
+
+    @property
+    def relative_radius(self) -> Array:
+        """Relative radius of curvature of a line contact, R [m], 1/R = 1/R1 + 1/R2, by p0 = a E*/(2 R)."""
+        self.needs("line", "relative_radius")
+        return 0.5 * self.a * self.effective_modulus / self.max_pressure
+
+    @property
+    def shear_modulus(self) -> Array:
+        """Shear modulus, G [Pa], E* (1-ν)."""
+        return self.effective_modulus * (1.0 - self.poisson_ratio)
+
+    @property
+    def patch_area(self) -> Array:
+        """Area of the patch, A [m²], of a line 4ab, of an ellipse πab."""
+        return (4.0 if self.geometry == "line" else np.pi) * self.a * self.b
+
+    @property
+    def rigid_slip(self) -> Array:
+        """Root mean square of the rigid slip over the patch [-], of an ellipse √(ξ² + η² + φ²(a² + b²)/4)."""
+        if self.geometry == "line":
+            return np.abs(self.longitudinal_creepage)
+        turning = 0.25 * self.spin**2 * (self.a**2 + self.b**2)
+        slip: Array = np.sqrt(self.longitudinal_creepage**2 + self.lateral_creepage**2 + turning)
+        return slip
+
+    def needs(self, geometry: Geometry, what: str) -> None:
+        """Refuse what belongs to patches of another shape."""
+        if self.geometry != geometry:
+            named = {"line": "line contacts", "ellipse": "elliptic contacts"}
+            raise CompositionError(f"{what}: belongs to {named[geometry]}, not to {named[self.geometry]}")
+
+    def power(self, forces: CreepForces) -> Array:
+        """Return the energy dissipated per metre rolled, Tγ = ξFx + ηFy + φMz [N]."""
+        along = self.longitudinal_creepage * forces.longitudinal
+        if self.geometry == "line":
+            return along
+        return along + self.lateral_creepage * forces.lateral + self.spin * forces.spin_moment
+
+    def forward(self) -> Self:
+        """Return the problem with the magnitude of the longitudinal creepage."""
+        creepage = self.longitudinal_creepage
+        lowest = creepage.min() if creepage.ndim else creepage
+        return self if lowest >= 0.0 else self.replaced(longitudinal_creepage=np.abs(creepage))
+
+    def with_creepages(self, longitudinal: Array, lateral: Array, spin: Array) -> Self:
+        """Return the problem at other creepages, as SI arrays of the batch shape."""
+        return self.replaced(longitudinal_creepage=longitudinal, lateral_creepage=lateral, spin=spin)
+
+    def replaced(self, **arrays: Array) -> Self:
+        """Return the problem with some of its arrays replaced, of the batch shape."""
+        changes: dict[str, Any] = {**arrays}
+        return dataclasses.replace(self, **changes)
+
+    def __getitem__(self, index: Any) -> Self:
+        """Return the problem at some operating points of the batch; `index` is any NumPy index."""
+        return self._map(lambda array: array[index])
+
+    def broadcast_to(self, shape: tuple[int, ...]) -> Self:
+        """Return the problem with a larger batch shape, to which its own broadcasts."""
+        return self._map(lambda array: np.broadcast_to(array, shape))
+
+    def flatten(self) -> Self:
+        """Return the problem with its batch as one axis."""
+        return self._map(_flat)
+
+    def _map(self, function: Callable[[Array], Array]) -> Self:
+        fields: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
+        for name, value in fields.items():
+            if value is not None and name != "geometry":
+                fields[name] = function(value)
+        return type(self)(**fields)
+
+
+def _flat(array: Array) -> Array:
+    """Return an array with one axis, without a copy of one number that stands for all."""
+    if array.ndim > 1 and not any(array.strides) and array.size:
+        return np.broadcast_to(array[(0,) * array.ndim], array.size)
+    return array.reshape(-1)
+
+
+def _si(
+    given: Mapping[str, QuantityLike], friction_coefficient: ArrayLike, poisson_ratio: ArrayLike
+) -> dict[str, Array]:
+    arrays = {name: UNITS[name].si(value, name) for name, value in given.items()}
+    arrays["friction_coefficient"] = coefficient(friction_coefficient, "friction_coefficient")
+    arrays["poisson_ratio"] = _poisson_ratio(poisson_ratio)
+    return broadcast(arrays)
+
+
+def _poisson_ratio(value: object) -> Array:
+    try:
+        ratio = real_array(value)
+    except UnitError as error:
+        raise UnitError(f"poisson_ratio: {error}; give a plain number, such as 0.28") from None
+    if not ((ratio >= 0.0) & (ratio <= 0.5)).all():
+        raise InputError(f"poisson_ratio: must lie between 0 and 0.5, got {value!r}")
+    return ratio

@@ -1,0 +1,181 @@
+"""Nodes over a line contact, and quadrature over its slip zone.
+
+Positions are distances from the edges of the patch, which keep their digits where a zone is short. The slip zone ends
+at the trailing edge; with y = span·sin²(ψ/2) for the distance y from there, the square-root behaviour that traction
+and slip have at the ends of the span becomes smooth in ψ, and Gauss-Legendre rules in ψ converge exponentially.
+Splitting the range of ψ into panels where an integrand has a kink or a jump keeps that.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wearlaw.arrays.array import Array
+
+ORDER = 24
+"""Nodes of a panel."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nodes:
+    """Positions in a line contact, with the lengths that they stand for.
+
+    Attributes
+    ----------
+    from_leading, from_trailing : ndarray, (batch, nodes)
+        Distance from the leading edge, a + x, and from the trailing edge, a - x [m].
+    length : ndarray, (batch, nodes)
+        Length of the patch that each node stands for [m].
+    """
+
+    from_leading: Array
+    from_trailing: Array
+    length: Array
+
+    @classmethod
+    def at(cls, x: Array, half_width: Array) -> Self:
+        """Return points at positions `x` (batch, nodes) of a patch of half-width (batch), which stand for no length."""
+        width = half_width[..., None]
+        return cls(width + x, width - x, np.zeros_like(x))
+
+    @property
+    def x(self) -> Array:
+        """Position along the rolling direction, from the leading to the trailing edge [m]."""
+        position: Array = 0.5 * (self.from_leading - self.from_trailing)
+        return position
+
+    def reversed(self) -> Nodes:
+        """Return the nodes with the two edges exchanged."""
+        return Nodes(self.from_trailing, self.from_leading, self.length)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Zone:
+    """A zone of a patch that begins at an edge, and the length over which it is mapped.
+
+    Attributes
+    ----------
+    patch : ndarray, (batch)
+        Length of the patch, 2a [m].
+    length : ndarray, (batch)
+        Length of the zone [m].
+    span : ndarray, (batch)
+        Length from the edge to the next point where the fields behave like square roots [m]: that of the zone, or
+        that of the patch.
+    angle : ndarray, (batch)
+        ψ at the end of the zone.
+    """
+
+    patch: Array
+    length: Array
+    span: Array
+    angle: Array
+
+    def __getitem__(self, points: NDArray[np.intp]) -> Self:
+        """Return the zones of some operating points."""
+        return type(self)(self.patch[points], self.length[points], self.span[points], self.angle[points])
+
+    @classmethod
+    def of(cls, half_width: Array, length: Array, over_patch: bool) -> Self:
+        """Return the zone of a length; mapped over the whole patch, or over itself."""
+        patch = 2.0 * half_width
+        if over_patch:
+            return cls(patch, length, patch, 2.0 * np.arcsin(np.sqrt(np.minimum(length / patch, 1.0))))
+        return cls(patch, length, length, np.full_like(length, np.pi))
+
+    def angle_of(self, distance: Array) -> Array:
+        """Return ψ at distances (batch, points) from the edge; what lies beyond the zone, and NaN, is at its end."""
+        length = self.length[..., None]
+        inside = (distance < length) & (length > 0.0)  # False for NaN
+        share = np.divide(np.maximum(distance, 0.0), self.span[..., None], out=np.zeros_like(distance), where=inside)
+        return np.where(inside, 2.0 * np.arcsin(np.sqrt(share)), self.angle[..., None])
+
+    def nodes(self, splits: Array | None = None, panels: int = 1) -> Nodes:
+        """Return Gauss-Legendre nodes in ψ, as distances from the zone's edge in `from_trailing`.
+
+        Parameters
+        ----------
+        splits : ndarray, (batch, k), optional
+            Values of ψ from 0 to the zone's angle at which to begin a new panel, in ascending order.
+        panels : int
+            How many equal panels to use where no splits are given.
+
+        Returns
+        -------
+        Nodes
+            Of shape (batch, (k + 1) · ORDER) or (batch, panels · ORDER), panel by panel. A zone without length has
+            nodes without length.
+        """
+        end = self.angle[..., None]
+        if splits is None:
+            edges = end * np.linspace(0.0, 1.0, panels + 1)
+        else:
+            edges = np.concatenate([np.zeros_like(end), splits, end], axis=-1)
+        abscissas, weights = _gauss_legendre()
+        quarter_panel = 0.25 * np.diff(edges)[..., None]
+        half_angle = 0.25 * (edges[..., 1:] + edges[..., :-1])[..., None] + quarter_panel * abscissas
+        flat = (*half_angle.shape[:-2], half_angle.shape[-2] * ORDER)
+        sine, cosine = np.sin(half_angle).reshape(flat), np.cos(half_angle).reshape(flat)
+        span = self.span[..., None]
+        length = 2.0 * span * sine * cosine * (quarter_panel * weights).reshape(flat)
+        return Nodes((self.patch[..., None] - span) + span * cosine**2, span * sine**2, length)
+
+    def middle(self) -> Nodes:
+        """Return one node in the middle that stands for the whole zone."""
+        distance = 0.5 * self.length[..., None]
+        return Nodes(self.patch[..., None] - distance, distance, self.length[..., None])
+
+
+def join(*zones: Nodes) -> Nodes:
+    """Return the nodes of several zones as one set."""
+    fields = ("from_leading", "from_trailing", "length")
+    return Nodes(*(np.concatenate([getattr(zone, field) for zone in zones], axis=-1) for field in fields))
+
+
+def uniform_cells(half_width: Array, cells: int) -> Nodes:
+    """Return the centres and lengths of equal cells over the whole patch."""
+    width = half_width[..., None]
+    centres = (2.0 * np.arange(cells) + 1.0) / cells
+    length = np.broadcast_to(2.0 * width / cells, (*half_width.shape, cells))
+    return Nodes(width * centres, width * centres[::-1], length)
+
+
+def remainder(weighted: Array) -> Array:
+    """Return an error estimate for an integral from its weighted samples, panel by panel.
+
+    The integrand of each panel is expanded in Legendre polynomials; the size of the last two coefficients
+    that the nodes resolve bounds what is left out as long as the coefficients fall.
+
+    Parameters
+    ----------
+    weighted : ndarray, (..., k · ORDER)
+        Integrand × weight at the nodes of `Zone.nodes`.
+
+    Returns
+    -------
+    ndarray, (...)
+        In the unit of the integral.
+    """
+    by_panel = weighted.reshape(*weighted.shape[:-1], -1, ORDER)
+    estimate: Array = np.abs(by_panel @ _last_coefficients()).sum(axis=(-2, -1))
+    return estimate
+
+
+@functools.cache
+def _gauss_legendre() -> tuple[Array, Array]:
+    abscissas, weights = np.polynomial.legendre.leggauss(ORDER)
+    return abscissas, weights
+
+
+@functools.cache
+def _last_coefficients() -> Array:
+    """Return the matrix that takes weighted samples to their Legendre coefficients ORDER-2 and ORDER-1."""
+    abscissas, _ = _gauss_legendre()
+    degrees = np.arange(ORDER - 2, ORDER)
+    polynomials = np.polynomial.legendre.legvander(abscissas, ORDER - 1)[:, degrees]
+    return polynomials * (2.0 * degrees + 1.0)

@@ -1,0 +1,1 @@
+"""What a plugin implements: rigs, contact models and wear laws."""

@@ -1,0 +1,171 @@
+"""Where in the slip zone a variable of the contact crosses a wear law's breakpoints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, TypeAlias, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.problem import Problem
+from wearlaw.contact.quadrature import Nodes, Zone
+from wearlaw.errors import ModelError
+from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
+
+SAMPLES = 32
+"""Equal intervals of ψ that are searched for a crossing."""
+
+END_SAMPLES = 5
+"""How often the first and the last of them are cut again, each time to a quarter next to the end.
+
+A variable is even in ψ about an end, so that a maximum close to it would hide in an equal interval.
+"""
+
+CROSSINGS = 2
+"""Crossings found for each breakpoint; the variables of a line contact rise, or rise and fall, in x."""
+
+END_GAP = 3e-7
+"""Share of the range of ψ between the outermost samples and the ends, where a slip may grow without bound.
+
+What lies beyond them is 2.5e-13 of the zone.
+"""
+
+
+def crossings(
+    model: LineContactModel, problem: Problem, zone: Zone, breakpoints: Mapping[str, tuple[Any, ...]]
+) -> Array:
+    """Return the ψ at which variables cross their breakpoints, in ascending order.
+
+    Parameters
+    ----------
+    model : LineContactModel
+        The contact model.
+    problem : Problem
+        With a batch of one axis, (points,), and creepage ≥ 0.
+    zone : Zone
+        The slip zone.
+    breakpoints : mapping of str to tuple of float or ndarray
+        Names of node variables of `Contact` with SI values, each a float or one for each operating point, (points, 1).
+
+    Returns
+    -------
+    ndarray, (points, k)
+        ψ of each crossing, as exact as rounding lets it be; the zone's angle where there is none. k is at most
+        2 × the number of breakpoints.
+    """
+    columns = [np.empty((problem.creepage.size, 0))]
+    for name, values in breakpoints.items():
+        levels = [np.broadcast_to(value, (zone.angle.size, 1)) for value in values]
+        found = _in_closed_form(model, problem, zone, name, np.concatenate(levels, axis=-1)) if levels else None
+        if found is not None:
+            columns.append(found)
+        elif levels:
+            searched = _Variable(model, problem, zone, name)
+            columns += [zone.angle[:, None] * _searched(searched, level) for level in levels]
+    return np.sort(np.concatenate(columns, axis=-1), axis=-1)
+
+
+def _in_closed_form(model: LineContactModel, problem: Problem, zone: Zone, name: str, levels: Array) -> Array | None:
+    """Return the ψ at which a variable crosses levels (points, k), of shape (points, m), or None if not known."""
+    each = problem[:, None]
+    if name == "slip_speed":
+        name, levels = "slip", levels / each.rolling_speed
+    distance = model.crossings(each.broadcast_to(levels.shape), cast(FieldVariable, name), levels)
+    return None if distance is None else zone.angle_of(distance.reshape(zone.angle.size, -1))
+
+
+class _Variable:
+    """The magnitude of one variable of the contact as a function of ψ/Ψ, sampled over the slip zone."""
+
+    def __init__(self, model: LineContactModel, problem: Problem, zone: Zone, name: str) -> None:
+        self.model, self.problem, self.zone, self.name = model, problem, zone, name
+        self.share = _sample_shares()
+        points = np.arange(problem.creepage.size)
+        self.samples = self._values(np.broadcast_to(self.share, (points.size, self.share.size)), points)
+
+    def at(self, share: Array, point: Array) -> Array:
+        """Return the variable at one share of Ψ for each of the operating points `point`, both of shape (m,)."""
+        return self._values(share[:, None], point.astype(np.intp))[:, 0]
+
+    def _values(self, share: Array, point: NDArray[np.intp]) -> Array:
+        half_angle = 0.5 * self.zone.angle[point][:, None] * share
+        span, patch = self.zone.span[point][:, None], self.zone.patch[point][:, None]
+        nodes = Nodes(
+            (patch - span) + span * np.cos(half_angle) ** 2, span * np.sin(half_angle) ** 2, np.ones_like(half_angle)
+        )
+        contact = self.model.at(self.problem[point], nodes)
+        value: Array = np.abs(getattr(contact, self.name))
+        return value
+
+
+def _sample_shares() -> Array:
+    equal = np.linspace(END_GAP, 1.0 - END_GAP, SAMPLES + 1)
+    near_end = (equal[1] - equal[0]) * 0.25 ** np.arange(1, END_SAMPLES + 1)
+    return np.sort(np.concatenate([equal, equal[0] + near_end, equal[-1] - near_end]))
+
+
+def _searched(variable: _Variable, value: Array) -> Array:
+    """Return the crossings of a breakpoint (points, 1), as shares of Ψ (points, CROSSINGS); 1 where there is none."""
+    found = np.ones((variable.samples.shape[0], CROSSINGS))
+    for point, column, low, high in (_sign_changes(variable, value), _hidden_humps(variable, value)):
+        if point.size:
+            from scipy.optimize import elementwise  # loaded where it is used, as in `inverse`
+
+            root = elementwise.find_root(
+                lambda share, who: variable.at(share, who) - value[who.astype(np.intp), 0],
+                (low, high),
+                args=(point.astype(np.float64),),
+            )
+            if not root.success.all():
+                raise ModelError(
+                    f"contact model '{variable.model.name}': its {variable.name} passes a breakpoint, but cannot be"
+                    " followed to it; it must be finite in the whole slip zone, and the same at each call"
+                )
+            found[point, column] = root.x
+    return found
+
+
+Brackets: TypeAlias = tuple[NDArray[np.intp], NDArray[np.intp], Array, Array]
+"""Operating points, columns of the result, and the shares between which a crossing lies; each of shape (m,)."""
+
+
+def _sign_changes(variable: _Variable, value: Array) -> Brackets:
+    above = variable.samples >= value
+    changes = above[:, 1:] != above[:, :-1]
+    order = changes.cumsum(axis=-1)
+    point, interval = np.nonzero(changes & (order <= CROSSINGS))
+    return point, order[point, interval] - 1, variable.share[interval], variable.share[interval + 1]
+
+
+def _hidden_humps(variable: _Variable, value: Array) -> Brackets:
+    """Return the brackets of crossings on both sides of a maximum that lies between two samples."""
+    share, samples = variable.share, variable.samples
+    top = samples.argmax(axis=-1).clip(1, share.size - 2)
+    points = np.arange(samples.shape[0])
+    left, middle, right = (samples[points, top + step] for step in (-1, 0, 1))
+    # A smooth hump exceeds its highest sample by less than four times what that one exceeds its lower neighbour by,
+    # for intervals of which one is no more than four times the next.
+    level = value[:, 0]
+    may_reach = (middle < level) & (level < middle + 4.0 * (middle - np.minimum(left, right)))
+    point = points[may_reach & (middle >= np.maximum(left, right))]
+    low, high = share[top[point] - 1], share[top[point] + 1]
+    if point.size:
+        from scipy.optimize import elementwise
+
+        peak = elementwise.find_minimum(
+            lambda where, who: -variable.at(where, who),
+            (low, share[top[point]], high),
+            args=(point.astype(np.float64),),
+        )
+        reaches = -peak.f_x > level[point]
+        point, low, high, crest = point[reaches], low[reaches], high[reaches], peak.x[reaches]
+    else:
+        crest = low
+    return (
+        np.concatenate([point, point]),
+        np.repeat(np.arange(CROSSINGS), point.size),
+        np.concatenate([low, crest]),
+        np.concatenate([crest, high]),
+    )

@@ -1,0 +1,505 @@
+"""Where the nodes lie, and what a law's rate is on average over the patch.
+
+The only code that sees both a contact model and a wear law. Three ways, from the most that is known to the least:
+
+1. The law is a sum of ramps in q·s, and the model knows the energy above a threshold: a closed form without nodes.
+2. The model knows its fields on a line: quadrature over the slip zone, to rounding error where the law declares the
+   breakpoints at which the zone is then split.
+3. Else, and always on an ellipse, the law at the nodes that the model chose.
+
+On a line the last two come with an error estimate, on an ellipse `wear_rate_error` makes one. The number of cells of a
+plot has no part in this.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wearlaw.arrays.array import Array
+from wearlaw.arrays.extremes import extremes
+from wearlaw.arrays.kernels import accelerated
+from wearlaw.contact.contact import NODE_VARIABLES, Contact
+from wearlaw.contact.elliptic_contact import EllipticContact
+from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.quadrature import Zone, join, remainder
+from wearlaw.models.contact_model import Blame, ContactModel, Scale
+from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.wear_law import Numbers, WearLaw
+from wearlaw.numerics.blocks import Columns, OfBlock, OnBlock, blocks, by_block
+from wearlaw.numerics.crossings import crossings
+from wearlaw.numerics.solving import Solver, check_columns, check_type
+
+BLOCK = 8192
+"""Operating points of a block in closed form: its arrays stay in the cache, and in memory that is used again."""
+
+COMPILED_BLOCK = 16384
+"""The same with compiled kernels, which make fewer arrays."""
+
+NODE_BLOCK = 3072
+"""Operating points of a block with nodes."""
+
+ELLIPSE_NODES = 2**16
+"""Nodes of a block of elliptic contacts: enough to outweigh what each call of NumPy takes, few enough for the memory of
+any machine."""
+
+FEW = 8
+"""Elliptic contacts that are solved at once, whatever their nodes."""
+
+PANELS_UNDECLARED = 4
+"""Panels of the slip zone for a law that says nothing about where it branches."""
+
+ROUNDINGS = 32.0
+"""Roundings of the largest term in a closed form."""
+
+EPS = float(np.finfo(np.float64).eps)
+
+ALL = slice(None)
+"""All operating points."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SlipTotals:
+    """How the patch slips at each operating point, as SI arrays of the batch shape.
+
+    Attributes
+    ----------
+    mean_slip : ndarray
+        Area mean of the magnitude of the slip [-].
+    slip_area : ndarray
+        Area of what slips [m²].
+    patch_area : ndarray
+        Area of the whole patch, the sum of its nodes' areas [m²].
+    cell_wear_index : ndarray
+        Energy dissipated per metre rolled, summed over the nodes [N].
+    """
+
+    mean_slip: Array
+    slip_area: Array
+    patch_area: Array
+    cell_wear_index: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WearTotals:
+    """The outcome at each operating point, as SI arrays of the batch shape.
+
+    Attributes
+    ----------
+    wear_rate : ndarray
+        Area mean of the law's rate over the patch [kg/m/m²].
+    wear_rate_error : ndarray or None
+        Estimate of the numerical error in it [kg/m/m²]; None where `wear_rate_error` gives it.
+    forces : CreepForces or None
+        The forces and the moment; None where the contact model knows them without nodes.
+    patch_area : ndarray or None
+        Area of the patch, the sum of its nodes' areas [m²]; None where that is the area of the problem.
+    contact : Contact or None
+        The contact as the model solved it, for a batch of one axis, where it is an ellipse and fits into one block.
+    """
+
+    wear_rate: Array
+    wear_rate_error: Array | None = None
+    forces: CreepForces | None = None
+    patch_area: Array | None = None
+    contact: Contact | None = None
+
+
+def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
+    """Return the forces and the moment, or raise a `ModelError` if they are not finite."""
+    if problem.geometry == "ellipse":
+
+        def of_ellipse(part: Problem, _: slice) -> Columns:
+            return _columns(model.creep_forces(part))
+
+        return CreepForces.of(_by_block(Solver(model), problem, of_ellipse))
+    if isinstance(model, LineContactModel):  # in closed form, without nodes that would fill the memory
+        with Blame(model):
+            force = model.tangential_force(problem)
+        check_columns(model, {"tangential_force": force}, problem)
+        return CreepForces.of({"longitudinal": force})
+
+    def of_line(part: Problem, _: slice) -> Columns:
+        return {"tangential_force": model.tangential_force(part)}
+
+    found = _by_block(Solver(model), problem, of_line)
+    return CreepForces.of({"longitudinal": found["tangential_force"]})
+
+
+def integrate_slip(
+    model: ContactModel, problem: Problem, scale: Scale, solved_before: Contact | None = None
+) -> SlipTotals:
+    """Return how the patch slips; of a contact that was `solved_before`, as `WearTotals.contact`, at no cost."""
+    solver = Solver(model)
+
+    def columns(part: Problem, _: slice) -> Columns:
+        solved = solved_before or solver.solve(part)
+        contact = seen_by_law(model, solved, scale)
+        slip_area, patch_area = contact.slip_area, contact.patch_area
+        if scale == "cells" and isinstance(model, LineContactModel) and part.geometry == "line":
+            slip_area, patch_area = model.slip_length(part.forward()) * part.track_width, part.patch_area
+        return {
+            "mean_slip": contact.mean_slip,
+            "slip_area": slip_area,
+            "patch_area": patch_area,
+            "cell_wear_index": solved.cell_wear_index,
+        }
+
+    return SlipTotals(**_by_block(solver, problem, columns))
+
+
+def patch_area(model: ContactModel, problem: Problem, scale: Scale) -> Array:
+    """Return the area of the patch, the sum of its nodes' areas [m²]."""
+    if isinstance(model, LineContactModel) and problem.geometry == "line":  # its nodes share out the patch
+        return problem.patch_area
+    return integrate_slip(model, problem, scale).patch_area
+
+
+def integrate_wear(
+    model: ContactModel,
+    law: WearLaw,
+    problem: Problem,
+    scale: Scale,
+    on_block: OnBlock | None = None,
+    p: Numbers | None = None,
+) -> WearTotals:
+    """Return the wear in a contact, block by block.
+
+    Parameters
+    ----------
+    model : ContactModel
+    law : WearLaw
+    problem : Problem
+    scale : str
+        Whether the law sees the patch means or the cells.
+    on_block : callable, optional
+        Called with each block of operating points, and the forces [N] among its columns.
+    p : mapping of str to float or ndarray, optional
+        The law's numbers in SI, by default its own. Arrays of shape (points, 1) need a batch of one axis, (points,).
+
+    Raises
+    ------
+    ModelError
+        If the model or the law breaks its contract.
+    """
+    p = law.numbers if p is None else p
+    if problem.geometry == "ellipse":
+        return _over_ellipse(model, law, problem, scale, on_block, p)
+    return _over_line(model, law, problem, scale, on_block, p)
+
+
+def _over_ellipse(
+    model: ContactModel,
+    law: WearLaw,
+    problem: Problem,
+    scale: Scale,
+    on_block: OnBlock | None,
+    p: Numbers,
+) -> WearTotals:
+    solver = Solver(model)
+    solved: list[Contact] = []
+    across = {name: value[..., None] if isinstance(value, np.ndarray) else value for name, value in p.items()}
+
+    def columns(part: Problem, points: slice) -> Columns:
+        contact = solver.solve(part)
+        if part.size == problem.size:
+            solved.append(contact)
+        seen = seen_by_law(model, contact, scale)
+        area = seen.patch_area
+        rate = seen.sum_over_nodes(solver.rate(law, seen, part, _at_points(across, points)) * seen.area) / area
+        return {"wear_rate": rate, "patch_area": area, **_columns(contact.forces)}
+
+    found = _by_block(solver, problem, columns, on_block)
+    return WearTotals(
+        wear_rate=found["wear_rate"],
+        forces=CreepForces.of(found),
+        patch_area=found["patch_area"],
+        contact=solved[0] if solved else None,
+    )
+
+
+def _over_line(
+    model: ContactModel,
+    law: WearLaw,
+    problem: Problem,
+    scale: Scale,
+    on_block: OnBlock | None,
+    p: Numbers,
+) -> WearTotals:
+    solver = Solver(model)
+    with Blame(law, p):
+        ramps = law.ramps(p) if scale == "cells" else None
+    closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
+
+    def columns(part: Problem, points: slice) -> Columns:
+        found = closed and closed_form(*closed, part, points)
+        return found or _from_nodes(solver, law, _at_points(p, points), part, scale)
+
+    if closed and problem.batch_shape == ():  # scalars are computed as scalars
+        with Blame(model):
+            found = closed_form(*closed, problem)
+        if found is not None:
+            check_columns(model, found, problem)
+            if on_block is not None:
+                on_block(problem, found)
+            return WearTotals(wear_rate=found["wear_rate"])
+    block = NODE_BLOCK
+    if closed:
+        block = COMPILED_BLOCK if accelerated(problem.creepage.size) else BLOCK
+    found = solver.by_block(problem, block, columns, on_block, isinstance(model, LineContactModel))
+    forces = CreepForces.of(found) if "longitudinal" in found else None
+    return WearTotals(
+        wear_rate=found["wear_rate"],
+        wear_rate_error=found.get("wear_rate_error"),
+        forces=forces,
+        patch_area=found.get("patch_area"),
+    )
+
+
+def wear_rate_error(model: ContactModel, law: WearLaw, problem: Problem, scale: Scale, totals: WearTotals) -> Array:
+    """Return an estimate of the error of wear rates [kg/m/m²].
+
+    Of a closed form it is some roundings of what each ramp would give without its threshold. On an ellipse it is how
+    far the rates move on nodes twice and four times as fine, times the 4/3 by which errors of first order exceed the
+    sum of both steps; or, of a model that has no finer nodes, how far they move when nodes are left out, which in
+    partial slip can fall short of the error, by six times on 64 strips.
+    """
+    if totals.wear_rate_error is not None:
+        return totals.wear_rate_error
+    if problem.geometry == "line":
+        slopes: float = sum(abs(slope) for _, slope in law.ramps(law.numbers) or ())
+        force = integrate_forces(model, problem).longitudinal
+        return (ROUNDINGS * EPS * slopes) * force * problem.creepage / problem.patch_area
+    if scale == "patch":
+        return EPS * np.abs(totals.wear_rate)
+    with Blame(model):
+        twice = model.refined()
+        four_times = None if twice is None else twice.refined()
+    if twice is not None and four_times is not None:
+        fine, finest = (integrate_wear(one, law, problem, scale).wear_rate for one in (twice, four_times))
+        return 4.0 / 3.0 * (np.abs(fine - totals.wear_rate) + np.abs(finest - fine))
+    solver = Solver(model)
+
+    def columns(part: Problem, _: slice) -> Columns:
+        contact = solver.solve(part)
+        return {"error": thinning_error(contact, solver.rate(law, contact, part))}
+
+    return _by_block(solver, problem, columns)["error"]
+
+
+def integrate_across(
+    model: ContactModel, law: WearLaw, problem: Problem, strips: int | None, solved_before: Contact | None = None
+) -> tuple[Array, Array, Array]:
+    """Return what happens along each strip of an ellipse, block by block, of the batch shape and an axis of strips.
+
+    Parameters
+    ----------
+    model : ContactModel
+    law : WearLaw
+    problem : Problem
+    strips : int, optional
+        How many strips of equal width; by default, and of a model that has strips of its own only, those of the model.
+    solved_before : Contact, optional
+        As in `WearTotals.contact`.
+
+    Returns
+    -------
+    y, wear, slid : ndarray, (batch, strips)
+        Place of each strip [m], ∫ rate dx [kg/m²] and ∫ |s| dx [m] along it.
+    """
+    solver, flat = Solver(model), problem.flatten()
+    edges = np.linspace(-1.0, 1.0, (strips or 0) + 1)
+    shares = 0.5 * (edges[1:] + edges[:-1])
+
+    def solved(part: Problem) -> EllipticContact:
+        chosen = None
+        if strips is not None:
+            with Blame(model):
+                chosen = model.on_strips(part, shares)
+        if chosen is None:
+            found = solver.solve(part)
+            assert isinstance(found, EllipticContact)
+            return found
+        solver.check(chosen, part, totals=False)
+        return chosen
+
+    def along(part: Problem, contact: EllipticContact) -> tuple[Array, Array, Array]:
+        wear = contact.over_strip(solver.rate(law, contact, part))
+        return contact.y[..., 0, :], wear, contact.over_strip(contact.slip)
+
+    if strips is None and isinstance(solved_before, EllipticContact):
+        found = [along(flat.replaced(density=solved_before.density), solved_before)]
+    else:
+        block = max(ELLIPSE_NODES // solved(flat[:1]).pressure.size, 1)
+        parts = (flat[points] for points in blocks(flat.size, block))
+        found = [along(part, solved(part)) for part in parts]
+    y, wear, slid = (np.concatenate(values).reshape(*problem.batch_shape, -1) for values in zip(*found, strict=True))
+    return y, wear, slid
+
+
+def _columns(forces: CreepForces) -> Columns:
+    return {"longitudinal": forces.longitudinal, "lateral": forces.lateral, "spin_moment": forces.spin_moment}
+
+
+def _by_block(solver: Solver, problem: Problem, columns: OfBlock, on_block: OnBlock | None = None) -> Columns:
+    """Return columns over blocks of as many operating points as the model's nodes allow."""
+    block = NODE_BLOCK
+    if problem.geometry == "ellipse":
+        few = problem.size <= FEW
+        nodes = 1 if few else Solver(solver.model).solve(problem.flatten()[:1]).pressure.size
+        block = FEW if few else max(ELLIPSE_NODES // nodes, 1)
+    return solver.by_block(problem, block, columns, on_block)
+
+
+def solve(model: ContactModel, problem: Problem, scale: Scale) -> Contact:
+    """Return the contact of a model on its own nodes, or its patch mean where that is asked for."""
+    return seen_by_law(model, Solver(model).solve(problem), scale)
+
+
+def seen_by_law(model: ContactModel, contact: Contact, scale: Scale) -> Contact:
+    """Return a contact as a law gets to see it: its patch means, where those are asked for."""
+    return contact.patch_mean() if scale == "patch" and model.scale != "patch" else contact
+
+
+def contact_for(model: ContactModel, law: WearLaw, problem: Problem, scale: Scale) -> Contact:
+    """Return the contact on the nodes that suit a law, for a batch of one axis."""
+    if scale == "patch" or not isinstance(model, LineContactModel):
+        return solve(model, problem, scale)
+    with Blame(model):
+        stick, slip = model.zones(problem)
+        splits = splits_of(model, law, law.numbers, problem, slip)
+        nodes = slip.nodes(panels=PANELS_UNDECLARED) if splits is None else slip.nodes(splits)
+    return Solver(model).at(problem, join(stick.nodes().reversed(), nodes), totals=True)
+
+
+def closed_form(
+    model: LineContactModel, ramps: tuple[tuple[Any, Any], ...], problem: Problem, points: slice = ALL
+) -> Columns | None:
+    """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form.
+
+    `points` says where the problem lies in arrays of thresholds and slopes, (points, 1).
+    """
+    forward = problem.forward()
+    force = model.tangential_force_per_width(forward)
+    check_type(model, "tangential_force_per_width", force, problem.batch_shape)
+    total: Array | float = 0.0
+    for ramp in ramps:
+        threshold, slope = (_per_point(number, points) for number in ramp)
+        above = np.any(threshold > 0.0) if isinstance(threshold, np.ndarray) else threshold > 0.0
+        excess = model.excess_dissipation(forward, threshold) if above else force * forward.creepage
+        if excess is None:
+            return None
+        check_type(model, "excess_dissipation", excess, problem.batch_shape)
+        total += 0.5 * slope * excess
+    force = force * problem.track_width
+    rate = total / problem.half_width
+    if extremes(rate)[0] < 0.0:  # ramps that cancel leave their rounding
+        rate = np.maximum(rate, 0.0)
+    signed = force if forward is problem else np.copysign(force, problem.creepage)
+    return {"wear_rate": rate, "longitudinal": signed}
+
+
+def _per_point(number: float | Array, points: slice) -> float | Array:
+    """Return a number, or one for each of some operating points without the axis of the nodes."""
+    return number[points, 0] if isinstance(number, np.ndarray) and number.ndim else number
+
+
+def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:
+    """Return the numbers of a law at some operating points."""
+    return {name: value[points] if isinstance(value, np.ndarray) else value for name, value in p.items()}
+
+
+def _from_nodes(solver: Solver, law: WearLaw, p: Numbers, problem: Problem, scale: Scale) -> Columns:
+    """Return the mean of a law's rate at nodes."""
+    model = solver.model
+
+    def columns(part: Problem, points: slice) -> Columns:
+        own = _at_points(p, points)
+        if scale == "cells" and isinstance(model, LineContactModel):
+            return _over_slip_zone(solver, model, law, own, part)
+        contact = seen_by_law(model, solver.solve(part), scale)
+        rate = solver.rate(law, contact, part, own)
+        mean, force = contact.mean(rate), contact.tangential_force
+        error = thinning_error(contact, rate) if scale == "cells" else EPS * np.abs(mean)
+        found = {"wear_rate": mean, "wear_rate_error": error, "longitudinal": force}
+        return found if isinstance(model, LineContactModel) else found | {"patch_area": contact.patch_area}
+
+    return by_block(problem, NODE_BLOCK, columns)
+
+
+def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem) -> Columns:
+    """Return the mean of a law's rate, with as many panels as each operating point needs."""
+    stick, slip = model.zones(problem)
+    splits = splits_of(model, law, p, problem, slip)
+    totals = solver.block_is_summed()
+    force = model.tangential_force(problem)
+    if splits is None:
+        rate, error = _over_panels(solver, law, p, problem, (stick, slip), None, totals)
+        return {"wear_rate": rate, "wear_rate_error": error, "longitudinal": force}
+    needed = np.sum((splits > 0.0) & (splits < slip.angle[:, None]), axis=-1)
+    first = np.sum(splits <= 0.0, axis=-1)
+    counts = np.unique(needed)
+    rate, error = np.empty(problem.creepage.shape), np.empty(problem.creepage.shape)
+    for count in counts:
+        points: Any = ALL if counts.size == 1 else np.flatnonzero(needed == count)
+        own_splits = np.take_along_axis(splits[points], first[points, None] + np.arange(count), axis=-1)
+        part, zones = (problem, (stick, slip)) if counts.size == 1 else (problem[points], (stick[points], slip[points]))
+        own = _at_points(p, points)
+        rate[points], error[points] = _over_panels(solver, law, own, part, zones, own_splits, totals)
+    return {"wear_rate": rate, "wear_rate_error": error, "longitudinal": force}
+
+
+def splits_of(model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem, slip: Zone) -> Array | None:
+    """Return ψ where a law branches in the slip zone, (points, k), or None if nothing is known of that."""
+    with Blame(law, p):
+        breakpoints = law.breakpoints(p)
+    if breakpoints is None:
+        return None
+    per_node = {name: values for name, values in breakpoints.items() if name in NODE_VARIABLES}
+    return crossings(model, problem.forward(), slip, per_node)
+
+
+def _over_panels(
+    solver: Solver,
+    law: WearLaw,
+    p: Numbers,
+    problem: Problem,
+    zones: tuple[Zone, Zone],
+    splits: Array | None,
+    totals: bool,
+) -> tuple[Array, Array]:
+    """Return the mean of a law's rate over the patch and its error estimate, by panels of the slip zone.
+
+    Where nothing slips nothing wears, so that one node is enough there, unless sums are compared with `totals`.
+    """
+    stick, zone = zones
+    nodes = zone.nodes(panels=PANELS_UNDECLARED) if splits is None else zone.nodes(splits)
+    sticking = (stick.nodes() if totals else stick.middle()).reversed()
+    contact = solver.at(problem, join(sticking, nodes), totals=totals)
+    weighted = solver.rate(law, contact, problem, p) * contact.area
+    total = weighted.sum(axis=-1)
+    slipping = weighted[..., sticking.length.shape[-1] :]
+    error = ROUNDINGS * EPS * np.abs(weighted).sum(axis=-1) + remainder(slipping)
+    return total / problem.patch_area, error / problem.patch_area
+
+
+def thinning_error(contact: Contact, rate: Array) -> Array:
+    """Return how far the mean moves when nodes are left out, for nodes of which nothing is known.
+
+    The means over every other node show steps that fall between nodes; they agree by symmetry for a rate that
+    vanishes at both ends, where the middle nodes of every three, with the area of the three, still differ.
+    """
+    shape = (*contact.rolling_speed.shape, -1)
+    area, weighted = contact.area.reshape(shape), (rate * contact.area).reshape(shape)
+    if area.shape[-1] < 2:
+        return np.abs(contact.mean(rate))
+    halves = [weighted[..., part].sum(-1) / area[..., part].sum(-1) for part in (slice(0, None, 2), slice(1, None, 2))]
+    whole = area.shape[-1] // 3 * 3
+    threes = (*area.shape[:-1], whole // 3, 3)
+    middle = rate.reshape(area.shape)[..., 1:whole:3] * area[..., :whole].reshape(threes).sum(-1)
+    thinned = middle.sum(-1) - weighted[..., :whole].sum(-1)
+    error: Array = np.abs(halves[0] - halves[1]) + np.abs(thinned) / contact.patch_area
+    return error

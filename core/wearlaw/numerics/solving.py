@@ -1,0 +1,311 @@
+"""Solving contacts by a model, and checking what it returns.
+
+A contact model may come from anyone, so each block of operating points is checked: types, shapes, finite values, areas
+that are not negative, tractions within their bound. What the nodes sum to is compared with the totals in the first
+block and in every 64th one after it. A breach is a `ModelError` that names the model, the field and the first place.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wearlaw.arrays.array import Array, type_name
+from wearlaw.arrays.extremes import extremes
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.elliptic_contact import TOTALS, EllipticContact
+from wearlaw.contact.problem import Problem
+from wearlaw.contact.quadrature import Nodes
+from wearlaw.errors import ModelError
+from wearlaw.models.contact_model import QUADRATURE, Blame, ContactModel
+from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.wear_law import Numbers, WearLaw
+from wearlaw.numerics.blocks import Columns, OfBlock, OnBlock, by_block
+from wearlaw.units.quantities import from_si
+
+EVERY = 64
+"""Blocks from one comparison of sums with totals to the next."""
+
+SLACK = 2.0
+"""Factor by which sums over nodes may be farther off than the model declares: a declared error is one that the
+conformance kit has verified on a sample of contacts."""
+
+ROUNDINGS = 64.0 * float(np.finfo(np.float64).eps)
+"""Rounding error of a sum over nodes, or of the magnitude of a vector."""
+
+FLOAT64 = np.dtype(np.float64)
+
+ONE_THREAD = 10_000
+"""Length up to which BLAS multiplies vectors in one thread. Several would take processors from other workers."""
+
+FIELDS = ("pressure", "traction", "slip", "area", "traction_bound", "x")
+"""Arrays with one value for each node."""
+
+VECTORS = ("traction_x", "traction_y", "slip_x", "slip_y", "y")
+"""Those that only an `EllipticContact` has."""
+
+LINE_TOTALS = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
+
+TO_SHOW = {"area": "mm^2", "moment_z": "N*m", "wear_index": "N"}
+"""Units in which messages show fields; pressures and forces have units of their own."""
+
+
+class Solver:
+    """Solves contacts by a model, checks them, and counts the blocks.
+
+    Parameters
+    ----------
+    model : ContactModel
+    """
+
+    def __init__(self, model: ContactModel) -> None:
+        self.model = model
+        self._blocks = 0
+
+    def by_block(
+        self,
+        problem: Problem,
+        block: int,
+        columns: OfBlock,
+        on_block: OnBlock | None = None,
+        drop_force: bool = False,
+    ) -> Columns:
+        """Return the columns of a function of the problem, in the shape of its batch; see `blocks.by_block`.
+
+        Raises
+        ------
+        ModelError
+            If the model or the law fails, or a column is not one finite float64 for each operating point.
+        """
+
+        def checked(part: Problem, points: slice) -> Columns:
+            with Blame(self.model):
+                found = columns(part, points)
+            check_columns(self.model, found, part)
+            return found
+
+        found = by_block(problem.flatten(), block, checked, on_block, drop_force)
+        return {name: values.reshape(problem.batch_shape) for name, values in found.items()}
+
+    def solve(self, problem: Problem) -> Contact:
+        """Return the contact on the model's own nodes."""
+        with Blame(self.model):
+            contact = self.model.solve(problem)
+        self.check(contact, problem, totals=self.block_is_summed())
+        return contact
+
+    def at(self, problem: Problem, nodes: Nodes, *, totals: bool) -> Contact:
+        """Return the contact on given nodes, by a model that knows its fields.
+
+        `totals` says whether sums over the nodes, which then cover the whole patch, are compared with the totals.
+        """
+        assert isinstance(self.model, LineContactModel)
+        with Blame(self.model):
+            contact = self.model.at(problem, nodes)
+        self.check(contact, problem, totals=totals, areas=False)
+        return contact
+
+    def block_is_summed(self) -> bool:
+        """Count a block, and return whether its sums are to be compared with its totals."""
+        self._blocks += 1
+        return self._blocks % EVERY == 1
+
+    def check(self, contact: Contact, problem: Problem, *, totals: bool, areas: bool = True) -> None:
+        """Raise a `ModelError` if a contact breaks the contract of contact models."""
+        _check_types(self.model, contact, problem)
+        _check_values(self.model, contact, problem, areas=areas)
+        if totals:
+            _check_totals(self.model, contact, problem)
+
+    def rate(self, law: WearLaw, contact: Contact, problem: Problem, p: Numbers | None = None) -> Array:
+        """Return the rates of a law with its numbers, or blame the contact for them if that is what is wrong."""
+        try:
+            return law.checked_rate(contact, p)
+        except ModelError:
+            check_finite(self.model, contact, problem)
+            raise
+
+
+def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Problem) -> None:
+    """Raise a `ModelError` unless each column holds one finite float64 for each operating point."""
+    for name, values in columns.items():
+        check_type(model, name, values, problem.batch_shape)
+        low, high = extremes(values)
+        if not (math.isfinite(low) and math.isfinite(high)):
+            raise _error(model, f"gave {_words(name)} that is not finite", problem, ~np.isfinite(values))
+
+
+def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> None:
+    ellipse = problem.geometry == "ellipse"
+    expected = EllipticContact if ellipse else Contact
+    if not isinstance(contact, expected):
+        raise ModelError(f"contact model '{model.name}' returned {contact!r}, not a wearlaw.{expected.__name__}")
+    batch = problem.batch_shape
+    nodes: tuple[int, ...] = getattr(contact.pressure, "shape", ())
+    axes = len(batch) + (2 if ellipse else 1)
+    if len(nodes) != axes or nodes[: len(batch)] != batch or 0 in nodes:
+        wanted = ", ".join([*map(str, batch), "nodes", *(["strips"] if ellipse else [])])
+        raise ModelError(f"contact model '{model.name}' gave a pressure of shape {nodes}; it must be ({wanted})")
+    _check_fields(model, contact, (*FIELDS, *VECTORS) if ellipse else FIELDS, nodes)
+    _check_fields(model, contact, TOTALS if ellipse else LINE_TOTALS, batch)
+    if ellipse:
+        _check_fields(model, contact, ("strip_width",), (*batch, contact.pressure.shape[-1]))
+
+
+def _check_fields(model: ContactModel, contact: Contact, names: tuple[str, ...], shape: tuple[int, ...]) -> None:
+    for name in names:
+        values = getattr(contact, name)
+        if values.__class__ is not np.ndarray or values.dtype is not FLOAT64 or values.shape != shape:
+            check_type(model, name, values, shape)
+
+
+def check_type(model: ContactModel, name: str, values: Any, shape: tuple[int, ...]) -> None:
+    """Raise a `ModelError` unless a value is a float64 array of a shape, or a number where that has no axes."""
+    if type(values) not in (np.ndarray, np.float64) or values.dtype != FLOAT64:
+        raise ModelError(
+            f"contact model '{model.name}' gave {_words(name)} of type {type_name(values)}; it must be a float64 array"
+        )
+    if values.shape != shape:
+        raise ModelError(
+            f"contact model '{model.name}' gave {_words(name)} of shape {values.shape}; it must be {shape}"
+        )
+
+
+def _check_values(model: ContactModel, contact: Contact, problem: Problem, *, areas: bool) -> None:
+    """Check the values that laws read in few passes, and search for the first wrong one only if there is one.
+
+    Components of vectors are checked by their magnitudes, and where sums are compared with totals. Areas are checked
+    where the model chose the nodes; an infinite one is found by its sum.
+    """
+    area, traction, bound = contact.area, contact.traction, contact.traction_bound
+    if areas and not area.min() >= 0.0:
+        check_finite(model, contact, problem)
+        raise _error(model, "gave a negative area", problem, area < 0.0)
+    finite = math.isfinite(_product(contact.pressure, contact.slip))
+    if "traction_bound" in model.exemptions:  # where it may be infinite, it keeps no traction finite
+        finite = finite and math.isfinite(traction.max())
+    if not finite:
+        check_finite(model, contact, problem)
+    magnitude = traction if traction.min() >= 0.0 else np.abs(traction)
+    if (magnitude <= bound).all():  # False where one is no number
+        return
+    with np.errstate(invalid="ignore"):  # infinity less infinity is NaN
+        margin = float((bound - magnitude).min())
+    if not margin > -math.inf:
+        check_finite(model, contact, problem)
+    if margin < -ROUNDINGS * float(magnitude.max()):
+        _check_bound(model, contact, problem)
+
+
+def _product(one: Array, other: Array) -> float:
+    """Return the sum of the products of two arrays of one shape, which is finite only if all their entries are.
+
+    This is the fastest way to look at them. The sum may overflow as well.
+    """
+    first, second = one.ravel(order="K"), other.ravel(order="K")
+    total = 0.0
+    for start in range(0, first.size, ONE_THREAD):
+        total += float(np.vdot(first[start : start + ONE_THREAD], second[start : start + ONE_THREAD]))
+    return total
+
+
+def check_finite(model: ContactModel, contact: Contact, problem: Problem) -> None:
+    """Raise a `ModelError` if a value is not finite. Only the traction bound may be infinite."""
+    names = (*FIELDS, *VECTORS, *TOTALS) if isinstance(contact, EllipticContact) else (*FIELDS, *LINE_TOTALS)
+    for name in names:
+        values = getattr(contact, name)
+        bad = np.isnan(values) if name == "traction_bound" else ~np.isfinite(values)
+        if bad.any():
+            raise _error(model, f"gave {_words(name)} that is not finite", problem, bad)
+
+
+def _check_bound(model: ContactModel, contact: Contact, problem: Problem) -> None:
+    if "traction_bound" in model.exemptions:
+        return
+    over = ~(np.abs(contact.traction) <= contact.traction_bound * (1.0 + _rounding_of_traction(model)))
+    if over.any():
+        first = _first(over)
+        traction, bound = (_shown(name, getattr(contact, name)[first]) for name in ("traction", "traction_bound"))
+        raise _error(model, f"gave a traction of {traction} where its own bound is {bound}", problem, over)
+
+
+def _rounding_of_traction(model: ContactModel) -> float:
+    """Return by how much a traction may exceed its bound: by rounding, or by the error of the force that it is."""
+    return ROUNDINGS if model.scale == "cells" or model.accuracy == QUADRATURE else model.accuracy
+
+
+def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> None:
+    """Compare sums over the nodes with the totals, to what the model declares of its sums."""
+    rest = (*VECTORS, *TOTALS) if isinstance(contact, EllipticContact) else LINE_TOTALS
+    if not all(math.isfinite(_product(values, values)) for values in (getattr(contact, name) for name in rest)):
+        check_finite(model, contact, problem)
+    limit = np.maximum(problem.friction_coefficient * problem.normal_force, np.abs(contact.tangential_force))
+    area = contact.area
+    if isinstance(contact, EllipticContact):
+        declared, error = "elliptic_accuracy", SLACK * max(model.elliptic_accuracy, ROUNDINGS)
+        sums = {
+            "force_x": (contact.traction_x, limit),
+            "force_y": (contact.traction_y, limit),
+        }
+        if model.scale == "cells":  # the means of a patch have no moment
+            turning = -(contact.x * contact.traction_y + contact.y * contact.traction_x)
+            sums["moment_z"] = turning, limit * np.hypot(problem.a, problem.b)
+    else:
+        declared, error = "accuracy", SLACK * max(model.accuracy, ROUNDINGS)
+        sums = {"tangential_force": (contact.traction, limit)}
+        if "energy_balance" not in model.exemptions and model.scale == "cells":
+            sums["wear_index"] = contact.wear_index_density, limit * np.abs(problem.longitudinal_creepage)
+    for name, (values, size) in {"normal_force": (contact.pressure, contact.normal_force), **sums}.items():
+        total, found = getattr(contact, name), contact.sum_over_nodes(values * area)
+        wrong = ~(np.abs(found - total) <= error * size)
+        if wrong.any():
+            check_finite(model, contact, problem)
+            first = _first(wrong)
+            raise _error(
+                model,
+                f"gave {_words(name)} of {_shown(name, total[first])}, but its nodes sum to"
+                f" {_shown(name, found[first])}; they may differ by twice its `{declared}`, {0.5 * error:.2g}, which a"
+                " model on coarser nodes declares",
+                problem,
+                wrong,
+            )
+
+
+def _error(model: ContactModel, what: str, problem: Problem, wrong: NDArray[np.bool_]) -> ModelError:
+    """Return the error that names the first place where something is wrong, of the shape of the batch or the nodes."""
+    first = _first(wrong)
+    batch = len(problem.batch_shape)
+    point, node = first[:batch], first[batch:]
+    creepage = "longitudinal creepage" if problem.geometry == "ellipse" else "creepage"
+    conditions = (
+        f"{creepage} {from_si(problem.longitudinal_creepage[point], '%')!r}"
+        f" and maximum pressure {from_si(problem.max_pressure[point], 'MPa')!r}"
+    )
+    at = f"node {', '.join(map(str, node))} at " if node else ""
+    return ModelError(f"contact model '{model.name}' {what}, first for {at}{conditions}")
+
+
+def _first(wrong: NDArray[np.bool_]) -> tuple[int, ...]:
+    return tuple(int(index) for index in np.unravel_index(int(np.argmax(wrong)), wrong.shape))
+
+
+def _words(name: str) -> str:
+    """Return what messages call a field, with its article."""
+    words = {
+        "force_x": "longitudinal force",
+        "force_y": "lateral force",
+        "moment_z": "spin moment",
+        "longitudinal": "longitudinal force",
+        "lateral": "lateral force",
+    }
+    named = words.get(name, name.replace("_", " "))
+    return f"{'an' if named[0] in 'aeiou' else 'a'} {named}"
+
+
+def _shown(name: str, value: float) -> str:
+    unit = TO_SHOW.get(name, "N" if "force" in name else "MPa")
+    return repr(from_si(value, unit))

@@ -1,0 +1,108 @@
+"""Writing what comes of wear tests: a fit, or a comparison."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from wearlaw.comparison.result import Comparison
+from wearlaw.errors import OutputError
+from wearlaw.figures.curves import FigureData
+from wearlaw.fitting.result import Fit
+from wearlaw.output.results import FigureFormat, save_figure, save_table
+from wearlaw.units.quantities import text_of
+from wearlaw.version import __version__
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FIT = "fit.json"
+COMPARISON = "comparison.json"
+LAW = "law.toml"
+
+
+def write_fit(
+    fit: Fit,
+    notes: Sequence[str],
+    folder: Path,
+    figure_formats: Sequence[FigureFormat] = ("png",),
+    latex: bool = False,
+) -> list[str]:
+    """Write a fit into an empty folder and return the names of the files, the fitted law first.
+
+    Parameters
+    ----------
+    fit : Fit
+        What to write.
+    notes : sequence of str
+        What a reader of the fit must know.
+    folder : Path
+        Where to.
+    figure_formats : sequence of str
+        The formats in which the figure is written.
+    latex : bool
+        Whether the tables are also written for LaTeX.
+
+    Raises
+    ------
+    OutputError
+        If a file cannot be written.
+    """
+    record = {
+        "parameters": {name: text_of(value) for name, value in fit.parameters.items()},
+        "intervals": {name: [text_of(end) for end in ends] for name, ends in fit.intervals.items()},
+        "interval_method": fit.interval_method,
+        "aic": fit.aic,
+        "provenance": fit.provenance,
+        "predict": fit.predict.model_dump(mode="json"),
+        "notes": list(notes),
+    }
+    names = []
+    if fit.law is not None:
+        fit.to_toml(folder / LAW)
+        names.append(LAW)
+    tables = {"parameters": fit.table(), "residuals": fit.residuals}
+    return [*names, *_write(folder, FIT, record, tables, fit.figure_data(), figure_formats, latex)]
+
+
+def write_comparison(
+    comparison: Comparison,
+    notes: Sequence[str],
+    folder: Path,
+    figure_formats: Sequence[FigureFormat] = ("png",),
+    latex: bool = False,
+) -> list[str]:
+    """Write a comparison into an empty folder and return the names of the files, the ranking first.
+
+    Parameters, errors: as for `write_fit`.
+    """
+    record = {
+        "wearlaw": __version__,
+        "tests": comparison.tests.source,
+        "predictors": {one.names.label: one.pipeline.model_dump(mode="json") for one in comparison.compared},
+        "notes": list(notes),
+    }
+    tables = {"ranking": comparison.table(), "predictions": comparison.predictions()}
+    return _write(folder, COMPARISON, record, tables, comparison.figure_data(), figure_formats, latex)
+
+
+def _write(
+    folder: Path,
+    marker: str,
+    record: Mapping[str, Any],
+    tables: Mapping[str, pd.DataFrame],
+    figure: FigureData,
+    figure_formats: Sequence[FigureFormat],
+    latex: bool,
+) -> list[str]:
+    """Write tables, a figure and a record of it all."""
+    try:
+        names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
+        names += save_figure(figure, folder, figure.name, figure_formats)
+        text = json.dumps(record, indent=2, ensure_ascii=False)
+        (folder / marker).write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"output: cannot write the results: {error.strerror or error}") from None
+    return [*names, marker]

@@ -1,0 +1,189 @@
+"""Writing the results of a study."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from wearlaw.errors import OutputError
+from wearlaw.figures.formats import FigureFormat as FigureFormat
+from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS
+from wearlaw.report.latex import latex_table
+from wearlaw.report.tables import tables
+from wearlaw.study.case import CASE_FILE, Case, written
+from wearlaw.study.study import Study, numbers
+from wearlaw.sweeping.space import check_disk, check_memory
+from wearlaw.sweeping.targets import ITEM
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray
+
+    from wearlaw.figures.curves import FigureData
+
+RESULTS = "results.nc"
+CSV = "results.csv"
+FIGURES = "figures"
+REPORT = "report.html"
+TABLES = "tables"
+COPIES = 2
+"""How often a result is in memory: as it was computed, and among those of the other pairs."""
+ROW_IN_MEMORY, ROW_ON_DISK = 800, 400
+"""Bytes that a row of the table of results takes in memory, measured, and as CSV."""
+METADATA: dict[FigureFormat, Any] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
+"""What matplotlib would write into a figure, and must not, for the same bytes each time."""
+T = TypeVar("T")
+
+
+def check_room(case: Case, folder: Path) -> None:
+    """Refuse a case whose results would not fit into memory or on the disk.
+
+    Raises
+    ------
+    InputError
+        With the size that is needed.
+    """
+    count = numbers(case)
+    rows = sum(grid.size for grid in case.sweeps.values()) * len(case.contact_models) * len(case.wear_laws)
+    check_memory(COPIES * ITEM * count + ROW_IN_MEMORY * rows, "give the sweeps fewer points")
+    check_disk(2 * ITEM * count + ROW_ON_DISK * rows, folder)
+
+
+def write(
+    study: Study,
+    folder: Path,
+    figure_formats: Sequence[FigureFormat] = ("png",),
+    latex: bool = False,
+    on_stage: Callable[[str], None] = lambda _: None,
+) -> list[str]:
+    """Write a study's results into an empty folder and return the names of the files, the report first.
+
+    Parameters
+    ----------
+    study : Study
+        What to write.
+    folder : Path
+        Where to.
+    figure_formats : sequence of str
+        The formats in which each figure is written.
+    latex : bool
+        Whether the tables are also written for LaTeX.
+    on_stage : callable, optional
+        Called with what is written next, to show progress.
+
+    Raises
+    ------
+    OutputError
+        If a file cannot be written, or two figures or tables have one name.
+    """
+    from wearlaw.report.page import report
+
+    case_files = written(study.case)
+    try:
+        on_stage("writing results")
+        write_netcdf(study, folder / RESULTS)
+        table(study).to_csv(folder / CSV, index=False)
+        for name, text in case_files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        names = [REPORT, RESULTS, CSV, *case_files, *_write_tables(study, folder, latex)]
+        names += write_figures(study, folder, figure_formats, on_stage)
+        on_stage("writing the report")
+        (folder / REPORT).write_text(report(study, case_files[CASE_FILE]), encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"output: cannot write the results: {error.strerror or error}") from None
+    return names
+
+
+def _write_tables(study: Study, folder: Path, latex: bool) -> list[str]:
+    names = []
+    (folder / TABLES).mkdir()
+    for name, one in _by_name("table", ((one.name, one) for one in tables(study))).items():
+        names += save_table(one.frame, folder, os.path.join(TABLES, name), latex)
+    return names
+
+
+def save_table(frame: pd.DataFrame, folder: Path, name: str, latex: bool) -> list[str]:
+    """Write a table as CSV, and for LaTeX too if asked for, and return the names of the files."""
+    frame.to_csv(folder / f"{name}.csv", index=False)
+    if not latex:
+        return [f"{name}.csv"]
+    (folder / f"{name}.tex").write_text(latex_table(frame), encoding="utf-8")
+    return [f"{name}.csv", f"{name}.tex"]
+
+
+def write_figures(
+    study: Study, folder: Path, formats: Sequence[FigureFormat], on_stage: Callable[[str], None]
+) -> list[str]:
+    """Write all figures of a study and return the names of the files."""
+    names = []
+    (folder / FIGURES).mkdir()
+    every = (*study.figures, *(figure for section in study.sections for figure in section.figures))
+    for name, figure in _by_name("figure", ((figure.name, figure) for figure in every)).items():
+        on_stage(f"drawing {name}")
+        names += save_figure(figure, folder, os.path.join(FIGURES, name), formats)
+    return names
+
+
+def save_figure(figure: FigureData, folder: Path, name: str, formats: Sequence[FigureFormat]) -> list[str]:
+    """Write a figure, as the same bytes each time, with no date in it, and return the names of the files."""
+    import matplotlib as mpl
+
+    from wearlaw.figures.drawing import draw
+
+    drawn = draw(figure)
+    files: dict[FigureFormat, str] = {extension: f"{name}.{extension}" for extension in formats}
+    for extension, file in files.items():
+        with mpl.rc_context({"pdf.fonttype": 42, "svg.hashsalt": "wearlaw"}):
+            drawn.savefig(folder / file, dpi=150, metadata=METADATA[extension])
+    return list(files.values())
+
+
+def _by_name(kind: str, named: Iterable[tuple[str, T]]) -> dict[str, T]:
+    """Return things by the names of their files."""
+    found: dict[str, T] = {}
+    for name, thing in named:
+        if name in found or not name.isidentifier():
+            fault = (
+                "there are two of that name"
+                if name in found
+                else "its name must be made of letters, digits and underscores"
+            )
+            raise OutputError(f"output: the {kind} '{name}' cannot be written: {fault}")
+        found[name] = thing
+    return found
+
+
+def write_netcdf(study: Study, path: Path) -> None:
+    """Write all datasets into one netCDF file, each in a group: sweeps/NAME and profiles/NAME."""
+    import xarray
+
+    groups = {f"sweeps/{name}": dataset for name, dataset in study.sweeps.items()}
+    groups |= {f"profiles/{name}": dataset for name, dataset in study.profiles.items() if dataset}
+    xarray.DataTree.from_dict(groups).to_netcdf(path, engine="h5netcdf")
+
+
+def table(study: Study) -> pd.DataFrame:
+    """Return the results of all sweeps as one tidy table, a row for each pair at each operating point.
+
+    What a sweep does not have stays empty there.
+    """
+    import pandas as pd
+
+    rows = pd.concat([_rows(name, sweep) for name, sweep in study.sweeps.items()], ignore_index=True)
+    units = {**UNITS, **study.case.units}
+    of_point = [name for name in (*OF_POINT, *study.case.units) if name in rows and name not in OF_CONTACT]
+    rates = [str(column) for column in rows.columns if str(column).startswith("wear_rate")]
+    of_contact = [name for name in OF_CONTACT if name in rows]
+    names = dict.fromkeys(("sweep", "contact_model", "wear_law", *of_point, *rates, *of_contact))
+    return rows[list(names)].rename(columns={name: f"{name} [{units[name]}]" for name in names if units.get(name)})
+
+
+def _rows(name: str, sweep: xarray.Dataset) -> pd.DataFrame:
+    of_contact = [v for v in sweep.data_vars if "contact_model" in sweep[v].dims]
+    by_contact = sweep[of_contact].sel(contact_model=sweep.pair_contact_model).drop_vars("contact_model")
+    flat = sweep.drop_dims("contact_model").assign(by_contact.data_vars).to_dataframe().reset_index()
+    flat = flat.rename(columns={"pair_contact_model": "contact_model", "pair_wear_law": "wear_law"})
+    flat.insert(0, "sweep", name)
+    return flat.drop(columns="pair")

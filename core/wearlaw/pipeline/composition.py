@@ -1,0 +1,90 @@
+"""What stages of a pipeline must fit each other in; errors and warnings say what to do instead."""
+
+from __future__ import annotations
+
+import warnings
+
+from wearlaw.contact.problem import Geometry, Problem
+from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
+from wearlaw.models.contact_model import PATCHES, ContactModel, Scale
+from wearlaw.models.rig import Rig
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.plugins import loader
+from wearlaw.rigs.twin_disc import TwinDisc
+
+PEAKS = (
+    "The peak of the traction is 4/π or 3/2 times its mean on a line (elliptic or parabolic bound), but 3/2 or 2 times"
+    " on an ellipse, so that cells see other loads at the same mean."
+)
+"""Why parameters do not carry over from line to ellipse."""
+
+
+def check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
+    """Refuse a law of the whole patch on a contact that is resolved into cells."""
+    if law.scale == "patch" and scale != "patch":
+        raise CompositionError(
+            f"wear law '{law.name}' is stated for the means of the whole patch, but contact model '{model.name}'"
+            ' resolves it into cells; put wl.patch_mean() between them, or use wl.contact_model("global")'
+        )
+
+
+def check_geometry(rig: Rig, model: ContactModel, geometry: Geometry | None = None) -> None:
+    """Refuse a contact model of another geometry than the rig's, or than that of a problem which the rig has made."""
+    geometry = geometry or rig.geometry
+    if geometry is not None and geometry not in model.geometries():
+        able = [name for name, one in loader.contact_models().items() if geometry in one.geometries()]
+        raise CompositionError(
+            f"contact model '{model.name}' solves {' and '.join(PATCHES[known] for known in model.geometries())} only,"
+            f" but a {type(rig).__name__} makes {PATCHES[geometry]}; those that solve them: {', '.join(able)}"
+        )
+
+
+def warn_of_calibration(
+    geometry: Geometry | None, model: ContactModel, scale: Scale, law: WearLaw, stacklevel: int = 3
+) -> None:
+    """Warn of parameters that were fitted for another contact; `stacklevel` 1 is this function."""
+    calibration = law.calibration
+    if calibration is None:
+        return
+    geometry = geometry or calibration.geometry  # unknown before there is a problem: see `warn_of_geometry`
+    if calibration.covers(model, scale, geometry):
+        return
+    if calibration.geometry != geometry:
+        warnings.warn(
+            f"the parameters of wear law '{law.name}' were fitted for {PATCHES[calibration.geometry]}, but are used"
+            f" with {PATCHES[geometry]}. {PEAKS} Check them against data",
+            CalibrationWarning,
+            stacklevel=stacklevel,
+        )
+        return
+    used = "its patch means" if scale == "patch" else "its cells"
+    warnings.warn(
+        f"the parameters of wear law '{law.name}' were fitted for {calibration}, but are used with"
+        f" {model!r} and {used}; check them against data, or choose parameters fitted for that contact",
+        CalibrationWarning,
+        stacklevel=stacklevel,
+    )
+
+
+def warn_of_geometry(
+    rig: Rig, model: ContactModel, scale: Scale, law: WearLaw, problem: Problem, stacklevel: int
+) -> None:
+    """Warn of parameters fitted for another shape of patch, for a rig whose problems only tell that shape."""
+    calibration, geometry = law.calibration, problem.geometry
+    if rig.geometry is None and calibration is not None and calibration.geometry != geometry:
+        warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
+
+
+def needs_discs(rig: Rig, what: str) -> None:
+    """Refuse a rig that is not made of discs, for what only knows these."""
+    if not isinstance(rig, TwinDisc):
+        raise CompositionError(f"{what}: is for a TwinDisc only, not for a {type(rig).__name__}")
+
+
+def check_traction(model: ContactModel, problem: Problem) -> None:
+    """Refuse a measured traction for a contact model that has no use for it."""
+    if problem.traction_coefficient is not None and not model.uses_measured_traction:
+        raise ConditionsError(
+            f"traction_coefficient: contact model '{model.name}' computes the traction itself; leave"
+            ' traction_coefficient out, or use wl.contact_model("global")'
+        )

@@ -1,0 +1,420 @@
+"""What a pipeline returns: quantities with units, computed from SI totals when asked for."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import UNITS, Contact
+from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.quadrature import uniform_cells
+from wearlaw.errors import CompositionError, InputError
+from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.numerics import integrate
+from wearlaw.numerics.integrate import SlipTotals, WearTotals
+from wearlaw.numerics.solving import Solver
+from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
+
+if TYPE_CHECKING:
+    import xarray
+
+    from wearlaw.pipeline.pipeline import Pipeline
+
+PROFILE_CELLS = 200
+"""Cells of a profile along the patch."""
+
+OF_LINE = ("tangential_force", "wear_index", "half_width", "max_pressure", "stick_ratio", "mean_slip")
+OF_ELLIPSE = (
+    "longitudinal_force", "lateral_force", "spin_moment", "wear_index", "semi_axis_a", "semi_axis_b", "max_pressure",
+)  # fmt: skip
+"""What a prediction prints of itself, besides its wear rate."""
+
+
+class Prediction:
+    """The contact, and with a wear law the wear, at one or many operating points.
+
+    Every property has the shape of the broadcast conditions; for one operating point it is a scalar. Forces have the
+    signs of the creepages that cause them: body 1, a wheel, exerts them on body 2, a rail. Properties of the wear raise
+    a `CompositionError` where the pipeline has no wear law, and so do those of another shape of patch.
+
+    Attributes
+    ----------
+    pipeline : Pipeline
+        What made it.
+    problem : Problem
+        The contact problem, as SI arrays.
+    """
+
+    def __init__(
+        self,
+        pipeline: Pipeline[...],
+        problem: Problem,
+        forces: CreepForces | None = None,
+        wear: WearTotals | None = None,
+    ) -> None:
+        self.pipeline = pipeline
+        self.problem = problem
+        self._given_forces = forces
+        self._given_wear = wear
+
+    @property
+    def longitudinal_force(self) -> Quantity:
+        """Longitudinal force, Fx [N], with the sign of the longitudinal creepage."""
+        return from_si(self._forces.longitudinal, "N")
+
+    @property
+    def lateral_force(self) -> Quantity:
+        """Lateral force, Fy [N], with the sign of the lateral creepage and of the spin."""
+        return from_si(self._forces.lateral, "N")
+
+    @property
+    def spin_moment(self) -> Quantity:
+        """Spin moment, Mz [N m], with the sign of the spin."""
+        return from_si(self._forces.spin_moment, "N*m")
+
+    @property
+    def tangential_force(self) -> Quantity:
+        """Tangential force, T [N]: on a line with the sign of the creepage, on an ellipse √(Fx² + Fy²)."""
+        return from_si(self._force, "N")
+
+    @property
+    def traction_coefficient(self) -> Quantity:
+        """Tangential over normal force, T/N [-]."""
+        return from_si(self._force / self.problem.normal_force, "")
+
+    @property
+    def wear_index(self) -> Quantity:
+        """Wear index, Tγ [N], ξFx + ηFy + φMz: the energy dissipated per metre rolled.
+
+        It is what the creepages feed in (Tassini et al. 2010, eq. 5). What the nodes of the patch dissipate is
+        `cell_wear_index`.
+        """
+        return from_si(self._wear_index, "N")
+
+    @property
+    def cell_wear_index(self) -> Quantity:
+        """Energy dissipated per metre rolled, summed over the nodes of the patch, ∑ q·s dA [N].
+
+        It is what local wear laws see. In the simplified theory with spin it differs from `wear_index`.
+        """
+        return from_si(self._slip.cell_wear_index, "N")
+
+    @property
+    def averaged_wear_index(self) -> Quantity:
+        """The averaged wear index of Tassini et al. 2010, section 3.2.3 [N].
+
+        Mean slip of the slipping part of the patch times the sum of the tractions. It exceeds the energy that is
+        dissipated wherever part of the patch sticks; `wear_index` is the one that is consistent with it.
+        """
+        slip = self._slip
+        slipping = np.divide(
+            slip.mean_slip * slip.patch_area,
+            slip.slip_area,
+            out=np.zeros_like(slip.slip_area),
+            where=slip.slip_area > 0,
+        )
+        return from_si(slipping * np.abs(self._force), "N")
+
+    @property
+    def wear_index_density(self) -> Quantity:
+        """Wear index over the area of the patch, Tγ/A [N/m²]."""
+        return from_si(self._wear_index / self._patch_area, "N/mm^2")
+
+    @property
+    def normal_force(self) -> Quantity:
+        """Normal force, N [N], of a line on its whole width."""
+        return from_si(self.problem.normal_force, "N")
+
+    @property
+    def normal_force_per_width(self) -> Quantity:
+        """Normal force per unit width of a line, P [N/m]."""
+        return from_si(self.problem.normal_force_per_width, "kN/m")
+
+    @property
+    def creepage(self) -> Quantity:
+        """Longitudinal creepage, ξ [-], positive where body 1 is the faster one."""
+        return from_si(self.problem.longitudinal_creepage, "%")
+
+    @property
+    def friction_coefficient(self) -> Quantity:
+        """Friction coefficient, μ [-]."""
+        return from_si(self.problem.friction_coefficient, "")
+
+    @property
+    def half_width(self) -> Quantity:
+        """Half the length of a line's patch in the rolling direction, a [m]."""
+        self.problem.needs("line", "half_width")
+        return from_si(self.problem.a, "mm")
+
+    @property
+    def semi_axis_a(self) -> Quantity:
+        """Semi-axis of an ellipse in the rolling direction, a [m]."""
+        self.problem.needs("ellipse", "semi_axis_a")
+        return from_si(self.problem.a, "mm")
+
+    @property
+    def semi_axis_b(self) -> Quantity:
+        """Semi-axis of an ellipse across the rolling direction, b [m]."""
+        self.problem.needs("ellipse", "semi_axis_b")
+        return from_si(self.problem.b, "mm")
+
+    @property
+    def max_pressure(self) -> Quantity:
+        """Hertz's maximum pressure, p0 [Pa]."""
+        return from_si(self.problem.max_pressure, "MPa")
+
+    @property
+    def patch_area(self) -> Quantity:
+        """Area of the patch, A [m²], the sum of its nodes' areas: of Hertz's patches 2a × track width, or πab."""
+        return from_si(self._patch_area, "mm^2")
+
+    @property
+    def stick_ratio(self) -> Quantity:
+        """Share of the patch that sticks [-]."""
+        return from_si(1.0 - self._slip.slip_area / self._slip.patch_area, "")
+
+    @property
+    def mean_slip(self) -> Quantity:
+        """Mean magnitude of the relative slip over the whole patch [-]."""
+        return from_si(self._slip.mean_slip, "%")
+
+    @cached_property
+    def contact(self) -> Contact:
+        """The solved contact as SI arrays, on nodes that suit the wear law, or that the contact model chose."""
+        model, scale = self.pipeline.contact_model, self.pipeline.scale
+        if self._solved is not None:
+            return integrate.seen_by_law(model, self._solved.with_batch(self.problem.batch_shape), scale)
+        if self.problem.geometry == "ellipse" or not self.pipeline.laws:
+            return integrate.solve(model, self.problem, scale)
+        contact = integrate.contact_for(model, self.pipeline.wear_law, self.problem.flatten(), scale)
+        return contact.with_batch(self.problem.batch_shape)
+
+    @cached_property
+    def profile(self) -> xarray.Dataset:
+        """Pressure, traction, traction bound, slip and the wear rate along the patch of a line, with units."""
+        if not self.pipeline.laws:
+            return self._profile({})
+        return self._profile({"wear_rate": (self.pipeline.wear_law.checked_rate(self._cells()), WEAR_RATE)})
+
+    def _cells(self) -> Contact:
+        """Return the contact on uniform cells where the model can give them, else on its own nodes."""
+        model, problem = self.pipeline.contact_model, self.problem
+        problem.needs("line", "profile")
+        if self.pipeline.scale == "cells" and isinstance(model, LineContactModel):
+            return Solver(model).at(problem, uniform_cells(problem.half_width, PROFILE_CELLS), totals=False)
+        return self.contact
+
+    def _profile(self, more: dict[str, tuple[Array, str]]) -> xarray.Dataset:
+        import xarray
+
+        contact = self._cells()
+        names = ("x", "pressure", "traction", "traction_bound", "slip")
+        columns = {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more}
+        dims = (*(f"point_{axis}" for axis in range(len(self.problem.batch_shape))), "cell")
+        data = {
+            name: xarray.DataArray(from_si(values, unit).magnitude, dims=dims, attrs={"units": unit})
+            for name, (values, unit) in columns.items()
+        }
+        if len(dims) == 1:
+            x = data.pop("x")
+            return xarray.Dataset({k: v.rename(cell="x") for k, v in data.items()}, coords={"x": x.rename(cell="x")})
+        return xarray.Dataset(data).set_coords("x")
+
+    def wear_profile(self, body: str, strips: int | None = None) -> xarray.Dataset:
+        """Return the depth lost and the distance slid across an elliptic patch, over y.
+
+        A point of the wheel's tread is in contact once in each revolution, so the depth that it loses per metre rolled
+        is ∫ rate dx / (ρ 2πR). A point of the rail is in contact once in each passage of a wheel; what it loses is
+        given per passage.
+
+        Parameters
+        ----------
+        body : str
+            Its name in the rig, such as "wheel" or "rail".
+        strips : int, optional
+            How many strips of equal width, for a smoother profile; by default those of the contact model, which cost
+            nothing more. A contact model that cannot choose its strips keeps its own.
+
+        Returns
+        -------
+        xarray.Dataset
+            `depth` and `sliding_distance` over the coordinate `y`, for the wheel per metre rolled, for the rail per
+            passage, with units in attrs; with several operating points there is an axis for each of the batch's.
+
+        Raises
+        ------
+        InputError
+            If the rig has no such body.
+        CompositionError
+            If the contact is not resolved across the patch, or is a line.
+        """
+        model, problem = self.pipeline.contact_model, self.problem
+        radius, density = self.pipeline.rig.body(body).rolling_radius, self._density(body)
+        if problem.geometry == "line":
+            raise CompositionError("wear_profile: a line wears evenly across its width; take depth_per_distance")
+        if self.pipeline.scale == "patch":
+            raise CompositionError(
+                f"wear_profile: {model!r} gives means of the whole patch; take a contact model that"
+                ' resolves it, such as wl.contact_model("fastsim")'
+            )
+        if strips is not None and (isinstance(strips, bool) or not isinstance(strips, int) or strips < 2):
+            raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
+        law, solved = self.pipeline.wear_law, self._solved
+        if not (problem.density == density).all():
+            problem = problem.replaced(density=np.full_like(problem.density, density))
+            solved = solved and solved.replaced(density=problem.density.reshape(-1))
+        y, wear, slid = integrate.integrate_across(model, law, problem, strips, solved)
+        once = 2.0 * np.pi * radius if np.isfinite(radius) else 1.0
+        units = ("um/km", "mm/m") if np.isfinite(radius) else ("nm", "um")
+        per = "metre rolled" if np.isfinite(radius) else "passage of a wheel"
+        columns = {"depth": (wear / (density * once), units[0]), "sliding_distance": (slid / once, units[1])}
+        return _across_patch(y, columns, per)
+
+    @property
+    def wear_rate(self) -> Quantity:
+        """Mass lost per metre rolled and contact area, mean over the patch [kg/m/m²].
+
+        Of body 1, where the law gives a volume and the densities of the bodies differ.
+        """
+        return from_si(self._wear.wear_rate, WEAR_RATE)
+
+    @cached_property
+    def wear_rate_error(self) -> Quantity:
+        """Estimate of the numerical error in `wear_rate` [kg/m/m²]; slow on an ellipse, which is solved again."""
+        model, law, scale = self.pipeline.contact_model, self.pipeline.wear_law, self.pipeline.scale
+        return from_si(integrate.wear_rate_error(model, law, self.problem, scale, self._wear), WEAR_RATE)
+
+    def depth_per_distance(self, body: str) -> Quantity:
+        """Return the depth that a body's surface loses per distance rolled, mean over the patch's width [m/m].
+
+        A point of the surface is in contact once in each revolution. On a line that is for 2a of each πD rolled, so
+        the depth is (wear rate / density) · 2a / (πD); the depth across an ellipse is in `wear_profile`.
+
+        Parameters
+        ----------
+        body : str
+            Its name in the rig, such as "disc_1" or "wheel".
+        """
+        length = 0.5 * self._patch_area / self.problem.b
+        return from_si(self._volume_rate(body) * (length / self._circumference(body)), "um/km")
+
+    def profile_area_rate(self, body: str) -> Quantity:
+        """Return the area of a radial section that a body loses per distance rolled [mm²/km].
+
+        This is the measure of the BRR law (Pearce and Sherratt, Wear 144 (1991) 343-351): the depth per distance,
+        times the width of the patch.
+        """
+        section = self._volume_rate(body) * self._patch_area / self._circumference(body)
+        return from_si(section, "mm^2/km")
+
+    @property
+    def mass_per_distance(self) -> Quantity:
+        """Mass that a body loses per metre rolled [kg/m]; of body 1, as the wear rate."""
+        return from_si(self._wear.wear_rate * self._patch_area, "ug/m")
+
+    def mass_lost(self, over: QuantityLike, body: str) -> Quantity:
+        """Return the mass that a body loses over a distance rolled [kg]; a rail loses it all along.
+
+        Parameters
+        ----------
+        over : Quantity or str
+            The distance rolled, such as Q(10, "km").
+        body : str
+            Its name in the rig, such as "disc_1" or "wheel".
+        """
+        return from_si(self._mass_per_distance(body) * Unit("km").si(over, "over"), "mg")
+
+    def mass_per_cycle(self, body: str) -> Quantity:
+        """Return the mass that a body loses in one of its revolutions, over πD rolled [kg]."""
+        return from_si(self._mass_per_distance(body) * self._circumference(body), "ug")
+
+    @cached_property
+    def _forces(self) -> CreepForces:
+        if self._given_forces is not None:
+            return self._given_forces
+        return integrate.integrate_forces(self.pipeline.contact_model, self.problem)
+
+    @cached_property
+    def _force(self) -> Array:
+        """The tangential force [N], on an ellipse its magnitude."""
+        return self._forces.longitudinal if self.problem.geometry == "line" else self._forces.tangential
+
+    @cached_property
+    def _wear_index(self) -> Array:
+        return self.problem.power(self._forces)
+
+    @cached_property
+    def _slip(self) -> SlipTotals:
+        return integrate.integrate_slip(self.pipeline.contact_model, self.problem, self.pipeline.scale, self._solved)
+
+    @property
+    def _solved(self) -> Contact | None:
+        """The contact that was solved for the wear, with one batch axis, where it was kept."""
+        return None if self._given_wear is None else self._given_wear.contact
+
+    @cached_property
+    def _patch_area(self) -> Array:
+        if self._given_wear is None:
+            return integrate.patch_area(self.pipeline.contact_model, self.problem, self.pipeline.scale)
+        return self.problem.patch_area if self._given_wear.patch_area is None else self._given_wear.patch_area
+
+    @cached_property
+    def _wear(self) -> WearTotals:
+        """The outcome of the wear law, or a `CompositionError` where there is none."""
+        self.pipeline.wear_law  # noqa: B018  raises where there is none
+        assert self._given_wear is not None
+        return self._given_wear
+
+    def _mass_per_distance(self, body: str) -> Array:
+        return self._rate(body) * self._patch_area
+
+    def _volume_rate(self, body: str) -> Array:
+        return self._rate(body) / self._density(body)
+
+    def _rate(self, body: str) -> Array:
+        """Return the wear rate of a body, which a law of volume gives in proportion to its density."""
+        density = np.full_like(self.problem.density, self._density(body))
+        if np.array_equal(density, self.problem.density):
+            return self._wear.wear_rate
+        of_body = self.problem.replaced(density=density)
+        predict = self.pipeline
+        return integrate.integrate_wear(predict.contact_model, predict.wear_law, of_body, predict.scale).wear_rate
+
+    def _density(self, body: str) -> float:
+        return scalar_si(self.pipeline.rig.body(body).material.density, "kg/m^3")
+
+    def _circumference(self, body: str) -> float:
+        radius = self.pipeline.rig.body(body).rolling_radius
+        if np.isinf(radius):
+            raise InputError(f"body: {body} is flat and makes no revolutions; name the other body")
+        return 2.0 * np.pi * radius
+
+    def __repr__(self) -> str:
+        summary = OF_LINE if self.problem.geometry == "line" else OF_ELLIPSE
+        names = ("wear_rate", *summary) if self.pipeline.laws else summary
+        rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in names)
+        points = "1 operating point" if self.problem.size == 1 else f"{self.problem.size} operating points"
+        return f"{type(self).__name__} of {points}{rows}"
+
+
+def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str) -> xarray.Dataset:
+    import xarray
+
+    batch = [f"point_{axis}" for axis in range(y.ndim - 1)]
+    dims = [*batch, "strip"] if batch else ["y"]
+    place = (dims, in_unit(y, "mm"), {"units": "mm", "long_name": "position across the patch"})
+    data = {
+        name: (dims, in_unit(values, unit), {"units": unit, "long_name": f"{name.replace('_', ' ')} per {per}"})
+        for name, (values, unit) in columns.items()
+    }
+    return xarray.Dataset(data, coords={"y": place})
+
+
+def _brief(quantity: Quantity) -> str:
+    """Return a scalar as it is, an array as its range."""
+    if np.ndim(quantity.magnitude) == 0:
+        return repr(quantity)
+    return f"{quantity.min()!r} to {quantity.max()!r}"

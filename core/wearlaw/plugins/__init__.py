@@ -1,0 +1,1 @@
+"""Finding installed plugins, and looking up by name what they provide."""

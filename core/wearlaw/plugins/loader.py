@@ -1,0 +1,313 @@
+"""Discovery of plugins and look-up of models by name.
+
+Each entry point is loaded and asked alone, so that a broken plugin is named and left out while all others go
+on working. Two models of one name are an error that names both distributions.
+"""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from importlib.metadata import Distribution, EntryPoint, PackageNotFoundError, distributions, version
+from itertools import chain
+from threading import RLock
+from typing import Any
+
+import pluggy
+from packaging.utils import canonicalize_name
+
+from wearlaw import hookspecs
+from wearlaw.contact.material import Material
+from wearlaw.errors import InputError, PluginWarning, described
+from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.rig import Rig
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.plugins.shelf import Broken, Origin, Shelf, add_model
+from wearlaw.settings.configuration import Configuration, known_as
+
+
+@dataclass
+class Installed:
+    """Everything that discovery found."""
+
+    rigs: Shelf[type[Rig]] = field(default_factory=lambda: Shelf("rig", type))
+    contact_models: Shelf[type[ContactModel]] = field(default_factory=lambda: Shelf("contact model", type))
+    wear_laws: Shelf[type[WearLaw]] = field(default_factory=lambda: Shelf("wear law", type))
+    parameter_sets: Shelf[WearLaw] = field(default_factory=lambda: Shelf("parameter set", WearLaw))  # type: ignore[type-abstract]
+    materials: Shelf[Material] = field(default_factory=lambda: Shelf("material", Material))
+    cases: Shelf[str] = field(default_factory=lambda: Shelf("case", str))
+    test_sets: Shelf[str] = field(default_factory=lambda: Shelf("test set", str))
+    sections: Shelf[Callable[..., Any]] = field(default_factory=lambda: Shelf("section", Callable))  # type: ignore[arg-type]
+    plugins: list[Origin] = field(default_factory=list)
+    broken: list[Broken] = field(default_factory=list)
+
+    def shelves(self) -> tuple[Shelf[Any], ...]:
+        """Return what there is of each kind."""
+        models = (self.rigs, self.contact_models, self.wear_laws, self.parameter_sets)
+        return *models, self.materials, self.cases, self.test_sets, self.sections
+
+    def of_kind(self, kind: str) -> Shelf[Any]:
+        """Return what there is of a kind, such as "wear law"."""
+        return next(shelf for shelf in self.shelves() if shelf.kind == kind)
+
+    def listing(self) -> list[tuple[str, str, Origin]]:
+        """Return kind, name and origin of everything that plugins provide."""
+        return [row for shelf in self.shelves() for row in shelf.listing()]
+
+
+def installed() -> Installed:
+    """Return all installed plugins; they are searched for once in a process."""
+    with _searching:  # other threads wait, while a hook that gives a parameter set can look up the law it belongs to
+        return _under_way[0] if _under_way else _search()
+
+
+@functools.cache
+def _search() -> Installed:
+    found = Installed()
+    _under_way.append(found)
+    try:
+        _discover(found)
+    finally:
+        _under_way.clear()
+    for plugin in found.broken:
+        warnings.warn(f"left out: {plugin}", PluginWarning, stacklevel=4)
+    return found
+
+
+_searching = RLock()
+
+_under_way: list[Installed] = []
+"""What discovery has found so far, while it goes on."""
+
+
+def _discover(found: Installed) -> None:
+    """Load all plugins: first the models of all of them, then what is given by name and may look up models."""
+    manager = _Manager(hookspecs.PROJECT)
+    manager.add_hookspecs(hookspecs)
+    loaded: list[tuple[_Plugin, Origin]] = []
+    for entry_point, origin in _entry_points():
+        found.plugins.append(origin)
+        with _isolated(found, origin):
+            plugin = _Plugin(manager, _load(manager, entry_point, origin))
+            _add_models(plugin, origin, found)
+            loaded.append((plugin, origin))
+    for plugin, origin in loaded:
+        with _isolated(found, origin):
+            _add_named(plugin, origin, found)
+
+
+@contextmanager
+def _isolated(found: Installed, origin: Origin) -> Iterator[None]:
+    """Note what a plugin raises, whatever that is, and go on; only Ctrl-C ends the program."""
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:  # the plugin may have raised it itself, which looks the same
+        interrupt.add_note(f"wearlaw was loading {origin}")
+        raise
+    except BaseException as error:
+        found.broken.append(Broken(origin, described(error)))
+
+
+def rigs() -> Mapping[str, type[Rig]]:
+    """Return the installed rigs by name."""
+    return installed().rigs.items()
+
+
+def contact_models() -> Mapping[str, type[ContactModel]]:
+    """Return the installed contact models by name."""
+    return installed().contact_models.items()
+
+
+def wear_laws() -> Mapping[str, type[WearLaw]]:
+    """Return the installed wear laws by name."""
+    return installed().wear_laws.items()
+
+
+def rig(name: str, /, **options: Any) -> Any:
+    """Return the installed rig of a name, such as "twin_disc", with its fields.
+
+    Parameters, errors: as for `contact_model`. Type checkers know the conditions of a rig only by its class.
+    """
+    found = installed()
+    return found.rigs.find(name, found.broken)(**options)
+
+
+def contact_model(name: str, /, **options: Any) -> ContactModel:
+    """Return the installed contact model of a name, with its options.
+
+    Parameters
+    ----------
+    name : str
+        Such as "exact"; `contact_models()` lists all names.
+    **options
+        The model's fields, such as ``bound="elliptic"``; ``wearlaw show NAME`` lists them.
+
+    Raises
+    ------
+    UnknownModelError
+        If no installed plugin provides that model, or more than one does.
+    ConfigurationError
+        If an option is unknown or has a wrong value.
+    """
+    found = installed()
+    return found.contact_models.find(name, found.broken)(**options)
+
+
+def wear_law(name: str, /, **options: Any) -> WearLaw:
+    """Return the installed wear law of a name, or the law with the parameter set of that name, with its options.
+
+    Parameters, errors: as for `contact_model`.
+    """
+    found = installed()
+    if name in found.parameter_sets.providers and name not in found.wear_laws.providers:
+        return known_as(name, found.parameter_sets.find(name, found.broken).model_copy(update=options))
+    return found.wear_laws.find(name, found.broken)(**options)
+
+
+def material(name: str, /) -> Material:
+    """Return the installed material of a name.
+
+    Raises
+    ------
+    UnknownModelError
+        If no installed plugin provides it, or more than one does.
+    """
+    found = installed()
+    return found.materials.find(name, found.broken)
+
+
+def materials() -> Mapping[str, Material]:
+    """Return the installed materials by name."""
+    return installed().materials.items()
+
+
+def parameter_sets() -> Mapping[str, WearLaw]:
+    """Return the installed parameter sets by name."""
+    return installed().parameter_sets.items()
+
+
+def require(needed: Mapping[str, str]) -> None:
+    """Refuse to go on unless distributions are installed in the versions asked for.
+
+    Parameters
+    ----------
+    needed : mapping of str to str
+        Names of distributions with version ranges such as ">=1.2,<2"; "" for any version.
+
+    Raises
+    ------
+    InputError
+        If one is missing, has another version, or its range is not one.
+    """
+    from packaging.specifiers import InvalidSpecifier, SpecifierSet
+
+    for name, versions in needed.items():
+        try:
+            allowed = SpecifierSet(versions)
+        except InvalidSpecifier:
+            raise InputError(
+                f"plugins.{name}: '{versions}' is no version range; write one such as '>=1.2,<2'"
+            ) from None
+        try:
+            found = version(name)
+        except PackageNotFoundError:
+            raise InputError(
+                f"plugins.{name}: is not installed; install it with: pip install '{name}{versions}'"
+            ) from None
+        if not allowed.contains(found, prereleases=True):
+            raise InputError(f"plugins.{name}: version {found} is installed, but {versions} is needed")
+
+
+def _entry_points() -> list[tuple[EntryPoint, Origin]]:
+    """Return what the installed distributions name; of two copies of one, the first on `sys.path` counts."""
+    found: dict[str, list[tuple[EntryPoint, Origin]]] = {}
+    for distribution in distributions():
+        if f"[{hookspecs.PROJECT}]" in (distribution.read_text("entry_points.txt") or ""):  # few are; parse no others
+            name, version = _name_and_version(distribution)
+            points = distribution.entry_points.select(group=hookspecs.PROJECT)
+            found.setdefault(canonicalize_name(name), [(point, Origin(point.name, name, version)) for point in points])
+    return sorted(chain.from_iterable(found.values()), key=lambda pair: (pair[1].distribution, pair[1].entry_point))
+
+
+def _name_and_version(distribution: Distribution) -> tuple[str, str]:
+    """Return what the metadata begins with; `distribution.metadata` would parse the README behind it as well."""
+    text = distribution.read_text("METADATA") or distribution.read_text("PKG-INFO") or ""
+    lines = (line.partition(": ") for line in text.partition("\n\n")[0].splitlines())
+    header = {key: value for key, _, value in lines}
+    return header.get("Name", "unnamed"), header.get("Version", "unknown")
+
+
+def _check_interface(needed: object) -> None:
+    if not isinstance(needed, int) or isinstance(needed, bool):
+        raise TypeError(f"wearlaw_interface must be a whole number, got {needed!r}")
+    if needed != hookspecs.INTERFACE_VERSION:
+        behind = "wearlaw" if needed > hookspecs.INTERFACE_VERSION else "the plugin"
+        raise TypeError(
+            f"it is built for version {needed} of the plugin interface, this wearlaw has version"
+            f" {hookspecs.INTERFACE_VERSION}; upgrade {behind}"
+        )
+
+
+class _Manager(pluggy.PluginManager):
+    """A plugin manager that looks closer at marked names only; to look at all takes most of the time of pluggy."""
+
+    def parse_hookspec_opts(self, module_or_class: Any, name: str) -> Any:
+        return getattr(getattr(module_or_class, name), f"{hookspecs.PROJECT}_spec", None)
+
+    def parse_hookimpl_opts(self, plugin: Any, name: str) -> Any:
+        marked = hasattr(getattr(plugin, name, None), f"{hookspecs.PROJECT}_impl")
+        return super().parse_hookimpl_opts(plugin, name) if marked else None
+
+
+def _load(manager: pluggy.PluginManager, entry_point: EntryPoint, origin: Origin) -> object:
+    """Return a plugin, or raise what is wrong with it."""
+    plugin = entry_point.load()
+    _check_interface(getattr(plugin, "wearlaw_interface", hookspecs.INTERFACE_VERSION))
+    if not manager.is_registered(plugin):  # else another distribution names it too, and both provide its models
+        manager.register(plugin, str(origin))
+    try:
+        manager.check_pending()
+    except pluggy.PluginValidationError:
+        manager.unregister(plugin)
+        raise
+    if not manager.get_hookcallers(plugin):
+        raise TypeError("it implements no hook; mark its functions with @wearlaw.hookimpl")
+    return plugin
+
+
+@dataclass(frozen=True)
+class _Plugin:
+    """A plugin that can be asked alone, so that its errors are its own."""
+
+    manager: pluggy.PluginManager
+    registered: object
+
+    def answers(self, hook: str) -> list[Any]:
+        """Return what it returns from a hook."""
+        asked = [one for one in getattr(self.manager.hook, hook).get_hookimpls() if one.plugin is self.registered]
+        return [answer for one in asked if (answer := one.function()) is not None]
+
+
+def _add_models(plugin: _Plugin, origin: Origin, found: Installed) -> None:
+    for rig_class in chain.from_iterable(plugin.answers("wearlaw_rigs")):
+        add_model(found.rigs, Rig, rig_class, origin)
+    for model in chain.from_iterable(plugin.answers("wearlaw_contact_models")):
+        add_model(found.contact_models, ContactModel, model, origin)
+    for law in chain.from_iterable(plugin.answers("wearlaw_wear_laws")):
+        add_model(found.wear_laws, WearLaw, law, origin)
+
+
+def _add_named(plugin: _Plugin, origin: Origin, found: Installed) -> None:
+    shelves: dict[str, Shelf[Any]] = {
+        "wearlaw_parameter_sets": found.parameter_sets,
+        "wearlaw_materials": found.materials,
+        "wearlaw_cases": found.cases,
+        "wearlaw_tests": found.test_sets,
+        "wearlaw_sections": found.sections,
+    }
+    for hook, shelf in shelves.items():
+        for name, item in chain.from_iterable(mapping.items() for mapping in plugin.answers(hook)):
+            shelf.add(name, known_as(name, item) if isinstance(item, Configuration) else item, origin)

@@ -1,0 +1,102 @@
+"""Shelves: what plugins provide of one kind, by name, and where it comes from."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+from wearlaw.errors import UnknownModelError, did_you_mean
+from wearlaw.models.contact_model import Model
+
+T = TypeVar("T")
+ModelT = TypeVar("ModelT", bound=Model)
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a plugin comes from."""
+
+    entry_point: str
+    distribution: str
+    version: str
+
+    def __str__(self) -> str:
+        return f"{self.distribution} {self.version} (plugin '{self.entry_point}')"
+
+
+@dataclass(frozen=True)
+class Broken:
+    """A plugin that could not be used, or a part of it, and why."""
+
+    origin: Origin
+    cause: str
+
+    def __str__(self) -> str:
+        return f"{self.origin}: {self.cause}"
+
+
+@dataclass
+class Shelf(Generic[T]):
+    """All that plugins provide of one kind, by name."""
+
+    kind: str
+    base: type[T]
+    providers: dict[str, list[tuple[T, Origin]]] = field(default_factory=dict)
+
+    def add(self, name: object, item: object, origin: Origin) -> None:
+        """Put something on the shelf, or raise `TypeError` if it is not of the kind."""
+        if not isinstance(item, self.base):
+            raise TypeError(f"{self.kind} {name!r} must be a {self.base.__name__}, got {item!r}")
+        if not (isinstance(name, str) and name.isidentifier()):
+            raise TypeError(f"the name of a {self.kind} must be an identifier, got {name!r}")
+        self.providers.setdefault(name, []).append((item, origin))
+
+    def origin(self, name: str) -> Origin:
+        """Return where what bears a name comes from."""
+        return self.providers[name][0][1]
+
+    def distribution(self, name: str, item: T | None = None) -> str:
+        """Return the distribution and its version that provides what bears a name, and is `item` if that is given."""
+        for provided, origin in self.providers.get(name, []):
+            if item is None or provided is item:
+                return f"{origin.distribution} {origin.version}"
+        return "not installed"
+
+    def listing(self) -> list[tuple[str, str, Origin]]:
+        """Return kind, name and origin of everything, also of what bears a name that is taken twice."""
+        return [(self.kind, name, origin) for name, found in sorted(self.providers.items()) for _, origin in found]
+
+    def items(self) -> dict[str, T]:
+        """Return everything by name, without what bears a name that is taken twice."""
+        return {name: found[0][0] for name, found in sorted(self.providers.items()) if len(found) == 1}
+
+    def find(self, name: str, broken: Iterable[Broken]) -> T:
+        """Return what bears a name, or raise an `UnknownModelError` that says what there is."""
+        found = self.providers.get(name, [])
+        if len(found) == 1:
+            return found[0][0]
+        if found:
+            origins = " and ".join(str(origin) for _, origin in found)
+            raise UnknownModelError(f"{self.kind} '{name}' is provided more than once, by {origins}; remove one")
+        raise UnknownModelError(unknown(self.kind, name, self.items(), broken))
+
+
+def add_model(shelf: Shelf[type[ModelT]], base: type[Model], model: object, origin: Origin) -> None:
+    """Put a model on its shelf under its own name, or raise `TypeError` if it is none."""
+    if not (inspect.isclass(model) and issubclass(model, base)):
+        raise TypeError(f"{model!r} is not a subclass of {base.__name__}")
+    if inspect.isabstract(model):
+        raise TypeError(f"{model.__name__} does not implement {', '.join(sorted(model.__abstractmethods__))}")
+    name = getattr(model, "name", None)
+    if not (isinstance(name, str) and name.isidentifier()):
+        raise TypeError(f"the name of {model.__name__} must be an identifier, got {name!r}")
+    shelf.add(name, model, origin)
+
+
+def unknown(kind: str, name: str, known: Iterable[str], broken: Iterable[Broken]) -> str:
+    """Return the message that there is no model of a name, with what there is and what was left out."""
+    names = list(known)
+    message = f"no {kind} is called {name!r}{did_you_mean(str(name), names)} Installed: {', '.join(names) or 'none'}"
+    return message + "".join(f"\n  left out: {plugin}" for plugin in broken)

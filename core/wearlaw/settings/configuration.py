@@ -1,0 +1,198 @@
+"""The frozen pydantic base of everything that a user configures: models, materials, rigs, pipelines, cases."""
+
+from __future__ import annotations
+
+from threading import RLock
+from typing import TYPE_CHECKING, Any, Self, TypeVar
+
+import pint
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from wearlaw.errors import ConfigurationError, Fault, FrozenError, did_you_mean
+from wearlaw.settings.docstrings import field_docstrings, place_of_statement
+from wearlaw.units.quantities import shortened, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from inspect import Signature
+
+    from pydantic import GetJsonSchemaHandler
+    from pydantic_core import CoreSchema, ErrorDetails
+
+ConfigurationT = TypeVar("ConfigurationT", bound="Configuration")
+
+
+class Configuration(BaseModel):
+    """A frozen, hashable, picklable record of settings that names every wrong field when it is made.
+
+    Quantities serialise to text with a unit (``model_dump(mode="json")``), which validates back to an equal
+    record.
+    """
+
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        allow_inf_nan=False,
+        validate_default=True,
+        defer_build=True,
+        ser_json_inf_nan="strings",
+    )
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        found = handler(schema)
+        properties = handler.resolve_ref_schema(found).get("properties", {})
+        for name, text in field_docstrings(cls).items():
+            for key in {name, cls.model_fields[name].alias} & properties.keys():
+                properties[key] |= {"description": text} if text else {}
+        return found
+
+    if not TYPE_CHECKING:  # checkers keep the signature that pydantic derives from the fields
+
+        @classmethod
+        def __pydantic_init_subclass__(cls, **options: Any) -> None:
+            super().__pydantic_init_subclass__(**options)
+            cls._place = place_of_statement(cls)
+            if not cls.__pydantic_complete__:
+                cls.__signature__ = _Signature()
+
+        @classmethod
+        def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
+            """Build the validators, in one thread at a time; without being called that happens at the first use."""
+            with _BUILDING:  # pydantic before 2.14 has no lock of its own
+                return super().model_rebuild(_parent_namespace_depth=_parent_namespace_depth + 1, **options)
+
+        def __init__(self, /, **fields: Any) -> None:
+            try:
+                super().__init__(**fields)
+            except ValidationError as error:
+                raise configuration_error(type(self).subject(), type(self), error) from None
+
+        @classmethod
+        def model_validate(cls, obj: Any, **options: Any) -> Self:
+            """Return the record that a table of its fields describes."""
+            try:
+                return super().model_validate(obj, **options)
+            except ValidationError as error:
+                raise configuration_error(cls.subject(), cls, error) from None
+
+        @classmethod
+        def model_validate_json(cls, json_data: str | bytes | bytearray, **options: Any) -> Self:
+            """Return the record that `model_dump_json` wrote."""
+            try:
+                return super().model_validate_json(json_data, **options)
+            except ValidationError as error:
+                raise configuration_error(cls.subject(), cls, error) from None
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            try:
+                super().__setattr__(name, value)
+            except ValidationError:
+                raise self._frozen(name) from None
+
+        def __delattr__(self, name: str) -> None:
+            try:
+                super().__delattr__(name)
+            except ValidationError:
+                raise self._frozen(name) from None
+
+    def _frozen(self, name: str) -> FrozenError:
+        fields = type(self).model_fields
+        if name not in fields:
+            hint = did_you_mean(name, fields)
+            return FrozenError(f"{self.subject()}: {name}: unknown field{hint} The fields are: {', '.join(fields)}")
+        return FrozenError(
+            f"{self.subject()}: {name}: cannot be changed, since it is frozen; make a changed copy with"
+            f" .model_copy(update={{'{name}': ...}})"
+        )
+
+    @classmethod
+    def subject(cls) -> str:
+        """Return what messages call this configuration."""
+        return cls.__name__
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:  # noqa: ARG002
+        """Return a copy with some fields changed, checked like a new one; nothing computed before is kept.
+
+        `deep` makes no difference, since nothing in a configuration can change.
+        """
+        aliases = {name: field.alias or name for name, field in type(self).model_fields.items()}
+        fields = {alias: getattr(self, name) for name, alias in aliases.items()} | (self.model_extra or {})
+        return type(self)(**fields | {aliases.get(name, name): value for name, value in (update or {}).items()})
+
+    def __str__(self) -> str:
+        return repr(self)
+
+    def __repr_args__(self) -> Any:
+        for name, value in super().__repr_args__():
+            yield name, _Text(shown(value)) if isinstance(value, pint.Quantity) else value
+
+
+_BUILDING = RLock()
+
+
+class _Signature:
+    """The signature of a class without validators yet; pydantic makes it from the fields as it builds them."""
+
+    def __get__(self, instance: object, owner: type[BaseModel]) -> Signature:
+        if instance is None and owner.model_rebuild(raise_errors=False) is not False:
+            return owner.__signature__
+        raise AttributeError("__signature__")
+
+
+def parts(value: object) -> Iterator[Configuration]:
+    """Give all configurations in a value: itself, and those that its fields hold at any depth."""
+    inner: Iterable[object] = ()
+    if isinstance(value, Configuration):
+        yield value
+        inner = (getattr(value, name) for name in type(value).model_fields)
+    elif isinstance(value, (list, tuple)):
+        inner = value
+    for one in inner:
+        yield from parts(one)
+
+
+def known_as(name: str, record: ConfigurationT) -> ConfigurationT:
+    """Return an equal record that remembers the name under which it was looked up; changed copies do not."""
+    found = record.model_copy()
+    vars(found)["_known_as"] = name
+    return found
+
+
+def known_name(record: Configuration) -> str | None:
+    """Return the name under which a record was looked up, if it was."""
+    return vars(record).get("_known_as")
+
+
+class _Text(str):
+    """A text that shows itself without quotes."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def configuration_error(subject: str, model: type[BaseModel], error: ValidationError) -> ConfigurationError:
+    """Return the wearlaw error that says the same as a pydantic error, in the words of the user."""
+    problems: list[Fault] = []
+    for details in error.errors(include_url=False):
+        path = tuple(str(part) for part in details["loc"])
+        cause = details.get("ctx", {}).get("error")
+        if isinstance(cause, ConfigurationError):
+            problems += [Fault(path + inner.path, inner.message) for inner in cause.problems]
+        else:
+            problems.append(Fault(path, _message(details, model)))
+    return ConfigurationError(subject, problems)
+
+
+def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
+    cause = details.get("ctx", {}).get("error")
+    if isinstance(cause, Exception):
+        return str(cause)
+    if details["type"] == "extra_forbidden":
+        known = [field.alias or name for name, field in model.model_fields.items()]
+        hint = did_you_mean(str(details["loc"][-1]), known)
+        return f"unknown field{hint} The fields are: {', '.join(known) or 'none'}"
+    if details["type"] == "missing":
+        return "is missing"
+    message = details["msg"]
+    return f"{message[0].lower()}{message[1:]}, got {shortened(details['input'])}"

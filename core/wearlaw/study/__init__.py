@@ -1,0 +1,1 @@
+"""Case files, and running the studies that they describe."""

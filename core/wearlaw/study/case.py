@@ -1,0 +1,376 @@
+"""Case files: a study written down in TOML, with units.
+
+A case names a rig, contact models, wear laws, and the operating points at which every pair of them is
+evaluated. `load_case` reads one from a file, or by the name of a case that is shipped with the package.
+"""
+
+from __future__ import annotations
+
+import tomllib
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    TypeAdapter,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
+
+from wearlaw.errors import (
+    CaseError,
+    ConfigurationError,
+    Fault,
+    InputError,
+    PluginWarning,
+    described,
+    did_you_mean,
+    with_problems,
+)
+from wearlaw.figures.check import Contents
+from wearlaw.figures.measured_points import check_rig, known_variables
+from wearlaw.figures.spec import FigureSpec
+from wearlaw.models.contact_model import Model
+from wearlaw.models.rig import Rig
+from wearlaw.pipeline.variables import name_of
+from wearlaw.plugins import loader
+from wearlaw.plugins.fields import ContactModelField, RigField, WearLawField, known_presets, preset_fields
+from wearlaw.plugins.shelf import Shelf
+from wearlaw.settings.configuration import Configuration, known_as
+from wearlaw.settings.text_files import read_text
+from wearlaw.study.grid import Condition, Grid
+from wearlaw.study.measurement import Measurement
+from wearlaw.uncertainties.specification import Condition as UncertainCondition
+from wearlaw.uncertainties.specification import UncertainPoint
+from wearlaw.units.quantities import shown
+
+ModelT = TypeVar("ModelT", bound=Model)
+
+CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
+"""The names under which a run writes its case, and the tests that it was given as a file."""
+
+
+def _models(value: Any) -> Any:
+    if not (isinstance(value, (list, tuple)) and value):
+        raise InputError(f"must be a list of names, or of tables with a name and options; got {value!r}")
+    return value
+
+
+def _section(name: str) -> str:
+    found = loader.installed()
+    found.sections.find(name, found.broken)
+    return name
+
+
+ModelList = (BeforeValidator(_models), Field(json_schema_extra={"minItems": 1}))
+
+
+class Case(Configuration):
+    """A study: a rig, contact models and wear laws, and where to evaluate every pair of them."""
+
+    title: str
+    """What the study is called in its results."""
+    plugins: dict[str, str] = Field(default_factory=dict)
+    """The distributions that the case needs, each with a version range such as ">=1.2,<2"; "" for any version."""
+    rig: RigField
+    """The rig: its `type` and fields, or a `preset` such as "suros" with what differs from it."""
+    contact_models: Annotated[tuple[ContactModelField, ...], *ModelList]
+    """The contact models, each a name or a table of its name and options."""
+    wear_laws: Annotated[tuple[WearLawField, ...], *ModelList]
+    """The wear laws, likewise."""
+    sweeps: Annotated[dict[str, Grid], Field(min_length=1)]
+    """Grids of operating points, each under a name."""
+    profiles: dict[str, Grid] = Field(default_factory=dict)
+    """Single operating points at which the patch is shown, each under a name: stresses and slip along that of a line,
+    wear across that of an ellipse."""
+    uncertainty: dict[str, UncertainPoint] = Field(default_factory=dict)
+    """Operating points that are not known exactly, each under a name; for `wearlaw uncertainty`."""
+    measured: Measurement | None = None
+    """Tests of a lab, to be shown beside the predictions."""
+    sections: tuple[Annotated[str, AfterValidator(_section)], ...] = ()
+    """The sections that plugins add to the report, by name."""
+    figures: dict[str, FigureSpec] = Field(default_factory=dict)
+    """The figures, each under the name of its file; one of each kind for each sweep and profile where not given."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _has_its_plugins(cls, fields: Any) -> Any:
+        """Say that a plugin is missing before anything else fails for lack of it."""
+        if isinstance(fields, dict):
+            needed = fields.get("plugins", {})
+            if isinstance(needed, dict):
+                loader.require({str(name): str(versions) for name, versions in needed.items()})
+        return fields
+
+    @field_validator("sweeps", "profiles", "uncertainty")
+    @classmethod
+    def _fit_the_rig(cls, grids: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
+        """Find what is wrong with conditions when they are read, not when they are used."""
+        rig = info.data.get("rig")
+        if rig is None:  # it is wrong itself
+            return grids
+        checked, wrong = {}, []
+        for name, grid in grids.items():
+            try:
+                checked[name] = grid.checked(rig)
+            except ConfigurationError as error:
+                wrong += [Fault((name, *problem.path), problem.message) for problem in error.problems]
+        if wrong:
+            raise ConfigurationError(cls.subject(), wrong)
+        return checked
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """The unit in which results show each condition of the sweeps and profiles."""
+        found: dict[str, str] = {}
+        for grid in (*self.sweeps.values(), *self.profiles.values()):
+            found = {**grid.units(), **found}
+        return found
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Case:
+        for kind, names in (("sweeps", self.sweeps), ("profiles", self.profiles), ("uncertainty", self.uncertainty)):
+            for name in names:
+                if not name.isidentifier():
+                    raise ValueError(f"{kind}: the name '{name}' must be made of letters, digits and underscores")
+        for name, profile in self.profiles.items():
+            if profile.axes():
+                raise ValueError(f"profiles.{name}: a profile is at one operating point; give each condition one value")
+        labels(self.contact_models)
+        laws = labelled(self.wear_laws)
+        for name, point in self.uncertainty.items():
+            try:
+                point.check_laws(laws)
+            except InputError as error:
+                raise ValueError(f"uncertainty.{name}.{error}") from None
+        twice = sorted({name for name in self.sections if self.sections.count(name) > 1})
+        if twice:
+            raise ValueError(f"sections: '{twice[0]}' is listed twice; leave one out")
+        for kind, grids in (("sweeps", self.sweeps), ("profiles", self.profiles)):
+            for name, grid in grids.items():
+                try:
+                    grid.points(self.units)
+                except InputError as error:
+                    raise ValueError(f"{kind}.{name}.{error}") from None
+        if self.measured:
+            try:
+                check_rig(self.measured.data, self.rig)
+            except InputError as error:
+                raise ValueError(f"measured: {error}") from None
+        wrong = list(self._contents().problems(self.figures))
+        if wrong:
+            raise ConfigurationError(self.subject(), wrong)
+        return self
+
+    def _contents(self) -> Contents:
+        return Contents(
+            rig=self.rig,
+            contact_models=labelled(self.contact_models),
+            wear_laws=labelled(self.wear_laws),
+            sweeps=self.sweeps,
+            profiles=self.profiles,
+            units=self.units,
+            measured=known_variables(self.measured.data) if self.measured else (),
+        )
+
+
+def labels(models: Sequence[Model]) -> list[str]:
+    """Return a short name for each model: its own, with the options that tell it from others of that name."""
+    found = []
+    for model in models:
+        namesakes = [other for other in models if other.name == model.name]
+        if sum(other == model for other in namesakes) > 1:
+            raise InputError(f"the model {model.name} is listed twice; leave one out, or give it other options")
+        options = [f"{field}={shown(getattr(model, field))}" for field in _telling_apart(namesakes)]
+        found.append(f"{model.name}({', '.join(options)})" if options else model.name)
+    return found
+
+
+def labelled(models: Sequence[ModelT]) -> dict[str, ModelT]:
+    """Return models by `labels`."""
+    return dict(zip(labels(models), models, strict=True))
+
+
+def _telling_apart(models: Sequence[Model]) -> list[str]:
+    """Return the fewest fields, in their order, by which different models of one name differ."""
+    fields: list[str] = []
+    kinds: set[tuple[str, ...]] = {()}
+    for field in type(models[0]).model_fields:
+        finer = {tuple(shown(getattr(model, name)) for name in (*fields, field)) for model in models}
+        if len(finer) > len(kinds):
+            fields, kinds = [*fields, field], finer
+    return fields
+
+
+def case_text(name_or_path: str) -> str:
+    """Return the text of a case file, or of the case that a plugin ships under that name.
+
+    Raises
+    ------
+    CaseError
+        If there is neither.
+    UnknownModelError
+        If several plugins ship a case of that name.
+    """
+    found = loader.installed()
+    known = found.cases.items()
+    if name_or_path in found.cases.providers:
+        return found.cases.find(name_or_path, found.broken)
+    try:
+        return read_text(name_or_path)
+    except FileNotFoundError:
+        hint = did_you_mean(name_or_path, known)
+        raise CaseError(f"there is no case file '{name_or_path}'{hint} Shipped cases: {', '.join(known)}") from None
+    except (OSError, InputError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise CaseError(f"cannot read the case file '{name_or_path}': {reason}") from None
+
+
+def case_schema() -> dict[str, Any]:
+    """Return the JSON Schema of a case file, with the options of all installed models."""
+    schema = Case.model_json_schema(by_alias=True)
+    definitions = schema["$defs"]
+    properties, found = schema["properties"], loader.installed()
+    for field, shelf in (("contact_models", found.contact_models), ("wear_laws", found.wear_laws)):
+        properties[field]["items"] = {"anyOf": [{"enum": list(shelf.items())}, *_tables(shelf, definitions)]}
+    sets = found.parameter_sets
+    properties["wear_laws"]["items"]["anyOf"] += [
+        *({"const": name} for name in sets.items()),
+        *({**table, "required": ["model"]} for table in _tables(sets, definitions)),
+    ]
+    properties["sections"]["items"] = {"enum": list(found.sections.items())}
+    rigs = found.rigs.items()
+    bare = [name for name, rig in rigs.items() if not any(one.is_required() for one in rig.model_fields.values())]
+    properties["rig"] = {"anyOf": [{"enum": bare}]}
+    axis, schema["allOf"] = definitions["FigureSpec"]["properties"]["x"], []
+    for name, rig in rigs.items():
+        with _left_out(found.rigs, name):
+            tables, known = list(_rig_tables(name, rig, definitions)), rig.conditions()
+            if known:
+                this = {"properties": {"rig": {"anyOf": _named(name, rig)}}}
+                schema["allOf"].append({"if": this, "then": {"properties": _conditions(rig, definitions)}})
+            properties["rig"]["anyOf"] += tables
+            axis["enum"] = list(dict.fromkeys([*axis["enum"], *known]))
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+@contextmanager
+def _left_out(shelf: Shelf[Any], name: str) -> Iterator[None]:
+    """Leave a model that fails to give its schema out of it, with a warning."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        reason = f"{shelf.kind} '{name}' of {shelf.origin(name)} is left out of the schema: {described(error)}"
+        warnings.warn(reason, PluginWarning, stacklevel=4)
+
+
+def _rig_tables(name: str, rig: type[Rig], definitions: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Give the schema of a rig's table: that of its fields, and one of each preset."""
+    yield _model_schema(name, rig, definitions, "type")
+    for preset in rig.presets():
+        table = preset_fields(rig, preset).model_json_schema(ref_template=f"#/$defs/{name}.{preset}.{{model}}")
+        definitions.update({f"{name}.{preset}.{key}": value for key, value in table.pop("$defs", {}).items()})
+        named = {"type": {"const": name}, "preset": {"const": preset}}
+        required = ["preset", *table.get("required", [])]
+        yield {**table, "properties": {**named, **table.get("properties", {})}, "required": required}
+
+
+def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
+    """Return the schemas of what names a rig: its name, a table with its type, or one with a preset of it alone."""
+    typed = {"type": "object", "properties": {"type": {"const": name}}, "required": ["type"]}
+    presets = [preset for preset, owners in known_presets().items() if owners == [rig]]
+    by_preset = {"type": "object", "properties": {"preset": {"enum": presets}}, "required": ["preset"]}
+    return [{"const": name}, typed, *([by_preset] if presets else [])]
+
+
+def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
+    """Return the schemas of the tables of a case that hold conditions of a rig."""
+    found = {}
+    kinds: dict[str, Any] = {"sweeps": Condition, "profiles": Condition, "uncertainty": UncertainCondition}
+    for field, annotation in kinds.items():
+        one = TypeAdapter(annotation).json_schema(ref_template="#/$defs/{model}")
+        definitions.update(one.pop("$defs", {}))
+        properties = {name: {**one, "description": name_of(name)} for name in rig.conditions()}
+        if field == "uncertainty":
+            properties["laws"] = definitions["UncertainPoint"]["properties"]["laws"]
+        table = {"properties": properties, "required": list(rig.needed()), "additionalProperties": False}
+        found[field] = {"additionalProperties": table}
+    return found
+
+
+def _tables(shelf: Shelf[Any], definitions: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the schema of each model's table."""
+    found = []
+    for name, item in shelf.items().items():
+        with _left_out(shelf, name):
+            found.append(_model_schema(name, item if isinstance(item, type) else type(item), definitions))
+    return found
+
+
+def _model_schema(name: str, model: type[Model], definitions: dict[str, Any], key: str = "model") -> dict[str, Any]:
+    """Return the schema of the table that configures a model; a model's own definitions join the others."""
+    table = model.model_json_schema(ref_template=f"#/$defs/{name}.{{model}}")
+    definitions.update({f"{name}.{inner}": value for inner, value in table.pop("$defs", {}).items()})
+    table["properties"] = {key: {"const": name}, **table.get("properties", {})}
+    table["required"] = [key, *(field for field in table.get("required", []) if not _published(model, field))]
+    return table
+
+
+def _published(model: type[Model], field: str) -> bool:
+    """Return whether a field without a default gets its value from what the model's source publishes."""
+    try:
+        return hasattr(model(), field)
+    except InputError:
+        return False
+
+
+def load_case(name_or_path: str) -> Case:
+    """Return the case of a TOML file, or a shipped one by its name.
+
+    Raises
+    ------
+    CaseError
+        If the file is missing, is not TOML, or has wrong fields, which the message names by their paths.
+    """
+    text = case_text(name_or_path)
+    try:
+        case = Case(**_beside(name_or_path, tomllib.loads(text)))
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"case '{name_or_path}' is not valid TOML: {error}") from None
+    except ConfigurationError as error:
+        raise CaseError(with_problems(f"case '{name_or_path}' is wrong in:", error.problems)) from None
+    return known_as(name_or_path, case) if name_or_path in loader.installed().cases.providers else case
+
+
+def _beside(name_or_path: str, fields: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields of a case with the path of its tests, which starts at the case file, as it is from here."""
+    found, measured = loader.installed(), fields.get("measured")
+    if isinstance(measured, dict) and name_or_path not in found.cases.providers:
+        tests = measured.get("tests")
+        if isinstance(tests, str) and tests not in found.test_sets.providers:
+            return {**fields, "measured": {**measured, "tests": str(Path(name_or_path).parent / tests)}}
+    return fields
+
+
+def written(case: Case) -> dict[str, str]:
+    """Return the files that let a case run again in any folder, by name: the case with every default, and its tests.
+
+    Tests that a plugin ships are none of them.
+    """
+    import tomli_w
+
+    fields = case.model_dump(mode="json", by_alias=True, exclude_none=True)
+    files = {}
+    if case.measured is not None and not case.measured.shipped:
+        fields["measured"]["tests"] = TESTS_FILE
+        files[TESTS_FILE] = case.measured.text
+    return {CASE_FILE: tomli_w.dumps(fields), **files}

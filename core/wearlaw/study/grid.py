@@ -1,0 +1,274 @@
+"""Operating points as a case file describes them: conditions of a rig, of which some are axes of a grid."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from typing import Annotated, Any, Literal
+
+import numpy as np
+import pint
+from pydantic import BeforeValidator, Field, model_validator
+
+from wearlaw.arrays.array import Array
+from wearlaw.errors import ConfigurationError, Fault, InputError, UnitError, WearlawError, did_you_mean
+from wearlaw.models.rig import Rig
+from wearlaw.pipeline.variables import UNITS
+from wearlaw.settings.configuration import Configuration
+from wearlaw.sweeping.points import Points, Varying
+from wearlaw.units.quantities import Q, Quantity, parse
+from wearlaw.units.registry import symbol
+
+MOST_POINTS = 10_000_000
+"""The largest grid that is taken on."""
+
+
+def _value(value: Any) -> Any:
+    """Refuse early what cannot be one value of a condition."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise InputError(f"must be a value, a list of values, or a table with from, to and points; got {value!r}")
+    if isinstance(value, float) and not np.isfinite(value):
+        raise InputError(f"must be finite, got {value}")
+    return value
+
+
+Value = Annotated[float | str, BeforeValidator(_value)]
+"""One value of a condition."""
+
+
+class Axis(Configuration):
+    """Values of a condition from one end to the other."""
+
+    start: Value = Field(alias="from")
+    """First value, with its unit where the condition has one."""
+    stop: Value = Field(alias="to")
+    """Last value, with its unit."""
+    points: Annotated[int, Field(ge=2, le=MOST_POINTS, strict=True)]
+    """How many values, ends included."""
+    spacing: Literal["log", "linear"] = "linear"
+    """Whether neighbours stand in a constant ratio or at a constant distance."""
+
+    def values(self) -> tuple[Array, str | None]:
+        """Return the values, and the unit of the first of them, None for plain numbers.
+
+        Raises
+        ------
+        InputError
+            If the ends do not go together.
+        """
+        (first, last), unit = _in_one_unit((self.start, self.stop))
+        if self.spacing == "linear":
+            return np.linspace(first, last, self.points), unit
+        if first * last <= 0:
+            raise InputError("a log axis cannot touch or cross zero; use spacing = 'linear'")
+        return np.geomspace(first, last, self.points), unit
+
+
+def _condition(value: Any) -> Any:
+    """Make an axis from a table, and refuse early what is neither that nor a value nor a list of values."""
+    if isinstance(value, Axis):
+        return value
+    if isinstance(value, dict):
+        return Axis(**value)
+    if not isinstance(value, (list, tuple)):
+        return _value(value)
+    if not value:
+        raise InputError("is empty; give at least one value")
+    return tuple(_value(item) for item in value)
+
+
+Condition = Annotated[float | str | tuple[float | str, ...] | Axis, BeforeValidator(_condition)]
+"""A value, a list of values, or an axis."""
+
+
+class Grid(Configuration, extra="allow"):
+    """Conditions of operating points, by the names that the rig gives them; those with several values are axes."""
+
+    __pydantic_extra__: dict[str, Condition]  # pyright: ignore[reportIncompatibleVariableOverride]
+
+    @property
+    def given(self) -> Mapping[str, Any]:
+        """The conditions as they were written."""
+        return self.__pydantic_extra__
+
+    @model_validator(mode="after")
+    def _has_axes(self) -> Grid:
+        """Find what is wrong with the axes by themselves, whatever the rig is."""
+        wrong = []
+        for name, value in self.given.items():
+            try:
+                _values(value)
+            except InputError as error:
+                wrong.append(Fault((name,), str(error)))
+        if wrong:
+            raise ConfigurationError("Grid", wrong)
+        if self.size > MOST_POINTS:
+            raise InputError(f"the axes make a grid of {self.size} points; at most {MOST_POINTS} are possible")
+        return self
+
+    @cached_property
+    def _axes(self) -> dict[str, Varying]:
+        """The conditions that are axes, each in the unit of its first value."""
+        read = ((name, _values(value)) for name, value in self.given.items())
+        return {name: Varying(name, *found) for name, found in read if found is not None}
+
+    def axes(self) -> dict[str, int]:
+        """Return how many values each condition has that is an axis, in the order of the grid."""
+        return {name: axis.values.size for name, axis in self._axes.items()}
+
+    @property
+    def size(self) -> int:
+        """The number of operating points."""
+        return math.prod(self.axes().values())
+
+    def checked(self, rig: Rig) -> Grid:
+        """Return the grid with its conditions in the order in which the rig names them.
+
+        Raises
+        ------
+        ConfigurationError
+            If the rig does not take the conditions, which are tried at both ends of the axes.
+        """
+        for end in (np.min, np.max):
+            ends = {name: axis.given(float(end(axis.values))) for name, axis in self._axes.items()}
+            wrong = list(wrong_conditions(rig, {**self.given, **ends}))
+            if wrong:
+                raise ConfigurationError("Grid", wrong)
+        known = rig.conditions()
+        return Grid(**{name: self.given[name] for name in known or self.given if name in self.given})
+
+    def units(self) -> dict[str, str]:
+        """Return the units in which results show the conditions: as tables of results do, else as they were written."""
+        found = {}
+        for name, value in self.given.items():
+            written = self._axes[name].unit if name in self._axes else _unit(value)
+            found[name] = shown_unit(name, written)
+        return found
+
+    def points(self, units: Mapping[str, str]) -> Points:
+        """Return the operating points, with the axes in these units.
+
+        Raises
+        ------
+        UnitError
+            If a condition is of another dimension there.
+        """
+        varying = {
+            name: Varying(name, *_converted(name, axis.values, axis.unit, units[name]))
+            for name, axis in self._axes.items()
+        }
+        return Points({name: value for name, value in self.given.items() if name not in varying}, varying)
+
+    def level(self, name: str, units: Mapping[str, str]) -> float | str:
+        """Return the value of a condition in the unit given for it, that in the middle of an axis; or its bare text."""
+        if name in self._axes:
+            axis = self._axes[name]
+            return float(_converted(name, axis.values[axis.values.size // 2], axis.unit, units[name])[0])
+        value = self.given[name]
+        quantity = _quantity(value)
+        if quantity is None:
+            return value  # type: ignore[no-any-return]
+        return float(_converted(name, quantity.magnitude, _symbol(quantity), units[name])[0])
+
+    def problem(self, rig: Rig) -> Any:
+        """Return the contact problem of the first operating point."""
+        first = {name: axis.given(float(axis.values[0])) for name, axis in self._axes.items()}
+        return rig.checked_problem({**self.given, **first})
+
+
+def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
+    """Give what a rig finds wrong with conditions of one operating point, each under its name."""
+    known = rig.conditions()
+    unknown = [name for name in given if known and name not in known]
+    missing = [name for name in rig.needed() if name not in given]
+    for name in unknown:
+        hint = did_you_mean(name, known)
+        yield Fault((name,), f"unknown condition{hint} The conditions of the rig are: {', '.join(known)}")
+    for name in missing:
+        yield Fault((name,), "is missing")
+    if unknown or missing:
+        return
+    try:
+        rig.checked_problem(given)
+    except WearlawError as error:
+        text = str(error)
+        about = next((name for name in given if text.startswith(f"{name}: ")), None)
+        yield Fault((), text) if about is None else Fault((about,), text.removeprefix(f"{about}: "))
+
+
+def with_units(conditions: Mapping[str, Array]) -> dict[str, Any]:
+    """Return conditions of discs in SI as a rig takes them."""
+    units = {"normal_force": "N", "normal_force_per_width": "N/m", "max_pressure": "Pa", "creepage": ""}
+    return {name: Q(si, units[name]) if name in units else si for name, si in conditions.items()}
+
+
+def shown_unit(name: str, written: str | None) -> str:
+    """Return the unit in which results show a condition that was written in some unit, None for plain numbers."""
+    usual = UNITS.get(name)
+    if usual is None or written is None:
+        return written or ""
+    try:
+        Q(1.0, written).to(usual)
+    except pint.DimensionalityError:  # a rig may give the name to something else
+        return written
+    return usual
+
+
+def _values(value: Any) -> tuple[Array, str | None] | None:
+    """Return the values of an axis, or None if it is none."""
+    if isinstance(value, Axis):
+        return value.values()
+    if isinstance(value, tuple):
+        return _in_one_unit(value)
+    return None
+
+
+def _in_one_unit(values: tuple[float | str, ...]) -> tuple[Array, str | None]:
+    """Return the numbers of values, all in the unit of the first one."""
+    if not any(isinstance(value, str) for value in values):
+        return np.array(values, dtype=np.float64), None
+    for value in values:
+        if not isinstance(value, str):
+            with_unit = next(one for one in values if isinstance(one, str))
+            raise UnitError(
+                f"got the bare number {value!r}, which has no unit, beside {with_unit!r}; give all values one"
+            )
+    quantities = [parse(str(value)) for value in values]
+    unit = _symbol(quantities[0])
+    for quantity, value in zip(quantities, values, strict=True):
+        if not quantity.is_compatible_with(quantities[0]):
+            raise UnitError(f"'{values[0]}' and '{value}' are not of one dimension")
+    numbers = [quantity.to(quantities[0].units).magnitude for quantity in quantities]
+    return np.array(numbers, dtype=np.float64), unit
+
+
+def _quantity(value: Any) -> Quantity | None:
+    """Return a value with its unit, or None for a text that is no quantity, such as the name of something."""
+    try:
+        return parse(value) if isinstance(value, str) else Q(value, "")
+    except UnitError:
+        return None
+
+
+def _unit(value: Any) -> str | None:
+    """Return the unit that a value was written in."""
+    quantity = _quantity(value) if isinstance(value, str) else None
+    return None if quantity is None else _symbol(quantity)
+
+
+def _symbol(quantity: Quantity) -> str:
+    """Return the unit of a quantity in the way of `variables.UNITS`."""
+    return symbol(quantity.units, "~C").replace("µ", "u").replace("**", "^")
+
+
+def _converted(name: str, values: Any, unit: str | None, wanted: str) -> tuple[Any, str | None]:
+    """Return numbers in the unit wanted, and that unit; plain numbers stay what they are."""
+    if unit is None or unit == wanted:
+        return values, unit
+    try:
+        return Q(values, unit).to(wanted).magnitude, wanted
+    except pint.DimensionalityError:
+        raise UnitError(
+            f"{name}: is in {unit}, and elsewhere in {wanted or 'no unit'}; use units of one dimension"
+        ) from None

@@ -1,0 +1,383 @@
+"""Running a case: every contact model with every wear law at all operating points, as labelled datasets."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.material import Material
+from wearlaw.errors import (
+    InputError,
+    ModelError,
+    WearlawError,
+    WearlawWarning,
+    described,
+    did_you_mean,
+    message_of,
+)
+from wearlaw.models.contact_model import Model
+from wearlaw.models.rig import Rig
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.notes import Notes
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS, offered
+from wearlaw.plugins import loader
+from wearlaw.settings.configuration import known_name, parts
+from wearlaw.study.case import Case
+from wearlaw.study.pairs import Pair, pairs_of
+from wearlaw.study.sections import Section
+from wearlaw.sweeping.checkpoint import Checkpoint
+from wearlaw.sweeping.evaluator import Evaluator
+from wearlaw.sweeping.points import Points
+from wearlaw.version import __version__
+
+if TYPE_CHECKING:
+    import xarray
+
+    from wearlaw.figures.curves import FigureData
+    from wearlaw.plugins.shelf import Shelf
+    from wearlaw.study.grid import Grid
+
+RATES, BAND = ("wear_rate", "wear_rate_error"), ("wear_rate_low", "wear_rate_high")
+"""What differs from pair to pair: the wear rate, and its ends over the published range of the law's parameters."""
+
+
+PROFILE_STRIPS = 101
+"""Strips of a profile across the patch, where the contact model can choose them."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """The results of a case.
+
+    Attributes
+    ----------
+    case : Case
+        What was run.
+    pairs : tuple of Pair
+        The pairs that were evaluated.
+    sweeps, profiles : dict of str to xarray.Dataset
+        The results by the names that the case gives them.
+    notes : tuple of str
+        What was left out, and every warning, once each.
+    sections : tuple of Section
+        What plugins add to the report, as the case lists it.
+    """
+
+    case: Case
+    pairs: tuple[Pair, ...]
+    sweeps: dict[str, xarray.Dataset]
+    profiles: dict[str, xarray.Dataset]
+    notes: tuple[str, ...]
+    sections: tuple[Section, ...] = ()
+
+    @cached_property
+    def figures(self) -> tuple[FigureData, ...]:
+        """What the figures of the study show."""
+        from wearlaw.figures.of_study import figures_of
+
+        return figures_of(self)
+
+    def sweep(self, name: str) -> xarray.Dataset:
+        """Return the results of a sweep.
+
+        Raises
+        ------
+        InputError
+            If the case has none of that name.
+        """
+        if name not in self.sweeps:
+            raise InputError(f"the case has no sweep '{name}'{did_you_mean(name, self.sweeps)} Add [sweeps.{name}]")
+        return self.sweeps[name]
+
+
+def run(
+    case: Case,
+    on_block: Callable[[int], None] = lambda _: None,
+    workers: int = 1,
+    checkpoint: Checkpoint | None = None,
+) -> Study:
+    """Run a case.
+
+    Parameters
+    ----------
+    case : Case
+        The study to run.
+    on_block : callable, optional
+        Called with the number of evaluations done, `evaluations(case)` in all, to show progress.
+    workers : int
+        How many processes evaluate the sweeps.
+    checkpoint : Checkpoint, optional
+        Where an interrupted run leaves what is done.
+    """
+    notes = Notes()
+    evaluator = Evaluator(on_block, workers, checkpoint)
+    pairs = pairs_of(case, notes)
+    sweeps = {name: _sweep(name, grid, case, pairs, notes, evaluator) for name, grid in case.sweeps.items()}
+    profiles = {name: _profile(name, grid, case, pairs, notes) for name, grid in case.profiles.items()}
+    for dataset in (*sweeps.values(), *profiles.values()):
+        dataset.attrs.update(title=case.title, provenance=json.dumps(provenance(case)))
+    study = Study(case, tuple(pairs), sweeps, profiles, tuple(notes.texts))
+    sections = tuple(_section(name, study, notes) for name in case.sections)
+    return replace(study, notes=tuple(notes.texts), sections=sections)
+
+
+def _section(name: str, study: Study, notes: Notes) -> Section:
+    """Return what the plugin makes of a study."""
+    found = loader.installed()
+    make = found.sections.find(name, found.broken)
+    subject = f"section '{name}' of {found.sections.origin(name)}"
+    try:
+        with notes.of(f"section '{name}'"):
+            section = make(study)
+        if not isinstance(section, Section):
+            raise TypeError(f"it must be a Section, got {section!r}")
+    except WearlawError as error:
+        raise InputError(
+            f"{subject}: {message_of(error)}\nTo run the case without this section, take '{name}' out of `sections`"
+        ) from error
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        raise ModelError(f"{subject} failed with {described(error)}") from error
+    return section
+
+
+def evaluations(case: Case) -> int:
+    """Return how many evaluations of a pair at an operating point a case needs."""
+    pairs = pairs_of(case, Notes())
+    return sum(
+        grid.size * (1 + len(_band_ends(pair.pipeline)))
+        for name, grid in case.sweeps.items()
+        for pair in _usable(f"sweep '{name}'", grid, pairs, Notes())
+    )
+
+
+def provenance(case: Case) -> dict[str, Any]:
+    """Return what a result came from: the version of wearlaw, all that plugins provided, and the case."""
+    provided = {f"{kind.replace(' ', '_')}s": names for kind, names in used(case).items()}
+    return {"wearlaw": __version__, **provided, "case": case.model_dump(mode="json", by_alias=True, exclude_none=True)}
+
+
+def used(case: Case) -> dict[str, dict[str, str]]:
+    """Return the models of a case and what else it names, by kind and name, each with distribution and version."""
+    found = loader.installed()
+    named: dict[type, Shelf[Any]] = {WearLaw: found.parameter_sets, Material: found.materials, Case: found.cases}
+    origins: dict[str, dict[str, str]] = {shelf.kind: {} for shelf in found.shelves()}
+    for part in parts(case):
+        if isinstance(part, Model):
+            origins[part.kind][part.name] = found.of_kind(part.kind).distribution(part.name, type(part))
+        name = known_name(part)
+        if name is not None:
+            (shelf,) = (shelf for kind, shelf in named.items() if isinstance(part, kind))
+            origins[shelf.kind][name] = shelf.distribution(name)
+    if case.measured is not None and case.measured.shipped:
+        origins[found.test_sets.kind] = {case.measured.tests: found.test_sets.distribution(case.measured.tests)}
+    origins[found.sections.kind] = {name: found.sections.distribution(name) for name in case.sections}
+    return {kind: dict(sorted(names.items())) for kind, names in origins.items()}
+
+
+def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: Evaluator) -> xarray.Dataset:
+    """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
+    import xarray
+
+    points = grid.points(case.units)
+    axes = points.dims
+    usable = _usable(f"sweep '{name}'", grid, pairs, notes)
+    found_in = _variables(grid, case, usable)
+    rates: list[dict[str, Array]] = []
+    contacts: dict[str, dict[str, Array]] = {}
+    for number, pair in enumerate(usable):
+        new = found_in.of_contact[pair.contact_model] if pair.contact_model not in contacts else ()
+        outputs = [*RATES, *new, *(found_in.of_point if not contacts else ())]
+        with notes.of(f"sweep '{name}'"):
+            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs)
+        contacts.setdefault(pair.contact_model, found)
+        rates.append(_with_band(f"{name}-{number}", pair.pipeline, points, found, evaluator))
+    any_contact = next(iter(contacts.values()))
+    missing = np.full(points.shape, np.nan)
+    variables: dict[str, Any] = {
+        **{v: (("pair", *axes), np.stack([rate[v] for rate in rates])) for v in (*RATES, *BAND)},
+        **{
+            v: (("contact_model", *axes), np.stack([c.get(v, missing) for c in contacts.values()]))
+            for v in OF_CONTACT
+            if any(v in offered for offered in found_in.of_contact.values())
+        },
+        **{v: (axes, any_contact[v]) for v in found_in.of_point},
+        **{v: (axes, np.full(points.shape, level)) for v, level in found_in.conditions.items()},
+    }
+    units = {**UNITS, **case.units}
+    dataset = xarray.Dataset({v: (dims, values, {"units": units[v]}) for v, (dims, values) in variables.items()})
+    return dataset.assign_coords(
+        {axis: (axis, one.values, {"units": units[axis]}) for axis, one in points.varying.items()}
+        | {"pair": [pair.label for pair in usable], "contact_model": list(contacts)}
+        | {"pair_contact_model": ("pair", [pair.contact_model for pair in usable])}
+        | {"pair_wear_law": ("pair", [pair.wear_law for pair in usable])}
+    )
+
+
+@dataclass(frozen=True)
+class _Variables:
+    """What a sweep has besides the rates of its pairs.
+
+    Attributes
+    ----------
+    of_contact : dict of str to list of str
+        For each contact model, the variables that its predictions have.
+    of_point : list of str
+        Those of the operating points.
+    conditions : dict of str to float
+        The other conditions, which are the same at all points.
+    """
+
+    of_contact: dict[str, list[str]]
+    of_point: list[str]
+    conditions: dict[str, float]
+
+
+def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
+    """Return what a sweep has, as predictions of its first operating point tell."""
+    problem, axes = grid.problem(case.rig), grid.axes()
+    of_contact: dict[str, list[str]] = {}
+    of_point: dict[str, None] = {}
+    for pair in {pair.contact_model: pair for pair in pairs}.values():
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", WearlawWarning)  # the sweep gives them
+            prediction = pair.pipeline.without_law().predict(problem)
+        of_contact[pair.contact_model] = [v for v in offered(prediction, OF_CONTACT) if v not in axes]
+        # A rig may give the name of a variable to something else.
+        same = (v for v in offered(prediction, OF_POINT) if case.units.get(v, UNITS[v]) == UNITS[v])
+        of_point |= dict.fromkeys(v for v in same if v not in axes)
+    known = {*axes, *of_point, *(v for variables in of_contact.values() for v in variables)}
+    levels = {name: grid.level(name, case.units) for name in grid.given if name not in known}
+    conditions = {name: level for name, level in levels.items() if isinstance(level, float)}
+    return _Variables(of_contact, [v for v in OF_POINT if v in of_point], conditions)
+
+
+def numbers(case: Case) -> int:
+    """Return how many numbers the results of the sweeps of a case hold."""
+    pairs, total = pairs_of(case, Notes()), 0
+    for name, grid in case.sweeps.items():
+        usable = _usable(f"sweep '{name}'", grid, pairs, Notes())
+        found = _variables(grid, case, usable)
+        of_contact = sum(len(variables) for variables in found.of_contact.values())
+        of_pair = len(usable) * len((*RATES, *BAND))
+        total += grid.size * (len(found.of_point) + len(found.conditions) + of_contact + of_pair)
+        total += sum(grid.axes().values())
+    return total
+
+
+def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[Pair]:
+    """Leave out the pairs that have no use for a measured traction coefficient."""
+    if "traction_coefficient" not in grid.given:
+        return pairs
+    usable = [pair for pair in pairs if pair.pipeline.contact_model.uses_measured_traction]
+    for pair in pairs:
+        if pair not in usable:
+            notes.add(f"{subject}: {pair.contact_model} is left out, since it computes the traction itself")
+    if not usable:
+        raise InputError(f'{subject}: no contact model of the case can use a traction_coefficient; add "global"')
+    return usable
+
+
+def _with_band(
+    key: str, pipeline: Pipeline[...], points: Points, found: dict[str, Array], evaluator: Evaluator
+) -> dict[str, Array]:
+    """Return results with the ends of the wear rate over the published range of the law's parameters."""
+    ends = []
+    for end, one in zip(BAND, _band_ends(pipeline), strict=False):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band has given them already
+            ends.append(evaluator(f"{key}-{end}", one, points, ["wear_rate"])["wear_rate"])
+    return {**found, **dict(zip(BAND, ends or [found["wear_rate"]] * 2, strict=True))}
+
+
+def _band_ends(pipeline: Pipeline[...]) -> list[Pipeline[...]]:
+    """Return the pipeline with the low and the high end of its law's published range, if there is one."""
+    band = pipeline.wear_law.band()
+    return [] if band is None else [pipeline.with_law(law) for law in (band[0], band[2])]
+
+
+def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes) -> xarray.Dataset:
+    """Return what is seen in the patch: fields of each contact model, and the wear of each pair."""
+    import xarray
+
+    problem = grid.problem(case.rig)
+    contacts: dict[str, xarray.Dataset] = {}
+    wear: list[xarray.Dataset] = []
+    usable = _usable(f"profile '{name}'", grid, pairs, notes)
+    resolved = [pair for pair in usable if pair.pipeline.scale == "cells"]
+    if not resolved:
+        notes.add(f"profile '{name}' is left out: no contact model of the case resolves the patch")
+        return xarray.Dataset()
+    for pair in resolved:
+        with notes.of(f"profile '{name}'"):
+            of_pair, whole = _seen(pair.pipeline.predict(problem), case.rig)
+        if not whole:
+            notes.add(f"profile '{name}' is left out: rig '{case.rig.name}' does not name its bodies")
+            return xarray.Dataset()
+        contacts[pair.contact_model] = whole.drop_vars(of_pair)
+        wear.append(whole[of_pair])
+    # Models with nodes of their own have no value where only others have a node.
+    dataset = xarray.concat(list(contacts.values()), xarray.Variable("contact_model", list(contacts)), join="outer")
+    return dataset.assign(xarray.concat(wear, "pair", join="outer").data_vars).assign_coords(
+        pair=[pair.label for pair in resolved]
+    )
+
+
+def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
+    """Return the profile of a prediction, and which of its variables differ from law to law.
+
+    It runs along the patch of a line, over x. That of an ellipse runs across the patch, over y, with the wear of each
+    body.
+    """
+    import xarray
+
+    if prediction.problem.geometry == "line":
+        return ["wear_rate"], prediction.profile
+    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in rig.bodies}
+    named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
+    return [f"{body}_depth" for body in across], xarray.Dataset(named)
+
+
+def axes_of(sweep: xarray.Dataset) -> list[str]:
+    """Return the axes of a sweep's grid."""
+    return [str(dim) for dim in sweep.dims if dim not in ("pair", "contact_model")]
+
+
+def main_axis(sweep: xarray.Dataset, creepage: str) -> str:
+    """Return the axis that tables and figures run along: the creepage of the rig if it is one, else the longest.
+
+    Where a sweep has no axis it is the creepage, or else another condition, of its one point.
+    """
+    axes = axes_of(sweep)
+    if creepage in axes or not axes:
+        return creepage if creepage in sweep else _other(sweep)
+    return max(axes, key=lambda axis: sweep.sizes[axis])
+
+
+def along_main_axis(sweep: xarray.Dataset, creepage: str) -> xarray.Dataset:
+    """Return a sweep along its main axis, with the other axes at their middle value."""
+    return along(sweep, main_axis(sweep, creepage))
+
+
+def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
+    """Return a sweep along an axis, with the others at their middle value; one point becomes an axis of length 1."""
+    line = sweep.isel({other: sweep.sizes[other] // 2 for other in axes_of(sweep) if other != axis})
+    if axes_of(line):
+        return line
+    at = axis if axis in line else _other(line)
+    return line.set_coords(at).expand_dims(at)
+
+
+def _other(point: xarray.Dataset) -> str:
+    """Return a variable of the operating point of a sweep without axes."""
+    return next(str(name) for name in point.data_vars if not point[name].dims)

@@ -1,0 +1,300 @@
+"""Units at the rim: quantities come in and go out with units, plain SI floats live inside.
+
+`Q(7.4, "kN")` makes a quantity, `Unit` says which unit a field or argument is due, checks what it is
+given and hands on SI floats. Everything uses pint's application registry, looked up when it is needed,
+so that quantities made by other packages and by `pint.set_application_registry` fit in.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+
+import numpy as np
+import pint
+from pydantic_core import core_schema
+
+from wearlaw.arrays.extremes import extremes
+from wearlaw.errors import UnitError
+from wearlaw.units.registry import application_registry, quantity, quantity_from_si, si_factor, symbol, unit_in_si
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import ArrayLike, NDArray
+    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+
+    Quantity: TypeAlias = pint.Quantity[Any]
+else:
+    Quantity = pint.Quantity
+
+QuantityLike: TypeAlias = "Quantity | str"
+"""A quantity, or its text such as "47 mm"."""
+
+
+def Q(value: ArrayLike, unit: str) -> Quantity:
+    """Return `value` with its unit, as a pint quantity.
+
+    Parameters
+    ----------
+    value : array_like
+        A number or an array of numbers.
+    unit : str
+        Its unit, such as "kN", "%" or "ug/m/mm^2"; "" for a ratio.
+
+    Returns
+    -------
+    pint.Quantity
+        Its `repr` shows four significant digits; `.magnitude` holds all of them.
+
+    Raises
+    ------
+    UnitError
+        If the unit is not known, or the value is no real number.
+    """
+    magnitude: Any = value
+    if type(value) not in (int, float):
+        array = real_array(value)
+        magnitude = float(array) if array.ndim == 0 else array
+    result: Quantity = quantity(magnitude, unit)
+    return result
+
+
+def parse(text: str) -> Quantity:
+    """Return the quantity that a text such as "47 mm", "1e-3 %" or "0.01 dimensionless" stands for.
+
+    Raises
+    ------
+    UnitError
+        If the text is not a number followed by a known unit.
+    """
+    match = _QUANTITY_TEXT.fullmatch(text)
+    if match is None or not match["unit"]:
+        raise UnitError(f"'{text}' is not a number with a unit")
+    return Q(float(match["number"]), match["unit"])
+
+
+def text_of(quantity: Quantity) -> str:
+    """Return the text that `parse` reads back to the same scalar quantity, to the last digit."""
+    return f"{float(quantity.magnitude)!r} {symbol(quantity.units, '~C') or 'dimensionless'}"
+
+
+def shown(value: object) -> str:
+    """Return a value as it is shown to a reader, scalar quantities with all their digits."""
+    if not isinstance(value, pint.Quantity):
+        return str(value)
+    return f"{float(value.magnitude)!r} {symbol(value.units, '~P') or 'dimensionless'}"
+
+
+_QUANTITY_TEXT = re.compile(
+    r"\s*(?P<number>[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan))\s*(?P<unit>(?:(?:(?<=\s)1(?=\s*/)|[^\d\s+.-]).*)?)"
+)
+
+HEAD = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?")
+"""The head of a column, as in "creepage [%]": its name, and its unit if it gives one."""
+
+
+@dataclass(frozen=True)
+class Unit:
+    """The unit that a field or argument is due, with the bounds of its value.
+
+    Used in an annotation, ``Annotated[Quantity, Unit("mm")]``, it makes pydantic accept a quantity of that
+    dimension, or a text such as "47 mm"; everything else is an error that names the field.
+
+    Parameters
+    ----------
+    unit : str
+        The customary unit, shown in messages and in the schema; "" for a ratio such as creepage.
+    positive : bool
+        Whether the value must be greater than zero.
+    limit : float
+        The largest magnitude allowed, in `unit`.
+    infinite : bool
+        Whether infinity is allowed, as for the diameter of a flat body.
+    """
+
+    unit: str
+    positive: bool = True
+    limit: float = np.inf
+    infinite: bool = False
+
+    def si(self, value: object, name: str) -> NDArray[np.float64]:
+        """Return `value` as SI floats, or raise a `UnitError` that names the argument.
+
+        Parameters
+        ----------
+        value : Quantity or str
+            What the user gave, of any shape.
+        name : str
+            The argument's name, for the message.
+
+        Returns
+        -------
+        ndarray of float64
+            The value in the coherent SI unit of this dimension, a NumPy scalar if it has no axes; memory is shared
+            where nothing changes.
+        """
+        try:
+            return self._checked(value)[1]
+        except UnitError as error:
+            raise UnitError(f"{name}: {error}; {self._fix(name)}") from None
+
+    def _checked(self, value: object) -> tuple[Quantity, NDArray[np.float64]]:
+        quantity = self._as_quantity(value)
+        magnitude = real_array(quantity.magnitude)
+        try:
+            factor = si_factor(quantity, self.unit)
+        except UnitError as error:
+            raise UnitError(f"got {_describe(Q(magnitude, str(quantity.units)))}, {error}") from None
+        in_si = magnitude if factor == 1.0 else magnitude * factor
+        if self._allows(in_si):
+            return quantity, in_si
+        for wrong, rule in self._rules(in_si):
+            if wrong.any():
+                first, where = _first(magnitude, wrong)
+                raise UnitError(f"{rule}, got {Q(first, str(quantity.units))!r}{where}")
+        return quantity, in_si
+
+    def _allows(self, in_si: NDArray[np.float64]) -> bool:
+        """Return whether no rule is broken, from the extremes alone; an array that is empty or has NaN is not sure."""
+        if in_si.size == 0:
+            return False
+        (low, high), limit = extremes(in_si), self._limit_in_si
+        above = low > 0.0 if self.positive else low >= -limit
+        return above and high <= limit and (self.infinite or (low > -np.inf and high < np.inf))
+
+    @property
+    def _limit_in_si(self) -> float:
+        return self.limit * unit_in_si(self.unit) if self.limit < np.inf else np.inf
+
+    def _rules(self, in_si: NDArray[np.float64]) -> Iterator[tuple[NDArray[np.bool_], str]]:
+        """Return where each rule is broken, and the rule."""
+        yield np.isnan(in_si), "must be a number"
+        if not self.infinite:
+            yield np.isinf(in_si), "must be finite"
+        if self.positive:
+            yield in_si <= 0, "must be greater than zero"
+        yield (
+            np.abs(in_si) > self._limit_in_si,
+            f"must not exceed {self.limit:g} {self.unit}".rstrip() + " in magnitude",
+        )
+
+    @staticmethod
+    def _as_quantity(value: object) -> Quantity:
+        if isinstance(value, str):
+            return parse(value)
+        if not isinstance(value, pint.Quantity):
+            raise UnitError(f"got {_describe(value)}, which has no unit")
+        quantity: Quantity = value
+        if quantity._REGISTRY is not application_registry():
+            return Q(quantity.magnitude, str(quantity.units))
+        return quantity
+
+    def _fix(self, name: str) -> str:
+        if self.unit == "":
+            return f'give {name} in percent or as a ratio, such as Q(1, "%") or "1 %"'
+        unit = self.unit
+        return f'give {name} in {unit} or another unit of that dimension, such as Q(1.0, "{unit}") or "1.0 {unit}"'
+
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(
+            self._scalar,
+            serialization=core_schema.plain_serializer_function_ser_schema(text_of, when_used="json"),
+        )
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, object]:
+        example = f"1.0 {self.unit or 'dimensionless'}"
+        return {"type": "string", "description": "a number with its unit", "examples": [example]}
+
+    def _scalar(self, value: object) -> Quantity:
+        try:
+            quantity, in_si = self._checked(value)
+        except UnitError as error:
+            raise UnitError(f"{error}; {self._fix('it')}") from None
+        if in_si.ndim != 0:
+            raise UnitError(f"must be one value, got an array of shape {in_si.shape}")
+        return Q(float(quantity.magnitude), str(quantity.units))
+
+
+def real_array(value: object) -> NDArray[np.float64]:
+    """Return `value` as float64, refusing what is no real number: booleans, complex, text, masked entries."""
+    if type(value) is float:
+        return np.float64(value)  # type: ignore[return-value]  # computes as an array without axes, but faster
+    if np.ma.is_masked(value):
+        raise UnitError("masked entries have no value")
+    if isinstance(value, pint.Quantity) or (
+        isinstance(value, (list, tuple)) and any(isinstance(entry, pint.Quantity) for entry in value)
+    ):
+        raise UnitError(f"{_describe(value)} has a unit of its own where a plain number is due")
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError):
+        raise UnitError(f"{_describe(value)} is not an array of numbers") from None
+    if array.dtype.kind not in "iuf":
+        raise UnitError(f"{_describe(value)} is not a real number")
+    array = array.astype(np.float64, copy=False)
+    return array if array.ndim else array[()]
+
+
+def coefficient(value: object, name: str) -> NDArray[np.float64]:
+    """Return a positive, finite number without unit, such as a friction coefficient, as float64.
+
+    Raises
+    ------
+    UnitError
+        If it has a dimension, or is no positive finite real number.
+    """
+    try:
+        array = Unit("")._checked(value)[1] if isinstance(value, pint.Quantity) else real_array(value)
+        low, high = extremes(array) if array.size else (1.0, 1.0)
+        if not (low > 0.0 and high < np.inf):
+            first, where = _first(array, ~(np.isfinite(array) & (array > 0)))
+            raise UnitError(f"must be a positive finite number, got {first:g}{where}")
+    except UnitError as error:
+        raise UnitError(f"{name}: {error}; give {name} as a plain number, such as 0.46") from None
+    return array
+
+
+def scalar_si(quantity: Quantity, unit: str) -> float:
+    """Return the SI value of a scalar quantity that has been validated before."""
+    return quantity.magnitude * si_factor(quantity, unit)  # type: ignore[no-any-return]
+
+
+def in_unit(value: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
+    """Return SI floats as floats in `unit`."""
+    factor = unit_in_si(unit)
+    return value if factor == 1.0 else value / factor
+
+
+def from_si(value: NDArray[np.float64] | float, unit: str) -> Quantity:
+    """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
+    result: Quantity = quantity_from_si(value, unit)
+    return result
+
+
+Length = Annotated[Quantity, Unit("mm")]
+Speed = Annotated[Quantity, Unit("m/s")]
+Stress = Annotated[Quantity, Unit("GPa")]
+Density = Annotated[Quantity, Unit("kg/m^3")]
+WEAR_RATE = "ug/m/mm^2"
+"""The unit in which wear rates are shown: mass lost per metre rolled and contact area."""
+
+
+def _first(values: NDArray[np.float64], wrong: NDArray[np.bool_]) -> tuple[float, str]:
+    """Return the first wrong value and, for an array, where it stands."""
+    where = f" at index {np.argwhere(wrong)[0].tolist()}" if values.ndim else ""
+    return float(values[wrong][0]), where
+
+
+def shortened(value: object) -> str:
+    """Return the repr of a value, cut to a length that fits a message."""
+    shown = repr(value)
+    return shown if len(shown) <= 60 else shown[:57] + "..."
+
+
+def _describe(value: object) -> str:
+    kind = "the bare number " if isinstance(value, (int, float)) and not isinstance(value, bool) else ""
+    return f"{kind}{shortened(value)}"
