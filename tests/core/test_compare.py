@@ -91,7 +91,7 @@ def test_predictors_are_called_after_their_law_and_contact_model_as_in_a_study()
     fastsim = RIG | wl.contact_model("fastsim")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.CalibrationWarning)
-        predictors = [EXACT | usfd(), fastsim | usfd(), EXACT | wl.wear_law("kth")]
+        predictors: list[wl.Pipeline[...]] = [EXACT | usfd(), fastsim | usfd(), EXACT | wl.wear_law("kth")]
         predictors += [EXACT | usfd(q_s="50 ug/m/mm^2"), EXACT | wl.patch_mean() | wl.wear_law("brr")]
     assert set(order(wl.compare(predictors, made()))) == {
         "usfd(q_s=55.0 µg/m/mm²) on exact",

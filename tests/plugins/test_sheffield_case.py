@@ -10,8 +10,9 @@ import pytest
 import wearlaw as wl
 import wearlaw_sheffield
 from tests.plugins.sheffield import HEAT, SPEED
+from wearlaw.models.labels import labels
 from wearlaw.plugins import loader
-from wearlaw.study.case import Case, case_text, labels, load_case
+from wearlaw.study.case import Case, case_text, load_case
 from wearlaw.study.study import run
 from wearlaw.wear_tests.reader import text_of_tests
 

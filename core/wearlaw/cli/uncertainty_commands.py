@@ -39,9 +39,9 @@ def uncertainty(
     intervals, sobol_indices.csv with the share of the variance that each input explains, and a figure of each pair.
     """
     from wearlaw.output.folder import fresh_folder
+    from wearlaw.output.uncertainty import UNCERTAINTY, write_uncertainty
     from wearlaw.study.case import load_case
-    from wearlaw.uncertainties.of_case import uncertainty_of
-    from wearlaw.uncertainties.written import UNCERTAINTY, write_uncertainty
+    from wearlaw.study.uncertainty import uncertainty_of
 
     loaded = load_case(case)
     folder = output if output is not None else Path(f"{Path(case).stem}-uncertainty")

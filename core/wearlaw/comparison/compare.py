@@ -15,10 +15,10 @@ from wearlaw.errors import InputError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.fitting.result import Fit
 from wearlaw.models.contact_model import Model
+from wearlaw.models.labels import labels
 from wearlaw.pipeline.composition import needs_discs
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.study.case import labels
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:

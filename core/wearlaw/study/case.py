@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import tomllib
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
@@ -34,10 +34,8 @@ from wearlaw.errors import (
     did_you_mean,
     with_problems,
 )
-from wearlaw.figures.check import Contents
-from wearlaw.figures.measured_points import check_rig, known_variables
-from wearlaw.figures.spec import FigureSpec
 from wearlaw.models.contact_model import Model
+from wearlaw.models.labels import labelled, labels
 from wearlaw.models.rig import Rig
 from wearlaw.pipeline.variables import name_of
 from wearlaw.plugins import loader
@@ -45,11 +43,13 @@ from wearlaw.plugins.fields import ContactModelField, RigField, WearLawField, kn
 from wearlaw.plugins.shelf import Shelf
 from wearlaw.settings.configuration import Configuration, known_as
 from wearlaw.settings.text_files import read_text
+from wearlaw.study.figure_check import Contents
+from wearlaw.study.figure_spec import FigureSpec
 from wearlaw.study.grid import Condition, Grid
+from wearlaw.study.measured_points import check_rig, known_variables
 from wearlaw.study.measurement import Measurement
-from wearlaw.uncertainties.specification import Condition as UncertainCondition
-from wearlaw.uncertainties.specification import UncertainPoint
-from wearlaw.units.quantities import shown
+from wearlaw.study.uncertain_point import Condition as UncertainCondition
+from wearlaw.study.uncertain_point import UncertainPoint
 
 ModelT = TypeVar("ModelT", bound=Model)
 
@@ -179,34 +179,6 @@ class Case(Configuration):
             units=self.units,
             measured=known_variables(self.measured.data) if self.measured else (),
         )
-
-
-def labels(models: Sequence[Model]) -> list[str]:
-    """Return a short name for each model: its own, with the options that tell it from others of that name."""
-    found = []
-    for model in models:
-        namesakes = [other for other in models if other.name == model.name]
-        if sum(other == model for other in namesakes) > 1:
-            raise InputError(f"the model {model.name} is listed twice; leave one out, or give it other options")
-        options = [f"{field}={shown(getattr(model, field))}" for field in _telling_apart(namesakes)]
-        found.append(f"{model.name}({', '.join(options)})" if options else model.name)
-    return found
-
-
-def labelled(models: Sequence[ModelT]) -> dict[str, ModelT]:
-    """Return models by `labels`."""
-    return dict(zip(labels(models), models, strict=True))
-
-
-def _telling_apart(models: Sequence[Model]) -> list[str]:
-    """Return the fewest fields, in their order, by which different models of one name differ."""
-    fields: list[str] = []
-    kinds: set[tuple[str, ...]] = {()}
-    for field in type(models[0]).model_fields:
-        finer = {tuple(shown(getattr(model, name)) for name in (*fields, field)) for model in models}
-        if len(finer) > len(kinds):
-            fields, kinds = [*fields, field], finer
-    return fields
 
 
 def case_text(name_or_path: str) -> str:

@@ -8,12 +8,13 @@ from typing import Any
 
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.labels import labelled
 from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.composition import check_geometry, warn_of_geometry
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.study.case import Case, labelled
+from wearlaw.study.case import Case
 
 
 @dataclass(frozen=True)

@@ -82,7 +82,7 @@ class Study:
     @cached_property
     def figures(self) -> tuple[FigureData, ...]:
         """What the figures of the study show."""
-        from wearlaw.figures.of_study import figures_of
+        from wearlaw.study.figures import figures_of
 
         return figures_of(self)
 

@@ -11,7 +11,7 @@ from wearlaw.errors import OutputError
 from wearlaw.output.results import FigureFormat, save_figure, save_table
 from wearlaw.study.case import Case, written
 from wearlaw.study.study import provenance
-from wearlaw.uncertainties.of_case import CaseUncertainty
+from wearlaw.study.uncertainty import CaseUncertainty
 
 UNCERTAINTY = "uncertainty.json"
 

@@ -9,13 +9,13 @@ from typing import Any
 
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean
-from wearlaw.figures.spec import ACROSS, OF_LOAD, OF_PROFILE, FigureSpec, Window, axis_along, wrong_range
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.composition import check_geometry
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS, offered
+from wearlaw.study.figure_spec import ACROSS, OF_LOAD, OF_PROFILE, FigureSpec, Window, axis_along, wrong_range
 from wearlaw.study.grid import Grid
 
 

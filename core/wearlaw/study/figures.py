@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
-from wearlaw.figures.measured_points import measured_points
-from wearlaw.figures.spec import ACROSS, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
+from wearlaw.models.labels import labels
 from wearlaw.pipeline.variables import UNITS, label, name_of
-from wearlaw.study.case import labels
+from wearlaw.study.figure_spec import ACROSS, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
+from wearlaw.study.measured_points import measured_points
 from wearlaw.study.study import along, main_axis
 
 if TYPE_CHECKING:

@@ -1,0 +1,40 @@
+"""Short names for models that are shown side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypeVar
+
+from wearlaw.errors import InputError
+from wearlaw.models.contact_model import Model
+from wearlaw.units.quantities import shown
+
+ModelT = TypeVar("ModelT", bound=Model)
+
+
+def labels(models: Sequence[Model]) -> list[str]:
+    """Return a short name for each model: its own, with the options that tell it from others of that name."""
+    found = []
+    for model in models:
+        namesakes = [other for other in models if other.name == model.name]
+        if sum(other == model for other in namesakes) > 1:
+            raise InputError(f"the model {model.name} is listed twice; leave one out, or give it other options")
+        options = [f"{field}={shown(getattr(model, field))}" for field in _telling_apart(namesakes)]
+        found.append(f"{model.name}({', '.join(options)})" if options else model.name)
+    return found
+
+
+def labelled(models: Sequence[ModelT]) -> dict[str, ModelT]:
+    """Return models by `labels`."""
+    return dict(zip(labels(models), models, strict=True))
+
+
+def _telling_apart(models: Sequence[Model]) -> list[str]:
+    """Return the fewest fields, in their order, by which different models of one name differ."""
+    fields: list[str] = []
+    kinds: set[tuple[str, ...]] = {()}
+    for field in type(models[0]).model_fields:
+        finer = {tuple(shown(getattr(model, name)) for name in (*fields, field)) for model in models}
+        if len(finer) > len(kinds):
+            fields, kinds = [*fields, field], finer
+    return fields
