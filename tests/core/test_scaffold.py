@@ -16,7 +16,7 @@ from tests.core.cases import Coarse, Linear, assert_refused, case, installer, we
 from tests.core.distributions import LAB, LAW, Install
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import Origin
-from wearlaw.scaffold import Kind, Licence, write_plugin
+from wearlaw.cli.scaffold import Kind, Licence, write_plugin
 from wearlaw.study.case import case_text
 
 pytestmark = pytest.mark.usefixtures("folder")

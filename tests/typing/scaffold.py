@@ -21,7 +21,7 @@ from typing import get_args
 
 import yaml  # type: ignore[import-untyped]
 
-from wearlaw.scaffold import LONGEST_NAME, Kind, write_plugin
+from wearlaw.cli.scaffold import LONGEST_NAME, Kind, write_plugin
 
 TOOLS = (
     "ruff check --no-cache --extend-select E501 .",

@@ -18,7 +18,7 @@ from wearlaw.plugins.shelf import unknown
 
 if TYPE_CHECKING:
     from wearlaw.models.contact_model import Model
-    from wearlaw.scaffold import Kind, Licence
+    from wearlaw.cli.scaffold import Kind, Licence
     from wearlaw.testing import Check
 
 
@@ -72,7 +72,7 @@ def new_plugin(name: str, kind: Kind | None, output: Path, licence: Licence) -> 
     and a CI workflow, and passes its tests, ruff and mypy --strict as it is. NAME is what the model will be called in
     wearlaw.wear_law("NAME") or wearlaw.rig("NAME") and in case files: lower-case letters, digits and underscores.
     """
-    from wearlaw.scaffold import write_plugin
+    from wearlaw.cli.scaffold import write_plugin
 
     if kind is None:
         raise click.UsageError("say what it provides: --wear-law, --contact-model or --rig")
