@@ -164,7 +164,6 @@ def test_what_only_knows_discs_says_so() -> None:
     with pytest.raises(wl.CompositionError, match="creepage_for: is for line contacts"):
         wl.creepage_for(contact, traction_coefficient=0.1, normal_force="80 kN", friction_coefficient=0.3)
     calls: dict[str, Any] = {
-        "uncertainty": lambda: wl.uncertainty(predict, law={"coefficient": wl.published_range()}, **CONDITIONS),
         "fit": lambda: wl.fit(contact, wl.read_tests("lewis2004"), free=["friction_coefficient"]),
         "compare": lambda: wl.compare([predict, predict], TESTS, friction_coefficient=0.3),
     }

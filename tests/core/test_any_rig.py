@@ -1,0 +1,152 @@
+"""Uncertainty, creepages, fits and comparisons of a wheel on a rail and of a rig of one's own."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import wearlaw as wl
+from tests.core.test_own_rigs import OnRail, Roller
+from tests.strategies import EPS
+from wearlaw import Q
+
+WHEEL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
+KTH = wl.wear_law("kth")
+ROLLER = Roller() | wl.contact_model("exact") | KTH
+FASTSIM = WHEEL | wl.contact_model("fastsim")
+ON_ELLIPSE: Any = {"normal_force": "80 kN", "friction_coefficient": 0.3}
+
+
+class Anything(wl.Rig):
+    """A rig that hands its conditions on, whatever they are called."""
+
+    name: ClassVar[str] = "anything"
+    source: ClassVar[str] = "a test"
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        """Return the problem of a wheel on a rail."""
+        return WHEEL.problem(**conditions)
+
+
+def rate(quantity: Any) -> Any:
+    return quantity.to("kg/m^3").magnitude
+
+
+def sobol_points(inputs: int, samples: int) -> Any:
+    """Return the probabilities of the samples, as `uncertainty` takes them with its first seed."""
+    return stats.qmc.Sobol(inputs, rng=np.random.default_rng(0)).random_base2(samples.bit_length() - 1).T
+
+
+@pytest.mark.parametrize("rig", [WHEEL, Anything()])
+def test_samples_on_a_rail_are_single_predictions(rig: wl.Rig) -> None:
+    predict: Any = rig | wl.contact_model("fastsim") | KTH
+    u = wl.uncertainty(
+        predict,
+        normal_force=wl.uniform("60 kN", "90000 N"),
+        longitudinal_creepage=Q([0.1, 0.3], "%"),
+        lateral_creepage=wl.uniform("-0.1 %", "0.2 %"),
+        spin=wl.uniform("-0.5 1/m", "0.5 1/m"),
+        friction_coefficient=wl.uniform(0.2, 0.4),
+        samples=4,
+    )
+    p = sobol_points(4, 4)
+    each = [
+        [
+            rate(
+                predict(
+                    normal_force=Q(60.0 + 30.0 * load, "kN"),
+                    longitudinal_creepage=Q(along, "%"),
+                    lateral_creepage=Q(-0.1 + 0.3 * across, "%"),
+                    spin=Q(-0.5 + turning, "1/m"),
+                    friction_coefficient=0.2 + 0.2 * friction,
+                ).wear_rate
+            )
+            for load, across, turning, friction in p.T
+        ]
+        for along in (0.1, 0.3)
+    ]
+    # Sampled and rounded twice; FASTSIM's strips add up some hundred terms.
+    assert rate(u.wear_rate) == pytest.approx(np.array(each), rel=1e4 * EPS)
+    assert np.ptp(rate(u.wear_rate)) > 0.0
+
+
+def test_samples_of_a_rig_of_ones_own_are_single_predictions() -> None:
+    u = wl.uncertainty(
+        ROLLER,
+        mass=wl.lognormal("20 kg", 1.2),
+        creepage=wl.uniform("0.5 %", "0.015 dimensionless"),
+        law={"hardness": wl.uniform("2 GPa", "3 GPa")},
+        samples=8,
+    )
+    mass, creepage, hardness = sobol_points(3, 8)
+    each = [
+        rate(
+            (Roller() | wl.contact_model("exact") | wl.wear_law("kth", hardness=Q(2.0 + h, "GPa")))(
+                mass=Q(20.0 * np.exp(np.log(1.2) * stats.norm.ppf(m)), "kg"), creepage=Q(0.5 + c, "%")
+            ).wear_rate
+        )
+        for m, c, h in zip(mass, creepage, hardness, strict=True)
+    ]
+    # Some roundings of the samples; what passes a threshold of KTH's map would differ by far more.
+    assert rate(u.wear_rate) == pytest.approx(np.array(each), rel=1e4 * EPS)
+
+
+def test_samples_on_a_rail_outside_the_range_of_the_law_are_warned_of() -> None:
+    predict: Any = FASTSIM | wl.wear_law("usfd", fitted_for="fastsim").fitted(
+        wl.Calibration(
+            contact_model="fastsim",
+            scale="cells",
+            geometry="ellipse",
+            materials="steel",
+            stated_range=(("wear_index_density", "0 N/mm^2", "1 N/mm^2"),),
+            source="a test",
+        )
+    )
+    # Lateral creepage alone: what dissipates is neither the longitudinal force nor a line.
+    given: Any = {**ON_ELLIPSE, "longitudinal_creepage": "0 %", "lateral_creepage": wl.uniform("0.5 %", "0.6 %")}
+    u = wl.uncertainty(predict, **given, samples=8)
+    with pytest.warns(wl.RangeWarning, match="wear index density .* 8 of 8 operating points lie outside"):
+        u.median  # noqa: B018
+    with warnings.catch_warnings(action="error"):
+        wl.uncertainty(predict, **{**given, "lateral_creepage": wl.uniform("0 %", "0.01 %")}, samples=8).median  # noqa: B018
+
+
+def test_parameters_fitted_for_another_shape_of_patch_are_warned_of_in_samples_too() -> None:
+    predict: Any = OnRail() | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim")
+    u = wl.uncertainty(predict, mass="8 t", longitudinal_creepage=wl.uniform("0.1 %", "0.2 %"), samples=2)
+    with pytest.warns(wl.CalibrationWarning, match="fitted for line contacts") as said:
+        u.wear_rate  # noqa: B018
+    assert said[0].filename == __file__
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"mas": wl.normal("20 kg", "1 kg")}, "mas: unknown condition; did you mean 'mass'"),
+        ({"mass": wl.normal("20 N", "1 N")}, "mass: got 20.00 N, which is not of the dimension of 'kg'"),
+        ({"mass": wl.normal("20 kg", "1 N")}, "mass: got 1.000 N, which is not of the dimension of 'kg'"),
+        ({"mass": wl.normal("20 kg", 1.0)}, "mass: got the bare number 1.0, which has no unit"),
+        ({"mass": wl.normal(20.0, 1.0)}, "mass: got the bare number 20.0, which has no unit"),
+        ({"mass": wl.uniform("20 kg", "2 kg")}, r"mass: the upper end of uniform\(20.0 kg, 2.0 kg\)"),
+        ({"mass": wl.normal("1 kg", "1 kg")}, "mass: must be greater than zero(.|\n)*samples of its distribution"),
+    ],
+)
+def test_wrong_distributions_of_a_rig_of_ones_own_are_named(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(wl.InputError, match=said):
+        wl.uncertainty(ROLLER, creepage="1 %", **given).median  # noqa: B018
+
+
+def test_a_band_lies_along_any_condition() -> None:
+    creepage = wl.uniform("0.5 %", "1.5 %")
+    (panel,) = wl.uncertainty(ROLLER, mass=Q([4e4, 2e4], "g"), creepage=creepage, samples=8).figure_data().panels
+    assert panel.x.label == "mass [g]"
+    assert list(panel.curves[0].x) == [2e4, 4e4]
+    given: Any = {**ON_ELLIPSE, "normal_force": Q([80.0, 60.0], "kN")}
+    u = wl.uncertainty(FASTSIM | KTH, **given, longitudinal_creepage=creepage, samples=8)
+    (panel,) = u.figure_data().panels
+    assert panel.x.label == "normal force [N]"
+    assert panel.curves[0].x == pytest.approx([6e4, 8e4], rel=4 * EPS)
