@@ -161,8 +161,6 @@ def test_an_elliptic_model_given_a_line_says_so() -> None:
 def test_what_only_knows_discs_says_so() -> None:
     contact: Any = rig() | wl.contact_model("fastsim")
     predict = contact | wl.wear_law("kth")
-    with pytest.raises(wl.CompositionError, match="creepage_for: is for line contacts"):
-        wl.creepage_for(contact, traction_coefficient=0.1, normal_force="80 kN", friction_coefficient=0.3)
     calls: dict[str, Any] = {
         "fit": lambda: wl.fit(contact, wl.read_tests("lewis2004"), free=["friction_coefficient"]),
         "compare": lambda: wl.compare([predict, predict], TESTS, friction_coefficient=0.3),
