@@ -11,6 +11,7 @@ import sys as _sys
 from importlib import import_module as _import_module
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
+import wearlaw.rigs as _rigs  # noqa: F401  importing it later would overwrite the function `rigs` with the package
 from wearlaw import hertz, hertz_ellipse, kalker
 from wearlaw.arrays import Array
 from wearlaw.base_rig import Body, Rig

@@ -9,7 +9,6 @@ from wearlaw.base_rig import Rig
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
 from wearlaw.models import WearLaw
 from wearlaw.problem import Geometry, Problem
-from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.tangential import PATCHES, ContactModel, Scale
 
 PEAKS = (
@@ -72,12 +71,6 @@ def warn_of_geometry(
     calibration, geometry = law.calibration, problem.geometry
     if rig.geometry is None and calibration is not None and calibration.geometry != geometry:
         warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
-
-
-def needs_discs(rig: Rig, what: str) -> None:
-    """Refuse a rig that is not made of discs, for what only knows these."""
-    if not isinstance(rig, TwinDisc):
-        raise CompositionError(f"{what}: is for a TwinDisc only, not for a {type(rig).__name__}")
 
 
 def check_traction(model: ContactModel, problem: Problem) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
 import warnings
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -234,3 +236,219 @@ def test_a_rig_without_a_condition_for_the_creepage_says_so() -> None:
         wl.creepage_for(predict, traction_coefficient=0.1, mass="20 kg")
     with pytest.raises(wl.ConditionsError, match="creepage: is what creepage_for looks for; leave it out"):
         wl.creepage_for(ROLLER, traction_coefficient=0.1, mass="20 kg", creepage="1 %")
+
+
+@wl.as_wear_law(
+    inputs={"wear_index_density": "N/mm^2"},
+    returns="ug/m/mm^2",
+    breakpoints={},
+    parameters={"slope": "ug/m/N", "bend": "ug*mm^2/m/N^2"},
+    source="made up",
+)
+def bending(wear_index_density: Any, *, slope: float = 2.0, bend: float = 1.0) -> Any:
+    return wear_index_density * (slope + bend * wear_index_density)
+
+
+LAW = bending.model_copy(update={"slope": Q(5.0, "ug/m/N"), "bend": Q(3.0, "ug*mm^2/m/N^2")})
+TWICE = bending.model_copy(update={"slope": Q(10.0, "ug/m/N"), "bend": Q(6.0, "ug*mm^2/m/N^2")})
+MASSES: Any = {"mass": Q([20.0, 20.0, 40.0, 40.0, 30.0], "kg")}
+CREEPAGES: Any = {"creepage": Q([0.2, 1.0, 2.0, 0.5, -0.7], "%")}
+LOADS: Any = {"normal_force": Q([60.0, 80.0, 80.0, 100.0, 90.0], "kN")}
+ON_RAIL: Any = {
+    "longitudinal_creepage": Q([0.05, 0.2, -0.1, 0.0, 0.4], "%"),
+    "lateral_creepage": Q([0.1, 0.0, 0.2, 0.3, 0.1], "%"),
+    "spin": Q([0.0, 0.5, -0.5, 0.2, 0.3], "1/m"),
+}
+
+
+def on_roller(**changes: Any) -> wl.WearTests:
+    """Return tests of a roller that follow a law, and their tractions."""
+    found = (Roller() | wl.contact_model("exact") | LAW)(**MASSES, **CREEPAGES, friction_coefficient=0.35)
+    measured: Any = {"traction_coefficient": abs(found.traction_coefficient.magnitude), "wear_rate": found.wear_rate}
+    return wl.WearTests.from_arrays(**{**CREEPAGES, **measured, "other_conditions": MASSES, **changes})
+
+
+def on_rail(model: str, **changes: Any) -> wl.WearTests:
+    """Return tests of a wheel on a rail that follow a law, and their tractions."""
+    found = (WHEEL | wl.contact_model(model) | LAW)(**LOADS, **ON_RAIL, friction_coefficient=0.35)
+    measured: Any = {"traction_coefficient": found.traction_coefficient.magnitude, "wear_rate": found.wear_rate}
+    return wl.WearTests.from_arrays(**{**LOADS, **measured, "other_conditions": ON_RAIL, **changes})
+
+
+def fitted(predict: Any, tests: wl.WearTests, **more: Any) -> wl.Fit:
+    free = ["bend", "slope", "friction_coefficient"]
+    return wl.fit(predict, tests, free=free, starts=4, bootstrap=0, **{"friction_coefficient": 0.3, **more})
+
+
+@pytest.mark.parametrize("model", ["exact", "fastsim", "polach"])
+def test_a_fit_finds_the_law_that_made_the_tests(model: str) -> None:
+    tests = on_roller() if model == "exact" else on_rail(model)
+    rig = Roller() if model == "exact" else WHEEL
+    fit = fitted(rig | wl.contact_model(model) | bending, tests)
+    found = {name: value.magnitude for name, value in fit.parameters.items()}
+    # Without scatter the sum of squares is zero at these values and nowhere else; near it each step of Gauss and Newton
+    # squares the error, so that the last one leaves a millionth or less.
+    assert found == pytest.approx({"bend": 3.0, "slope": 5.0, "friction_coefficient": 0.35}, rel=1e-6)
+    along = CREEPAGES["creepage"] if model == "exact" else ON_RAIL["longitudinal_creepage"]
+    assert fit.residuals["creepage [%]"][:5].to_numpy() == pytest.approx(along.magnitude, rel=4 * EPS)
+    wear, traction = fit.figure_data().panels
+    curve, measured = wear.curves
+    assert curve.points  # the tests differ in load
+    assert np.sort(measured.y) == pytest.approx(np.sort(tests.wear_rate.to("ug/m/mm^2").magnitude), rel=4 * EPS)
+    assert "differ in load, friction or other conditions" in fit.figure_data().caption
+    power = (rig | wl.contact_model(model))(
+        **(MASSES | CREEPAGES if model == "exact" else LOADS | ON_RAIL), friction_coefficient=0.35
+    )
+    assert measured.x == pytest.approx(power.wear_index_density.to("N/mm^2").magnitude, rel=1e-6)
+    assert traction.curves[1].y == pytest.approx(tests.traction_coefficient.magnitude, rel=4 * EPS)
+
+
+def test_a_law_fitted_on_a_rail_belongs_to_ellipses() -> None:
+    usfd = wl.wear_law("usfd", fitted_for="fastsim")
+    fit = wl.fit(FASTSIM.with_law(usfd), on_rail("fastsim"), ["m_m"], friction_coefficient=0.35, starts=4, bootstrap=0)
+    assert fit.law is not None
+    FASTSIM | fit.law  # warnings are errors
+    with pytest.warns(wl.CalibrationWarning, match="were fitted for elliptic contacts, but are used with line"):
+        wl.TwinDisc.suros() | wl.contact_model("fastsim") | fit.law
+
+
+def test_tests_on_a_rail_that_differ_in_creepage_alone_are_drawn_as_a_curve() -> None:
+    along = Q([0.4, 0.05, -0.1, 0.2], "%")
+    given: Any = {**ON_ELLIPSE, "longitudinal_creepage": along, "lateral_creepage": "0.1 %", "spin": "0.3 1/m"}
+    predict: Any = FASTSIM | LAW
+    tests = wl.WearTests.from_arrays(
+        normal_force="80 kN",
+        friction_coefficient=0.3,
+        wear_rate=predict(**given).wear_rate,
+        other_conditions={name: given[name] for name in ON_RAIL},
+    )
+    fit = wl.fit(FASTSIM | bending, tests, free=["bend", "slope"], starts=4, bootstrap=0)
+    curve, measured = fit.figure_data().panels[0].curves
+    assert not curve.points
+    assert curve.x.size == 3 * 8 + 1
+    for x, y in zip(measured.x, measured.y, strict=True):
+        nearest = np.abs(curve.x - x).argmin()
+        assert curve.x[nearest] == pytest.approx(x, rel=1e-12)
+        assert curve.y[nearest] == pytest.approx(y, rel=1e-6)
+    assert np.all(np.diff(curve.y) > 0.0)
+
+
+@pytest.mark.parametrize(("rig", "model"), [(Roller(), "exact"), (WHEEL, "fastsim")])
+def test_the_law_that_made_the_tests_agrees_best(rig: Any, model: str) -> None:
+    tests = (on_roller if model == "exact" else lambda **more: on_rail(model, **more))(
+        traction_coefficient=None, friction_coefficient=0.35
+    )
+    contact = rig | wl.contact_model(model)
+    ranking = wl.compare({"twice": contact | TWICE, "true": contact | LAW}, tests)
+    best, second = ranking.compared
+    assert (best.names.label, second.names.label) == ("true", "twice")
+    assert best.agreement.rms_factor == pytest.approx(1.0, abs=1e4 * EPS)
+    assert second.agreement.rms_factor == pytest.approx(2.0, rel=1e4 * EPS)
+    table = ranking.predictions()
+    assert ("mass [kg]" if model == "exact" else "spin [1/m]") in table.columns
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"mas": Q(20.0, "kg")}, "mas: unknown condition; did you mean 'mass'"),
+        ({"mass": Q(20.0, "kN")}, "mass: got .* kN, which is not of the dimension of 'kg'"),
+        ({"mass": [20.0] * 5}, "mass: got .*, which has no unit"),
+        ({"humidity": Q(20.0, "%")}, "humidity: unknown condition. The conditions are: mass, creepage"),
+    ],
+)
+def test_conditions_that_the_rig_does_not_take_are_named(changes: dict[str, Any], said: str) -> None:
+    tests = on_roller(other_conditions=changes if changes.keys() & {"mas", "mass"} else MASSES | changes)
+    predict: Any = ROLLER.without_law() | LAW
+    for call in (
+        lambda: wl.fit(predict, tests, free=["slope"], bootstrap=0),
+        lambda: wl.compare([predict], tests),
+    ):
+        with pytest.raises(wl.InputError, match=said):
+            call()
+
+
+def test_discs_name_a_condition_that_is_missing_or_not_theirs() -> None:
+    discs: Any = wl.TwinDisc.suros() | wl.contact_model("exact") | LAW
+    for tests, said in (
+        (on_roller(), "mass: unknown condition"),
+        (on_rail("polach"), "longitudinal_creepage: unknown condition"),
+    ):
+        with pytest.raises(wl.ConditionsError, match=said):
+            wl.compare([discs], tests, friction_coefficient=0.3)
+
+
+def test_tests_of_a_rail_without_friction_say_what_is_missing() -> None:
+    with pytest.raises(wl.ConditionsError, match="friction_coefficient: is missing"):
+        wl.compare([FASTSIM | LAW], on_rail("polach"))
+
+
+FILE = """# source: a test
+label,mass [kg],creepage [%],wear_rate [ug/m/mm^2],lateral_creepage [-],spin [1/m]
+a,20,1,30,0.001,-0.2
+b,4e1,2,50,0,0
+"""
+
+
+def test_a_file_keeps_columns_that_only_a_rig_knows(tmp_path: Path) -> None:
+    path = tmp_path / "tests.csv"
+    path.write_text(FILE)
+    tests = wl.read_tests(path)
+    assert dict(tests.other_conditions).keys() == {"mass", "lateral_creepage", "spin"}
+    assert str(tests.other_conditions["mass"]) == str(Q([20.0, 40.0], "kg"))
+    conditions = tests.conditions(wl.contact_model("exact"))
+    assert conditions.keys() == {"creepage", "mass", "lateral_creepage", "spin"}
+    assert "mass                   20 to 40 kg\n" in repr(tests)
+    tests.to_dataframe().to_csv(path, index=False)
+    again = wl.read_tests(path)
+    assert again != tests  # another source
+    assert str(again.other_conditions["lateral_creepage"]) == str(Q([0.001, 0.0], ""))
+    assert str(tests[1].other_conditions["mass"]) == str(Q([40.0], "kg"))
+
+
+def test_files_of_equal_columns_but_other_units_are_other_tests() -> None:
+    one = on_roller(other_conditions={"mass": Q([1.0, 2.0, 3.0, 4.0, 5.0], "kg")})
+    assert one == on_roller(other_conditions={"mass": Q([1.0, 2.0, 3.0, 4.0, 5.0], "kg")})
+    assert one != on_roller(other_conditions={"mass": Q([1.0, 2.0, 3.0, 4.0, 5.0], "t")})
+    assert one != on_roller(other_conditions={"mass": Q([1.0, 2.0, 3.0, 4.0, 6.0], "kg")})
+    assert pickle.loads(pickle.dumps(one)) == one
+    with pytest.raises(ValueError, match="read-only"):
+        one.other_conditions["mass"][0] = Q(2.0, "kg")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("mass [kg]", "mass", "column 'mass': unknown column.*another condition of a rig has its unit in brackets"),
+        ("mass [kg]", "mass [kgg]", r"column 'mass \[kgg\]': 'kgg' is not a known unit"),
+        ("mass [kg]", "max_pressur [MPa]", r"unknown column; did you mean 'max_pressure'"),
+        ("mass [kg]", "my mass [kg]", r"column 'my mass \[kg\]': unknown column"),
+        ("mass [kg]", "spin [1/m]", "is there more than once"),
+        ("mass [kg]", "tangential_force [N]", "tangential_force: T/N follows from it only where the load is normal_fo"),
+        ("a,20,", "a,,", r"line 3, column 'mass \[kg\]': is missing; every test needs it"),
+        ("a,20,", "a,x,", r"line 3, column 'mass \[kg\]': 'x' is not a number"),
+        ("a,20,", "a,1e999,", r"line 3, column 'mass \[kg\]': got 1e999, which must be finite"),
+        ("b,4e1,2,50,0,0", "a,2e1,1,30,1e-3,-0.2", "line 4: is equal to line 3 in every column"),
+    ],
+)
+def test_a_file_with_wrong_columns_of_a_rig_is_refused(old: str, new: str, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "tests.csv"
+    path.write_text(FILE.replace(old, new))
+    with pytest.raises(wl.DataError, match=said):
+        wl.read_tests(path)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"mass": Q([1.0, np.nan, 1.0, 1.0, 1.0], "kg")}, "mass: nan at index 1 is missing; every test needs it"),
+        ({"mass": [1.0, 2.0]}, r"all of one length; got .*mass \(2,\)"),
+        ({"mass": "heavy"}, "mass: 'heavy' is not a number with a unit"),
+        ({"spin": True}, "spin: True is not a real number"),
+        ({"creepage": "1 %"}, "other_conditions: creepage is an argument of its own"),
+        ({}, "give exactly one load of"),
+    ],
+)
+def test_wrong_conditions_of_arrays_are_refused(changes: dict[str, Any], said: str) -> None:
+    with pytest.raises(wl.DataError, match=said):
+        on_roller(other_conditions=changes)

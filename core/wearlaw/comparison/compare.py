@@ -12,7 +12,6 @@ from wearlaw.arrays import Array
 from wearlaw.case import labels
 from wearlaw.comparison.agreement import Information, agreement
 from wearlaw.comparison.result import Compared, Comparison, Names
-from wearlaw.composition import needs_discs
 from wearlaw.errors import InputError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.fitting.result import Fit
@@ -58,7 +57,8 @@ def compare(
     InputError
         If there is no predictor, two have the same name, or no test has a wear rate.
     ConditionsError
-        If the friction coefficient is not known.
+        If the friction coefficient is not known, or the tests hold a condition that a predictor's rig does not take, or
+        lack one.
 
     Notes
     -----
@@ -131,7 +131,6 @@ def _labels(models: Sequence[Model]) -> list[str]:
 def _pipeline(predictor: Predictor) -> Pipeline[...]:
     found = predictor.predict if isinstance(predictor, Fit) else predictor
     assert isinstance(found, Pipeline)
-    needs_discs(found.rig, "compare")
     return found
 
 

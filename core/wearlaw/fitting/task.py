@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
-from wearlaw.composition import needs_discs
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, named
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
@@ -62,7 +61,6 @@ class Task:
         law, friction = None, _one_value(friction)
         if not isinstance(predict, Pipeline):
             raise FitError(f"predict: give a rig with a contact model, and a wear law or none, not {predict!r}")
-        needs_discs(predict.rig, "fit")
         if predict.laws:
             law = predict.wear_law.explicit()
             predict = predict.with_law(law)
