@@ -326,6 +326,7 @@ def test_tests_on_a_rail_that_differ_in_creepage_alone_are_drawn_as_a_curve() ->
     curve, measured = fit.figure_data().panels[0].curves
     assert not curve.points
     assert curve.x.size == 3 * 8 + 1
+    assert curve.x[[0, -1]] == pytest.approx([min(measured.x), max(measured.x)], rel=1e-12)
     for x, y in zip(measured.x, measured.y, strict=True):
         nearest = np.abs(curve.x - x).argmin()
         assert curve.x[nearest] == pytest.approx(x, rel=1e-12)
