@@ -407,6 +407,37 @@ def test_a_file_keeps_columns_that_only_a_rig_knows(tmp_path: Path) -> None:
     assert str(tests[1].other_conditions["mass"]) == str(Q([40.0], "kg"))
 
 
+def test_a_condition_of_an_installed_rig_is_no_misspelt_column(tmp_path: Path) -> None:
+    path = tmp_path / "tests.csv"
+    path.write_text(FILE.replace("creepage [%]", "longitudinal_creepage [%]", 1))
+    tests = wl.read_tests(path)  # lateral_creepage resembles creepage, which the file lacks
+    assert tests.other_conditions.keys() == {"mass", "longitudinal_creepage", "lateral_creepage", "spin"}
+    path.write_text(FILE.replace("creepage [%]", "slide_creepage [%]", 1))
+    with pytest.raises(wl.DataError, match=r"column 'slide_creepage \[%\]': unknown column; did you mean 'creepage'"):
+        wl.read_tests(path)
+
+
+class Greased(wl.Rig):
+    """Discs of one friction coefficient."""
+
+    name: ClassVar[str] = "greased"
+    source: ClassVar[str] = "a test"
+
+    def problem(self, *, normal_force: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.Problem:
+        """Return the problem of the discs."""
+        discs = wl.TwinDisc.suros()
+        return discs.problem(normal_force=normal_force, creepage=creepage, friction_coefficient=0.05)
+
+
+def test_a_rig_is_not_given_the_friction_and_the_traction_that_it_does_not_take() -> None:
+    predict: Any = Greased() | wl.contact_model("global") | LAW
+    given: Any = {"normal_force": Q([5.0, 6.0], "kN"), "creepage": "1 %"}
+    tests = wl.WearTests.from_arrays(**given, traction_coefficient=0.04, wear_rate=predict(**given).wear_rate)
+    found = wl.compare([predict], tests)
+    assert found.compared[0].agreement.rms_factor == pytest.approx(1.0, abs=64 * EPS)
+    assert not found.notes
+
+
 def test_files_of_equal_columns_but_other_units_are_other_tests() -> None:
     one = on_roller(other_conditions={"mass": Q([1.0, 2.0, 3.0, 4.0, 5.0], "kg")})
     assert one == on_roller(other_conditions={"mass": Q([1.0, 2.0, 3.0, 4.0, 5.0], "kg")})

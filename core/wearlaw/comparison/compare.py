@@ -164,7 +164,7 @@ def _compared(names: Names, predictor: Predictor, tests: WearTests, friction: An
 def _predicted(name: str, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Array:
     """Return the wear rates that are predicted for tests [kg/m/m²]."""
     pipeline = _pipeline(predictor)
-    conditions = tests.conditions(pipeline.contact_model, friction)
+    conditions = tests.conditions(pipeline.contact_model, friction, pipeline.rig)
     if isinstance(predictor, Fit) and FRICTION in predictor.parameters:
         conditions[FRICTION] = float(predictor.parameters[FRICTION].magnitude)
         conditions.pop("traction_coefficient", None)

@@ -160,7 +160,7 @@ def _observe(
     selected, measured = dataclasses.replace(tests, labels=labels)[there], values[there]
     if scatter == "relative":
         _refuse_zeros(observable, selected, measured)
-    conditions = selected.conditions(pipeline.contact_model, friction)
+    conditions = selected.conditions(pipeline.contact_model, friction, pipeline.rig)
     if fits_friction:  # a measured traction would take the place of the one that the friction coefficient gives
         conditions = {**conditions, FRICTION: friction}
         conditions.pop("traction_coefficient", None)

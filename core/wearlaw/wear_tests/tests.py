@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import ArrayLike
 
+    from wearlaw.base_rig import Rig
     from wearlaw.tangential import ContactModel
 
 
@@ -156,7 +157,9 @@ class WearTests:
         """Standard uncertainty of the wear rate, of shape (tests,); None if the tests do not hold it."""
         return self._quantity("wear_rate_uncertainty") if "wear_rate_uncertainty" in self.columns else None
 
-    def conditions(self, model: ContactModel, friction_coefficient: ArrayLike | None = None) -> dict[str, Any]:
+    def conditions(
+        self, model: ContactModel, friction_coefficient: ArrayLike | None = None, rig: Rig | None = None
+    ) -> dict[str, Any]:
         """Return the conditions of the tests as ``rig.problem(**conditions)`` takes them.
 
         Parameters
@@ -165,14 +168,17 @@ class WearTests:
             What solves the contact. If it can use a measured traction, and all tests have one, the conditions hold it.
         friction_coefficient : array_like of float, optional
             μ [-] for tests that do not hold it.
+        rig : Rig, optional
+            What takes the conditions. If it has no `traction_coefficient`, they do not hold the measured traction.
 
         Raises
         ------
         ConditionsError
             If the friction coefficient is not known, and all conditions are those of discs.
         """
+        taken = () if rig is None else rig.conditions()
         friction = friction_coefficient if self.friction_coefficient is None else self.friction_coefficient
-        if friction is None and not self.other_conditions:
+        if friction is None and not self.other_conditions and (not taken or "friction_coefficient" in taken):
             raise ConditionsError(
                 "friction_coefficient: the tests do not hold it; add a column of that name, or give it:"
                 " friction_coefficient=0.46 in Python, --friction 0.46 on the command line"
@@ -184,7 +190,8 @@ class WearTests:
             conditions["friction_coefficient"] = friction
         conditions |= self.other_conditions
         traction = self.columns.get("traction_coefficient")
-        if model.uses_measured_traction and traction is not None and not np.isnan(traction).any():
+        useful = model.uses_measured_traction and (not taken or "traction_coefficient" in taken)
+        if useful and traction is not None and not np.isnan(traction).any():
             conditions["traction_coefficient"] = traction
         return conditions
 
