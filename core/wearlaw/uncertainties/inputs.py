@@ -119,9 +119,10 @@ def condition(name: str, given: Distribution) -> Uncertain:
     if isinstance(given.first, pint.Quantity):
         unit = symbol(given.first.units, "~C")
         return replace(_uncertain(name, given, Unit(unit, positive=False), of_law=False), unit=unit)
+    first = float(given.first)
     second = float(given.second if isinstance(given.second, float) else coefficient(given.second, name))
-    _check(name, given, given.first, second)
-    return Uncertain(name, given, {name: (given.first, second)}, False, str(given))
+    _check(name, given, first, second)
+    return Uncertain(name, given, {name: (first, second)}, False, str(given))
 
 
 def parameter(name: str, given: object, law: WearLaw) -> Uncertain:

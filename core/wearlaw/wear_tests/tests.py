@@ -213,7 +213,7 @@ class WearTests:
         if not index.size:
             raise DataError(f"none of the {len(self)} tests is selected")
         columns = {name: values[index] for name, values in self.columns.items()}
-        others = {name: value[index] for name, value in self.other_conditions.items()}
+        others: dict[str, Any] = {name: value[index] for name, value in self.other_conditions.items()}
         return type(self)(columns, tuple(self.labels[i] for i in index), self.source, others)
 
     def __iter__(self) -> Iterator[Self]:
@@ -286,8 +286,9 @@ def _as_given(name: str, value: object) -> Quantity | Array:
 
 
 def _magnitude(value: Quantity | Array) -> Array:
-    magnitude: Array = value.magnitude if isinstance(value, pint.Quantity) else value
-    return magnitude
+    plain: Any = value.magnitude if isinstance(value, pint.Quantity) else value
+    array: Array = plain
+    return array
 
 
 def _unit(value: Quantity | Array) -> str:
