@@ -11,6 +11,7 @@ import sys as _sys
 from importlib import import_module as _import_module
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
+import wearlaw.rigs as _rigs  # noqa: F401  importing it later would overwrite the function `rigs` with the package
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop, kernel
 from wearlaw.contact import hertz, hertz_ellipse, kalker
@@ -189,8 +190,8 @@ __all__ = [
 ]
 
 if _TYPE_CHECKING:
-    from wearlaw.comparison.compare import compare
-    from wearlaw.comparison.result import Comparison
+    from wearlaw.fitting.compare import compare
+    from wearlaw.fitting.comparison import Comparison
     from wearlaw.fitting.fit import fit
     from wearlaw.fitting.law_files import read_wear_law
     from wearlaw.fitting.result import Fit
@@ -209,8 +210,8 @@ _LATER = {
     "uncertainty": "wearlaw.uncertainties.result",
     "sweep": "wearlaw.sweeping.sweep",
     "creepage_for": "wearlaw.pipeline.inverse",
-    "Comparison": "wearlaw.comparison.result",
-    "compare": "wearlaw.comparison.compare",
+    "Comparison": "wearlaw.fitting.comparison",
+    "compare": "wearlaw.fitting.compare",
     "Fit": "wearlaw.fitting.result",
     "fit": "wearlaw.fitting.fit",
     "read_wear_law": "wearlaw.fitting.law_files",

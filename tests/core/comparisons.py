@@ -8,7 +8,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw.comparison.result import Compared
+from wearlaw.fitting.comparison import Compared
 
 RIG = wl.TwinDisc.suros()
 EXACT = RIG | wl.contact_model("exact")

@@ -16,7 +16,7 @@ import xarray
 
 import wearlaw as wl
 from tests.core import cases
-from tests.core.cases import OWN_TESTS, Table, assert_refused, changed, load, wearlaw
+from tests.core.cases import OWN_TESTS, Table, changed, load, wearlaw
 from tests.core.distributions import Install
 from tests.core.panels import by_label, by_name
 from tests.strategies import EPS
@@ -302,12 +302,24 @@ def test_a_case_of_a_wheel_reads_back_as_it_was_written(tmp_path: Path, validato
 
 
 @pytest.mark.usefixtures("folder")
-def test_its_uncertainty_is_refused_until_it_can_be_computed() -> None:
-    cases.write(
-        Path("c.toml"), {**ON_RAIL, "uncertainty": {"one": {**CURVE, "spin": {"normal": ["1 1/m", "0.1 1/m"]}}}}
-    )
-    assert_refused(wearlaw("uncertainty", "c.toml"), "uncertainty: is for a TwinDisc only, not for a WheelRail")
-    assert not Path("c-uncertainty").exists()
+def test_its_uncertainty_is_that_of_direct_samples() -> None:
+    spread = {"one": {**CURVE, "spin": {"normal": ["1 1/m", "0.1 1/m"]}}}
+    cases.write(Path("c.toml"), {**ON_RAIL, "uncertainty": spread})
+    done = wearlaw("uncertainty", "c.toml", "--samples", "256")
+    assert done.exit_code == 0, done.output
+    rates = pd.read_csv("c-uncertainty/wear_rates.csv")
+    assert len(rates) == 5
+    case = load_case("c.toml")
+    for _, row in rates.iterrows():
+        law, model = row["pair"].split(" on ")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wl.WearlawWarning)
+            direct = wl.uncertainty(
+                case.rig | wl.contact_model(model) | wl.wear_law(law),
+                samples=256,
+                **{**CURVE, "spin": wl.normal("1 1/m", "0.1 1/m")},
+            )
+        assert row["median [ug/m/mm^2]"] == pytest.approx(direct.median.m_as("ug/m/mm^2"), rel=1e-12)
 
 
 @pytest.mark.usefixtures("folder", "blank_figures")

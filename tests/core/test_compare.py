@@ -13,8 +13,8 @@ import wearlaw as wl
 from tests.core.comparisons import CREEPAGE, EXACT, GLOBAL, RIG, TRACTION, by_label, made, order, scattered, usfd
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.comparison.compare import Predictor, compare_named
-from wearlaw.comparison.result import Names
+from wearlaw.fitting.compare import Predictor, compare_named
+from wearlaw.fitting.comparison import Names
 
 # What is compared
 

@@ -152,9 +152,6 @@ def test_a_rig_that_makes_ellipses_gives_their_results() -> None:
     assert r.wear_rate.magnitude > 0.0
     with pytest.raises(wl.CompositionError, match="'exact' does not solve elliptic contacts"):
         (OnRail() | MODEL)(mass="8000 kg", longitudinal_creepage="0.2 %")
-    on_rail: Any = OnRail() | wl.contact_model("fastsim")
-    with pytest.raises(wl.CompositionError, match="creepage_for: is for line contacts, which rig 'on_rail'"):
-        wl.creepage_for(on_rail, traction_coefficient=0.1, mass="1 t")
 
 
 @pytest.mark.parametrize(

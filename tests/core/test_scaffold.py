@@ -14,9 +14,9 @@ from click.testing import Result
 import wearlaw as wl
 from tests.core.cases import Coarse, Linear, assert_refused, case, installer, wearlaw
 from tests.core.distributions import LAB, LAW, Install
+from wearlaw.cli.scaffold import Kind, Licence, write_plugin
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import Origin
-from wearlaw.cli.scaffold import Kind, Licence, write_plugin
 from wearlaw.study.case import case_text
 
 pytestmark = pytest.mark.usefixtures("folder")

@@ -27,8 +27,8 @@ HEAD_FAULTS = [
         "crepage [%]",
         "line 1, column 'crepage [%]': unknown column; did you mean 'creepage'? The columns",
     ),
-    ("creepage [%]", "zzz [%]", "line 1, column 'zzz [%]': unknown column. The columns are: creepage, normal_force"),
-    ("creepage [%]", "zzz [%]", "line 1: creepage: is missing; add a column 'creepage [%]'"),
+    ("creepage [%]", "zzz", "line 1, column 'zzz': unknown column. The columns are: creepage, normal_force"),
+    ("creepage [%]", "zzz", "line 1: creepage: is missing; add a column 'creepage [%]'"),
     ("creepage [%]", "", "line 1: the head of column 2 is empty"),
     (
         "[kN]",

@@ -26,11 +26,6 @@ CONDITIONS: dict[str, Any] = {
 }
 
 
-TESTS = wl.WearTests.from_arrays(
-    normal_force=Q([5, 6], "kN"), creepage=Q([1, 2], "%"), wear_rate=Q([10, 20], "ug/m/mm^2"), friction_coefficient=0.4
-)
-
-
 def rig(**changes: Any) -> wl.WheelRail:
     return wl.WheelRail(**{**GIVEN, **changes})
 
@@ -156,18 +151,3 @@ def test_an_elliptic_model_given_a_line_says_so() -> None:
     line = wl.TwinDisc.suros().problem(max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.3)
     with pytest.raises(wl.CompositionError, match="contact model 'polach' does not solve line contacts, only elliptic"):
         wl.contact_model("polach").solve(line)
-
-
-def test_what_only_knows_discs_says_so() -> None:
-    contact: Any = rig() | wl.contact_model("fastsim")
-    predict = contact | wl.wear_law("kth")
-    with pytest.raises(wl.CompositionError, match="creepage_for: is for line contacts"):
-        wl.creepage_for(contact, traction_coefficient=0.1, normal_force="80 kN", friction_coefficient=0.3)
-    calls: dict[str, Any] = {
-        "uncertainty": lambda: wl.uncertainty(predict, law={"coefficient": wl.published_range()}, **CONDITIONS),
-        "fit": lambda: wl.fit(contact, wl.read_tests("lewis2004"), free=["friction_coefficient"]),
-        "compare": lambda: wl.compare([predict, predict], TESTS, friction_coefficient=0.3),
-    }
-    for name, call in calls.items():
-        with pytest.raises(wl.CompositionError, match=f"{name}: is for a TwinDisc only, not for a WheelRail"):
-            call()

@@ -70,8 +70,8 @@ class Changed(Weight):
     def conditions(cls) -> tuple[str, ...]:
         return Weight.conditions()
 
-    def _check_names(self, conditions: Mapping[str, Any]) -> None:
-        Weight()._check_names(conditions)
+    def check_names(self, conditions: Mapping[str, Any]) -> None:
+        Weight().check_names(conditions)
 
     def changed(self, problem: Any) -> dict[str, Any]:
         raise NotImplementedError

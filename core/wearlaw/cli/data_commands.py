@@ -14,9 +14,9 @@ from wearlaw.pipeline.notes import Notes
 from wearlaw.sweeping.progress import Bar
 
 if TYPE_CHECKING:
-    from wearlaw.comparison.compare import Predictor
-    from wearlaw.comparison.result import Comparison
     from wearlaw.figures.formats import FigureFormat
+    from wearlaw.fitting.compare import Predictor
+    from wearlaw.fitting.comparison import Comparison
     from wearlaw.fitting.result import Fit
     from wearlaw.pipeline.pipeline import Pipeline
     from wearlaw.study.pairs import Pair
@@ -198,8 +198,8 @@ def _compare(
 ) -> Comparison:
     """Return the comparison that the options ask for."""
     from wearlaw.cli.parsing import contact_model, listed, wear_law
-    from wearlaw.comparison.compare import compare_named
-    from wearlaw.comparison.result import Names
+    from wearlaw.fitting.compare import compare_named
+    from wearlaw.fitting.comparison import Names
     from wearlaw.study.pairs import compose
 
     tests = _tests(path, friction, False, notes)

@@ -17,8 +17,8 @@ from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import unknown
 
 if TYPE_CHECKING:
-    from wearlaw.models.contact_model import Model
     from wearlaw.cli.scaffold import Kind, Licence
+    from wearlaw.models.contact_model import Model
     from wearlaw.testing import Check
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+import dataclasses
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from wearlaw.contact.problem import Problem
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.fitting.observations import Observations, predictions, wear_index_density
 from wearlaw.pipeline.variables import UNITS, label
-from wearlaw.units.quantities import Q, in_unit
+from wearlaw.units.quantities import in_unit
 
 if TYPE_CHECKING:
     from wearlaw.fitting.result import Fit
@@ -23,7 +24,10 @@ MOST_SAMPLES = 200
 """Replicates that make a band; more change it less than can be seen."""
 
 SAME = 1e-3
-"""Relative difference up to which loads or friction coefficients of tests are drawn as one curve."""
+"""Relative difference up to which loads, friction and the like of tests are drawn as one curve."""
+
+VARIES = ("longitudinal_creepage", "traction_coefficient")
+"""What differs from test to test along one curve."""
 
 
 def figure_data(fit: Fit) -> FigureData:
@@ -31,7 +35,9 @@ def figure_data(fit: Fit) -> FigureData:
     panels = tuple(_panel(fit, one) for one in fit.observations)
     band = f"band: {fit.confidence:.0%} of the bootstrap replicates" if fit.samples else "no bootstrap, no band"
     apart = (
-        "" if all(_one_series(one.problem) for one in fit.observations) else "; the tests differ in load or friction"
+        ""
+        if all(_one_series(one.problem) for one in fit.observations)
+        else "; the tests differ in load, friction or other conditions"
     )
     names = ", ".join(fit.parameters)
     return FigureData(
@@ -56,7 +62,7 @@ def _panel(fit: Fit, one: Observations) -> Panel:
 def _fitted(fit: Fit, one: Observations, x: str) -> Curve:
     """Return the fitted values: as a curve through the tests, or at each of them where their loads differ."""
     together = _one_series(one.problem)
-    problem = _between(fit, one) if together else one.problem
+    problem = _between(one) if together else one.problem
     along = _along(fit, problem, x)
     order = np.argsort(along, kind="stable")
 
@@ -74,34 +80,31 @@ def _fitted(fit: Fit, one: Observations, x: str) -> Curve:
     return Curve("fitted", along[order], best, low=low, high=high, points=not together)
 
 
+def _arrays(problem: Problem) -> dict[str, Array]:
+    """Return the arrays of a problem, by name."""
+    found = ((field.name, getattr(problem, field.name)) for field in dataclasses.fields(problem))
+    return {name: value for name, value in found if isinstance(value, np.ndarray)}
+
+
 def _one_series(problem: Problem) -> bool:
-    arrays = (problem.normal_force_per_width, problem.friction_coefficient)
-    return all(np.ptp(array) <= SAME * np.abs(array).mean() for array in arrays)
+    """Return whether operating points differ in their longitudinal creepage alone, and in the traction measured."""
+    others = (value for name, value in _arrays(problem).items() if name not in VARIES)
+    return all(np.ptp(array) <= SAME * np.abs(array).mean() for array in others)
 
 
-def _between(fit: Fit, one: Observations) -> Problem:
+def _between(one: Observations) -> Problem:
     """Return operating points at the tests and between them, in the order of their creepage."""
-    problem = one.problem
-    order = np.argsort(np.abs(problem.creepage), kind="stable")
+    problem = one.problem.forward()
+    order = np.argsort(problem.creepage, kind="stable")
     places = np.arange(order.size, dtype=np.float64)
     fine = np.linspace(0.0, places[-1], BETWEEN * (order.size - 1) + 1)
-
-    def filled(values: Array) -> Array:
-        return np.interp(fine, places, values[order])
-
-    conditions: Any = {
-        "normal_force_per_width": Q(filled(problem.normal_force_per_width), "N/m"),
-        "creepage": Q(filled(np.abs(problem.creepage)), ""),
-        "friction_coefficient": filled(problem.friction_coefficient),
-    }
-    if problem.traction_coefficient is not None:
-        conditions["traction_coefficient"] = filled(problem.traction_coefficient)
-    found: Problem = fit.predict.rig.checked_problem(conditions)
-    return found
+    return problem.replaced(
+        **{name: np.interp(fine, places, values[order]) for name, values in _arrays(problem).items()}
+    )
 
 
 def _along(fit: Fit, problem: Problem, x: str) -> Array:
-    si = np.abs(problem.creepage) if x == "creepage" else wear_index_density(fit.predict, problem)
+    si = problem.rigid_slip if x == "creepage" else wear_index_density(fit.predict, problem)
     return in_unit(si, UNITS[x])
 
 

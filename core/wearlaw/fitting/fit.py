@@ -53,7 +53,8 @@ def fit(
         Those without a wear rate have no say in the parameters of the law.
     free : sequence of str
         Numbers among the fields of the law, with a dot for nested ones as in "coefficient.low_speed", and
-        "friction_coefficient", one for all tests, which is fitted to the traction.
+        "friction_coefficient", one for all tests, which is fitted to the traction: T/N, on an ellipse with
+        T = √(Fx² + Fy²).
     friction_coefficient : float, optional
         μ of tests that do not hold it, or the first value where it is free.
     scatter : str
@@ -79,6 +80,8 @@ def fit(
     FitError
         If a parameter is not known or not determined by the tests, there are too few of them, no fit is found, or a
         setting cannot be.
+    ConditionsError
+        If the tests hold a condition that the rig does not take, or lack one.
 
     Notes
     -----

@@ -71,7 +71,7 @@ def where_tested(observations: Sequence[Observations]) -> str:
     """Return what the tests cover, for messages."""
     one = observations[0]
     ranges = {
-        "creepage": np.abs(one.problem.creepage),
+        "creepage": one.problem.rigid_slip,
         "wear_index_density": wear_index_density(one.pipeline, one.problem),
     }
     shown = (

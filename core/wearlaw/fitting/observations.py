@@ -99,7 +99,7 @@ def predictions(
     -------
     ndarray, (sets, n)
     """
-    sets, points = len(next(iter(values.values()))), problem.creepage.size
+    sets, points = len(next(iter(values.values()))), problem.size
     problem = problem[np.tile(np.arange(points), sets)]
     if FRICTION in values:
         problem = problem.replaced(friction_coefficient=np.repeat(values[FRICTION], points))
@@ -116,8 +116,8 @@ def predictions(
 def wear_index_density(pipeline: Pipeline[...], problem: Problem) -> Array:
     """Return the patch mean of Tγ/A [N/m²], of the batch shape."""
     model = pipeline.contact_model
-    force = integrate_forces(model, problem).longitudinal
-    density: Array = np.abs(force * problem.creepage) / patch_area(model, problem, pipeline.scale)
+    power = problem.power(integrate_forces(model, problem))
+    density: Array = np.abs(power) / patch_area(model, problem, pipeline.scale)
     return density
 
 
@@ -160,11 +160,13 @@ def _observe(
     selected, measured = dataclasses.replace(tests, labels=labels)[there], values[there]
     if scatter == "relative":
         _refuse_zeros(observable, selected, measured)
-    conditions = selected.conditions(pipeline.contact_model, friction)
+    conditions = selected.conditions(pipeline.contact_model, friction, pipeline.rig)
     if fits_friction:  # a measured traction would take the place of the one that the friction coefficient gives
         conditions = {**conditions, FRICTION: friction}
         conditions.pop("traction_coefficient", None)
     problem = pipeline.rig.checked_problem(conditions)
+    if scatter == "relative":
+        _refuse_rest(observable, selected, problem)
     unit = _unit(selected, measured, scatter)
     return Observations(observable, pipeline, selected, measured, problem, scatter, unit)
 
@@ -185,13 +187,16 @@ def _unit(tests: WearTests, measured: Array, scatter: Scatter) -> Array:
 
 def _refuse_zeros(observable: Observable, tests: WearTests, measured: Array) -> None:
     zero = measured <= 0.0
-    name = observable.replace("_", " ")
     if zero.any():
         raise FitError(
             f"{observable}: is zero in {named(tests, zero)}, but is taken to scatter by a factor, and no factor leads"
             f' to zero; leave these tests out, or fit with scatter="absolute"'
         )
-    still = np.asarray(tests.creepage.magnitude) == 0.0
+
+
+def _refuse_rest(observable: Observable, tests: WearTests, problem: Problem) -> None:
+    still = problem.rigid_slip == 0.0
+    name = observable.replace("_", " ")
     if still.any():
         raise FitError(
             f"creepage: is zero in {named(tests, still)}, where the predicted {name} is zero, whatever the parameters;"

@@ -126,7 +126,7 @@ class Fit:
                     {
                         "label": one.tests.labels,
                         "observable": head(one.observable),
-                        "creepage [%]": one.tests.creepage.magnitude,
+                        "creepage [%]": from_si(one.problem.creepage, UNITS["creepage"]).magnitude,
                         "measured": from_si(one.measured, shown).magnitude,
                         "predicted": from_si(predicted, shown).magnitude,
                         "residual": one.in_shown_unit(predicted),

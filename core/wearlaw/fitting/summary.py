@@ -114,6 +114,7 @@ def _calibration(task: Task, one: Observations) -> Calibration:
         contact_model=predict.contact_model.name,
         scale=predict.scale,
         options=_options(predict.contact_model),
+        geometry=one.problem.geometry,
         materials=_materials(predict.rig),
         stated_range=(("wear_index_density", f"{low!r} N/mm^2", f"{high!r} N/mm^2"),),
         source=f"fitted to {one.measured.size} tests{of}",

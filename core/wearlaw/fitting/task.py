@@ -16,7 +16,6 @@ from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, named
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
 from wearlaw.fitting.observations import Observations, Scatter, observe
-from wearlaw.pipeline.composition import needs_discs
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import QuantityLike, coefficient
 from wearlaw.wear_tests.tests import WearTests
@@ -62,7 +61,6 @@ class Task:
         law, friction = None, _one_value(friction)
         if not isinstance(predict, Pipeline):
             raise FitError(f"predict: give a rig with a contact model, and a wear law or none, not {predict!r}")
-        needs_discs(predict.rig, "fit")
         if predict.laws:
             law = predict.wear_law.explicit()
             predict = predict.with_law(law)

@@ -141,14 +141,20 @@ class Rig(Model):
             with Blame(self):
                 problem = self.problem(**conditions)
         except ModelError:
-            self._check_names(conditions)
+            self.check_names(conditions)
             raise
         if not isinstance(problem, Problem):
             raise ModelError(f"rig '{self.name}' returned {problem!r}, not a wearlaw.Problem")
         return problem
 
-    def _check_names(self, conditions: Mapping[str, Any]) -> None:
-        """Refuse conditions that are not those that `problem` takes."""
+    def check_names(self, conditions: Mapping[str, Any]) -> None:
+        """Check the names of conditions; a rig whose `conditions` are not known takes any.
+
+        Raises
+        ------
+        ConditionsError
+            If a condition is missing or unknown.
+        """
         known = self.conditions()
         for name in conditions if known else ():
             if name not in known:

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wearlaw.comparison.result import Comparison
 from wearlaw.errors import OutputError
 from wearlaw.figures.curves import FigureData
+from wearlaw.fitting.comparison import Comparison
 from wearlaw.fitting.result import Fit
 from wearlaw.output.results import FigureFormat, save_figure, save_table
 from wearlaw.units.quantities import text_of

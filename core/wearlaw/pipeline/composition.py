@@ -10,7 +10,6 @@ from wearlaw.models.contact_model import PATCHES, ContactModel, Scale
 from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
-from wearlaw.rigs.twin_disc import TwinDisc
 
 PEAKS = (
     "The peak of the traction is 4/π or 3/2 times its mean on a line (elliptic or parabolic bound), but 3/2 or 2 times"
@@ -73,12 +72,6 @@ def warn_of_geometry(
     calibration, geometry = law.calibration, problem.geometry
     if rig.geometry is None and calibration is not None and calibration.geometry != geometry:
         warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
-
-
-def needs_discs(rig: Rig, what: str) -> None:
-    """Refuse a rig that is not made of discs, for what only knows these."""
-    if not isinstance(rig, TwinDisc):
-        raise CompositionError(f"{what}: is for a TwinDisc only, not for a {type(rig).__name__}")
 
 
 def check_traction(model: ContactModel, problem: Problem) -> None:

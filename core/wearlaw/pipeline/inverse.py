@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, ConditionsError, UnitError
+from wearlaw.models.rig import Rig
 from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si, real_array
 
@@ -20,6 +23,12 @@ if TYPE_CHECKING:
 SMALLEST = 1e-30
 """The least creepage that is searched; what is below counts as none."""
 
+TRIED = np.geomspace(1e-5, 1.0, 40, endpoint=False)
+"""Creepages of an elliptic contact at which it is looked at whether the traction rises throughout."""
+
+ROUNDED = 1e-12
+"""Sums over some thousand nodes are rounded by so much of the friction force."""
+
 
 def creepage_for(
     predict: Pipeline[...],
@@ -29,24 +38,30 @@ def creepage_for(
     traction_coefficient: ArrayLike | None = None,
     **conditions: Any,
 ) -> Quantity:
-    """Return the creepage at which a contact transmits a traction [-], of its sign and of the broadcast shape.
+    """Return the longitudinal creepage at which a contact transmits a traction [-], of its sign.
+
+    It is the longitudinal creepage of the problem, of the broadcast shape. `Rig.creepage` names the condition that sets
+    it; all else in the problem stays as the rig makes it where that condition is zero.
 
     Parameters
     ----------
     predict : Pipeline
         A rig and a contact model.
     tangential_force : Quantity or str, optional
-        T [N].
+        The longitudinal force, T [N].
     traction_coefficient : array_like of float, optional
         T/N [-], in place of `tangential_force`.
     **conditions
-        All conditions of the rig but the creepage: for discs the load and the friction coefficient.
+        All conditions of the rig but the longitudinal creepage: for discs the load and the friction coefficient, for a
+        wheel on a rail also lateral creepage and spin, if there are any.
 
     Raises
     ------
     ConditionsError
-        If no creepage, or more than one, transmits so much: at μN and above; or if friction falls with the creep
-        speed.
+        If no creepage, or more than one, transmits so much: at full slip and above; with lateral creepage above what
+        friction leaves for the longitudinal direction; or if friction falls with the creep speed.
+    CompositionError
+        If the rig has no condition for the creepage.
     """
     if (tangential_force is None) == (traction_coefficient is None):
         raise ConditionsError("give either tangential_force or traction_coefficient")
@@ -55,37 +70,78 @@ def creepage_for(
             "friction_coefficient: must be a number here; where friction falls with the creep speed, two creepages can"
             " transmit one force"
         )
-    rig = predict.rig
-    problem = rig.checked_problem({**conditions, rig.creepage: from_si(0.0, "")})
-    if problem.geometry != "line":
-        raise CompositionError(f"creepage_for: is for line contacts, which rig '{rig.name}' does not make")
+    problem = _at_rest(predict.rig, conditions)
     if tangential_force is None:
         target = _finite(traction_coefficient)
     else:
         target = Unit("N", positive=False).si(tangential_force, "tangential_force") / problem.normal_force
     shape = _broadcast(target.shape, problem.batch_shape)
     flat = problem.broadcast_to(shape).flatten()
-    due = np.abs(np.broadcast_to(target, shape).reshape(-1))
+    wanted = np.broadcast_to(target, shape).reshape(-1)
+    due, sign = np.abs(wanted), np.copysign(1.0, wanted)
 
     def lacking(log_creepage: Array, point: Array) -> Array:
         """Return by how much T/N falls short, for points as floats, as `find_root` hands them on."""
         index = point.astype(np.intp)
-        at = flat[index].replaced(longitudinal_creepage=np.exp(log_creepage))
-        return due[index] - integrate_forces(predict.contact_model, at).longitudinal / at.normal_force
+        at = flat[index].replaced(longitudinal_creepage=sign[index] * np.exp(log_creepage))
+        return due[index] - sign[index] * integrate_forces(predict.contact_model, at).longitudinal / at.normal_force
 
     points = np.arange(due.size, dtype=np.float64)
-    short = lacking(np.zeros(due.size), points)
+    start = np.full(due.size, np.log(SMALLEST))
+    at_start, short = lacking(start, points), lacking(np.zeros(due.size), points)
+    tried = np.stack([at_start, short])
+    if flat.geometry == "ellipse":
+        between = [lacking(np.full(due.size, np.log(one)), points) for one in TRIED]
+        tried = np.stack([at_start, *between, short])
+        short = tried.min(axis=0) + ROUNDED * flat.friction_coefficient
     if (short >= 0.0).any():
         raise _beyond_reach(predict, due, due - short, np.flatnonzero(short >= 0.0)[0], shape)
+    _refuse_several(tried, flat.friction_coefficient, wanted, shape)
     creepage = np.zeros(due.size)
-    start = np.full(due.size, np.log(SMALLEST))
-    search = np.flatnonzero(lacking(start, points) > 0.0)
+    rounded = np.where(due == 0.0, ROUNDED * flat.friction_coefficient, 0.0)  # a force of zero is rounded on nodes
+    search = np.flatnonzero(at_start > rounded)
     if search.size:
         from scipy.optimize import elementwise  # half of the time of `import wearlaw`, so only where it is used
 
         root = elementwise.find_root(lacking, (start[search], np.zeros(search.size)), args=(points[search],))
         creepage[search] = np.exp(root.x)
     return from_si(np.copysign(creepage.reshape(shape), target), "%")
+
+
+def _at_rest(rig: Rig, conditions: Mapping[str, Any]) -> Problem:
+    """Return the problem at zero longitudinal creepage."""
+    known = rig.conditions()
+    if known and rig.creepage not in known:
+        raise CompositionError(
+            f"creepage_for: rig '{rig.name}' has no condition '{rig.creepage}', but {', '.join(known)}; its class"
+            " attribute `creepage` must name the one that sets the longitudinal creepage"
+        )
+    if rig.creepage in conditions:
+        raise ConditionsError(f"{rig.creepage}: is what creepage_for looks for; leave it out")
+    return rig.checked_problem({**conditions, rig.creepage: from_si(0.0, "")})
+
+
+def _refuse_several(tried: Array, friction: Array, wanted: Array, shape: tuple[int, ...]) -> None:
+    """Refuse tractions [-] that a contact transmits at several creepages, or exceeds without any.
+
+    Parameters
+    ----------
+    tried : ndarray, (creepages, points)
+        By how much T/N falls short at creepages in ascending order, of which the first is as good as none.
+    friction, wanted : ndarray, (points,)
+        μ and the tractions that are looked for, with their signs.
+    shape : tuple of int
+        The shape of the result.
+    """
+    exceeded = tried[0] < -ROUNDED * friction
+    crossed = np.abs(np.diff((tried > 0.0).astype(int), axis=0)).sum(axis=0) > 1
+    for wrong, why in (
+        (exceeded, "the contact transmits more without longitudinal creepage"),
+        (crossed, "several creepages transmit it, since the traction falls again as the creepage grows"),
+    ):
+        if wrong.any():
+            first = np.flatnonzero(wrong)[0]
+            raise ConditionsError(f"a traction coefficient of {_where(wanted, first, shape)} cannot be found: {why}")
 
 
 def _broadcast(traction: tuple[int, ...], conditions: tuple[int, ...]) -> tuple[int, ...]:
@@ -107,11 +163,16 @@ def _finite(traction_coefficient: object) -> Array:
     return target
 
 
+def _where(values: Array, first: int, shape: tuple[int, ...]) -> str:
+    """Return a value and, among several, its place."""
+    where = f" at index {[int(i) for i in np.unravel_index(first, shape)]}" if shape else ""
+    return f"{values[first]:.6g}{where}"
+
+
 def _beyond_reach(
     predict: Pipeline[...], due: Array, reached: Array, first: int, shape: tuple[int, ...]
 ) -> ConditionsError:
-    where = f" at index {[int(i) for i in np.unravel_index(first, shape)]}" if shape else ""
     return ConditionsError(
-        f"a traction coefficient of {due[first]:.6g}{where} belongs to no creepage: with contact model"
+        f"a traction coefficient of {_where(due, first, shape)} belongs to no creepage: with contact model"
         f" '{predict.contact_model.name}' it stays below {reached[first]:.6g}, at full slip; ask for less"
     )

@@ -11,7 +11,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.pipeline.variables import UNITS, label
-from wearlaw.units.quantities import Quantity, from_si
+from wearlaw.units.quantities import Q, Quantity
 
 if TYPE_CHECKING:
     from wearlaw.uncertainties.result import Uncertainty
@@ -53,16 +53,18 @@ def _cumulative(uncertainty: Uncertainty) -> Panel:
 
 
 def _along_axis(uncertainty: Uncertainty) -> Panel:
-    axes = {name: values for name, values in uncertainty.known.items() if values.size > 1}
+    axes = {name: one for name, one in uncertainty.known.items() if np.size(one.values) > 1}
     if len(axes) != 1:
         raise InputError(f"plot: needs one condition with several values, or none; there are {', '.join(axes)}")
-    ((name, values),) = axes.items()
-    x = from_si(values.reshape(-1), UNITS[name]).magnitude
+    ((name, one),) = axes.items()
+    x, shown = np.ravel(one.values), f"{name.replace('_', ' ')} [{one.unit or '-'}]"
+    if name in UNITS:
+        x, shown = Q(x, one.unit or "").to(UNITS[name]).magnitude, label(name)
     order = np.argsort(x)
     low, high = (_plain(end)[order] for end in uncertainty.interval(CONFIDENCE))
     median = _plain(uncertainty.median)[order]
     curve = Curve("median", x[order], median, low=low, high=high)
-    return Panel(PlotAxis(label(name)), PlotAxis(label("wear_rate")), (curve,))
+    return Panel(PlotAxis(shown), PlotAxis(label("wear_rate")), (curve,))
 
 
 def _plain(quantity: Quantity) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -11,12 +11,13 @@ import numpy as np
 import pint
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.conditions import TWIN_DISC
-from wearlaw.errors import InputError, did_you_mean
+from wearlaw.errors import InputError, UnitError, did_you_mean
+from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange, uniform
-from wearlaw.units.quantities import Unit, coefficient, shortened
+from wearlaw.units.quantities import Q, Unit, coefficient, from_si, parse, real_array, shortened
+from wearlaw.units.registry import symbol
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,8 @@ class Uncertain:
         Whether it belongs to the law and not to the conditions of the test.
     shown : str
         The distribution as it was given.
+    unit : str or None
+        The unit of a condition as it was given; None for plain numbers.
     """
 
     name: str
@@ -40,10 +43,40 @@ class Uncertain:
     ends: Mapping[str, tuple[float, float]]
     of_law: bool
     shown: str
+    unit: str | None = None
 
     def values(self, probability: Array) -> dict[str, Array]:
         """Return the values in SI, by name, at probabilities."""
         return {name: self.distribution.quantiles(probability, *ends) for name, ends in self.ends.items()}
+
+    def given(self, probability: Array) -> Any:
+        """Return the values of a condition at probabilities, as a rig takes them."""
+        values = self.values(probability)[self.name]
+        return values if self.unit is None else from_si(values, self.unit)
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """A condition whose value is known: one number or several, and their unit, None for plain numbers."""
+
+    values: Array
+    unit: str | None
+
+    @classmethod
+    def of(cls, value: object) -> Known | None:
+        """Return a condition as it was given, or None if it is not made of numbers, as a law of friction."""
+        try:
+            quantity = parse(value) if isinstance(value, str) else value
+            if isinstance(quantity, pint.Quantity):
+                return cls(real_array(quantity.magnitude), symbol(quantity.units, "~C"))
+            return cls(real_array(quantity), None)
+        except UnitError:
+            return None
+
+    def at_samples(self) -> Any:
+        """Return the condition as a rig takes it, with a last axis for the samples."""
+        values = np.asarray(self.values)[..., None]
+        return values if self.unit is None else Q(values, self.unit)
 
 
 OTHERS = (
@@ -76,14 +109,20 @@ def check_samples(law: WearLaw, samples: Mapping[str, Array]) -> None:
 
 
 def condition(name: str, given: Distribution) -> Uncertain:
-    """Return a condition of the test that is not known exactly.
+    """Return a condition of the test that is not known exactly, in the unit of the distribution's first number.
 
     Raises
     ------
     UnitError
-        If the distribution has the wrong unit.
+        If the two numbers of the distribution have different dimensions.
     """
-    return _uncertain(name, given, TWIN_DISC.units.get(name), of_law=False)
+    if isinstance(given.first, pint.Quantity):
+        unit = symbol(given.first.units, "~C")
+        return replace(_uncertain(name, given, Unit(unit, positive=False), of_law=False), unit=unit)
+    first = float(given.first)
+    second = float(given.second if isinstance(given.second, float) else coefficient(given.second, name))
+    _check(name, given, first, second)
+    return Uncertain(name, given, {name: (first, second)}, False, str(given))
 
 
 def parameter(name: str, given: object, law: WearLaw) -> Uncertain:
@@ -154,19 +193,24 @@ def _check(name: str, given: Distribution, first: float, second: float) -> None:
         raise InputError(f"{name}: the median of {given} must be positive")
 
 
-def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], list[Uncertain]]:
+def split(conditions: Mapping[str, Any], rig: Rig | None = None) -> tuple[dict[str, Any], list[Uncertain]]:
     """Return the conditions that are known, and those that are distributed; None is not given.
+
+    Parameters
+    ----------
+    conditions : mapping of str to object
+    rig : Rig, optional
+        The rig that takes the conditions.
 
     Raises
     ------
     ConditionsError
-        If there is no such condition.
+        If the rig has no such condition, or lacks one.
     UnitError
-        If a distribution has the wrong unit.
+        If the two numbers of a distribution have different dimensions.
     """
-    for name in conditions:
-        if name not in TWIN_DISC.names:
-            raise TWIN_DISC.unknown(name)
+    if rig is not None:
+        rig.check_names(conditions)
     given = {name: value for name, value in conditions.items() if value is not None}
     known = {name: value for name, value in given.items() if not isinstance(value, Distribution)}
     return known, [condition(name, value) for name, value in given.items() if isinstance(value, Distribution)]

@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.conditions import TWIN_DISC, broadcast, is_friction_law
-from wearlaw.errors import InputError, UnitError
+from wearlaw.contact.conditions import broadcast
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import InputError
 from wearlaw.models.wear_law import Numbers
-from wearlaw.numerics.integrate import integrate_forces, integrate_wear, patch_area
-from wearlaw.pipeline.composition import check_traction, needs_discs
+from wearlaw.numerics.blocks import Columns
+from wearlaw.numerics.integrate import integrate_wear
+from wearlaw.pipeline.composition import check_traction, warn_of_geometry
 from wearlaw.pipeline.ranges import RangeWatch, mean_over_patch
-from wearlaw.study.grid import with_units
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
 from wearlaw.uncertainties.figure import CONFIDENCE, figure_data
-from wearlaw.uncertainties.inputs import OTHERS, Uncertain, check_samples, parameter, split
+from wearlaw.uncertainties.inputs import OTHERS, Known, Uncertain, check_samples, parameter, split
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, QuantityLike, from_si, shortened
 
 if TYPE_CHECKING:
@@ -64,14 +65,13 @@ def uncertainty(
     seed : int
         The same seed gives the same samples.
     **conditions
-        Those of a prediction, of which any may be a distribution: `uniform`, `normal` or `lognormal`.
+        Those of a prediction, of which any that is a number may be a distribution: `uniform`, `normal` or `lognormal`.
 
     Raises
     ------
     InputError
         If nothing is distributed, or a distribution is not possible there.
     """
-    needs_discs(predict.rig, "uncertainty")
     return Uncertainty(predict, conditions, law or {}, samples, seed)
 
 
@@ -102,9 +102,7 @@ class Uncertainty:
             raise InputError(f"seed: must be a whole number, zero or positive; got {shortened(seed)}")
         self._predict = predict
         self._law = predict.wear_law.explicit()
-        known, uncertain = split(conditions)
-        self._friction_law = {name: value for name, value in known.items() if is_friction_law(value)}
-        self._known = {name: value for name, value in known.items() if name not in self._friction_law}
+        self._given, uncertain = split(conditions, predict.rig)
         uncertain += [parameter(name, given, predict.wear_law) for name, given in law.items()]
         if not uncertain:
             raise InputError(
@@ -199,23 +197,26 @@ class Uncertainty:
         return f"Wear rate by {self._law.name} on {self._predict.contact_model.name}"
 
     @cached_property
-    def known(self) -> dict[str, Array]:
-        """The conditions that are not distributed, in SI, without a law of friction."""
-        return {name: TWIN_DISC.si(name, value) for name, value in self._known.items()}
+    def known(self) -> dict[str, Known]:
+        """The conditions that are not distributed and made of numbers."""
+        found = {name: Known.of(value) for name, value in self._given.items()}
+        return {name: one for name, one in found.items() if one is not None}
 
-    @property
+    @cached_property
     def shape(self) -> tuple[int, ...]:
         """The shape of the conditions that are not distributed."""
-        return np.broadcast_shapes(*(array.shape for array in broadcast(self.known).values()))
+        broadcast({name: one.values for name, one in self.known.items()})  # names the shapes if they do not fit
+        firsts = {one.name: one.distribution.first for one in self.inputs if not one.of_law}
+        # What is wrong here is wrong with the conditions, and not with single samples.
+        shape: tuple[int, ...] = self._predict.rig.checked_problem({**self._given, **firsts}).batch_shape
+        return shape
 
-    def _problem(self, sampled: dict[str, Array]) -> Problem:
+    def _problem(self, sampled: Mapping[str, Any]) -> Problem:
         """Return the contact problem at all operating points and samples, the latter along the last axis."""
-        known = {name: array[..., None] for name, array in self.known.items()}
-        given: Any = with_units(known | sampled) | self._friction_law
+        known = {name: one.at_samples() for name, one in self.known.items()}
         try:
-            problem: Problem = self._predict.rig.checked_problem(given)
-            return problem
-        except UnitError as error:
+            return self._predict.rig.checked_problem({**self._given, **known, **sampled})
+        except InputError as error:
             raise InputError(f"{error}{OTHERS}") from None
 
     def _rates(self, probability: Array, stacklevel: int | None = None) -> Array:
@@ -223,29 +224,32 @@ class Uncertainty:
 
         With a `stacklevel`, warn of samples outside the range of the law or of elastic contact.
         """
+        shape = (*self.shape, probability.shape[-1])
         inside = np.clip(probability, INSIDE, 1.0 - INSIDE)
-        conditions: dict[str, Array] = {}
+        conditions: dict[str, Any] = {}
         of_law: dict[str, Array] = {}
         for one, row in zip(self.inputs, inside, strict=True):
-            (of_law if one.of_law else conditions).update(one.values(row))
+            if one.of_law:
+                of_law.update(one.values(row))
+            else:
+                conditions[one.name] = one.given(row)
         check_samples(self._law, of_law)
-        shape = (*self.shape, probability.shape[-1])
         problem = self._problem(conditions)
         flat = problem.broadcast_to(shape).flatten()
         varied = {name: np.broadcast_to(values, shape).reshape(-1, 1) for name, values in of_law.items()}
-        predict = self._predict
-        check_traction(predict.contact_model, flat)
+        p: Numbers = {**self._law.numbers, **varied}
+        predict, watch = self._predict, RangeWatch(self._law)
+        model, scale = predict.contact_model, predict.scale
+        check_traction(model, flat)
+
+        def see(part: Problem, columns: Columns) -> None:
+            watch.see(part.size, partial(mean_over_patch, part, columns))
+
+        wear = integrate_wear(model, self._law, flat, scale, see if stacklevel is not None else None, p)
         if stacklevel is not None:
             predict.rig.warn_of_plasticity(flat.max_pressure, stacklevel=stacklevel)
-            watch = RangeWatch(self._law)
-            columns = {
-                "longitudinal": integrate_forces(predict.contact_model, flat).longitudinal,
-                "patch_area": patch_area(predict.contact_model, flat, predict.scale),
-            }
-            watch.see(flat.size, partial(mean_over_patch, flat, columns))
+            warn_of_geometry(predict.rig, model, scale, self._law, flat, stacklevel + 1)
             watch.warn(stacklevel)
-        p: Numbers = {**self._law.numbers, **varied}
-        wear = integrate_wear(predict.contact_model, self._law, flat, predict.scale, p=p)
         return wear.wear_rate.reshape(shape)
 
     def __repr__(self) -> str:

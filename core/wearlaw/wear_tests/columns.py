@@ -49,6 +49,9 @@ COLUMNS = {
 }
 """All columns of numbers."""
 
+OTHER = Column("", "any")
+"""A condition that `COLUMNS` does not know."""
+
 DERIVED = ("tangential_force", "frictional_heat")
 """The columns from which a traction coefficient follows."""
 
@@ -83,22 +86,30 @@ def factor(name: str, unit: str) -> float:
 
 
 def faulty_columns(names: Sequence[str] | Mapping[str, object]) -> list[str]:
-    """Return what is wrong with a choice of columns, whatever they hold."""
+    """Return what is wrong with a choice of columns, whatever they hold.
+
+    Names that are not in `COLUMNS` are other conditions of a rig, which then says itself whether creepage or load are
+    missing.
+    """
+    others = any(name not in COLUMNS for name in names)
     loads, tractions = ([name for name in kind if name in names] for kind in (LOADS, TRACTIONS))
     derived = [name for name in DERIVED if name in names]
     faults = []
-    if "creepage" not in names:
+    if "creepage" not in names and not others:
         faults.append(f"creepage: is missing; add a column '{head('creepage')}'")
-    if len(loads) != 1:
+    if len(loads) > 1 or not (loads or others):
         choice = ", ".join(map(head, LOADS))
         faults.append(f"give exactly one load of {choice}; got {' and '.join(loads) or 'none of them'}")
     if len(tractions) > 1:
         faults.append(f"{' and '.join(tractions)}: all give the traction; keep one of them")
-    if derived and loads and loads != ["normal_force"]:
+    if derived and (loads or others) and loads != ["normal_force"]:
+        instead = f", not {loads[0]}, which takes a track width" if loads else ""
         faults.append(
-            f"{derived[0]}: T/N follows from it only where the load is normal_force, not {loads[0]}, which takes a"
-            " track width; give normal_force or traction_coefficient"
+            f"{derived[0]}: T/N follows from it only where the load is normal_force{instead}; give normal_force or"
+            " traction_coefficient"
         )
+    if "frictional_heat" in names and "creepage" not in names and others:
+        faults.append(f"frictional_heat: is T × creepage × rolling speed; add a column '{head('creepage')}' beside it")
     if "frictional_heat" in names and "rolling_speed" not in names:
         faults.append(
             f"frictional_heat: is T × creepage × rolling speed; add a column '{head('rolling_speed')}' beside it"
@@ -113,12 +124,15 @@ def faulty_columns(names: Sequence[str] | Mapping[str, object]) -> list[str]:
 
 
 def faulty(columns: Mapping[str, Array]) -> list[tuple[int, str, str]]:
-    """Return the test, the column and the broken rule of each value that cannot be."""
+    """Return the test, the column and the broken rule of each value that cannot be.
+
+    Columns that are not in `COLUMNS` are other conditions, in any unit.
+    """
     faults = []
     for name, values in columns.items():
-        for wrong, rule in COLUMNS[name].wrong(values):
+        for wrong, rule in COLUMNS.get(name, OTHER).wrong(values):
             faults += [(int(i), name, rule) for i in np.flatnonzero(wrong)]
-        if name in COMPLETE:
+        if name in COMPLETE or name not in COLUMNS:
             faults += [(int(i), name, "is missing; every test needs it") for i in np.flatnonzero(np.isnan(values))]
     heat = columns.get("frictional_heat")
     if heat is not None:

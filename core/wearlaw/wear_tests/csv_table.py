@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import NamedTuple
@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from wearlaw.errors import DataError, UnitError, did_you_mean
-from wearlaw.units.quantities import HEAD
+from wearlaw.units.quantities import HEAD, Q
+from wearlaw.units.registry import symbol
 from wearlaw.wear_tests.columns import COLUMNS, factor, faulty_columns, head
 
 TEXTS = ("label", "comment")
@@ -28,12 +29,38 @@ class Row(NamedTuple):
 
 
 class Head(NamedTuple):
-    """One column: its head in the file, its place from the left, its name if it has one, and its unit in SI."""
+    """One column of a file.
+
+    Attributes
+    ----------
+    text : str
+        Its head.
+    place : int
+        Its place from the left.
+    name : str
+        Its name, "" if it is not known.
+    factor : float
+        The factor from its unit to SI, NaN if the unit is wrong or there is none. 1 for other conditions of a rig,
+        which keep their unit.
+    unit : str or None
+        The unit of such a condition; None for plain numbers.
+    """
 
     text: str
     place: int
     name: str
     factor: float
+    unit: str | None = None
+
+    @property
+    def is_other(self) -> bool:
+        """Whether it is a condition that the table of columns does not know."""
+        return self.name not in ("", *COLUMNS, *TEXTS)
+
+    @property
+    def is_numbers(self) -> bool:
+        """Whether it is known, and no text."""
+        return self.name not in ("", *TEXTS)
 
 
 class Table(NamedTuple):
@@ -65,8 +92,11 @@ class Problems:
         return [text for _, text in sorted(self.found, key=lambda one: one[0])]
 
 
-def table_of(text: str, name: str, wrong: Problems) -> Table:
-    """Return the header and the rows that have a cell for each column of it; note what is wrong with the others."""
+def table_of(text: str, name: str, wrong: Problems, conditions: Collection[str] = ()) -> Table:
+    """Return the header and the rows that have a cell for each column of it; note what is wrong with the others.
+
+    `conditions` are those of the installed rigs.
+    """
     source, separator, lines, start = _preamble(text)
     try:
         rows = list(_rows(lines, start, separator))
@@ -74,7 +104,7 @@ def table_of(text: str, name: str, wrong: Problems) -> Table:
         raise DataError(f"the tests '{name}' cannot be read as CSV: {error}") from None
     if not rows:
         raise DataError(f"the tests '{name}' are empty; begin with a header such as: {head('creepage')}, ...")
-    heads = _heads(rows[0], wrong)
+    heads = _heads(rows[0], wrong, conditions)
     if not any(one.name for one in heads):
         known = ", ".join([*map(head, COLUMNS), *TEXTS])
         raise DataError(
@@ -119,20 +149,48 @@ def _rows(lines: list[str], start: int, separator: str) -> Iterator[Row]:
         line = start + reader.line_num + 1
 
 
-def _heads(header: Row, wrong: Problems) -> list[Head]:
+def _heads(header: Row, wrong: Problems, conditions: Collection[str]) -> list[Head]:
     """Return the columns, and note what is wrong with them, or with which of them there are."""
     texts = [cell.strip() for cell in header.cells]
     while texts and not texts[-1]:
         texts.pop()
-    heads = [Head(text, place, *_meaning(header.line, text, place, wrong)) for place, text in enumerate(texts)]
+    present = {_bare(text) for text in texts}
+    heads = [
+        _other(header.line, text, place, present, conditions, wrong)
+        or Head(text, place, *_meaning(header.line, text, place, wrong))
+        for place, text in enumerate(texts)
+    ]
     names = [one.name for one in heads if one.name]
     for one in heads:
         if names.count(one.name) > 1:
             wrong.add(header.line, one.text, "is there more than once; keep one of them")
     meant = [name for one in heads if not one.name for name in get_close_matches(_bare(one.text), COLUMNS, n=1)]
-    for fault in faulty_columns([*names, *meant]):
+    for fault in faulty_columns([name for name in (*names, *meant) if name not in TEXTS]):
         wrong.add(header.line, "", fault)
     return heads
+
+
+def _other(
+    line: int, text: str, place: int, present: Collection[str], conditions: Collection[str], wrong: Problems
+) -> Head | None:
+    """Return the column of a condition that the table of columns does not know; None if it is no such column.
+
+    It is one of an installed rig, or has a unit and no name that looks like a column which is missing.
+    """
+    match = HEAD.fullmatch(text)
+    name, unit = (match["name"], match["unit"]) if match else ("", None)
+    if name in (*COLUMNS, *TEXTS) or not name.isidentifier():
+        return None
+    missing = [known for known in (*COLUMNS, *TEXTS) if known not in present]
+    if name not in conditions and (unit is None or get_close_matches(name, missing, n=1)):
+        return None
+    if unit is None:
+        return Head(text, place, name, 1.0)
+    try:
+        return Head(text, place, name, 1.0, symbol(Q(1.0, "" if unit == "-" else unit).units, "~C"))
+    except UnitError as error:
+        wrong.add(line, text, str(error))
+        return Head(text, place, name, np.nan)
 
 
 def _bare(text: str) -> str:
@@ -150,7 +208,8 @@ def _meaning(line: int, text: str, place: int, wrong: Problems) -> tuple[str, fl
         bracket = "; write the unit in square brackets" if "(" in name else ""
         known = [*COLUMNS, *TEXTS]
         hint = did_you_mean(_bare(text), known)
-        wrong.add(line, text, f"unknown column{bracket}{hint} The columns are: {', '.join(known)}")
+        other = "; another condition of a rig has its unit in brackets, as in 'mass [kg]'"
+        wrong.add(line, text, f"unknown column{bracket}{hint} The columns are: {', '.join(known)}{other}")
     elif name in TEXTS:
         if unit is not None:
             wrong.add(line, text, "is text and takes no unit")

@@ -14,8 +14,8 @@ from wearlaw.arrays.array import Array
 from wearlaw.errors import DataError, did_you_mean
 from wearlaw.plugins import loader
 from wearlaw.settings.text_files import UTF_16, decoded
-from wearlaw.units.quantities import shortened
-from wearlaw.wear_tests.columns import COLUMNS, faulty, with_traction
+from wearlaw.units.quantities import Q, shortened
+from wearlaw.wear_tests.columns import faulty, with_traction
 from wearlaw.wear_tests.csv_table import TEXTS, Head, Problems, Table, table_of
 from wearlaw.wear_tests.tests import WearTests
 
@@ -32,7 +32,8 @@ def read_tests(path_or_name: str | Path) -> WearTests:
     Parameters
     ----------
     path_or_name : str or Path
-        Path of a CSV file with units in its header, such as ``creepage [%]``, or a name such as "lewis2004".
+        Path of a CSV file with units in its header, such as ``creepage [%]``, or a name such as "lewis2004". Columns
+        such as ``mass [kg]`` are other conditions of a rig.
 
     Raises
     ------
@@ -101,8 +102,8 @@ def parse_tests(text: str, name: str) -> WearTests:
         If something is wrong, all of which the message names.
     """
     wrong = Problems()
-    table = table_of(text, name, wrong)
-    columns = {one.name: _values(one, table, wrong) for one in table.heads if one.name in COLUMNS}
+    table = table_of(text, name, wrong, _conditions())
+    columns = {one.name: _values(one, table, wrong) for one in table.heads if one.is_numbers}
     texts = {one.name: [row.cells[one.place].strip() for row in table.rows] for one in table.heads if one.name in TEXTS}
     _check_values(columns, table, wrong)
     _check_decimal_marks(table, wrong)
@@ -111,7 +112,17 @@ def parse_tests(text: str, name: str) -> WearTests:
     if wrong.found:
         raise DataError(f"the tests '{name}' are wrong in:", wrong.texts())
     labels = texts.get("label", [""] * len(table.rows))
-    return WearTests(with_traction(columns), tuple(labels), table.source or Path(name).name)
+    others = {
+        one.name: columns[one.name] if one.unit is None else Q(columns[one.name], one.unit)
+        for one in table.heads
+        if one.is_other
+    }
+    return WearTests(with_traction(columns), tuple(labels), table.source or Path(name).name, others)
+
+
+def _conditions() -> set[str]:
+    """Return the conditions of the installed rigs."""
+    return {name for rig in loader.rigs().values() for name in rig.conditions()}
 
 
 def _values(one: Head, table: Table, wrong: Problems) -> Array:
@@ -150,7 +161,7 @@ def _check_decimal_marks(table: Table, wrong: Problems) -> None:
     for row in table.rows:
         for one in table.heads:
             text = row.cells[one.place].strip()
-            if one.name in COLUMNS and _NUMBER.fullmatch(text):
+            if one.is_numbers and _NUMBER.fullmatch(text):
                 for mark in set(text) & {",", "."}:
                     first.setdefault(mark, row.line)
     if len(first) == 2 and table.separator != ",":

@@ -7,7 +7,7 @@ give the conditions of its contact problems.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -17,7 +17,7 @@ import pint
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import ConditionsError, DataError, UnitError
-from wearlaw.units.quantities import Quantity, QuantityLike, from_si, parse, real_array
+from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, parse, real_array
 from wearlaw.units.registry import symbol
 from wearlaw.wear_tests.columns import COLUMNS, factor, faulty, faulty_columns, head, with_traction
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from wearlaw.models.contact_model import ContactModel
+    from wearlaw.models.rig import Rig
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -42,22 +43,26 @@ class WearTests:
         What each test is called; "" where it has no name.
     source : str
         Where the numbers come from.
+    other_conditions : mapping of str to Quantity or ndarray, (tests,)
+        Conditions of the rig that `columns` does not know, as they were given: with their unit, or plain numbers.
     """
 
     columns: Mapping[str, Array]
     labels: tuple[str, ...]
     source: str = ""
+    other_conditions: Mapping[str, Quantity | Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for values in self.columns.values():
+        for values in (*self.columns.values(), *map(_magnitude, self.other_conditions.values())):
             values.flags.writeable = False
-        object.__setattr__(self, "columns", MappingProxyType(dict(self.columns)))
+        for name in ("columns", "other_conditions"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
 
     @classmethod
     def from_arrays(
         cls,
         *,
-        creepage: QuantityLike,
+        creepage: QuantityLike | None = None,
         normal_force: QuantityLike | None = None,
         normal_force_per_width: QuantityLike | None = None,
         max_pressure: QuantityLike | None = None,
@@ -68,6 +73,7 @@ class WearTests:
         rolling_speed: QuantityLike | None = None,
         wear_rate: QuantityLike | None = None,
         wear_rate_uncertainty: QuantityLike | None = None,
+        other_conditions: Mapping[str, QuantityLike | ArrayLike] | None = None,
         labels: Sequence[str] | None = None,
         source: str = "",
     ) -> Self:
@@ -88,6 +94,9 @@ class WearTests:
             V of the tests whose heat is given [m/s].
         wear_rate, wear_rate_uncertainty : Quantity or str, (tests,), optional
             Mass lost per distance rolled and area [kg/m³], and its standard uncertainty.
+        other_conditions : mapping of str to Quantity, str or array_like, (tests,), optional
+            Further conditions of the rig by name, such as {"mass": Q([20, 40], "kg")}. With these, creepage and load
+            may be missing, and the rig says whether it needs them.
         labels : sequence of str, optional
             What each test is called.
         source : str, optional
@@ -99,21 +108,33 @@ class WearTests:
             If columns are missing or exclude each other, or a value has the wrong unit, sign or size.
         """
         given = {name: value for name, value in locals().items() if name in COLUMNS and value is not None}
-        faults = faulty_columns(given)
+        others = {name: _as_given(name, value) for name, value in (other_conditions or {}).items()}
+        faults = faulty_columns([*given, *others])
+        faults += [f"other_conditions: {name} is an argument of its own" for name in others if name in COLUMNS]
         if faults:
             raise DataError("the tests are wrong in:", faults)
-        arrays = _same_length({name: _si(name, value) for name, value in given.items()})
-        faults = [f"{name}: {_shown(name, arrays[name][i])} at index {i} {rule}" for i, name, rule in faulty(arrays)]
-        count = len(arrays["creepage"])
+        units = {name: str(value.units) for name, value in others.items() if isinstance(value, pint.Quantity)}
+        arrays = _same_length(
+            {name: _si(name, value) for name, value in given.items()}
+            | {name: real_array(_magnitude(value)) for name, value in others.items()}
+        )
+        others = {
+            name: Q(np.array(arrays[name]), units[name]) if name in units else np.array(arrays[name]) for name in others
+        }
+        faults = [
+            f"{name}: {arrays[name][i] if name in others else _shown(name, arrays[name][i])} at index {i} {rule}"
+            for i, name, rule in faulty(arrays)
+        ]
+        count = len(next(iter(arrays.values())))
         if labels is not None and (isinstance(labels, str) or len(labels) != count):
             faults.append(f"labels: give one text for each of the {count} tests, got {labels!r}")
         if faults:
             raise DataError("the tests are wrong in:", faults)
-        return cls(with_traction(arrays), tuple(map(str, [""] * count if labels is None else labels)), source)
+        return cls(with_traction(arrays), tuple(map(str, [""] * count if labels is None else labels)), source, others)
 
     @property
     def creepage(self) -> Quantity:
-        """ξ, of shape (tests,)."""
+        """ξ, of shape (tests,); NaN where other conditions take its place."""
         return self._quantity("creepage")
 
     @property
@@ -136,7 +157,9 @@ class WearTests:
         """Standard uncertainty of the wear rate, of shape (tests,); None if the tests do not hold it."""
         return self._quantity("wear_rate_uncertainty") if "wear_rate_uncertainty" in self.columns else None
 
-    def conditions(self, model: ContactModel, friction_coefficient: ArrayLike | None = None) -> dict[str, Any]:
+    def conditions(
+        self, model: ContactModel, friction_coefficient: ArrayLike | None = None, rig: Rig | None = None
+    ) -> dict[str, Any]:
         """Return the conditions of the tests as ``rig.problem(**conditions)`` takes them.
 
         Parameters
@@ -145,26 +168,30 @@ class WearTests:
             What solves the contact. If it can use a measured traction, and all tests have one, the conditions hold it.
         friction_coefficient : array_like of float, optional
             μ [-] for tests that do not hold it.
+        rig : Rig, optional
+            What takes the conditions. If it has no `traction_coefficient`, they do not hold the measured traction.
 
         Raises
         ------
         ConditionsError
-            If the friction coefficient is not known.
+            If the friction coefficient is not known, and all conditions are those of discs.
         """
+        taken = () if rig is None else rig.conditions()
         friction = friction_coefficient if self.friction_coefficient is None else self.friction_coefficient
-        if friction is None:
+        if friction is None and not self.other_conditions and (not taken or "friction_coefficient" in taken):
             raise ConditionsError(
                 "friction_coefficient: the tests do not hold it; add a column of that name, or give it:"
                 " friction_coefficient=0.46 in Python, --friction 0.46 on the command line"
             )
-        load = next(name for name in LOADS if name in self.columns)
-        conditions = {
-            load: self._quantity(load),
-            "creepage": self.creepage,
-            "friction_coefficient": friction,
+        conditions: dict[str, Any] = {
+            name: self._quantity(name) for name in (*LOADS, "creepage") if name in self.columns
         }
+        if friction is not None:
+            conditions["friction_coefficient"] = friction
+        conditions |= self.other_conditions
         traction = self.columns.get("traction_coefficient")
-        if model.uses_measured_traction and traction is not None and not np.isnan(traction).any():
+        useful = model.uses_measured_traction and (not taken or "traction_coefficient" in taken)
+        if useful and traction is not None and not np.isnan(traction).any():
             conditions["traction_coefficient"] = traction
         return conditions
 
@@ -173,7 +200,9 @@ class WearTests:
         import pandas as pd
 
         named = {"label": self.labels} if any(self.labels) else {}
-        return pd.DataFrame(named | {head(name): self._quantity(name).magnitude for name in self.columns})
+        columns = {head(name): self._quantity(name).magnitude for name in self.columns}
+        others = {f"{name} [{_unit(value) or '-'}]": _magnitude(value) for name, value in self.other_conditions.items()}
+        return pd.DataFrame(named | others | columns)
 
     def __len__(self) -> int:
         return len(self.labels)
@@ -184,7 +213,8 @@ class WearTests:
         if not index.size:
             raise DataError(f"none of the {len(self)} tests is selected")
         columns = {name: values[index] for name, values in self.columns.items()}
-        return type(self)(columns, tuple(self.labels[i] for i in index), self.source)
+        others: dict[str, Any] = {name: value[index] for name, value in self.other_conditions.items()}
+        return type(self)(columns, tuple(self.labels[i] for i in index), self.source, others)
 
     def __iter__(self) -> Iterator[Self]:
         return (self[i] for i in range(len(self)))
@@ -192,25 +222,36 @@ class WearTests:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, WearTests):
             return NotImplemented
-        return (
-            (self.labels, self.source, self.columns.keys()) == (other.labels, other.source, other.columns.keys())
-        ) and all(np.array_equal(values, other.columns[name], equal_nan=True) for name, values in self.columns.items())
+        one, two = self._arrays(), other._arrays()
+        return ((self.labels, self.source, one.keys()) == (other.labels, other.source, two.keys())) and all(
+            np.array_equal(values, two[name], equal_nan=True) for name, values in one.items()
+        )
+
+    def _arrays(self) -> dict[tuple[str, str], Array]:
+        """Return all numbers by name and unit, "" in SI."""
+        others = {(name, _unit(value)): _magnitude(value) for name, value in self.other_conditions.items()}
+        return {(name, ""): values for name, values in self.columns.items()} | others
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (dict(self.columns), self.labels, self.source)  # a copy's arrays are read-only again
+        # A copy's arrays are read-only again.
+        return type(self), (dict(self.columns), self.labels, self.source, dict(self.other_conditions))
 
     def __repr__(self) -> str:
-        lines = [f"{len(self)} tests" if len(self) > 1 else "1 test", *map(self._summary, self.columns)]
+        lines = [
+            f"{len(self)} tests" if len(self) > 1 else "1 test",
+            *(self._summary(name, value) for name, value in self.other_conditions.items()),
+            *(self._summary(name, self._quantity(name)) for name in self.columns),
+        ]
         return "\n  ".join(lines) + (f"\nfrom {self.source}" if self.source else "")
 
-    def _summary(self, name: str) -> str:
+    def _summary(self, name: str, column: Quantity | Array) -> str:
         """Return the range of a column, and in how many tests it has a value if not in all."""
-        values = self._quantity(name).magnitude
+        values = _magnitude(column)
         there = values[~np.isnan(values)]
         if not there.size:
             return f"{name:22} none"
         ends = " to ".join(f"{value:.4g}" for value in dict.fromkeys((there.min(), there.max())))
-        unit = symbol(self._quantity(name).units, "~P")
+        unit = symbol(column.units, "~P") if isinstance(column, pint.Quantity) else ""
         counted = f" in {there.size}" if there.size < len(self) else ""
         return f"{name:22} {ends} {unit}".rstrip() + counted
 
@@ -231,6 +272,27 @@ def _si(name: str, value: object) -> Array:
         return real_array(value)
     except UnitError as error:
         raise DataError("the tests are wrong in:", [f"{name}: {error}"]) from None
+
+
+def _as_given(name: str, value: object) -> Quantity | Array:
+    """Return another condition as a quantity, or as plain numbers."""
+    try:
+        quantity = parse(value) if isinstance(value, str) else value
+        if isinstance(quantity, pint.Quantity):
+            return Q(real_array(quantity.magnitude), str(quantity.units))
+        return real_array(quantity)
+    except UnitError as error:
+        raise DataError("the tests are wrong in:", [f"{name}: {error}"]) from None
+
+
+def _magnitude(value: Quantity | Array) -> Array:
+    plain: Any = value.magnitude if isinstance(value, pint.Quantity) else value
+    array: Array = plain
+    return array
+
+
+def _unit(value: Quantity | Array) -> str:
+    return symbol(value.units, "~C") if isinstance(value, pint.Quantity) else ""
 
 
 def _same_length(arrays: dict[str, Array]) -> dict[str, Array]:

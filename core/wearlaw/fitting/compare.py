@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.comparison.agreement import Information, agreement
-from wearlaw.comparison.result import Compared, Comparison, Names
 from wearlaw.errors import InputError
+from wearlaw.fitting.agreement import Information, agreement
+from wearlaw.fitting.comparison import Compared, Comparison, Names
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.fitting.result import Fit
 from wearlaw.models.contact_model import Model
 from wearlaw.models.labels import labels
-from wearlaw.pipeline.composition import needs_discs
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.wear_tests.tests import WearTests
@@ -58,7 +57,8 @@ def compare(
     InputError
         If there is no predictor, two have the same name, or no test has a wear rate.
     ConditionsError
-        If the friction coefficient is not known.
+        If the friction coefficient is not known, or the tests hold a condition that a predictor's rig does not take, or
+        lack one.
 
     Notes
     -----
@@ -131,7 +131,6 @@ def _labels(models: Sequence[Model]) -> list[str]:
 def _pipeline(predictor: Predictor) -> Pipeline[...]:
     found = predictor.predict if isinstance(predictor, Fit) else predictor
     assert isinstance(found, Pipeline)
-    needs_discs(found.rig, "compare")
     return found
 
 
@@ -165,7 +164,7 @@ def _compared(names: Names, predictor: Predictor, tests: WearTests, friction: An
 def _predicted(name: str, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Array:
     """Return the wear rates that are predicted for tests [kg/m/m²]."""
     pipeline = _pipeline(predictor)
-    conditions = tests.conditions(pipeline.contact_model, friction)
+    conditions = tests.conditions(pipeline.contact_model, friction, pipeline.rig)
     if isinstance(predictor, Fit) and FRICTION in predictor.parameters:
         conditions[FRICTION] = float(predictor.parameters[FRICTION].magnitude)
         conditions.pop("traction_coefficient", None)

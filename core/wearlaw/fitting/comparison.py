@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.comparison.agreement import Agreement, Information
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
+from wearlaw.fitting.agreement import Agreement, Information
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.variables import label
 from wearlaw.units.quantities import WEAR_RATE, in_unit

@@ -1,0 +1,486 @@
+"""Uncertainty, creepages, fits and comparisons of a wheel on a rail and of a rig of one's own."""
+
+from __future__ import annotations
+
+import pickle
+import warnings
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import wearlaw as wl
+from tests.core.test_own_rigs import OnRail, Roller
+from tests.strategies import EPS
+from wearlaw import Q
+
+WHEEL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
+KTH = wl.wear_law("kth")
+ROLLER = Roller() | wl.contact_model("exact") | KTH
+FASTSIM = WHEEL | wl.contact_model("fastsim")
+ON_ELLIPSE: Any = {"normal_force": "80 kN", "friction_coefficient": 0.3}
+
+
+class Anything(wl.Rig):
+    """A rig that hands its conditions on, whatever they are called."""
+
+    name: ClassVar[str] = "anything"
+    source: ClassVar[str] = "a test"
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        """Return the problem of a wheel on a rail."""
+        return WHEEL.problem(**conditions)
+
+
+def rate(quantity: Any) -> Any:
+    return quantity.to("kg/m^3").magnitude
+
+
+def sobol_points(inputs: int, samples: int) -> Any:
+    """Return the probabilities of the samples, as `uncertainty` takes them with its first seed."""
+    return stats.qmc.Sobol(inputs, rng=np.random.default_rng(0)).random_base2(samples.bit_length() - 1).T
+
+
+@pytest.mark.parametrize("rig", [WHEEL, Anything()])
+def test_samples_on_a_rail_are_single_predictions(rig: wl.Rig) -> None:
+    predict: Any = rig | wl.contact_model("fastsim") | KTH
+    u = wl.uncertainty(
+        predict,
+        normal_force=wl.uniform("60 kN", "90000 N"),
+        longitudinal_creepage=Q([0.1, 0.3], "%"),
+        lateral_creepage=wl.uniform("-0.1 %", "0.2 %"),
+        spin=wl.uniform("-0.5 1/m", "0.5 1/m"),
+        friction_coefficient=wl.uniform(0.2, 0.4),
+        samples=4,
+    )
+    p = sobol_points(4, 4)
+    each = [
+        [
+            rate(
+                predict(
+                    normal_force=Q(60.0 + 30.0 * load, "kN"),
+                    longitudinal_creepage=Q(along, "%"),
+                    lateral_creepage=Q(-0.1 + 0.3 * across, "%"),
+                    spin=Q(-0.5 + turning, "1/m"),
+                    friction_coefficient=0.2 + 0.2 * friction,
+                ).wear_rate
+            )
+            for load, across, turning, friction in p.T
+        ]
+        for along in (0.1, 0.3)
+    ]
+    # Sampled and rounded twice; FASTSIM's strips add up some hundred terms.
+    assert rate(u.wear_rate) == pytest.approx(np.array(each), rel=1e4 * EPS)
+    assert np.ptp(rate(u.wear_rate)) > 0.0
+
+
+def test_samples_of_a_rig_of_ones_own_are_single_predictions() -> None:
+    u = wl.uncertainty(
+        ROLLER,
+        mass=wl.lognormal("20 kg", 1.2),
+        creepage=wl.uniform("0.5 %", "0.015 dimensionless"),
+        law={"hardness": wl.uniform("2 GPa", "3 GPa")},
+        samples=8,
+    )
+    mass, creepage, hardness = sobol_points(3, 8)
+    each = [
+        rate(
+            (Roller() | wl.contact_model("exact") | wl.wear_law("kth", hardness=Q(2.0 + h, "GPa")))(
+                mass=Q(20.0 * np.exp(np.log(1.2) * stats.norm.ppf(m)), "kg"), creepage=Q(0.5 + c, "%")
+            ).wear_rate
+        )
+        for m, c, h in zip(mass, creepage, hardness, strict=True)
+    ]
+    # Some roundings of the samples; what passes a threshold of KTH's map would differ by far more.
+    assert rate(u.wear_rate) == pytest.approx(np.array(each), rel=1e4 * EPS)
+
+
+def test_samples_on_a_rail_outside_the_range_of_the_law_are_warned_of() -> None:
+    predict: Any = FASTSIM | wl.wear_law("usfd", fitted_for="fastsim").fitted(
+        wl.Calibration(
+            contact_model="fastsim",
+            scale="cells",
+            geometry="ellipse",
+            materials="steel",
+            stated_range=(("wear_index_density", "0 N/mm^2", "1 N/mm^2"),),
+            source="a test",
+        )
+    )
+    # Lateral creepage alone: what dissipates is neither the longitudinal force nor a line.
+    given: Any = {**ON_ELLIPSE, "longitudinal_creepage": "0 %", "lateral_creepage": wl.uniform("0.5 %", "0.6 %")}
+    u = wl.uncertainty(predict, **given, samples=8)
+    with pytest.warns(wl.RangeWarning, match="wear index density .* 8 of 8 operating points lie outside"):
+        u.median  # noqa: B018
+    with warnings.catch_warnings(action="error"):
+        wl.uncertainty(predict, **{**given, "lateral_creepage": wl.uniform("0 %", "0.01 %")}, samples=8).median  # noqa: B018
+
+
+def test_parameters_fitted_for_another_shape_of_patch_are_warned_of_in_samples_too() -> None:
+    predict: Any = OnRail() | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim")
+    u = wl.uncertainty(predict, mass="8 t", longitudinal_creepage=wl.uniform("0.1 %", "0.2 %"), samples=2)
+    with pytest.warns(wl.CalibrationWarning, match="fitted for line contacts") as said:
+        u.wear_rate  # noqa: B018
+    assert said[0].filename == __file__
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"mas": wl.normal("20 kg", "1 kg")}, "mas: unknown condition; did you mean 'mass'"),
+        ({"mass": wl.normal("20 N", "1 N")}, "mass: got 20.00 N, which is not of the dimension of 'kg'"),
+        ({"mass": wl.normal("20 kg", "1 N")}, "mass: got 1.000 N, which is not of the dimension of 'kg'"),
+        ({"mass": wl.normal("20 kg", 1.0)}, "mass: got the bare number 1.0, which has no unit"),
+        ({"mass": wl.normal(20.0, 1.0)}, "mass: got the bare number 20.0, which has no unit"),
+        ({"mass": wl.uniform("20 kg", "2 kg")}, r"mass: the upper end of uniform\(20.0 kg, 2.0 kg\)"),
+        ({"mass": wl.normal("1 kg", "1 kg")}, "mass: must be greater than zero(.|\n)*samples of its distribution"),
+    ],
+)
+def test_wrong_distributions_of_a_rig_of_ones_own_are_named(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(wl.InputError, match=said):
+        wl.uncertainty(ROLLER, creepage="1 %", **given).median  # noqa: B018
+
+
+def test_a_band_lies_along_any_condition() -> None:
+    creepage = wl.uniform("0.5 %", "1.5 %")
+    (panel,) = wl.uncertainty(ROLLER, mass=Q([4e4, 2e4], "g"), creepage=creepage, samples=8).figure_data().panels
+    assert panel.x.label == "mass [g]"
+    assert list(panel.curves[0].x) == [2e4, 4e4]
+    given: Any = {**ON_ELLIPSE, "normal_force": Q([80.0, 60.0], "kN")}
+    u = wl.uncertainty(FASTSIM | KTH, **given, longitudinal_creepage=creepage, samples=8)
+    (panel,) = u.figure_data().panels
+    assert panel.x.label == "normal force [N]"
+    assert panel.curves[0].x == pytest.approx([6e4, 8e4], rel=4 * EPS)
+
+
+@pytest.mark.parametrize("model", ["fastsim", "polach", "shen_hedrick_elkins"])
+def test_the_creepage_on_a_rail_transmits_the_longitudinal_force(model: str) -> None:
+    contact = WHEEL | wl.contact_model(model)
+    given: Any = {**ON_ELLIPSE, "lateral_creepage": Q([[0.0], [0.1]], "%"), "spin": Q([[0.0], [-0.6]], "1/m")}
+    force = Q([-20.0, -1e-6, 0.0, 1.0, 23.0], "kN")
+    creepage = wl.creepage_for(contact, tangential_force=force, **given)
+    assert creepage.shape == (2, 5)
+    assert np.array_equal(np.sign(creepage.magnitude), np.sign(np.broadcast_to(force.magnitude, (2, 5))))
+    back = contact(longitudinal_creepage=creepage, **given).longitudinal_force.to("kN").magnitude
+    # The logarithm of the creepage, -20 at the least, is found to some roundings, and the force to those of a sum of
+    # hundreds of terms of the size of the friction force, 24 kN.
+    assert back == pytest.approx(np.broadcast_to(force.magnitude, (2, 5)), rel=1e-12, abs=1e3 * EPS * 24.0)
+
+
+def test_the_creepage_of_a_rig_of_ones_own_on_a_rail_is_found() -> None:
+    contact: Any = OnRail() | wl.contact_model("fastsim")
+    creepage = wl.creepage_for(contact, traction_coefficient=[0.1, -0.2], mass="8 t")
+    back = contact(mass="8 t", longitudinal_creepage=creepage)
+    assert back.longitudinal_force / Q(8e3 * 9.81, "N") == pytest.approx(np.array([0.1, -0.2]), rel=1e-12)
+
+
+class Odd(wl.CreepForceModel):
+    """A contact whose traction is a function of the longitudinal creepage, and not one that rises from zero."""
+
+    name: ClassVar[str] = "odd"
+    source: ClassVar[str] = "a test"
+    falls: bool = False
+
+    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
+        """Return a force that peaks at 1 %, or one of 0.1 N at rest."""
+        along = problem.longitudinal_creepage
+        share = 0.02 * along / (along**2 + 1e-4) if self.falls else 0.5 + 0.5 * along
+        force = problem.friction_coefficient * problem.normal_force * share
+        return wl.CreepForces(longitudinal=force, lateral=0.0 * force, spin_moment=0.0 * force)
+
+
+@pytest.mark.parametrize(
+    ("falls", "traction", "said"),
+    [
+        (False, 0.1, "of 0.1 cannot be found: the contact transmits more without longitudinal creepage"),
+        (False, [[0.2, 0.1]], r"of 0.1 at index \[0, 1\] cannot be found: the contact transmits more without"),
+        (False, -0.1, "of 0.1 belongs to no creepage"),
+        (True, 0.2, "of 0.2 cannot be found: several creepages transmit it, since the traction falls again as"),
+        (True, -0.2, "of -0.2 cannot be found: several creepages"),
+        (True, 0.31, "of 0.31 belongs to no creepage: with contact model 'odd' it stays below 0.3, at"),
+    ],
+)
+def test_a_traction_of_no_single_creepage_is_refused(falls: bool, traction: Any, said: str) -> None:
+    with pytest.raises(wl.ConditionsError, match=said):
+        wl.creepage_for(WHEEL | Odd(falls=falls), traction_coefficient=traction, **ON_ELLIPSE)
+
+
+def test_a_traction_of_one_creepage_is_found_even_if_that_of_others_is_not() -> None:
+    found = wl.creepage_for(WHEEL | Odd(), traction_coefficient=0.2, **ON_ELLIPSE)
+    assert found.to("").magnitude == pytest.approx(1 / 3, rel=1e-12)
+    # 2 x/(x² + 1) is 0.01 at 0.005 only, below 1: at 200 it is outside.
+    found = wl.creepage_for(WHEEL | Odd(falls=True), traction_coefficient=0.3 * 0.01, **ON_ELLIPSE)
+    assert found.to("%").magnitude == pytest.approx(100.0 - np.sqrt(1e4 - 1.0), rel=1e-10)
+
+
+def test_full_slip_on_a_rail_has_no_single_creepage() -> None:
+    for traction in (0.3, -0.3, 0.4):
+        with pytest.raises(wl.ConditionsError, match=r"belongs to no creepage: .* stays below 0\.3, at full slip"):
+            wl.creepage_for(FASTSIM, traction_coefficient=traction, **ON_ELLIPSE)
+    # What friction leaves for the longitudinal direction where the lateral creepage is as large as can be.
+    with pytest.raises(wl.ConditionsError, match=r"stays below 0\.2"):
+        wl.creepage_for(FASTSIM, traction_coefficient=0.25, lateral_creepage="100 %", **ON_ELLIPSE)
+
+
+class Sliding(Roller):
+    """A roller whose creepage has another name."""
+
+    name: ClassVar[str] = "sliding"
+    creepage: ClassVar[str] = "slide"
+
+
+def test_a_rig_without_a_condition_for_the_creepage_says_so() -> None:
+    predict: Any = Sliding() | wl.contact_model("exact")
+    with pytest.raises(wl.CompositionError, match="rig 'sliding' has no condition 'slide', but mass, creepage"):
+        wl.creepage_for(predict, traction_coefficient=0.1, mass="20 kg")
+    with pytest.raises(wl.ConditionsError, match="creepage: is what creepage_for looks for; leave it out"):
+        wl.creepage_for(ROLLER, traction_coefficient=0.1, mass="20 kg", creepage="1 %")
+
+
+@wl.as_wear_law(
+    inputs={"wear_index_density": "N/mm^2"},
+    returns="ug/m/mm^2",
+    breakpoints={},
+    parameters={"slope": "ug/m/N", "bend": "ug*mm^2/m/N^2"},
+    source="made up",
+)
+def bending(wear_index_density: Any, *, slope: float = 2.0, bend: float = 1.0) -> Any:
+    return wear_index_density * (slope + bend * wear_index_density)
+
+
+LAW = bending.model_copy(update={"slope": Q(5.0, "ug/m/N"), "bend": Q(3.0, "ug*mm^2/m/N^2")})
+TWICE = bending.model_copy(update={"slope": Q(10.0, "ug/m/N"), "bend": Q(6.0, "ug*mm^2/m/N^2")})
+MASSES: Any = {"mass": Q([20.0, 20.0, 40.0, 40.0, 30.0], "kg")}
+CREEPAGES: Any = {"creepage": Q([0.2, 1.0, 2.0, 0.5, -0.7], "%")}
+LOADS: Any = {"normal_force": Q([60.0, 80.0, 80.0, 100.0, 90.0], "kN")}
+ON_RAIL: Any = {
+    "longitudinal_creepage": Q([0.05, 0.2, -0.1, 0.0, 0.4], "%"),
+    "lateral_creepage": Q([0.1, 0.0, 0.2, 0.3, 0.1], "%"),
+    "spin": Q([0.0, 0.5, -0.5, 0.2, 0.3], "1/m"),
+}
+
+
+def on_roller(**changes: Any) -> wl.WearTests:
+    """Return tests of a roller that follow a law, and their tractions."""
+    found = (Roller() | wl.contact_model("exact") | LAW)(**MASSES, **CREEPAGES, friction_coefficient=0.35)
+    measured: Any = {"traction_coefficient": abs(found.traction_coefficient.magnitude), "wear_rate": found.wear_rate}
+    return wl.WearTests.from_arrays(**{**CREEPAGES, **measured, "other_conditions": MASSES, **changes})
+
+
+def on_rail(model: str, **changes: Any) -> wl.WearTests:
+    """Return tests of a wheel on a rail that follow a law, and their tractions."""
+    found = (WHEEL | wl.contact_model(model) | LAW)(**LOADS, **ON_RAIL, friction_coefficient=0.35)
+    measured: Any = {"traction_coefficient": found.traction_coefficient.magnitude, "wear_rate": found.wear_rate}
+    return wl.WearTests.from_arrays(**{**LOADS, **measured, "other_conditions": ON_RAIL, **changes})
+
+
+def fitted(predict: Any, tests: wl.WearTests, **more: Any) -> wl.Fit:
+    free = ["bend", "slope", "friction_coefficient"]
+    return wl.fit(predict, tests, free=free, starts=4, bootstrap=0, **{"friction_coefficient": 0.3, **more})
+
+
+@pytest.mark.parametrize("model", ["exact", "fastsim", "polach"])
+def test_a_fit_finds_the_law_that_made_the_tests(model: str) -> None:
+    tests = on_roller() if model == "exact" else on_rail(model)
+    rig = Roller() if model == "exact" else WHEEL
+    fit = fitted(rig | wl.contact_model(model) | bending, tests)
+    found = {name: value.magnitude for name, value in fit.parameters.items()}
+    # Without scatter the sum of squares is zero at these values and nowhere else; near it each step of Gauss and Newton
+    # squares the error, so that the last one leaves a millionth or less.
+    assert found == pytest.approx({"bend": 3.0, "slope": 5.0, "friction_coefficient": 0.35}, rel=1e-6)
+    along = CREEPAGES["creepage"] if model == "exact" else ON_RAIL["longitudinal_creepage"]
+    assert fit.residuals["creepage [%]"][:5].to_numpy() == pytest.approx(along.magnitude, rel=4 * EPS)
+    wear, traction = fit.figure_data().panels
+    curve, measured = wear.curves
+    assert curve.points  # the tests differ in load
+    assert np.sort(measured.y) == pytest.approx(np.sort(tests.wear_rate.to("ug/m/mm^2").magnitude), rel=4 * EPS)
+    assert "differ in load, friction or other conditions" in fit.figure_data().caption
+    power = (rig | wl.contact_model(model))(
+        **(MASSES | CREEPAGES if model == "exact" else LOADS | ON_RAIL), friction_coefficient=0.35
+    )
+    assert measured.x == pytest.approx(power.wear_index_density.to("N/mm^2").magnitude, rel=1e-6)
+    assert traction.curves[1].y == pytest.approx(tests.traction_coefficient.magnitude, rel=4 * EPS)
+
+
+def test_a_law_fitted_on_a_rail_belongs_to_ellipses() -> None:
+    usfd = wl.wear_law("usfd", fitted_for="fastsim")
+    fit = wl.fit(FASTSIM.with_law(usfd), on_rail("fastsim"), ["m_m"], friction_coefficient=0.35, starts=4, bootstrap=0)
+    assert fit.law is not None
+    FASTSIM | fit.law  # warnings are errors
+    with pytest.warns(wl.CalibrationWarning, match="were fitted for elliptic contacts, but are used with line"):
+        wl.TwinDisc.suros() | wl.contact_model("fastsim") | fit.law
+
+
+def test_tests_on_a_rail_that_differ_in_creepage_alone_are_drawn_as_a_curve() -> None:
+    along = Q([0.4, 0.05, -0.1, 0.2], "%")
+    given: Any = {**ON_ELLIPSE, "longitudinal_creepage": along, "lateral_creepage": "0.1 %", "spin": "0.3 1/m"}
+    predict: Any = FASTSIM | LAW
+    tests = wl.WearTests.from_arrays(
+        normal_force="80 kN",
+        friction_coefficient=0.3,
+        wear_rate=predict(**given).wear_rate,
+        other_conditions={name: given[name] for name in ON_RAIL},
+    )
+    fit = wl.fit(FASTSIM | bending, tests, free=["bend", "slope"], starts=4, bootstrap=0)
+    curve, measured = fit.figure_data().panels[0].curves
+    assert not curve.points
+    assert curve.x.size == 3 * 8 + 1
+    assert curve.x[[0, -1]] == pytest.approx([min(measured.x), max(measured.x)], rel=1e-12)
+    for x, y in zip(measured.x, measured.y, strict=True):
+        nearest = np.abs(curve.x - x).argmin()
+        assert curve.x[nearest] == pytest.approx(x, rel=1e-12)
+        assert curve.y[nearest] == pytest.approx(y, rel=1e-6)
+    assert np.all(np.diff(curve.y) > 0.0)
+
+
+@pytest.mark.parametrize(("rig", "model"), [(Roller(), "exact"), (WHEEL, "fastsim")])
+def test_the_law_that_made_the_tests_agrees_best(rig: Any, model: str) -> None:
+    tests = (on_roller if model == "exact" else lambda **more: on_rail(model, **more))(
+        traction_coefficient=None, friction_coefficient=0.35
+    )
+    contact = rig | wl.contact_model(model)
+    ranking = wl.compare({"twice": contact | TWICE, "true": contact | LAW}, tests)
+    best, second = ranking.compared
+    assert (best.names.label, second.names.label) == ("true", "twice")
+    assert best.agreement.rms_factor == pytest.approx(1.0, abs=1e4 * EPS)
+    assert second.agreement.rms_factor == pytest.approx(2.0, rel=1e4 * EPS)
+    table = ranking.predictions()
+    assert ("mass [kg]" if model == "exact" else "spin [1/m]") in table.columns
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"mas": Q(20.0, "kg")}, "mas: unknown condition; did you mean 'mass'"),
+        ({"mass": Q(20.0, "kN")}, "mass: got .* kN, which is not of the dimension of 'kg'"),
+        ({"mass": [20.0] * 5}, "mass: got .*, which has no unit"),
+        ({"humidity": Q(20.0, "%")}, "humidity: unknown condition. The conditions are: mass, creepage"),
+    ],
+)
+def test_conditions_that_the_rig_does_not_take_are_named(changes: dict[str, Any], said: str) -> None:
+    tests = on_roller(other_conditions=changes if changes.keys() & {"mas", "mass"} else MASSES | changes)
+    predict: Any = ROLLER.without_law() | LAW
+    for call in (
+        lambda: wl.fit(predict, tests, free=["slope"], bootstrap=0),
+        lambda: wl.compare([predict], tests),
+    ):
+        with pytest.raises(wl.InputError, match=said):
+            call()
+
+
+def test_discs_name_a_condition_that_is_missing_or_not_theirs() -> None:
+    discs: Any = wl.TwinDisc.suros() | wl.contact_model("exact") | LAW
+    for tests, said in (
+        (on_roller(), "mass: unknown condition"),
+        (on_rail("polach"), "longitudinal_creepage: unknown condition"),
+    ):
+        with pytest.raises(wl.ConditionsError, match=said):
+            wl.compare([discs], tests, friction_coefficient=0.3)
+
+
+def test_tests_of_a_rail_without_friction_say_what_is_missing() -> None:
+    with pytest.raises(wl.ConditionsError, match="friction_coefficient: is missing"):
+        wl.compare([FASTSIM | LAW], on_rail("polach"))
+
+
+FILE = """# source: a test
+label,mass [kg],creepage [%],wear_rate [ug/m/mm^2],lateral_creepage [-],spin [1/m]
+a,20,1,30,0.001,-0.2
+b,4e1,2,50,0,0
+"""
+
+
+def test_a_file_keeps_columns_that_only_a_rig_knows(tmp_path: Path) -> None:
+    path = tmp_path / "tests.csv"
+    path.write_text(FILE)
+    tests = wl.read_tests(path)
+    assert dict(tests.other_conditions).keys() == {"mass", "lateral_creepage", "spin"}
+    assert str(tests.other_conditions["mass"]) == str(Q([20.0, 40.0], "kg"))
+    conditions = tests.conditions(wl.contact_model("exact"))
+    assert conditions.keys() == {"creepage", "mass", "lateral_creepage", "spin"}
+    assert "mass                   20 to 40 kg\n" in repr(tests)
+    tests.to_dataframe().to_csv(path, index=False)
+    again = wl.read_tests(path)
+    assert again != tests  # another source
+    assert str(again.other_conditions["lateral_creepage"]) == str(Q([0.001, 0.0], ""))
+    assert str(tests[1].other_conditions["mass"]) == str(Q([40.0], "kg"))
+
+
+def test_a_condition_of_an_installed_rig_is_no_misspelt_column(tmp_path: Path) -> None:
+    path = tmp_path / "tests.csv"
+    path.write_text(FILE.replace("creepage [%]", "longitudinal_creepage [%]", 1))
+    tests = wl.read_tests(path)  # lateral_creepage resembles creepage, which the file lacks
+    assert tests.other_conditions.keys() == {"mass", "longitudinal_creepage", "lateral_creepage", "spin"}
+    path.write_text(FILE.replace("creepage [%]", "slide_creepage [%]", 1))
+    with pytest.raises(wl.DataError, match=r"column 'slide_creepage \[%\]': unknown column; did you mean 'creepage'"):
+        wl.read_tests(path)
+
+
+class Greased(wl.Rig):
+    """Discs of one friction coefficient."""
+
+    name: ClassVar[str] = "greased"
+    source: ClassVar[str] = "a test"
+
+    def problem(self, *, normal_force: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.Problem:
+        """Return the problem of the discs."""
+        discs = wl.TwinDisc.suros()
+        return discs.problem(normal_force=normal_force, creepage=creepage, friction_coefficient=0.05)
+
+
+def test_a_rig_is_not_given_the_friction_and_the_traction_that_it_does_not_take() -> None:
+    predict: Any = Greased() | wl.contact_model("global") | LAW
+    given: Any = {"normal_force": Q([5.0, 6.0], "kN"), "creepage": "1 %"}
+    tests = wl.WearTests.from_arrays(**given, traction_coefficient=0.04, wear_rate=predict(**given).wear_rate)
+    found = wl.compare([predict], tests)
+    assert found.compared[0].agreement.rms_factor == pytest.approx(1.0, abs=64 * EPS)
+    assert not found.notes
+
+
+def test_files_of_equal_columns_but_other_units_are_other_tests() -> None:
+    one = on_roller(other_conditions={"mass": Q([1.0, 2.0, 3.0, 4.0, 5.0], "kg")})
+    assert one == on_roller(other_conditions={"mass": Q([1.0, 2.0, 3.0, 4.0, 5.0], "kg")})
+    assert one != on_roller(other_conditions={"mass": Q([1.0, 2.0, 3.0, 4.0, 5.0], "t")})
+    assert one != on_roller(other_conditions={"mass": Q([1.0, 2.0, 3.0, 4.0, 6.0], "kg")})
+    assert pickle.loads(pickle.dumps(one)) == one
+    with pytest.raises(ValueError, match="read-only"):
+        one.other_conditions["mass"][0] = Q(2.0, "kg")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("mass [kg]", "mass", "column 'mass': unknown column.*another condition of a rig has its unit in brackets"),
+        ("mass [kg]", "mass [kgg]", r"column 'mass \[kgg\]': 'kgg' is not a known unit"),
+        ("mass [kg]", "max_pressur [MPa]", r"unknown column; did you mean 'max_pressure'"),
+        ("mass [kg]", "my mass [kg]", r"column 'my mass \[kg\]': unknown column"),
+        ("mass [kg]", "spin [1/m]", "is there more than once"),
+        ("mass [kg]", "tangential_force [N]", "tangential_force: T/N follows from it only where the load is normal_fo"),
+        ("a,20,", "a,,", r"line 3, column 'mass \[kg\]': is missing; every test needs it"),
+        ("a,20,", "a,x,", r"line 3, column 'mass \[kg\]': 'x' is not a number"),
+        ("a,20,", "a,1e999,", r"line 3, column 'mass \[kg\]': got 1e999, which must be finite"),
+        ("b,4e1,2,50,0,0", "a,2e1,1,30,1e-3,-0.2", "line 4: is equal to line 3 in every column"),
+    ],
+)
+def test_a_file_with_wrong_columns_of_a_rig_is_refused(old: str, new: str, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "tests.csv"
+    path.write_text(FILE.replace(old, new))
+    with pytest.raises(wl.DataError, match=said):
+        wl.read_tests(path)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"mass": Q([1.0, np.nan, 1.0, 1.0, 1.0], "kg")}, "mass: nan at index 1 is missing; every test needs it"),
+        ({"mass": [1.0, 2.0]}, r"all of one length; got .*mass \(2,\)"),
+        ({"mass": "heavy"}, "mass: 'heavy' is not a number with a unit"),
+        ({"spin": True}, "spin: True is not a real number"),
+        ({"creepage": "1 %"}, "other_conditions: creepage is an argument of its own"),
+        ({}, "give exactly one load of"),
+    ],
+)
+def test_wrong_conditions_of_arrays_are_refused(changes: dict[str, Any], said: str) -> None:
+    with pytest.raises(wl.DataError, match=said):
+        on_roller(other_conditions=changes)
