@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import re
+import tomllib
 
 import pytest
 
@@ -44,3 +46,21 @@ def test_the_files_that_contributing_and_security_link_to_are_there() -> None:
     links = re.findall(r"\]\((?!http)([^)#]+)", TEXT + text_of("SECURITY.md") + text_of("README.md"))
     assert {"docs/plugins.md", "CONTRIBUTING.md"} <= set(links)
     assert [link for link in links if not (ROOT / link).exists()] == []
+
+
+def test_the_rooms_of_the_core_are_those_of_the_code_in_the_order_of_imports() -> None:
+    contracts = tomllib.loads(text_of("pyproject.toml"))["tool"]["importlinter"]["contracts"]
+    layers = next(one["layers"] for one in contracts if one["type"] == "layers")
+    rooms = [name for layer in layers for name in layer.split(" | ") if (ROOT / "core/wearlaw" / name).is_dir()]
+    modules = {name: ast.parse(text_of(f"core/wearlaw/{name}/__init__.py")) for name in rooms}
+    lines = [f"{name:14} {(ast.get_docstring(module) or '').splitlines()[0]}" for name, module in modules.items()]
+    assert "```text\n" + "\n".join(lines) + "\n```" in TEXT
+
+
+def test_no_room_but_that_of_the_rigs_and_the_kit_imports_a_rig() -> None:
+    found = {
+        path.relative_to(ROOT / "core/wearlaw").parts[0]
+        for path in (ROOT / "core/wearlaw").rglob("*.py")
+        if re.search(r"^\s*(?:from|import) wearlaw\.rigs\b", path.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+    assert found <= {"__init__.py", "rigs", "testing"}, "the kit tries models on rigs that ship; take a rig by its name"
