@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import wearlaw as wl
-from wearlaw.contact.conditions import TwinDiscConditions, WheelRailConditions
 from wearlaw.pipeline.variables import NAMES, label
 from wearlaw.plugins.loader import installed
+from wearlaw.rigs.twin_disc import TwinDiscConditions
+from wearlaw.rigs.wheel_rail import WheelRailConditions
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.settings.parameters import numbers
 

@@ -14,8 +14,9 @@ from docs import nomenclature
 from docs.nomenclature import Documented, read
 from tests.environments import ROOT
 from wearlaw.contact import contact as records
-from wearlaw.contact.conditions import TWIN_DISC, WHEEL_RAIL
 from wearlaw.pipeline import variables
+from wearlaw.rigs.twin_disc import TWIN_DISC
+from wearlaw.rigs.wheel_rail import WHEEL_RAIL
 
 SYMBOLS_OF_SEVERAL_NAMES = {
     "k": "KTH's map has a wear coefficient in each of its four fields",

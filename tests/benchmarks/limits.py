@@ -15,7 +15,8 @@ from tests.benchmarks.memory import in_fresh_process, peak_mib
 from tests.benchmarks.points import DEFAULT_FORCE, DEFAULT_FRICTION, Predict, pipeline, workload
 from tests.benchmarks.timing import Times, cpu_time, in_mode, side_by_side
 from wearlaw import Q, RangeWarning
-from wearlaw.contact.conditions import TWIN_DISC, condition_arrays
+from wearlaw.contact.conditions import condition_arrays
+from wearlaw.rigs.twin_disc import TWIN_DISC
 
 DECADES = (10**3, 10**4, 10**5, 10**6, 10**7)
 SWEEP = 10**5

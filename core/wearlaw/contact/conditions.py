@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol, Required, TypeAlias, TypedDict, TypeGuard
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeGuard
 
 import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import ConditionsError, did_you_mean
-from wearlaw.units.quantities import QuantityLike, Unit, coefficient
+from wearlaw.units.quantities import Unit, coefficient
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    pass
 
 Arrays: TypeAlias = dict[str, Array]
 """SI arrays of the conditions, by name."""
@@ -26,65 +26,6 @@ class FrictionLaw(Protocol):
     def coefficient(self, creep_speed: Array) -> Array:
         """Return μ [-] at creep speeds [m/s], of their shape."""
         ...
-
-
-class TwinDiscConditions(TypedDict, total=False):
-    """The conditions of a twin-disc test; arrays broadcast against each other.
-
-    Exactly one of `normal_force`, `normal_force_per_width` and `max_pressure` gives the load.
-
-    Attributes
-    ----------
-    normal_force : Quantity or str
-        Normal force on the whole width, N [N].
-    normal_force_per_width : Quantity or str
-        Normal force per unit width, P [N/m].
-    max_pressure : Quantity or str
-        Hertz's maximum pressure, p0 [Pa].
-    creepage : Quantity or str
-        Creepage, ξ [-], positive where disc 1 is the faster one, of magnitude at most 1.
-    friction_coefficient : array_like of float, or FallingFriction
-        Friction coefficient, μ [-].
-    traction_coefficient : array_like of float
-        Measured tangential over normal force, T/N [-], for contact models that can use it.
-    """
-
-    normal_force: QuantityLike
-    normal_force_per_width: QuantityLike
-    max_pressure: QuantityLike
-    creepage: Required[QuantityLike]
-    friction_coefficient: Required[ArrayLike | FrictionLaw]
-    traction_coefficient: ArrayLike
-
-
-class WheelRailConditions(TypedDict, total=False):
-    """The conditions of a wheel on a rail; arrays broadcast against each other.
-
-    Exactly one of `normal_force` and `max_pressure` gives the load. Creepages are the velocity of the wheel minus that
-    of the rail, over V, as in CONTACT; a positive spin adds to a positive lateral creepage at the leading edge.
-
-    Attributes
-    ----------
-    normal_force : Quantity or str
-        Normal force, N [N].
-    max_pressure : Quantity or str
-        Hertz's maximum pressure, p0 [Pa].
-    longitudinal_creepage : Quantity or str
-        Longitudinal creepage, ξ [-], of magnitude at most 1; positive where the wheel is braked.
-    lateral_creepage : Quantity or str
-        Lateral creepage, η [-], of magnitude at most 1; zero where it is not given.
-    spin : Quantity or str
-        Spin, φ [1/m]; zero where it is not given.
-    friction_coefficient : array_like of float, or FallingFriction
-        Friction coefficient, μ [-].
-    """
-
-    normal_force: QuantityLike
-    max_pressure: QuantityLike
-    longitudinal_creepage: Required[QuantityLike]
-    lateral_creepage: QuantityLike
-    spin: QuantityLike
-    friction_coefficient: Required[ArrayLike | FrictionLaw]
 
 
 LOADS = {"normal_force": Unit("N"), "normal_force_per_width": Unit("kN/m"), "max_pressure": Unit("MPa")}
@@ -140,20 +81,6 @@ class ConditionTable:
         return ConditionsError(
             f"{name}: unknown condition{did_you_mean(name, names)} The conditions are: {', '.join(names)}"
         )
-
-
-TWIN_DISC = ConditionTable(
-    LOADS, {"creepage": CREEPAGE}, COEFFICIENTS, {"creepage": 'Q(1, "%")', "friction_coefficient": "0.46"}
-)
-"""The conditions of a twin-disc test."""
-
-WHEEL_RAIL = ConditionTable(
-    {"normal_force": Unit("kN"), "max_pressure": Unit("MPa")},
-    {"longitudinal_creepage": CREEPAGE, "lateral_creepage": CREEPAGE, "spin": SPIN},
-    COEFFICIENTS[:1],
-    {"longitudinal_creepage": 'Q(0.2, "%")', "friction_coefficient": "0.3"},
-)
-"""The conditions of a wheel on a rail."""
 
 
 def condition_arrays(

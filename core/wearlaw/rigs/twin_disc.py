@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Required, TypedDict, Unpack
 
 import numpy as np
 from pydantic import model_validator
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz
-from wearlaw.contact.conditions import TWIN_DISC, TwinDiscConditions, condition_arrays
+from wearlaw.contact.conditions import COEFFICIENTS, CREEPAGE, LOADS, ConditionTable, FrictionLaw, condition_arrays
 from wearlaw.contact.material import Material, steel
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import InputError, UnitError
@@ -28,6 +28,44 @@ from wearlaw.units.quantities import (
     parse,
     scalar_si,
 )
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+class TwinDiscConditions(TypedDict, total=False):
+    """The conditions of a twin-disc test; arrays broadcast against each other.
+
+    Exactly one of `normal_force`, `normal_force_per_width` and `max_pressure` gives the load.
+
+    Attributes
+    ----------
+    normal_force : Quantity or str
+        Normal force on the whole width, N [N].
+    normal_force_per_width : Quantity or str
+        Normal force per unit width, P [N/m].
+    max_pressure : Quantity or str
+        Hertz's maximum pressure, p0 [Pa].
+    creepage : Quantity or str
+        Creepage, ξ [-], positive where disc 1 is the faster one, of magnitude at most 1.
+    friction_coefficient : array_like of float, or FallingFriction
+        Friction coefficient, μ [-].
+    traction_coefficient : array_like of float
+        Measured tangential over normal force, T/N [-], for contact models that can use it.
+    """
+
+    normal_force: QuantityLike
+    normal_force_per_width: QuantityLike
+    max_pressure: QuantityLike
+    creepage: Required[QuantityLike]
+    friction_coefficient: Required[ArrayLike | FrictionLaw]
+    traction_coefficient: ArrayLike
+
+
+TWIN_DISC = ConditionTable(
+    LOADS, {"creepage": CREEPAGE}, COEFFICIENTS, {"creepage": 'Q(1, "%")', "friction_coefficient": "0.46"}
+)
+"""The conditions of a twin-disc test."""
 
 
 class Disc(Configuration):

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Required, TypedDict, Unpack
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from wearlaw.contact import hertz, hertz_ellipse
-from wearlaw.contact.conditions import WHEEL_RAIL, WheelRailConditions, condition_arrays
+from wearlaw.contact.conditions import COEFFICIENTS, CREEPAGE, SPIN, ConditionTable, FrictionLaw, condition_arrays
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.models.rig import Body, Rig, check_sizes
@@ -18,6 +18,48 @@ from wearlaw.plugins.fields import MaterialField
 from wearlaw.units.quantities import Length, Quantity, QuantityLike, Speed, Unit, scalar_si
 
 Radius = Annotated[Quantity, Unit("mm", positive=False, infinite=True)]
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+class WheelRailConditions(TypedDict, total=False):
+    """The conditions of a wheel on a rail; arrays broadcast against each other.
+
+    Exactly one of `normal_force` and `max_pressure` gives the load. Creepages are the velocity of the wheel minus that
+    of the rail, over V, as in CONTACT; a positive spin adds to a positive lateral creepage at the leading edge.
+
+    Attributes
+    ----------
+    normal_force : Quantity or str
+        Normal force, N [N].
+    max_pressure : Quantity or str
+        Hertz's maximum pressure, p0 [Pa].
+    longitudinal_creepage : Quantity or str
+        Longitudinal creepage, ξ [-], of magnitude at most 1; positive where the wheel is braked.
+    lateral_creepage : Quantity or str
+        Lateral creepage, η [-], of magnitude at most 1; zero where it is not given.
+    spin : Quantity or str
+        Spin, φ [1/m]; zero where it is not given.
+    friction_coefficient : array_like of float, or FallingFriction
+        Friction coefficient, μ [-].
+    """
+
+    normal_force: QuantityLike
+    max_pressure: QuantityLike
+    longitudinal_creepage: Required[QuantityLike]
+    lateral_creepage: QuantityLike
+    spin: QuantityLike
+    friction_coefficient: Required[ArrayLike | FrictionLaw]
+
+
+WHEEL_RAIL = ConditionTable(
+    {"normal_force": Unit("kN"), "max_pressure": Unit("MPa")},
+    {"longitudinal_creepage": CREEPAGE, "lateral_creepage": CREEPAGE, "spin": SPIN},
+    COEFFICIENTS[:1],
+    {"longitudinal_creepage": 'Q(0.2, "%")', "friction_coefficient": "0.3"},
+)
+"""The conditions of a wheel on a rail."""
 
 
 class _Patch(NamedTuple):

@@ -13,11 +13,11 @@ from functools import partial
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.conditions import WheelRailConditions
 from wearlaw.contact.contact import NODE_VARIABLES
 from wearlaw.contact.elliptic_contact import TOTALS, EllipticContact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel
+from wearlaw.rigs.wheel_rail import WheelRailConditions
 from wearlaw.testing.acceleration import Ramps
 from wearlaw.testing.bisection import lost_digits
 from wearlaw.testing.ellipses import (
