@@ -1,4 +1,4 @@
-"""The problem of an elliptic contact: units in, SI inside, and what is refused."""
+"""The problem of a contact: units in, SI inside, and what is refused."""
 
 from __future__ import annotations
 
@@ -97,3 +97,69 @@ def test_wrong_input_is_named(changes: dict[str, Any], message: str) -> None:
 
 def test_spin_may_be_given_in_radians_per_length() -> None:
     assert problem(spin=Q(0.3, "rad/m")).spin == pytest.approx(0.3, rel=2 * EPS)
+
+
+# --- On a line -------------------------------------------------------------------------------------------------------
+
+STEEL = wl.steel()
+
+
+def line(**changes: Any) -> wl.Problem:
+    shear_modulus = STEEL.youngs_modulus / (2.0 * (1.0 + STEEL.poisson_ratio))
+    given: dict[str, Any] = {
+        "normal_force": Q(7.4, "kN"),
+        "track_width": Q(10, "mm"),
+        "relative_radius": Q(11.75, "mm"),
+        "shear_modulus": shear_modulus,
+        "poisson_ratio": STEEL.poisson_ratio,
+        "friction_coefficient": 0.46,
+        "creepage": Q([-1.0, 2.0], "%"),
+        "rolling_speed": Q(2, "m/s"),
+    }
+    return wl.Problem.line(**{**given, **changes})
+
+
+def test_a_line_is_that_of_discs_of_its_radius_and_material() -> None:
+    discs = wl.TwinDisc.suros(rolling_speed="2 m/s", material=STEEL)
+    expected = discs.problem(normal_force="7.4 kN", creepage=Q([-1.0, 2.0], "%"), friction_coefficient=0.46)
+    found = line()
+    assert found.geometry == expected.geometry == "line"
+    for field in dataclasses.fields(expected):
+        if isinstance(getattr(expected, field.name), np.ndarray):
+            np.testing.assert_allclose(
+                getattr(found, field.name), getattr(expected, field.name), rtol=16 * EPS, err_msg=field.name
+            )
+    assert found.relative_radius == pytest.approx(11.75e-3, rel=8 * EPS)
+    assert found.rigid_slip.tolist() == np.abs(found.creepage).tolist()
+
+
+def test_unlike_discs_are_two_springs_in_series_also_in_shear() -> None:
+    soft = wl.steel(youngs_modulus="70 GPa", poisson_ratio=0.33)
+    rig = wl.TwinDisc.suros(disc_2=wl.Disc(diameter="47 mm", material=soft))
+    found = rig.problem(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4)
+    shear = [one.youngs_modulus.m_as("Pa") / (2.0 * (1.0 + one.poisson_ratio)) for one in (STEEL, soft)]
+    assert found.shear_modulus == pytest.approx(2.0 / (1.0 / shear[0] + 1.0 / shear[1]), rel=16 * EPS)
+    # between those of the two, nearer to that of the softer one, which bends more
+    assert 0.28 < 0.305 < found.poisson_ratio < 0.33
+
+
+def test_a_line_without_a_unit_or_of_an_impossible_ratio_is_refused() -> None:
+    with pytest.raises(wl.UnitError, match="track_width"):
+        line(track_width=0.01)
+    with pytest.raises(wl.InputError, match="poisson_ratio: must lie between 0 and 0.5"):
+        line(poisson_ratio=0.7)
+    with pytest.raises(wl.ConditionsError, match="do not broadcast"):
+        line(normal_force=Q([1.0, 2.0, 3.0], "kN"))
+
+
+def test_what_belongs_to_lines_is_refused_on_an_ellipse() -> None:
+    for name in ("normal_force_per_width", "relative_radius"):
+        with pytest.raises(wl.CompositionError, match=f"{name}: belongs to line contacts, not to elliptic contacts"):
+            getattr(problem(), name)
+
+
+def test_flattening_makes_no_copies_of_one_number_that_stands_for_all() -> None:
+    flat = line().broadcast_to((300, 2)).flatten()
+    assert flat.batch_shape == (600,)
+    assert flat.rolling_speed.strides == (0,)
+    assert flat.creepage.tolist() == [-0.01, 0.02] * 300
