@@ -146,7 +146,7 @@ def test_unlike_discs_are_two_springs_in_series_also_in_shear() -> None:
 def test_a_line_without_a_unit_or_of_an_impossible_ratio_is_refused() -> None:
     with pytest.raises(wl.UnitError, match="track_width"):
         line(track_width=0.01)
-    with pytest.raises(wl.InputError, match="poisson_ratio: must lie between 0 and 0.5"):
+    with pytest.raises(wl.InputError, match=r"poisson_ratio: must lie between 0 and 0\.5"):
         line(poisson_ratio=0.7)
     with pytest.raises(wl.ConditionsError, match="do not broadcast"):
         line(normal_force=Q([1.0, 2.0, 3.0], "kN"))
