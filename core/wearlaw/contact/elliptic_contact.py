@@ -1,5 +1,8 @@
 """The solved elliptic contact: a `Contact` whose traction and slip are vectors, on strips in rolling direction."""
 
+# Fields stand here for properties of `Contact`, which frozen records may: neither can be written to.
+# pyright: reportIncompatibleMethodOverride=false
+
 from __future__ import annotations
 
 from dataclasses import dataclass, field
