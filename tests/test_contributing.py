@@ -51,7 +51,7 @@ def test_the_files_that_contributing_and_security_link_to_are_there() -> None:
 def test_the_rooms_of_the_core_are_those_of_the_code_in_the_order_of_imports() -> None:
     contracts = tomllib.loads(text_of("pyproject.toml"))["tool"]["importlinter"]["contracts"]
     layers = next(one["layers"] for one in contracts if one["type"] == "layers")
-    rooms = [name for layer in layers for name in layer.split(" | ") if (ROOT / "core/wearlaw" / name).is_dir()]
+    rooms = [name for layer in layers for name in re.split(r" [|:] ", layer) if (ROOT / "core/wearlaw" / name).is_dir()]
     modules = {name: ast.parse(text_of(f"core/wearlaw/{name}/__init__.py")) for name in rooms}
     lines = [f"{name:14} {(ast.get_docstring(module) or '').splitlines()[0]}" for name, module in modules.items()]
     assert "```text\n" + "\n".join(lines) + "\n```" in TEXT

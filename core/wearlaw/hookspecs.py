@@ -7,7 +7,7 @@ names marked `@wearlaw.hookimpl`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pluggy
 
@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from wearlaw.models.contact_model import ContactModel
     from wearlaw.models.rig import Rig
     from wearlaw.models.wear_law import WearLaw
-    from wearlaw.study.sections import Section
-    from wearlaw.study.study import Study
 
 PROJECT = "wearlaw"
 
@@ -68,5 +66,5 @@ def wearlaw_tests() -> Mapping[str, str]:  # type: ignore[empty-body]
 
 
 @hookspec
-def wearlaw_sections() -> Mapping[str, Callable[[Study], Section]]:  # type: ignore[empty-body]
-    """Return by name what makes a section of a report from the results of a case."""
+def wearlaw_sections() -> Mapping[str, Callable[[Any], Any]]:  # type: ignore[empty-body]
+    """Return by name functions that take a `wearlaw.Study` and return a `wearlaw.Section` of its report."""
