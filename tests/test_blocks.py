@@ -46,6 +46,8 @@ TESTS += "&& .venv/bin/python -m pytest -n auto"
 STUDY = "python3 -m venv .venv && .venv/bin/python -m pip install --quiet . "
 STUDY += "&& .venv/bin/wearlaw run tassini2010 -o out"
 INSTALL = "python3 -m venv .venv && .venv/bin/python -m pip install --quiet . && .venv/bin/wearlaw plugins"
+ROOMS = "cli            The command line: it parses, calls the rest of the package, and prints."
+
 NOT_RUN = {
     ("README.md", STUDY): "installs from an index; .ci/run runs it",
     ("README.md", TESTS): WHOLE,
@@ -55,6 +57,7 @@ NOT_RUN = {
     ("CONTRIBUTING.md", ".venv/bin/python -m pip install --upgrade pip"): INDEX,
     ("CONTRIBUTING.md", "python -m pip install pre-commit"): "installs from an index, and into the clone's git",
     ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,
+    ("CONTRIBUTING.md", ROOMS): "no code; tests/test_contributing.py compares it with the code",
     ("docs/accuracy.md", "nox -s bench"): NOX,
     ("docs/results.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
     ("docs/results.md", 'creepage = ncread("out/results.nc", "/sweeps/creepage/creepage");'): MATLAB,

@@ -48,11 +48,11 @@ class ConditionTable:
     Attributes
     ----------
     loads, creepages : mapping of str to Unit
-        Exactly one of the loads is due, and the first of the creepages; those that are not given are zero.
+        Exactly one of the loads is needed, and the first of the creepages; those that are not given are zero.
     coefficients : tuple of str
-        Plain numbers, of which the first is due.
+        Plain numbers, of which the first is needed.
     examples : mapping of str to str
-        How to give what is due.
+        How to give what is needed.
     """
 
     loads: Mapping[str, Unit]

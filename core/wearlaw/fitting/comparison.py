@@ -1,4 +1,4 @@
-"""What comes of comparing predictors on the same wear tests: a ranking, and a figure."""
+"""The result of comparing predictors on the same wear tests: a ranking, and a figure."""
 
 from __future__ import annotations
 

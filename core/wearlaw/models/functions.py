@@ -188,7 +188,7 @@ def _check(subject: str, function: Function, inputs: Mapping[str, str], units: M
 
 
 def _check_names(subject: str, units: Mapping[str, str], inputs: Mapping[str, str], monotone_in: Sequence[str]) -> None:
-    """Refuse parameters that cannot be fields of a law, and what is said of variables that are no inputs."""
+    """Refuse parameters that cannot be fields of a law, and declarations of variables that are no inputs."""
     for name in units:
         if name.startswith("_") or name in FunctionLaw.__class_vars__ or hasattr(FunctionLaw, name):
             raise _error(subject, f"parameters.{name}", "is a name that wear laws keep for themselves; choose another")

@@ -1,4 +1,4 @@
-"""What a contact model implements that knows its fields in closed form: `LineContactModel`."""
+"""The base class of contact models with closed-form fields on a line: `LineContactModel`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class LineContactModel(ContactModel):
 
     @property
     def square_roots_at(self) -> Literal["slip_zone", "patch"]:
-        """At the ends of what pressure, traction and slip behave like square roots, if they do.
+        """The interval at whose ends pressure, traction and slip behave like square roots.
 
         "slip_zone" suits elastic half-spaces, "patch" models whose slip is smooth up to where it begins.
         """

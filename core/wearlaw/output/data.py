@@ -1,4 +1,4 @@
-"""Writing what comes of wear tests: a fit, or a comparison."""
+"""Writing the results of a fit or a comparison."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class _Earlier:
 
 @contextmanager
 def fresh_folder(folder: Path, overwrite: bool = False, marker: str | None = None) -> Iterator[Path]:
-    """Yield a temporary folder that becomes `folder` if the context ends without an error.
+    """Yield a temporary folder that takes the place of `folder` if all goes well.
 
     Parameters
     ----------

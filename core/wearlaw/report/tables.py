@@ -48,7 +48,7 @@ class Cell:
 
 
 def cell(value: Any) -> Cell:
-    """Return what a table shows of a value: numbers with four digits, nothing for what is missing."""
+    """Return the text of a table cell: numbers with four digits, empty if the value is missing."""
     import pandas as pd
 
     if value is None or value is pd.NA or value != value:

@@ -207,7 +207,7 @@ class TwinDisc(Rig):
         """
         constants = self._constants
         arrays = condition_arrays(conditions, TWIN_DISC, lambda a: constants["rolling_speed"] * np.abs(a["creepage"]))
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` refuses what comes of it
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` refuses the result
             per_width = self._normal_force_per_width(arrays)
             half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
             max_pressure = hertz.max_pressure(per_width, half_width)

@@ -179,7 +179,7 @@ class WheelRail(Rig):
             WHEEL_RAIL,
             lambda a: patch.rolling_speed * np.hypot(a["longitudinal_creepage"], a["lateral_creepage"]),
         )
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` refuses what comes of it
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` refuses the result
             if "max_pressure" in arrays:
                 pressure = arrays.pop("max_pressure")
                 arrays["normal_force"] = (pressure / patch.max_pressure) ** 3

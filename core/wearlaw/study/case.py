@@ -102,7 +102,7 @@ class Case(Configuration):
     @model_validator(mode="before")
     @classmethod
     def _has_its_plugins(cls, fields: Any) -> Any:
-        """Say that a plugin is missing before anything else fails for lack of it."""
+        """Say that a plugin is missing before anything else fails because it is missing."""
         if isinstance(fields, dict):
             needed = fields.get("plugins", {})
             if isinstance(needed, dict):

@@ -25,7 +25,7 @@ MOST_POINTS = 10_000_000
 
 
 def _value(value: Any) -> Any:
-    """Refuse early what cannot be one value of a condition."""
+    """Refuse early what is no value of a condition."""
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise InputError(f"must be a value, a list of values, or a table with from, to and points; got {value!r}")
     if isinstance(value, float) and not np.isfinite(value):

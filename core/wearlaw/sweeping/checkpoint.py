@@ -21,7 +21,7 @@ RUN, JOURNAL = "run.json", "journal"
 
 
 class Checkpoint:
-    """A folder for what is done so far; there is none as long as nothing takes more than one block.
+    """A folder of finished blocks, made once a sweep has more than one.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ AHEAD = 4
 """Blocks that are handed out for each thread of the cluster, so that none waits for work."""
 
 CHECKED_S = 1.0
-"""How often it is looked at which workers there are."""
+"""Time from one count of the workers to the next."""
 
 
 def on_cluster(
@@ -89,7 +89,7 @@ class _Members:
         return max(1, sum(self._known.values()))
 
     def left(self, at_once: bool) -> list[str]:
-        """Return what must be said of workers that are gone, if it was not looked at a moment ago."""
+        """Return a warning about lost workers, or nothing if they were counted a moment ago."""
         if not at_once and time.monotonic() < self._checked + CHECKED_S:
             return []
         before, self._known, self._checked = self._known, self._client.nthreads(), time.monotonic()

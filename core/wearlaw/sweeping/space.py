@@ -27,7 +27,7 @@ def check_memory(size: int, advice: str) -> None:
 
 
 def check_disk(size: int, path: Path) -> None:
-    """Refuse what does not fit on the disk.
+    """Raise an error if the results do not fit on the disk.
 
     Raises
     ------

@@ -143,7 +143,7 @@ def check_importable(pipeline: Pipeline[...]) -> None:
 
 
 def _check_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapping[str, None]) -> None:
-    """Find what cannot be before anything is evaluated: each dimension at the first values of the others."""
+    """Find invalid conditions before anything is evaluated: along each dimension, at the first values of the others."""
     for dim in points.dims:
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
         problem = pipeline.rig.checked_problem({**not_given, **line.conditions()})
@@ -152,7 +152,7 @@ def _check_conditions(pipeline: Pipeline[...], points: Points, not_given: Mappin
 
 
 def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:
-    """Evaluate the blocks that are not done yet, and return what a reader of the results must know.
+    """Evaluate the remaining blocks, and return the remarks that belong to the results.
 
     Parameters
     ----------

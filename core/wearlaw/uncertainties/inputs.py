@@ -82,7 +82,7 @@ class Known:
 OTHERS = (
     "\nThe values are samples of its distribution; choose one without such values, such as wl.lognormal or wl.uniform"
 )
-"""What is said of samples that are not possible."""
+"""The hint for impossible samples."""
 
 
 def check_samples(law: WearLaw, samples: Mapping[str, Array]) -> None:
@@ -152,7 +152,7 @@ def parameter(name: str, given: object, law: WearLaw) -> Uncertain:
 
 
 def _uncertain(name: str, given: Distribution, unit: Unit | None, of_law: bool) -> Uncertain:
-    """Return an input of one number; where no unit is due, it is a coefficient."""
+    """Return an input of one number; without a unit, it is a coefficient."""
     if unit is None:
         first = float(coefficient(given.first, name))
         plain = isinstance(given.second, float)  # `_check` says which of the two numbers is wrong

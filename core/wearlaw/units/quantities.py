@@ -1,7 +1,7 @@
 """Units at the rim: quantities come in and go out with units, plain SI floats live inside.
 
-`Q(7.4, "kN")` makes a quantity, `Unit` says which unit a field or argument is due, checks what it is
-given and hands on SI floats. Everything uses pint's application registry, looked up when it is needed,
+`Q(7.4, "kN")` makes a quantity. `Unit` states the unit expected of a field or argument, checks the value and returns SI
+floats. Everything uses pint's application registry, looked up when it is needed,
 so that quantities made by other packages and by `pint.set_application_registry` fit in.
 """
 
@@ -97,7 +97,7 @@ HEAD = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?")
 
 @dataclass(frozen=True)
 class Unit:
-    """The unit that a field or argument is due, with the bounds of its value.
+    """The unit expected of a field or argument, with the bounds of its value.
 
     Used in an annotation, ``Annotated[Quantity, Unit("mm")]``, it makes pydantic accept a quantity of that
     dimension, or a text such as "47 mm"; everything else is an error that names the field.
@@ -228,7 +228,7 @@ def real_array(value: object) -> NDArray[np.float64]:
     if isinstance(value, pint.Quantity) or (
         isinstance(value, (list, tuple)) and any(isinstance(entry, pint.Quantity) for entry in value)
     ):
-        raise UnitError(f"{_describe(value)} has a unit of its own where a plain number is due")
+        raise UnitError(f"{_describe(value)} has a unit of its own where a plain number is expected")
     try:
         array = np.asarray(value)
     except (TypeError, ValueError):

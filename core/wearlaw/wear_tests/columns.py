@@ -124,7 +124,7 @@ def faulty_columns(names: Sequence[str] | Mapping[str, object]) -> list[str]:
 
 
 def faulty(columns: Mapping[str, Array]) -> list[tuple[int, str, str]]:
-    """Return the test, the column and the broken rule of each value that cannot be.
+    """Return the test, the column and the broken rule of each impossible value.
 
     Columns that are not in `COLUMNS` are other conditions, in any unit.
     """
@@ -156,7 +156,7 @@ def _faulty_traction(columns: Mapping[str, Array]) -> list[tuple[int, str, str]]
 def with_traction(columns: Mapping[str, Array]) -> dict[str, Array]:
     """Return columns with the traction coefficient in the place of what it follows from."""
     kept = {name: values for name, values in columns.items() if name not in (*DERIVED, "rolling_speed")}
-    with np.errstate(divide="ignore", over="ignore", under="ignore"):  # `faulty` refuses what comes of it
+    with np.errstate(divide="ignore", over="ignore", under="ignore"):  # `faulty` refuses the result
         force = columns.get("tangential_force")
         if "frictional_heat" in columns:
             force = columns["frictional_heat"] / (abs(columns["creepage"]) * columns["rolling_speed"])

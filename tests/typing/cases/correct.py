@@ -66,7 +66,7 @@ ellipse = wl.Problem.ellipse(
     spin=Q(0, "1/mm"),
 )
 solved = wl.contact_model("fastsim", bound="elliptic").solve(ellipse)
-assert_type(solved, wl.EllipticContact)
+assert_type(solved, wl.Contact)
 assert_type(solved.longitudinal_force, wl.Quantity)
 
 

@@ -45,7 +45,7 @@ wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=
 on_rail = wheel | model | law
 on_rail(normal_force="80 kN", creepage="1 %", friction_coefficient=0.3)  # expect-error
 on_rail(normal_force="80 kN", longitudinal_creepage=0.01, friction_coefficient=0.3)  # expect-error
-wl.uncertainty(on_rail, normal_force="80 kN")  # expect-error
+wl.uncertainty(on_rail, samples="many")  # expect-error
 
 
 class Roller(wl.Rig):
