@@ -22,7 +22,7 @@ TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
 CLASSES = (
     *(wl.Problem, wl.Contact, TwinDiscConditions, wl.Prediction, wl.LocalWear),
-    *(wl.CreepForces, wl.EllipticContact, WheelRailConditions),
+    *(wl.CreepForces, WheelRailConditions),
 )
 SHOWN_AS = {"TwinDiscConditions": "conditions", "WheelRailConditions": "conditions"}
 

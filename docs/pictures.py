@@ -118,7 +118,7 @@ def reference_problem(xi: Any, eta: Any, phi: Any) -> wl.Problem:
     )
 
 
-def solve_reference() -> tuple[pd.DataFrame, dict[str, wl.EllipticContact]]:
+def solve_reference() -> tuple[pd.DataFrame, dict[str, wl.Contact]]:
     """Return the reference cases of the half-space theory, and their solutions by FASTSIM for each bound."""
     table = pd.read_csv(REFERENCE, comment="#")
     problem = reference_problem(table.xi.to_numpy(), table.eta.to_numpy(), table.phi.to_numpy())

@@ -16,10 +16,9 @@ from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop, kernel
 from wearlaw.contact import hertz, hertz_ellipse, kalker
 from wearlaw.contact.contact import Contact, LineFields
-from wearlaw.contact.elliptic_contact import EllipticContact
 from wearlaw.contact.friction import FallingFriction
 from wearlaw.contact.material import Material, steel
-from wearlaw.contact.problem import CreepForces, Geometry, Problem
+from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import (
     CalibrationWarning,
@@ -50,7 +49,7 @@ from wearlaw.models.contact_model import Claim, ContactModel, Scale
 from wearlaw.models.creep_force_model import CreepForceModel
 from wearlaw.models.functions import as_wear_law
 from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
-from wearlaw.models.rig import Body, Rig
+from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import BreakpointMap, Calibration, LocalWear, Numbers, WearLaw
 from wearlaw.pipeline.pipeline import PatchMean, Pipeline, patch_mean
 from wearlaw.pipeline.prediction import Prediction
@@ -101,7 +100,6 @@ __all__ = [
     "DataError",
     "Density",
     "Disc",
-    "EllipticContact",
     "FallingFriction",
     "FieldVariable",
     "FigureData",

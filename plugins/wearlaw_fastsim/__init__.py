@@ -102,7 +102,7 @@ class Fastsim(wl.LineContactModel):
         """
         return 0.5 / self.strips if self.march == "adaptive" else 1.0 / self.strips
 
-    def solve_ellipse(self, problem: wl.Problem) -> wl.EllipticContact:
+    def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
         """Return the contact on strips."""
         from wearlaw_fastsim import _solution  # most of what there is to import, and not needed on a line
 
@@ -111,7 +111,7 @@ class Fastsim(wl.LineContactModel):
         contact = solve(problem, patches, self.strips)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 
-    def on_strips(self, problem: wl.Problem, shares: Array) -> wl.EllipticContact | None:
+    def on_strips(self, problem: wl.Problem, shares: Array) -> wl.Contact | None:
         """Return the contact on strips at y = `shares` × b; a uniform march has its own strips."""
         if self.march == "uniform":
             return None

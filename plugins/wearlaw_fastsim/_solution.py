@@ -39,19 +39,19 @@ def ellipses(problem: wl.Problem, elliptic: bool, interpolation: wl.kalker.Inter
     )
 
 
-def adaptive(problem: wl.Problem, patches: Ellipses, count: int) -> wl.EllipticContact:
+def adaptive(problem: wl.Problem, patches: Ellipses, count: int) -> wl.Contact:
     """Return the contact on `count` strips with nodes where they are needed."""
     shares, widths = _strips.even_strips(count)
     return _on_strips(problem, patches, count, shares, widths)
 
 
-def on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array) -> wl.EllipticContact:
+def on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array) -> wl.Contact:
     """Return the contact on strips at y = `shares` × b, with as many nodes on each as among `count` strips."""
     between = 0.5 * (shares[1:] + shares[:-1])
     return _on_strips(problem, patches, count, shares, np.diff(np.concatenate([[-1.0], between, [1.0]])))
 
 
-def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array, widths: Array) -> wl.EllipticContact:
+def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array, widths: Array) -> wl.Contact:
     flat = problem.flatten()
     along = max(round(STICK_NODES_PER_STRIP * count), 4), max(round(SLIP_NODES_PER_STRIP * count), 8)
     found = _strips.strips(patches, shares, *along)
@@ -60,7 +60,7 @@ def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array
     if rolls_freely.any():  # nodes of no length at the trailing edge slip
         for field in (found.traction_x, found.traction_y, found.slip_x, found.slip_y):
             field[rolls_freely] = 0.0
-    contact = wl.EllipticContact.from_strips(
+    contact = wl.Contact.from_strips(
         flat,
         _strips.forces(patches, shares, widths, found),
         x=found.x,
@@ -71,17 +71,17 @@ def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array
         slip=(found.slip_x, found.slip_y),
         traction_bound=found.bound,
     )
-    return contact.with_batch(problem.batch_shape)
+    return contact.unflattened(problem)
 
 
-def uniform(problem: wl.Problem, patches: Ellipses, count: int) -> wl.EllipticContact:
+def uniform(problem: wl.Problem, patches: Ellipses, count: int) -> wl.Contact:
     """Return the contact on `count` × `count` cells, by Kalker's march."""
     flat = problem.flatten()
     compiled = wl.accelerated(flat.size * count**2 // CELLS)
     cells = Cells.empty(flat.size, count, count, compiled=compiled)
     march(patches, cells, compiled=compiled)
     drop_gains(cells)
-    contact = wl.EllipticContact.from_strips(
+    contact = wl.Contact.from_strips(
         flat,
         _march.forces(patches, cells),
         x=cells.x,
@@ -92,4 +92,4 @@ def uniform(problem: wl.Problem, patches: Ellipses, count: int) -> wl.EllipticCo
         slip=(cells.slip_x, cells.slip_y),
         traction_bound=cells.bound,
     )
-    return contact.with_batch(problem.batch_shape)
+    return contact.unflattened(problem)

@@ -55,7 +55,7 @@ def test_the_rival_in_numpy_evaluates_the_law_in_all_cells(block: int) -> None:
 def test_the_rival_marches_on_the_patches_of_wearlaw() -> None:
     problem = workload(50)
     contact = wl.contact_model("fastsim", strips=20).solve(problem)
-    assert isinstance(contact, wl.EllipticContact)
+    assert isinstance(contact, wl.Contact)
     found = MarchAndLaw(ellipses(problem, elliptic=False), 200, 50)()
     limit = problem.friction_coefficient * problem.normal_force
     # 200 cells are of first order, one per cent of them is usual with spin; see the tests of the march.

@@ -31,7 +31,7 @@ def forces(points: int = 2) -> wl.CreepForces:
     )
 
 
-def on_strips() -> wl.EllipticContact:
+def on_strips() -> wl.Contact:
     """Return two points of three strips with four nodes each, and numbers that all differ."""
     random = np.random.default_rng(3)
     x = np.broadcast_to(np.linspace(-2e-3, 2e-3, 4)[:, None], (2, 4, 3))
@@ -39,7 +39,7 @@ def on_strips() -> wl.EllipticContact:
     def one() -> Array:
         return random.uniform(0.5, 1.5, (2, 4, 3))
 
-    return wl.EllipticContact.from_strips(
+    return wl.Contact.from_strips(
         problem(),
         forces(),
         x=x,
@@ -104,7 +104,7 @@ def test_slip_that_is_nowhere_cannot_be_scaled() -> None:
 
 
 def test_a_patch_as_one_node_holds_means_that_dissipate_the_same() -> None:
-    patch = wl.EllipticContact.of_patch(problem(), forces())
+    patch = wl.Contact.of_patch(problem(), forces())
     area = np.pi * 6e-3 * 4e-3
     assert patch.pressure.shape == (2, 1, 1)
     assert patch.patch_area == pytest.approx([area] * 2, rel=4 * EPS)
@@ -122,9 +122,7 @@ def test_the_slip_of_a_patch_is_the_root_mean_square_of_the_rigid_slip() -> None
     square = (2e-3 - 0.5 * y) ** 2 + (-1e-3 - 0.5 * x) ** 2
     mean = float((square * w * r).sum() / (w * r * np.ones(8)).sum())
     assert problem().rigid_slip == pytest.approx([np.sqrt(mean)] * 2, rel=16 * EPS)
-    assert wl.EllipticContact.of_patch(problem(), forces()).slip[:, 0, 0] == pytest.approx(
-        [np.sqrt(mean)] * 2, rel=16 * EPS
-    )
+    assert wl.Contact.of_patch(problem(), forces()).slip[:, 0, 0] == pytest.approx([np.sqrt(mean)] * 2, rel=16 * EPS)
 
 
 def test_patch_means_of_strips_are_those_of_a_model_that_knows_the_forces_alone() -> None:
@@ -140,13 +138,14 @@ def test_patch_means_of_strips_are_those_of_a_model_that_knows_the_forces_alone(
 def test_a_patch_without_force_dissipates_what_spin_feeds_in() -> None:
     nothing = np.zeros(2)
     spinning = wl.CreepForces(longitudinal=nothing, lateral=nothing, spin_moment=np.full(2, 2.0))
-    patch = wl.EllipticContact.of_patch(problem(), spinning)
+    patch = wl.Contact.of_patch(problem(), spinning)
     assert patch.cell_wear_index == pytest.approx([1.0, 1.0], rel=8 * EPS)
 
 
 def test_the_batch_can_be_reshaped() -> None:
-    contact = on_strips().with_batch((2, 1))
-    assert isinstance(contact, wl.EllipticContact)
+    column = problem()[:, None]
+    contact = on_strips().unflattened(column)
+    assert contact.problem is column
     assert contact.force_x.shape == (2, 1)
     assert contact.pressure.shape == (2, 1, 4, 3)
     assert contact.strip_width.shape == (2, 1, 3)

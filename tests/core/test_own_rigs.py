@@ -189,7 +189,9 @@ def test_a_broken_rig_is_named(what: Any, said: str, monkeypatch: pytest.MonkeyP
 
 
 def test_bodies_that_are_not_named_lose_no_mass() -> None:
-    r = (Roller() | MODEL | KTH)(mass="20 kg", creepage="1 %")
+    given: Any = {"mass": "20 kg", "creepage": "1 %"}
+    assert (Roller() | MODEL | KTH)(**given).mass_lost(over="1 km", body="disc_1").magnitude > 0.0
+    r = (Roller() | MODEL | KTH).predict(Roller().problem(**given).replaced(bodies={}))
     with pytest.raises(wl.InputError, match="body: this rig has no 'disc_1'; its bodies are not named"):
         r.mass_lost(over="1 km", body="disc_1")
 

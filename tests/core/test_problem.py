@@ -36,7 +36,7 @@ def test_quantities_become_si_arrays_of_one_shape() -> None:
     assert found.size == 6
     assert found.geometry == "ellipse"
     for field in dataclasses.fields(found):
-        if field.name not in ("geometry", "traction_coefficient"):
+        if field.type == "Array":
             assert getattr(found, field.name).shape == (2, 3), field.name
     assert found.a[0, 0] == pytest.approx(6e-3, rel=EPS)
     assert found.spin[0, 0] == pytest.approx(1.0, rel=2 * EPS)

@@ -35,9 +35,7 @@ def contact() -> wl.Contact:
     )
 
 
-ARRAYS = [
-    field.name for field in dataclasses.fields(wl.Problem) if field.name not in ("geometry", "traction_coefficient")
-]
+ARRAYS = [field.name for field in dataclasses.fields(wl.Problem) if field.type == "Array"]
 
 
 def line_problem(shape: tuple[int, ...]) -> wl.Problem:
@@ -96,8 +94,8 @@ def test_a_solution_on_a_line_stands_for_the_whole_track_width() -> None:
     np.testing.assert_allclose(solved.area, [[3e-6]], rtol=1e-15)
 
 
-def test_with_batch_reshapes_the_batch_and_leaves_the_nodes() -> None:
-    reshaped = contact().with_batch((2, 1))
+def test_unflattening_reshapes_the_batch_and_leaves_the_nodes() -> None:
+    reshaped = contact().unflattened(line_problem((2, 1)))
     assert reshaped.pressure.shape == (2, 1, 3)
     assert reshaped.rolling_speed.shape == (2, 1)
     np.testing.assert_array_equal(reshaped.mean_slip, contact().mean_slip[:, None])

@@ -123,6 +123,7 @@ def test_wrong_conditions_are_refused_with_name_value_and_fix(
 
 
 def test_a_body_that_the_rig_has_not_is_refused() -> None:
-    assert RIG.body("disc_2").material is RIG.disc_2.material
+    problem = RIG.problem(creepage="1 %", max_pressure="1.5 GPa", friction_coefficient=0.46)
+    assert problem.body("disc_2").material is RIG.disc_2.material
     with pytest.raises(wl.InputError, match="no 'wheel'; its bodies are 'disc_1' and 'disc_2'"):
-        RIG.body("wheel")
+        problem.body("wheel")

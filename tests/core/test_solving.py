@@ -55,8 +55,8 @@ class ChangedStrips(Strips):
     name: ClassVar[str] = "changed"
     change: Any
 
-    def solve_ellipse(self, problem: wl.Problem) -> wl.EllipticContact:
-        changed: wl.EllipticContact = self.change(super().solve_ellipse(problem))
+    def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
+        changed: wl.Contact = self.change(super().solve_ellipse(problem))
         return changed
 
 
@@ -93,7 +93,7 @@ class Ramps(PerEnergy):
 # --- A patch is as large as its nodes --------------------------------------------------------------------------------
 
 
-def two_parts(contact: wl.EllipticContact) -> wl.EllipticContact:
+def two_parts(contact: wl.Contact) -> wl.Contact:
     """Return a patch of two ellipses side by side, each with half of the pressure and all of the traction."""
     doubled = {
         name: np.concatenate([getattr(contact, name)] * 2, axis=-1)
@@ -115,7 +115,7 @@ def two_parts(contact: wl.EllipticContact) -> wl.EllipticContact:
     doubled["pressure"] *= 0.5
     totals = {name: 2.0 * getattr(contact, name) for name in ("force_x", "force_y", "moment_z")}
     more = {name: 2.0 * getattr(contact, name) for name in ("tangential_force", "wear_index")}
-    return dataclasses.replace(contact, **doubled, **totals, **more)
+    return contact.replaced(**doubled, **totals, **more)
 
 
 @pytest.mark.parametrize("use_patch_mean", [False, True])

@@ -174,9 +174,9 @@ class Counted(type(wl.contact_model("fastsim"))):  # type: ignore[misc]
 
     solved: ClassVar[list[int]] = []
 
-    def solve_ellipse(self, problem: wl.Problem) -> wl.EllipticContact:
+    def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
         self.solved.append(problem.size)
-        found: wl.EllipticContact = super().solve_ellipse(problem)
+        found: wl.Contact = super().solve_ellipse(problem)
         return found
 
 
@@ -323,7 +323,7 @@ class Lost(Strips):
 
     name = "lost"
 
-    def solve_ellipse(self, problem: wl.Problem) -> wl.EllipticContact:
+    def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
         return super().solve_ellipse(problem).replaced(moment_z=np.full(problem.batch_shape, np.nan))
 
 

@@ -114,7 +114,7 @@ def test_a_uniform_march_has_its_own_strips() -> None:
 
 @pytest.mark.parametrize("march", MARCHES)
 def test_what_rolls_freely_among_others_neither_slips_nor_drags(march: Literal["adaptive", "uniform"]) -> None:
-    def contact(longitudinal: float, lateral: float, spin: float) -> wl.EllipticContact:
+    def contact(longitudinal: float, lateral: float, spin: float) -> wl.Contact:
         creepages = ([longitudinal, 1e-3], [lateral, 0.0], [spin, 0.0])
         problem = ellipse().broadcast_to((2,)).with_creepages(*map(np.array, creepages))
         return wl.contact_model("fastsim", march=march).solve_ellipse(problem)

@@ -33,16 +33,16 @@ class Strips(wl.ContactModel):
     def refined(self) -> Strips:
         return self.model_copy(update={"cells": 2 * self.cells, "strips": 2 * self.strips})
 
-    def solve_ellipse(self, problem: wl.Problem) -> wl.EllipticContact:
+    def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
         # Chebyshev's quadrature of the second kind, exact for the area.
         angle = np.pi * np.arange(1, self.strips + 1) / (self.strips + 1)
         return self.at(problem, -np.cos(angle), np.pi / (self.strips + 1) * np.sin(angle))
 
-    def on_strips(self, problem: wl.Problem, shares: Any) -> wl.EllipticContact | None:
+    def on_strips(self, problem: wl.Problem, shares: Any) -> wl.Contact | None:
         edges = np.concatenate([[-1.0], 0.5 * (shares[1:] + shares[:-1]), [1.0]])
         return self.at(problem, shares, np.diff(edges))
 
-    def at(self, problem: wl.Problem, shares: Any, widths: Any) -> wl.EllipticContact:
+    def at(self, problem: wl.Problem, shares: Any, widths: Any) -> wl.Contact:
         """Return the contact on strips at y = `shares` × b, which stand for `widths` × b."""
         a, b = problem.a[..., None, None], problem.b[..., None, None]
         known = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
@@ -71,7 +71,7 @@ class Strips(wl.ContactModel):
         length = np.broadcast_to(step, x.shape)
         slip = along * clipped[0] / length, across * clipped[1] / length
         area = length * b * widths
-        return wl.EllipticContact.from_strips(
+        return wl.Contact.from_strips(
             problem,
             wl.CreepForces(
                 longitudinal=(traction[0] * area).sum(axis=(-2, -1)),

@@ -296,7 +296,7 @@ class BodiesWithSpaces(Weight):
 
     @property
     def bodies(self) -> Mapping[str, wl.Body]:
-        return {"upper disc": DISCS.body("disc_1"), "lower disc": DISCS.body("disc_2")}
+        return {"upper disc": DISCS.bodies["disc_1"], "lower disc": DISCS.bodies["disc_2"]}
 
 
 class NoRadius(Weight):
@@ -313,7 +313,7 @@ class DensityOfTheOther(Weight):
     @property
     def bodies(self) -> Mapping[str, wl.Body]:
         light = wl.Body(wl.steel(density="2700 kg/m^3"), 0.05)
-        return {"disc_1": light, "disc_2": DISCS.body("disc_2")}
+        return {"disc_1": light, "disc_2": DISCS.bodies["disc_2"]}
 
 
 class NoSourceOfRig(Weight):

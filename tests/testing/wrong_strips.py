@@ -14,21 +14,21 @@ from tests.testing.wrong_ellipses import Spoilt, slipping, times
 class LosesEnergyOfTranslation(Spoilt):
     """A tenth of the slip is missing."""
 
-    def spoilt(self, contact: wl.EllipticContact, problem: wl.Problem) -> wl.EllipticContact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return slipping(contact, 0.9)
 
 
 class LosesEnergyOnAnyStrips(Spoilt):
     """One per cent of the slip is missing, less than its accuracy, however fine the strips."""
 
-    def spoilt(self, contact: wl.EllipticContact, problem: wl.Problem) -> wl.EllipticContact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return slipping(contact, 0.99)
 
 
 class ForcesAreNoSumOnAnyStrips(Spoilt):
     """The forces are larger than the sum of the tractions by less than its accuracy, and the slip as much."""
 
-    def spoilt(self, contact: wl.EllipticContact, problem: wl.Problem) -> wl.EllipticContact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         forces = {name: 1.01 * getattr(contact, name) for name in ("force_x", "force_y")}
         return slipping(contact, 1.01).replaced(**forces)
 
@@ -43,7 +43,7 @@ class RefinedHasAsManyStrips(Strips):
 class DoesNotConverge(Spoilt):
     """The forces go up and down with the refinement, by less than its accuracy."""
 
-    def spoilt(self, contact: wl.EllipticContact, problem: wl.Problem) -> wl.EllipticContact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         odd = round(np.log2(self.cells)) % 2
         return times(contact, np.full(problem.batch_shape, 1.0 - 0.01 * odd))
 
@@ -51,7 +51,7 @@ class DoesNotConverge(Spoilt):
 class StripsOfHalfTheWear(Strips):
     """On the strips that are asked for, it slips half as much."""
 
-    def on_strips(self, problem: wl.Problem, shares: Any) -> wl.EllipticContact | None:
+    def on_strips(self, problem: wl.Problem, shares: Any) -> wl.Contact | None:
         contact = super().on_strips(problem, shares)
         assert contact is not None
         return slipping(contact, 0.5)
@@ -60,7 +60,7 @@ class StripsOfHalfTheWear(Strips):
 class StripsSomewhereElse(Strips):
     """It gives its own strips in place of those that are asked for."""
 
-    def on_strips(self, problem: wl.Problem, shares: Any) -> wl.EllipticContact | None:
+    def on_strips(self, problem: wl.Problem, shares: Any) -> wl.Contact | None:
         contact = self.solve_ellipse(problem)
         return (
             contact
@@ -72,7 +72,7 @@ class StripsSomewhereElse(Strips):
 class CountsMillionths(Spoilt):
     """Slips less by 1e-12 where the lateral creepage is an odd number of hundred-thousandths."""
 
-    def spoilt(self, contact: wl.EllipticContact, problem: wl.Problem) -> wl.EllipticContact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         factor = np.where((1e5 * problem.lateral_creepage) % 2.0 == 1.0, 1.0 - 1e-12, 1.0)[..., None, None]
         return contact.replaced(slip=contact.slip * factor)
 
@@ -80,7 +80,7 @@ class CountsMillionths(Spoilt):
 class OtherwiseForOnePoint(Spoilt):
     """Solves one operating point by itself in another way."""
 
-    def spoilt(self, contact: wl.EllipticContact, problem: wl.Problem) -> wl.EllipticContact:
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return times(contact, 1.0 - 1e-9 * (problem.size == 1))
 
 

@@ -1,18 +1,21 @@
 """The solved contact: the record that a contact model returns and a wear law reads.
 
 It is frozen and holds SI float64 arrays. Its first axes are the *batch*, one entry an operating point; a scalar
-prediction has no batch axis. The axes behind the batch are the *nodes* of the patch.
+prediction has no batch axis. The axes behind the batch are the *nodes* of the patch; on an ellipse there are two, along
+a strip and from strip to strip.
 """
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
 from wearlaw.arrays.array import Array
+from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.errors import InputError
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
@@ -44,7 +47,7 @@ ONE_SIGN = 1e-9
 """Share of traction of the other sign that passes for rounding; it moves the mean slip by no more."""
 
 
-def _broadcast(arrays: dict[str, Array], batch_axes: int) -> dict[str, Array]:
+def _broadcast(arrays: dict[str, Array], batch_axes: int) -> dict[str, Any]:
     """Return the arrays of nodes in one shape, which has the batch axes and at least one more."""
     shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
     try:
@@ -66,21 +69,29 @@ class LineFields:
     traction_bound: Array
 
 
+_DERIVED: Any = None
+"""Default of the fields that a line contact derives from others."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Contact:
     """A solved contact: pressure, traction and slip at the nodes of the patch, and the totals.
 
     A node is a point with an area weight. Uniform cells, the nodes of a quadrature and the single cell of a
-    global model are all this one record, so that a wear law is written once for all of them.
+    global model are all this one record, so that a wear law is written once for all of them. In a line contact traction
+    and slip lie along x, and their components across it are zero; on an ellipse they are vectors. `Contact.from_line`,
+    `Contact.from_strips` and `Contact.of_patch` make the record of a model's solution, `Contact.from_arrays` that of
+    another program's.
 
     Attributes
     ----------
     pressure : ndarray, (batch, nodes)
         Normal pressure, p [Pa].
     traction : ndarray, (batch, nodes)
-        Tangential traction, q [Pa], with the sign of the creepage.
+        Tangential traction, q [Pa], with the sign of the creepage; on an ellipse its magnitude.
     slip : ndarray, (batch, nodes)
-        Relative slip, s [-], the slip velocity over the rolling speed, with the sign of the creepage; zero in stick.
+        Relative slip, s [-], the slip velocity over the rolling speed, with the sign of the creepage, on an ellipse its
+        magnitude; zero in stick.
     traction_bound : ndarray, (batch, nodes)
         The largest magnitude that the model allows for the traction [Pa].
     area : ndarray, (batch, nodes)
@@ -92,11 +103,33 @@ class Contact:
     normal_force : ndarray, (batch)
         Normal force, N [N].
     tangential_force : ndarray, (batch)
-        Tangential force, T [N], with the sign of the creepage.
+        Tangential force, T [N], with the sign of the creepage; on an ellipse √(Fx² + Fy²).
     wear_index : ndarray, (batch)
-        Wear index, Tγ [N], the energy dissipated per metre rolled.
+        Wear index, Tγ [N], ξFx + ηFy + φMz, the energy dissipated per metre rolled.
     density : ndarray, (batch)
         Mass density of the body whose wear is predicted, ρ [kg/m³].
+    traction_x : ndarray, (batch, nodes)
+        Longitudinal component of the traction, q_x [Pa], positive in the rolling direction, against x; on a line the
+        traction.
+    traction_y : ndarray, (batch, nodes)
+        Lateral component of the traction, q_y [Pa]; on a line zero.
+    slip_x : ndarray, (batch, nodes)
+        Longitudinal component of the relative slip, s_x [-], positive in the rolling direction, against x; on a line
+        the slip.
+    slip_y : ndarray, (batch, nodes)
+        Lateral component of the relative slip, s_y [-]; on a line zero.
+    y : ndarray, (batch, nodes)
+        Position across the rolling direction [m]; on a line zero, its middle.
+    force_x : ndarray, (batch)
+        Longitudinal force [N], with the sign of the longitudinal creepage; on a line the tangential force.
+    force_y : ndarray, (batch)
+        Lateral force [N], with the sign of the lateral creepage and of the spin; on a line zero.
+    moment_z : ndarray, (batch)
+        Spin moment [N m], with the sign of the spin; on a line zero.
+    strip_width : ndarray, (batch, strips)
+        Width of the patch that a strip of an ellipse stands for [m]; a line has no strips.
+    problem : Problem or None
+        The problem that was solved; None for a contact solved elsewhere.
     """
 
     pressure: Array
@@ -110,6 +143,37 @@ class Contact:
     tangential_force: Array
     wear_index: Array
     density: Array
+    traction_x: Array = _DERIVED
+    traction_y: Array = _DERIVED
+    slip_x: Array = _DERIVED
+    slip_y: Array = _DERIVED
+    y: Array = _DERIVED
+    force_x: Array = _DERIVED
+    force_y: Array = _DERIVED
+    moment_z: Array = _DERIVED
+    strip_width: Array = _DERIVED
+    problem: Problem | None = None
+
+    def __post_init__(self) -> None:
+        """Give a contact without strips its components."""
+        if self.on_strips:
+            return
+        nothing, none = np.zeros(np.shape(self.traction)), np.zeros(np.shape(self.tangential_force))
+        fill = object.__setattr__  # the record is frozen
+        fill(self, "traction_x", self.traction)
+        fill(self, "slip_x", self.slip)
+        fill(self, "force_x", self.tangential_force)
+        fill(self, "traction_y", nothing)
+        fill(self, "slip_y", nothing)
+        fill(self, "y", nothing)
+        fill(self, "force_y", none)
+        fill(self, "moment_z", none)
+        fill(self, "strip_width", np.zeros((*none.shape, 0)))
+
+    @property
+    def on_strips(self) -> bool:
+        """Whether the nodes lie on strips of an ellipse, where traction and slip are vectors."""
+        return self.strip_width is not None and np.shape(self.strip_width)[-1:] != (0,)
 
     @classmethod
     def from_line(
@@ -141,6 +205,85 @@ class Contact:
             tangential_force=force,
             wear_index=force * problem.creepage,
             density=problem.density,
+            problem=problem,
+        )
+
+    @classmethod
+    def from_strips(
+        cls,
+        problem: Problem,
+        forces: CreepForces,
+        *,
+        x: Array,
+        y: Array,
+        length: Array,
+        strip_width: Array,
+        traction: tuple[Array, Array],
+        slip: tuple[Array, Array],
+        traction_bound: Array,
+    ) -> Self:
+        """Return the contact that a model found on strips of an ellipse; the pressure is Hertz's.
+
+        Parameters
+        ----------
+        problem : Problem
+            The problem that was solved.
+        forces : CreepForces
+            The totals.
+        x, length : ndarray, (batch, nodes, strips)
+            Position of each node and the length along its strip that it stands for [m].
+        y, strip_width : ndarray, (batch, strips)
+            Position of each strip and the width that it stands for [m].
+        traction, slip : pair of ndarray, (batch, nodes, strips)
+            Their components along x and y [Pa], [-].
+        traction_bound : ndarray, (batch, nodes, strips)
+            The largest magnitude that the model allows for the traction [Pa].
+        """
+        a, b = problem.a[..., None, None], problem.b[..., None, None]
+        across = y[..., None, :]
+        return cls(
+            pressure=hertz_ellipse.pressure(x, across, a, b, problem.max_pressure[..., None, None]),
+            traction=_magnitude(*traction),
+            slip=_magnitude(*slip),
+            traction_bound=traction_bound,
+            area=length * strip_width[..., None, :],
+            x=x,
+            y=np.broadcast_to(across, x.shape),
+            strip_width=strip_width,
+            traction_x=traction[0],
+            traction_y=traction[1],
+            slip_x=slip[0],
+            slip_y=slip[1],
+            problem=problem,
+            **_totals(problem, forces),
+        )
+
+    @classmethod
+    def of_patch(cls, problem: Problem, forces: CreepForces) -> Self:
+        """Return the contact of one node that holds the means of an ellipse, of a model that knows the forces alone.
+
+        Its slip is the root mean square of the rigid slip, its components those in the centre, and its
+        `wear_index_density` is Tγ/A.
+        """
+        area = problem.patch_area
+        nodes = {
+            "pressure": problem.normal_force / area,
+            "traction": forces.tangential / area,
+            "slip": problem.rigid_slip,
+            "traction_bound": problem.friction_coefficient * problem.normal_force / area,
+            "area": area,
+            "traction_x": forces.longitudinal / area,
+            "traction_y": forces.lateral / area,
+            "slip_x": problem.longitudinal_creepage,
+            "slip_y": problem.lateral_creepage,
+            "x": np.zeros_like(area),
+            "y": np.zeros_like(area),
+        }
+        return cls(
+            **{name: value[..., None, None] for name, value in nodes.items()},
+            strip_width=2.0 * problem.b[..., None],
+            problem=problem,
+            **_totals(problem, forces),
         )
 
     @classmethod
@@ -202,8 +345,15 @@ class Contact:
 
     @property
     def wear_index_density(self) -> Array:
-        """Energy dissipated per metre rolled and area, q·s [N/m²], of shape (batch, nodes)."""
-        return self.traction * self.slip
+        """Energy dissipated per metre rolled and area, q·s [N/m²], of shape (batch, nodes).
+
+        On one node that stands for an ellipse it is Tγ/A.
+        """
+        if not self.on_strips:
+            return self.traction * self.slip
+        if self.pressure.shape[self.rolling_speed.ndim :] == (1, 1):
+            return self.per_node(self.wear_index / self.patch_area)
+        return self.traction_x * self.slip_x + self.traction_y * self.slip_y
 
     @property
     def slip_speed(self) -> Array:
@@ -249,46 +399,6 @@ class Contact:
         return self.sum_over_nodes(self.wear_index_density * self.area)
 
     @property
-    def traction_x(self) -> Array:
-        """Longitudinal component of the traction, q_x [Pa]; on a line the traction."""
-        return self.traction
-
-    @property
-    def traction_y(self) -> Array:
-        """Lateral component of the traction, q_y [Pa]; on a line zero."""
-        return np.zeros_like(self.traction)
-
-    @property
-    def slip_x(self) -> Array:
-        """Longitudinal component of the relative slip, s_x [-]; on a line the slip."""
-        return self.slip
-
-    @property
-    def slip_y(self) -> Array:
-        """Lateral component of the relative slip, s_y [-]; on a line zero."""
-        return np.zeros_like(self.slip)
-
-    @property
-    def y(self) -> Array:
-        """Position across the rolling direction [m]; on a line zero, its middle."""
-        return np.zeros_like(self.x)
-
-    @property
-    def force_x(self) -> Array:
-        """Longitudinal force [N], with the sign of the longitudinal creepage; on a line the tangential force."""
-        return self.tangential_force
-
-    @property
-    def force_y(self) -> Array:
-        """Lateral force [N]; on a line zero."""
-        return np.zeros_like(self.tangential_force)
-
-    @property
-    def moment_z(self) -> Array:
-        """Spin moment [N m]; on a line zero."""
-        return np.zeros_like(self.tangential_force)
-
-    @property
     def forces(self) -> CreepForces:
         """The forces and the moment that the contact transmits."""
         return CreepForces(longitudinal=self.force_x, lateral=self.force_y, spin_moment=self.moment_z)
@@ -308,34 +418,105 @@ class Contact:
         """Spin moment, Mz [N m], with the sign of the spin."""
         return from_si(self.moment_z, "N*m")
 
-    def with_batch(self, shape: tuple[int, ...]) -> Self:
-        """Return the contact with its one batch axis reshaped."""
-        fields = ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self))
-        return self.replaced(**{name: value.reshape(shape + value.shape[1:]) for name, value in fields})
+    def over_strip(self, value: Array) -> Array:
+        """Return ∫ value dx along each strip of an ellipse, of shape (batch, strips)."""
+        length = self.area / self.strip_width[..., None, :]
+        integral: Array = (value * length).sum(axis=-2)
+        return integral
 
-    def replaced(self, **arrays: Array) -> Self:
-        """Return the contact with some of its arrays replaced."""
-        return dataclasses.replace(self, **arrays)
+    def scaled_to_wear_index(self) -> Self:
+        """Return the contact with slips scaled so that what the nodes dissipate is Tγ.
+
+        Raises
+        ------
+        InputError
+            If no node dissipates energy where Tγ is not zero.
+        """
+        dissipated = self.cell_wear_index
+        if ((dissipated == 0) & (self.wear_index != 0)).any():
+            raise InputError("scaled_to_wear_index: no node of the contact dissipates energy, but Tγ is not zero")
+        factor = self.per_node(
+            np.divide(self.wear_index, dissipated, out=np.ones_like(dissipated), where=dissipated > 0)
+        )
+        return self.replaced(slip=self.slip * factor, slip_x=self.slip_x * factor, slip_y=self.slip_y * factor)
+
+    def unflattened(self, problem: Problem) -> Self:
+        """Return the contact of a flattened problem in the shape of its batch, with NaN where there is no patch."""
+        if problem.exists is None and problem.batch_shape == self.rolling_speed.shape:
+            return self
+        return self._mapped(problem.unflatten, problem)
+
+    def __getitem__(self, index: Any) -> Self:
+        """Return the contact at some operating points of the batch; `index` is any NumPy index."""
+        return self.mapped(lambda array: array[index])
+
+    def mapped(self, function: Callable[[Array], Array]) -> Self:
+        """Return the contact with a function applied to each of its arrays and to those of its problem."""
+        return self._mapped(function, self.problem and self.problem.mapped(function))
+
+    def _mapped(self, function: Callable[[Array], Array], problem: Problem | None) -> Self:
+        fields = {name: getattr(self, name) for name in self.__slots__ if name != "problem"}
+        return type(self)(**{name: function(value) for name, value in fields.items()}, problem=problem)
+
+    def replaced(self, **fields: Any) -> Self:
+        """Return the contact with some of its fields replaced."""
+        return dataclasses.replace(self, **fields)
 
     def patch_mean(self) -> Contact:
         """Return the contact of one node that holds the patch means.
 
-        Pressure and traction are area means; the slip is the one that dissipates the same energy,
-        s = Tγ / T, which is the creepage.
+        Pressure and traction are area means. The slip of a line is the one that dissipates the same energy,
+        s = Tγ / T, which is the creepage; that of an ellipse is the root mean square of the rigid slip, without a
+        direction.
         """
-        force = self.tangential_force
+        force, area = self.tangential_force, self.patch_area
         slip = np.divide(self.wear_index, force, out=np.zeros_like(force), where=force != 0)
-        area = self.patch_area
-        return Contact(
-            pressure=(self.normal_force / area)[..., None],
-            traction=(force / area)[..., None],
-            slip=slip[..., None],
-            traction_bound=self.mean(np.where(self.area > 0.0, self.traction_bound, 0.0))[..., None],
-            area=area[..., None],
-            x=np.zeros_like(area)[..., None],
-            rolling_speed=self.rolling_speed,
-            normal_force=self.normal_force,
-            tangential_force=force,
-            wear_index=self.wear_index,
-            density=self.density,
-        )
+        nowhere = np.zeros_like(area)
+        nodes = {
+            "pressure": self.normal_force / area,
+            "traction": force / area,
+            "slip": slip,
+            "traction_bound": self.mean(np.where(self.area > 0.0, self.traction_bound, 0.0)),
+            "area": area,
+            "x": nowhere,
+        }
+        across: dict[str, Any] = {}
+        if self.on_strips:
+            if self.problem is not None:
+                nodes["slip"] = self.problem.rigid_slip
+            nodes |= {
+                "y": nowhere,
+                "slip_x": nowhere,
+                "slip_y": nowhere,
+                "traction_x": self.force_x / area,
+                "traction_y": self.force_y / area,
+            }
+            across = {"strip_width": self.strip_width.sum(axis=-1)[..., None]}
+        totals = {name: getattr(self, name) for name in TOTALS}
+        axes = (..., *[None] * (2 if across else 1))
+        return Contact(**{name: value[axes] for name, value in nodes.items()}, **across, problem=self.problem, **totals)
+
+
+TOTALS = (
+    "rolling_speed", "normal_force", "tangential_force", "wear_index", "density", "force_x", "force_y", "moment_z",
+)  # fmt: skip
+"""The arrays of a `Contact` that are of the batch shape."""
+
+
+def _magnitude(x: Array, y: Array) -> Array:
+    """Return √(x² + y²), five times as fast as `np.hypot`, whose care no traction or slip needs."""
+    magnitude: Array = np.sqrt(x * x + y * y)
+    return magnitude
+
+
+def _totals(problem: Problem, forces: CreepForces) -> dict[str, Array]:
+    return {
+        "rolling_speed": problem.rolling_speed,
+        "normal_force": problem.normal_force,
+        "tangential_force": forces.tangential,
+        "wear_index": problem.power(forces),
+        "density": problem.density,
+        "force_x": forces.longitudinal,
+        "force_y": forces.lateral,
+        "moment_z": forces.spin_moment,
+    }

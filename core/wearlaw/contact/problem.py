@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias
 
 import numpy as np
@@ -17,11 +17,12 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz
 from wearlaw.contact.conditions import CREEPAGE, SPIN, broadcast
+from wearlaw.contact.material import Material
 from wearlaw.errors import CompositionError, InputError, UnitError
 from wearlaw.units.quantities import QuantityLike, Unit, coefficient, real_array
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
 Geometry: TypeAlias = Literal["line", "ellipse"]
 """The shape of a contact patch: discs with parallel axes touch in a line, a wheel and a rail in an ellipse."""
@@ -41,6 +42,29 @@ UNITS = {
     "density": Unit("kg/m^3"),
 }
 """The units expected in `Problem.line` and `Problem.ellipse`."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """One of the two bodies in contact.
+
+    Attributes
+    ----------
+    material : Material
+        What it is made of.
+    rolling_radius : float or ndarray
+        Radius of the surface that rolls [m], one for all operating points or an array of the batch shape; infinite
+        where the body is flat or straight, as a rail is.
+    """
+
+    material: Material
+    rolling_radius: float | Array
+
+    def mapped(self, function: Callable[[Array], Array]) -> Body:
+        """Return the body with a function applied to its radius, where that is an array."""
+        if not isinstance(self.rolling_radius, np.ndarray):
+            return self
+        return Body(self.material, function(self.rolling_radius))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -82,8 +106,10 @@ class Problem:
     """Hertzian contact of two rolling bodies, on a line or an ellipse: what a contact model is asked to solve.
 
     The arrays are of one shape, the *batch*, with one entry an operating point. `Problem.line` and `Problem.ellipse`
-    make a problem of quantities. Unlike materials enter by the effective modulus and by Kalker's mean of ν/G; the
-    coupling of normal and tangential displacement between them is neglected.
+    make a problem of quantities. A rig whose bodies touch in several places, such as two wheels with up to three
+    patches each, adds axes to the batch and names them in `dims`; `exists` says which of the patches there are.
+    Unlike materials enter by the effective modulus and by Kalker's mean of ν/G; the coupling of normal and tangential
+    displacement between them is neglected.
 
     Attributes
     ----------
@@ -115,6 +141,12 @@ class Problem:
         Mass density of the body whose wear is predicted, ρ [kg/m³].
     traction_coefficient : ndarray or None
         Measured tangential over normal force, T/N [-], where the test gave one.
+    bodies : mapping of str to Body
+        The two bodies by name, of which the first is the one whose wear is predicted; {} where they are unknown.
+    dims : tuple of str
+        Names of the last axes of the batch, where the rig adds some to those of the conditions.
+    exists : array of bool, or None
+        Which patches there are; the others are not solved, and results are NaN there. None where all are.
     """
 
     geometry: Geometry
@@ -131,6 +163,9 @@ class Problem:
     rolling_speed: Array
     density: Array
     traction_coefficient: Array | None = None
+    bodies: Mapping[str, Body] = field(default_factory=dict)
+    dims: tuple[str, ...] = ()
+    exists: NDArray[np.bool_] | None = None
 
     @classmethod
     def line(
@@ -197,7 +232,7 @@ class Problem:
         relative_radius: Array,
         effective_modulus: Array,
         creepage: Array,
-        **arrays: Array,
+        **fields: Any,
     ) -> Self:
         """Return the problem of a line contact under P [N/m], of SI arrays of one shape, by Hertz's theory."""
         a = hertz.half_width(normal_force_per_width, relative_radius, effective_modulus)
@@ -210,7 +245,7 @@ class Problem:
             max_pressure=hertz.max_pressure(normal_force_per_width, a),
             effective_modulus=effective_modulus,
             longitudinal_creepage=creepage,
-            **{"lateral_creepage": none, "spin": none, "poisson_ratio": none, **arrays},
+            **{"lateral_creepage": none, "spin": none, "poisson_ratio": none, **fields},
         )
 
     @classmethod
@@ -271,14 +306,14 @@ class Problem:
         return cls.ellipse_from_si(**_si(given, friction_coefficient, poisson_ratio))
 
     @classmethod
-    def ellipse_from_si(cls, *, shear_modulus: Array, poisson_ratio: Array, **arrays: Array) -> Self:
+    def ellipse_from_si(cls, *, shear_modulus: Array, poisson_ratio: Array, **fields: Any) -> Self:
         """Return the problem of an elliptic contact, of SI arrays of one shape: the arguments of `ellipse`."""
         return cls(
             geometry="ellipse",
-            max_pressure=1.5 * arrays["normal_force"] / (np.pi * arrays["a"] * arrays["b"]),
+            max_pressure=1.5 * fields["normal_force"] / (np.pi * fields["a"] * fields["b"]),
             effective_modulus=shear_modulus / (1.0 - poisson_ratio),
             poisson_ratio=poisson_ratio,
-            **arrays,
+            **fields,
         )
 
     @property
@@ -288,8 +323,8 @@ class Problem:
 
     @property
     def size(self) -> int:
-        """The number of operating points."""
-        return math.prod(self.batch_shape)
+        """The number of operating points, or of the patches that there are."""
+        return math.prod(self.batch_shape) if self.exists is None else int(self.exists.sum())
 
     @property
     def creepage(self) -> Array:
@@ -337,6 +372,19 @@ class Problem:
         slip: Array = np.sqrt(self.longitudinal_creepage**2 + self.lateral_creepage**2 + turning)
         return slip
 
+    def body(self, name: str) -> Body:
+        """Return the body of a name.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        if name not in self.bodies:
+            names = " and ".join(repr(one) for one in self.bodies) or "not named"
+            raise InputError(f"body: this rig has no '{name}'; its bodies are {names}")
+        return self.bodies[name]
+
     def needs(self, geometry: Geometry, what: str) -> None:
         """Refuse what belongs to patches of another shape."""
         if self.geometry != geometry:
@@ -356,32 +404,66 @@ class Problem:
         lowest = creepage.min() if creepage.ndim else creepage
         return self if lowest >= 0.0 else self.replaced(longitudinal_creepage=np.abs(creepage))
 
+    def with_normal_force(self, normal_force: Array) -> Self:
+        """Return the problem under another normal force [N], of the batch shape, with the patch that Hertz gives.
+
+        a, b and p0 of an ellipse grow with the cube root of the force, a and p0 of a line with its square root.
+        """
+        ratio = normal_force / self.normal_force
+        if self.geometry == "line":
+            scale, b = np.sqrt(ratio), self.b
+        else:
+            scale = np.cbrt(ratio)
+            b = scale * self.b
+        return self.replaced(normal_force=normal_force, a=scale * self.a, b=b, max_pressure=scale * self.max_pressure)
+
     def with_creepages(self, longitudinal: Array, lateral: Array, spin: Array) -> Self:
         """Return the problem at other creepages, as SI arrays of the batch shape."""
         return self.replaced(longitudinal_creepage=longitudinal, lateral_creepage=lateral, spin=spin)
 
-    def replaced(self, **arrays: Array) -> Self:
-        """Return the problem with some of its arrays replaced, of the batch shape."""
-        changes: dict[str, Any] = {**arrays}
-        return dataclasses.replace(self, **changes)
+    def replaced(self, **fields: Any) -> Self:
+        """Return the problem with some of its fields replaced."""
+        return dataclasses.replace(self, **fields)
 
     def __getitem__(self, index: Any) -> Self:
         """Return the problem at some operating points of the batch; `index` is any NumPy index."""
-        return self._map(lambda array: array[index])
+        return self.mapped(lambda array: array[index])
 
     def broadcast_to(self, shape: tuple[int, ...]) -> Self:
-        """Return the problem with a larger batch shape, to which its own broadcasts."""
-        return self._map(lambda array: np.broadcast_to(array, shape))
+        """Return the problem with a larger batch shape, to which its own broadcasts; the new axes come first."""
+        return self.mapped(lambda array: np.broadcast_to(array, shape))
 
     def flatten(self) -> Self:
-        """Return the problem with its batch as one axis."""
-        return self._map(_flat)
+        """Return the problem with its batch as one axis, of the patches that there are."""
+        flat = self.mapped(_flat)
+        if not flat.dims and flat.exists is None:
+            return flat
+        flat = flat.replaced(dims=(), exists=None)
+        return flat if self.exists is None else flat[self.exists.reshape(-1)]
 
-    def _map(self, function: Callable[[Array], Array]) -> Self:
+    def existing(self) -> Self:
+        """Return the problem of the patches that there are: itself where all are."""
+        return self if self.exists is None else self.flatten()
+
+    def unflatten(self, values: Array) -> Array:
+        """Return values of the flattened problem in the shape of the batch, with NaN where there is no patch.
+
+        Axes behind that of the flattened problem stay.
+        """
+        shape = self.batch_shape + values.shape[1:]
+        if self.exists is None:
+            return values.reshape(shape)
+        found = np.full(shape, np.nan)
+        found[self.exists] = values
+        return found
+
+    def mapped(self, function: Callable[[Array], Array]) -> Self:
+        """Return the problem with a function applied to each of its arrays."""
         fields: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
         for name, value in fields.items():
-            if value is not None and name != "geometry":
-                fields[name] = function(value)
+            if isinstance(value, np.ndarray | np.floating):
+                fields[name] = function(value)  # type: ignore[arg-type]  # a scalar of NumPy
+        fields["bodies"] = {name: body.mapped(function) for name, body in self.bodies.items()}
         return type(self)(**fields)
 
 

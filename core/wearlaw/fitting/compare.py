@@ -174,7 +174,7 @@ def _predicted(name: str, predictor: Predictor, tests: WearTests, friction: Any,
     with notes.of(name):
         pipeline = pipeline.without_law() | pipeline.wear_law  # warns of parameters fitted for another contact
     with notes.of("tests"):
-        prediction = pipeline.predict(pipeline.rig.checked_problem(conditions))
+        prediction = pipeline.predict(pipeline.posed(conditions, of_one_patch="compare"))
     return np.asarray(prediction.wear_rate.to_base_units().magnitude)
 
 

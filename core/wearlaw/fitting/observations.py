@@ -164,7 +164,7 @@ def _observe(
     if fits_friction:  # a measured traction would take the place of the one that the friction coefficient gives
         conditions = {**conditions, FRICTION: friction}
         conditions.pop("traction_coefficient", None)
-    problem = pipeline.rig.checked_problem(conditions)
+    problem = pipeline.posed(conditions, of_one_patch="fit")
     if scatter == "relative":
         _refuse_rest(observable, selected, problem)
     unit = _unit(selected, measured, scatter)

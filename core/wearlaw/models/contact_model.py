@@ -11,7 +11,6 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.elliptic_contact import EllipticContact
 from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.errors import CompositionError, ModelError, WearlawError, described
 from wearlaw.settings.configuration import Configuration
@@ -132,7 +131,7 @@ class ContactModel(Model):
         """Return the solved line contact on nodes of the model's choice, of shape (batch, nodes)."""
         raise self._cannot_solve("line")
 
-    def solve_ellipse(self, problem: Problem) -> EllipticContact:  # noqa: ARG002
+    def solve_ellipse(self, problem: Problem) -> Contact:  # noqa: ARG002
         """Return the solved elliptic contact on strips of the model's choice, of shape (batch, nodes, strips)."""
         raise self._cannot_solve("ellipse")
 
@@ -160,7 +159,7 @@ class ContactModel(Model):
         """Return the forces of an elliptic contact; those of `solve_ellipse`, unless the model knows them without."""
         return self.solve_ellipse(problem).forces
 
-    def on_strips(self, problem: Problem, shares: Array) -> EllipticContact | None:  # noqa: ARG002
+    def on_strips(self, problem: Problem, shares: Array) -> Contact | None:  # noqa: ARG002
         """Return the contact on strips at y = `shares` × b, of shape (strips), or None if it is known on its own only.
 
         Each strip stands for the width from half-way to the one before to half-way to the next one.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import ClassVar
 
-from wearlaw.contact.elliptic_contact import EllipticContact
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel, Scale
 
@@ -19,6 +19,6 @@ class CreepForceModel(ContactModel):
     def creep_forces(self, problem: Problem) -> CreepForces:
         """Return the forces and the moment, of the batch shape."""
 
-    def solve_ellipse(self, problem: Problem) -> EllipticContact:
+    def solve_ellipse(self, problem: Problem) -> Contact:
         """Return the patch means as a contact of one node, of shape (batch, 1, 1)."""
-        return EllipticContact.of_patch(problem, self.creep_forces(problem))
+        return Contact.of_patch(problem, self.creep_forces(problem))

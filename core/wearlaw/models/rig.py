@@ -6,17 +6,15 @@ import inspect
 import warnings
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, Protocol
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, type_name
 from wearlaw.arrays.extremes import extremes
-from wearlaw.contact.material import Material
-from wearlaw.contact.problem import Geometry, Problem
-from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, RangeWarning, did_you_mean
+from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
+from wearlaw.errors import CompositionError, ConditionsError, ModelError, RangeWarning, did_you_mean
 from wearlaw.models.contact_model import Blame, ContactModel, Model
 from wearlaw.units.quantities import from_si, scalar_si
 
@@ -30,22 +28,6 @@ TINY = float(np.sqrt(np.finfo(np.float64).tiny))
 
 LEAST_FRICTION = 1e-12
 """The least friction coefficient; below it creepage over that of full slip overflows in formulas of fourth order."""
-
-
-@dataclass(frozen=True)
-class Body:
-    """One of the two bodies of a rig.
-
-    Attributes
-    ----------
-    material : Material
-        What it is made of.
-    rolling_radius : float
-        Radius of the surface that rolls [m]; infinite where the body is flat or straight, as a rail is.
-    """
-
-    material: Material
-    rolling_radius: float
 
 
 class Poses(Protocol[P]):
@@ -87,30 +69,34 @@ class Rig(Model):
     def problem(self, *args: Any, **conditions: Any) -> Problem:
         """Return the contact problem that the conditions pose; arrays broadcast against each other."""
 
+    def balanced(self, problem: Problem, forces: Callable[[Problem], CreepForces]) -> Problem:  # noqa: ARG002
+        """Return the problem with loads that balance the forces which its contact transmits.
+
+        On a flange, for example, the normal force depends on the lateral force. A rig whose loads do not depend on the
+        forces leaves this as it is.
+
+        Parameters
+        ----------
+        problem : Problem
+            What `problem` returned.
+        forces : callable
+            Solves a problem with the contact model of the pipeline, and returns the forces.
+        """
+        return problem
+
     @property
     def bodies(self) -> Mapping[str, Body]:
         """The two bodies by name, of which the first is the one whose wear is predicted; {} where they are unknown."""
         return {}
 
-    def body(self, name: str) -> Body:
-        """Return the body of a name.
-
-        Raises
-        ------
-        InputError
-            If there is none.
-        """
-        known = self.bodies
-        if name not in known:
-            names = " and ".join(repr(one) for one in known) or "not named"
-            raise InputError(f"body: this rig has no '{name}'; its bodies are {names}")
-        return known[name]
-
     @classmethod
     def conditions(cls) -> tuple[str, ...]:
-        """Return the names of the conditions that `problem` takes; a rig that takes `**conditions` overrides this."""
+        """Return the names of the conditions that `problem` takes.
+
+        If it takes `**conditions`, their names are not known, and () is returned; override this to name them.
+        """
         parameters = list(inspect.signature(cls.problem).parameters.values())[1:]
-        return tuple(one.name for one in parameters if one.kind is not one.VAR_KEYWORD)
+        return () if any(one.kind is one.VAR_KEYWORD for one in parameters) else tuple(one.name for one in parameters)
 
     @classmethod
     def needed(cls) -> tuple[str, ...]:
@@ -145,7 +131,20 @@ class Rig(Model):
             raise
         if not isinstance(problem, Problem):
             raise ModelError(f"rig '{self.name}' returned {problem!r}, not a wearlaw.Problem")
-        return problem
+        if problem.exists is not None:
+            problem = self._masked(problem)
+        return problem if problem.bodies else problem.replaced(bodies=self.bodies)
+
+    def _masked(self, problem: Problem) -> Problem:
+        """Return the problem with NaN in the place of patches that do not exist."""
+        exists = problem.exists
+        if type(exists) is not np.ndarray or exists.dtype != np.bool_ or exists.shape != problem.batch_shape:
+            raise ModelError(
+                f"rig '{self.name}' gave {type_name(exists)} as `exists`; it must be an array of bool of the shape of"
+                f" the batch, {problem.batch_shape}"
+            )
+        masked = problem.mapped(lambda array: np.where(exists, array, np.nan))
+        return masked.replaced(exists=exists)
 
     def check_names(self, conditions: Mapping[str, Any]) -> None:
         """Check the names of conditions; a rig whose `conditions` are not known takes any.

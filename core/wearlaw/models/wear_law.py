@@ -15,7 +15,6 @@ from pydantic import model_validator
 from wearlaw.arrays.array import Array, type_name
 from wearlaw.arrays.extremes import extremes
 from wearlaw.contact.contact import UNITS, Contact
-from wearlaw.contact.elliptic_contact import EllipticContact
 from wearlaw.contact.problem import Geometry
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, did_you_mean
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
@@ -239,7 +238,7 @@ class WearLaw(Model):
         if fitted_for is None:
             return
         held = "the means of the patch" if scale == "patch" else "its cells"
-        if isinstance(contact, EllipticContact) and fitted_for.geometry == "line":
+        if contact.on_strips and fitted_for.geometry == "line":
             held += ", of an ellipse"
         elif fitted_for.scale == scale:
             return

@@ -23,7 +23,6 @@ from wearlaw.arrays.array import Array
 from wearlaw.arrays.extremes import extremes
 from wearlaw.arrays.kernels import accelerated
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
-from wearlaw.contact.elliptic_contact import EllipticContact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.contact.quadrature import Zone, join, remainder
 from wearlaw.models.contact_model import Blame, ContactModel, Scale
@@ -117,10 +116,11 @@ def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
 
         return CreepForces.of(_by_block(Solver(model), problem, of_ellipse))
     if isinstance(model, LineContactModel):  # in closed form, without nodes that would fill the memory
+        there = problem.existing()
         with Blame(model):
-            force = model.tangential_force(problem)
-        check_columns(model, {"tangential_force": force}, problem)
-        return CreepForces.of({"longitudinal": force})
+            force = model.tangential_force(there)
+        check_columns(model, {"tangential_force": force}, there)
+        return CreepForces.of({"longitudinal": force if there is problem else problem.unflatten(force)})
 
     def of_line(part: Problem, _: slice) -> Columns:
         return {"tangential_force": model.tangential_force(part)}
@@ -314,29 +314,27 @@ def integrate_across(
     edges = np.linspace(-1.0, 1.0, (strips or 0) + 1)
     shares = 0.5 * (edges[1:] + edges[:-1])
 
-    def solved(part: Problem) -> EllipticContact:
+    def solved(part: Problem) -> Contact:
         chosen = None
         if strips is not None:
             with Blame(model):
                 chosen = model.on_strips(part, shares)
         if chosen is None:
-            found = solver.solve(part)
-            assert isinstance(found, EllipticContact)
-            return found
+            return solver.solve(part)
         solver.check(chosen, part, totals=False)
         return chosen
 
-    def along(part: Problem, contact: EllipticContact) -> tuple[Array, Array, Array]:
+    def along(part: Problem, contact: Contact) -> tuple[Array, Array, Array]:
         wear = contact.over_strip(solver.rate(law, contact, part))
         return contact.y[..., 0, :], wear, contact.over_strip(contact.slip)
 
-    if strips is None and isinstance(solved_before, EllipticContact):
+    if strips is None and solved_before is not None:
         found = [along(flat.replaced(density=solved_before.density), solved_before)]
     else:
         block = max(ELLIPSE_NODES // solved(flat[:1]).pressure.size, 1)
         parts = (flat[points] for points in blocks(flat.size, block))
         found = [along(part, solved(part)) for part in parts]
-    y, wear, slid = (np.concatenate(values).reshape(*problem.batch_shape, -1) for values in zip(*found, strict=True))
+    y, wear, slid = (problem.unflatten(np.concatenate(values)) for values in zip(*found, strict=True))
     return y, wear, slid
 
 
@@ -356,7 +354,7 @@ def _by_block(solver: Solver, problem: Problem, columns: OfBlock, on_block: OnBl
 
 def solve(model: ContactModel, problem: Problem, scale: Scale) -> Contact:
     """Return the contact of a model on its own nodes, or its patch mean where that is asked for."""
-    return seen_by_law(model, Solver(model).solve(problem), scale)
+    return seen_by_law(model, Solver(model).solve(problem.existing()).unflattened(problem), scale)
 
 
 def seen_by_law(model: ContactModel, contact: Contact, scale: Scale) -> Contact:

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array, type_name
 from wearlaw.arrays.extremes import extremes
-from wearlaw.contact.contact import Contact
-from wearlaw.contact.elliptic_contact import TOTALS, EllipticContact
+from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import ModelError
@@ -46,9 +45,10 @@ FIELDS = ("pressure", "traction", "slip", "area", "traction_bound", "x")
 """Arrays with one value for each node."""
 
 VECTORS = ("traction_x", "traction_y", "slip_x", "slip_y", "y")
-"""Those that only an `EllipticContact` has."""
+"""Those that a line contact derives from them."""
 
 LINE_TOTALS = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
+"""Of the totals, those that a line contact does not derive."""
 
 TO_SHOW = {"area": "mm^2", "moment_z": "N*m", "wear_index": "N"}
 """Units in which messages show fields; pressures and forces have units of their own."""
@@ -89,14 +89,14 @@ class Solver:
             return found
 
         found = by_block(problem.flatten(), block, checked, on_block, drop_force)
-        return {name: values.reshape(problem.batch_shape) for name, values in found.items()}
+        return {name: problem.unflatten(values) for name, values in found.items()}
 
     def solve(self, problem: Problem) -> Contact:
         """Return the contact on the model's own nodes."""
         with Blame(self.model):
             contact = self.model.solve(problem)
         self.check(contact, problem, totals=self.block_is_summed())
-        return contact
+        return contact if contact.problem is not None else contact.replaced(problem=problem)
 
     def at(self, problem: Problem, nodes: Nodes, *, totals: bool) -> Contact:
         """Return the contact on given nodes, by a model that knows its fields.
@@ -141,9 +141,13 @@ def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Pr
 
 def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> None:
     ellipse = problem.geometry == "ellipse"
-    expected = EllipticContact if ellipse else Contact
-    if not isinstance(contact, expected):
-        raise ModelError(f"contact model '{model.name}' returned {contact!r}, not a wearlaw.{expected.__name__}")
+    if not isinstance(contact, Contact):
+        raise ModelError(f"contact model '{model.name}' returned {contact!r}, not a wearlaw.Contact")
+    if ellipse and not contact.on_strips:
+        raise ModelError(
+            f"contact model '{model.name}' returned a contact without strips for an ellipse; make it with"
+            " wearlaw.Contact.from_strips or wearlaw.Contact.of_patch"
+        )
     batch = problem.batch_shape
     nodes: tuple[int, ...] = getattr(contact.pressure, "shape", ())
     axes = len(batch) + (2 if ellipse else 1)
@@ -215,7 +219,7 @@ def _product(one: Array, other: Array) -> float:
 
 def check_finite(model: ContactModel, contact: Contact, problem: Problem) -> None:
     """Raise a `ModelError` if a value is not finite. Only the traction bound may be infinite."""
-    names = (*FIELDS, *VECTORS, *TOTALS) if isinstance(contact, EllipticContact) else (*FIELDS, *LINE_TOTALS)
+    names = (*FIELDS, *VECTORS, *TOTALS) if contact.on_strips else (*FIELDS, *LINE_TOTALS)
     for name in names:
         values = getattr(contact, name)
         bad = np.isnan(values) if name == "traction_bound" else ~np.isfinite(values)
@@ -240,12 +244,12 @@ def _rounding_of_traction(model: ContactModel) -> float:
 
 def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> None:
     """Compare sums over the nodes with the totals, to what the model declares of its sums."""
-    rest = (*VECTORS, *TOTALS) if isinstance(contact, EllipticContact) else LINE_TOTALS
+    rest = (*VECTORS, *TOTALS) if contact.on_strips else LINE_TOTALS
     if not all(math.isfinite(_product(values, values)) for values in (getattr(contact, name) for name in rest)):
         check_finite(model, contact, problem)
     limit = np.maximum(problem.friction_coefficient * problem.normal_force, np.abs(contact.tangential_force))
     area = contact.area
-    if isinstance(contact, EllipticContact):
+    if contact.on_strips:
         declared, error = "elliptic_accuracy", SLACK * max(model.elliptic_accuracy, ROUNDINGS)
         sums = {
             "force_x": (contact.traction_x, limit),

@@ -70,7 +70,7 @@ def creepage_for(
             "friction_coefficient: must be a number here; where friction falls with the creep speed, two creepages can"
             " transmit one force"
         )
-    problem = _at_rest(predict.rig, conditions)
+    problem = _at_rest(predict, conditions)
     if tangential_force is None:
         target = _finite(traction_coefficient)
     else:
@@ -108,8 +108,9 @@ def creepage_for(
     return from_si(np.copysign(creepage.reshape(shape), target), "%")
 
 
-def _at_rest(rig: Rig, conditions: Mapping[str, Any]) -> Problem:
+def _at_rest(predict: Pipeline[...], conditions: Mapping[str, Any]) -> Problem:
     """Return the problem at zero longitudinal creepage."""
+    rig = predict.rig
     known = rig.conditions()
     if known and rig.creepage not in known:
         raise CompositionError(
@@ -118,7 +119,9 @@ def _at_rest(rig: Rig, conditions: Mapping[str, Any]) -> Problem:
         )
     if rig.creepage in conditions:
         raise ConditionsError(f"{rig.creepage}: is what creepage_for looks for; leave it out")
-    return rig.checked_problem({**conditions, rig.creepage: from_si(0.0, "")})
+    if type(rig).balanced is not Rig.balanced:
+        raise CompositionError(f"creepage_for: the loads of rig '{rig.name}' depend on the creepage that it looks for")
+    return predict.posed({**conditions, rig.creepage: from_si(0.0, "")}, of_one_patch="creepage_for")
 
 
 def _refuse_several(tried: Array, friction: Array, wanted: Array, shape: tuple[int, ...]) -> None:

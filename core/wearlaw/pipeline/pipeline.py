@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Generic, Literal, Self
+from typing import TYPE_CHECKING, Any, Generic, Literal, Self
 
 from pydantic import model_validator
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, ConditionsError, InputError
-from wearlaw.models.contact_model import Scale
-from wearlaw.models.rig import P
+from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError
+from wearlaw.models.contact_model import Blame, Scale
+from wearlaw.models.rig import P, Rig
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_forces, integrate_wear
@@ -122,8 +122,36 @@ class Pipeline(Configuration, Generic[P]):
         """Return the contact and the wear under the given conditions; see the `problem` of the rig for these."""
         if positional:
             raise ConditionsError(f"{positional[0]!r}: is given without a name; write creepage=..., for example")
-        problem: Problem = self.rig.checked_problem(conditions)
-        return self.predict(problem, stacklevel=3)
+        return self.predict(self.posed(conditions), stacklevel=3)
+
+    def posed(self, conditions: Mapping[str, Any], of_one_patch: str = "") -> Problem:
+        """Return the problem that the rig makes of conditions, with loads that balance the forces.
+
+        Parameters
+        ----------
+        conditions : mapping
+            As for the `problem` of the rig.
+        of_one_patch : str
+            What needs a contact of one patch at each operating point, such as "fit".
+
+        Raises
+        ------
+        CompositionError
+            If there must be one patch, and the rig makes several.
+        """
+        rig, problem = self.rig, self.rig.checked_problem(conditions)
+        if of_one_patch and problem.dims:
+            raise CompositionError(
+                f"{of_one_patch}: needs one patch at each operating point; rig '{rig.name}' makes several, along"
+                f" {' and '.join(problem.dims)}"
+            )
+        if type(rig).balanced is Rig.balanced:
+            return problem
+        with Blame(rig):
+            balanced = rig.balanced(problem, partial(integrate_forces, self.contact_model))
+        if not isinstance(balanced, Problem):
+            raise ModelError(f"`balanced` of rig '{rig.name}' returned {balanced!r}, not a wearlaw.Problem")
+        return balanced
 
     def predict(
         self,
@@ -145,7 +173,7 @@ class Pipeline(Configuration, Generic[P]):
         """
         if self.rig.geometry not in (None, problem.geometry):
             raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
-        self.rig.warn_of_plasticity(problem.max_pressure, stacklevel=stacklevel)
+        self.rig.warn_of_plasticity(problem.existing().max_pressure, stacklevel=stacklevel)
         for law in self.laws:
             warn_of_geometry(self.rig, self.contact_model, self.scale, law, problem, stacklevel + 1)
         watch = self.range_watch()

@@ -186,11 +186,11 @@ class Prediction:
         """The solved contact as SI arrays, on nodes that suit the wear law, or that the contact model chose."""
         model, scale = self.pipeline.contact_model, self.pipeline.scale
         if self._solved is not None:
-            return integrate.seen_by_law(model, self._solved.with_batch(self.problem.batch_shape), scale)
+            return integrate.seen_by_law(model, self._solved.unflattened(self.problem), scale)
         if self.problem.geometry == "ellipse" or not self.pipeline.laws:
             return integrate.solve(model, self.problem, scale)
         contact = integrate.contact_for(model, self.pipeline.wear_law, self.problem.flatten(), scale)
-        return contact.with_batch(self.problem.batch_shape)
+        return contact.unflattened(self.problem)
 
     @cached_property
     def profile(self) -> xarray.Dataset:
@@ -200,12 +200,13 @@ class Prediction:
         return self._profile({"wear_rate": (self.pipeline.wear_law.checked_rate(self._cells()), WEAR_RATE)})
 
     def _cells(self) -> Contact:
-        """Return the contact on uniform cells where the model can give them, else on its own nodes."""
+        """Return the contact of the patches that exist, on uniform cells where the model can give them."""
         model, problem = self.pipeline.contact_model, self.problem
         problem.needs("line", "profile")
         if self.pipeline.scale == "cells" and isinstance(model, LineContactModel):
-            return Solver(model).at(problem, uniform_cells(problem.half_width, PROFILE_CELLS), totals=False)
-        return self.contact
+            there = problem.existing()
+            return Solver(model).at(there, uniform_cells(there.half_width, PROFILE_CELLS), totals=False)
+        return self.contact if problem.exists is None else self.contact[problem.exists]
 
     def _profile(self, more: dict[str, tuple[Array, str]]) -> xarray.Dataset:
         import xarray
@@ -213,15 +214,18 @@ class Prediction:
         contact = self._cells()
         names = ("x", "pressure", "traction", "traction_bound", "slip")
         columns = {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more}
-        dims = (*(f"point_{axis}" for axis in range(len(self.problem.batch_shape))), "cell")
+        dims = (*_batch_dims(len(self.problem.batch_shape), self.problem.dims), "cell")
         data = {
-            name: xarray.DataArray(from_si(values, unit).magnitude, dims=dims, attrs={"units": unit})
+            name: xarray.DataArray(in_unit(self._in_batch(values), unit), dims=dims, attrs={"units": unit})
             for name, (values, unit) in columns.items()
         }
         if len(dims) == 1:
             x = data.pop("x")
             return xarray.Dataset({k: v.rename(cell="x") for k, v in data.items()}, coords={"x": x.rename(cell="x")})
         return xarray.Dataset(data).set_coords("x")
+
+    def _in_batch(self, values: Array) -> Array:
+        return values if self.problem.exists is None else self.problem.unflatten(values)
 
     def wear_profile(self, body: str, strips: int | None = None) -> xarray.Dataset:
         """Return the depth lost and the distance slid across an elliptic patch, over y.
@@ -252,7 +256,7 @@ class Prediction:
             If the contact is not resolved across the patch, or is a line.
         """
         model, problem = self.pipeline.contact_model, self.problem
-        radius, density = self.pipeline.rig.body(body).rolling_radius, self._density(body)
+        radius, density = np.asarray(problem.body(body).rolling_radius), self._density(body)
         if problem.geometry == "line":
             raise CompositionError("wear_profile: a line wears evenly across its width; take depth_per_distance")
         if self.pipeline.scale == "patch":
@@ -265,13 +269,15 @@ class Prediction:
         law, solved = self.pipeline.wear_law, self._solved
         if not (problem.density == density).all():
             problem = problem.replaced(density=np.full_like(problem.density, density))
-            solved = solved and solved.replaced(density=problem.density.reshape(-1))
+            flat = problem.flatten()
+            solved = solved and solved.replaced(density=flat.density, problem=flat)
         y, wear, slid = integrate.integrate_across(model, law, problem, strips, solved)
-        once = 2.0 * np.pi * radius if np.isfinite(radius) else 1.0
-        units = ("um/km", "mm/m") if np.isfinite(radius) else ("nm", "um")
-        per = "metre rolled" if np.isfinite(radius) else "passage of a wheel"
+        turns = bool(np.isfinite(radius).any())
+        once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
+        units = ("um/km", "mm/m") if turns else ("nm", "um")
+        per = "metre rolled" if turns else "passage of a wheel"
         columns = {"depth": (wear / (density * once), units[0]), "sliding_distance": (slid / once, units[1])}
-        return _across_patch(y, columns, per)
+        return _across_patch(y, columns, per, problem.dims)
 
     @property
     def wear_rate(self) -> Quantity:
@@ -384,11 +390,11 @@ class Prediction:
         return integrate.integrate_wear(predict.contact_model, predict.wear_law, of_body, predict.scale).wear_rate
 
     def _density(self, body: str) -> float:
-        return scalar_si(self.pipeline.rig.body(body).material.density, "kg/m^3")
+        return scalar_si(self.problem.body(body).material.density, "kg/m^3")
 
-    def _circumference(self, body: str) -> float:
-        radius = self.pipeline.rig.body(body).rolling_radius
-        if np.isinf(radius):
+    def _circumference(self, body: str) -> float | Array:
+        radius = self.problem.body(body).rolling_radius
+        if np.isinf(radius).any():
             raise InputError(f"body: {body} is flat and makes no revolutions; name the other body")
         return 2.0 * np.pi * radius
 
@@ -400,10 +406,10 @@ class Prediction:
         return f"{type(self).__name__} of {points}{rows}"
 
 
-def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str) -> xarray.Dataset:
+def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str, named: tuple[str, ...]) -> xarray.Dataset:
     import xarray
 
-    batch = [f"point_{axis}" for axis in range(y.ndim - 1)]
+    batch = _batch_dims(y.ndim - 1, named)
     dims = [*batch, "strip"] if batch else ["y"]
     place = (dims, in_unit(y, "mm"), {"units": "mm", "long_name": "position across the patch"})
     data = {
@@ -411,6 +417,11 @@ def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str) -> 
         for name, (values, unit) in columns.items()
     }
     return xarray.Dataset(data, coords={"y": place})
+
+
+def _batch_dims(axes: int, named: tuple[str, ...]) -> list[str]:
+    """Return names of the axes of a batch, of which the rig may have named the last ones."""
+    return [*(f"point_{axis}" for axis in range(axes - len(named))), *named]
 
 
 def _brief(quantity: Quantity) -> str:

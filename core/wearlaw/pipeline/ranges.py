@@ -68,7 +68,7 @@ class _Seen:
 def mean_over_patch(problem: Problem, columns: Columns, variable: str) -> Array:
     """Return a variable of `Contact` as its mean over the patch, from forces [N] and areas [m²] in columns.
 
-    The slip is the rigid one, as in `EllipticContact.of_patch`.
+    The slip is the rigid one, as in `Contact.of_patch`.
     """
     match variable:
         case "slip":

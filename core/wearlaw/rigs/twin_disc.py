@@ -13,9 +13,9 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz
 from wearlaw.contact.conditions import COEFFICIENTS, CREEPAGE, LOADS, ConditionTable, FrictionLaw, condition_arrays
 from wearlaw.contact.material import Material, steel
-from wearlaw.contact.problem import Geometry, Problem
+from wearlaw.contact.problem import Body, Geometry, Problem
 from wearlaw.errors import InputError, UnitError
-from wearlaw.models.rig import Body, Rig, check_sizes
+from wearlaw.models.rig import Rig, check_sizes
 from wearlaw.plugins.fields import MaterialField
 from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import (
@@ -221,10 +221,11 @@ class TwinDisc(Rig):
             friction_coefficient=arrays["friction_coefficient"],
             longitudinal_creepage=arrays["creepage"],
             traction_coefficient=arrays.get("traction_coefficient"),
+            bodies=self.bodies,
             **({name: np.broadcast_to(value, shape) for name, value in same.items()} if shape else same),
         )
 
-    @property
+    @cached_property
     def bodies(self) -> Mapping[str, Body]:
         """The two discs, "disc_1" and "disc_2"."""
         discs = {"disc_1": self.disc_1, "disc_2": self.disc_2}

@@ -12,8 +12,8 @@ from pydantic import Field, model_validator
 from wearlaw.contact import hertz, hertz_ellipse
 from wearlaw.contact.conditions import COEFFICIENTS, CREEPAGE, SPIN, ConditionTable, FrictionLaw, condition_arrays
 from wearlaw.contact.material import Material
-from wearlaw.contact.problem import Geometry, Problem
-from wearlaw.models.rig import Body, Rig, check_sizes
+from wearlaw.contact.problem import Body, Geometry, Problem
+from wearlaw.models.rig import Rig, check_sizes
 from wearlaw.plugins.fields import MaterialField
 from wearlaw.units.quantities import Length, Quantity, QuantityLike, Speed, Unit, scalar_si
 
@@ -134,7 +134,7 @@ class WheelRail(Rig):
             )
         return self
 
-    @property
+    @cached_property
     def bodies(self) -> Mapping[str, Body]:
         """The "wheel" and the "rail"."""
         return {
@@ -197,9 +197,8 @@ class WheelRail(Rig):
             "density": scalar_si(self.material.density, "kg/m^3"),
         }
         shape = arrays["longitudinal_creepage"].shape
-        return Problem.ellipse_from_si(
-            a=a, b=b, **arrays, **{name: np.broadcast_to(np.float64(value), shape) for name, value in same.items()}
-        )
+        constant = {name: np.broadcast_to(np.float64(value), shape) for name, value in same.items()}
+        return Problem.ellipse_from_si(a=a, b=b, bodies=self.bodies, **arrays, **constant)
 
     @cached_property
     def _patch(self) -> _Patch:

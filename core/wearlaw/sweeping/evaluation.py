@@ -73,7 +73,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     `on_block` is called with the number of points done, several times where that takes long.
     """
     kernels.accelerate(job.accelerate)
-    problem = job.pipeline.rig.checked_problem(part.conditions())
+    problem = job.pipeline.posed(part.conditions())
     watch = job.pipeline.range_watch()
     prediction = job.pipeline.watched(problem, watch, on_block)
     outputs = {name: _in_unit(getattr(prediction, name), unit) for name, unit in job.units.items()}
@@ -118,7 +118,8 @@ def output_units(pipeline: Pipeline[...], points: Points, outputs: list[str]) ->
     InputError
         If there is no such output, or it is a condition.
     """
-    problem = pipeline.rig.checked_problem(points.part([slice(0, 1)] * len(points.dims)).conditions())
+    first = points.part([slice(0, 1)] * len(points.dims)).conditions()
+    problem = pipeline.posed(first, of_one_patch="sweep")
     prediction = pipeline.watched(problem, pipeline.range_watch())
     given = {*points.varying, *points.fixed}
     units = {}

@@ -22,6 +22,7 @@ from wearlaw.testing.bisection import lost_digits
 from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
 from wearlaw.testing.sampling import EPS
 from wearlaw.testing.shared_checks import (
+    assert_carries,
     assert_double,
     assert_finite,
     assert_solved_alike,
@@ -94,12 +95,10 @@ def contact_is_finite(model: ContactModel) -> None:
 
 
 def contact_carries_the_conditions(model: ContactModel) -> None:
-    """Rolling speed, density and normal force are those of the problem."""
+    """Rolling speed, density and normal force are those of the problem, and so is the problem that it keeps."""
 
     def examine(problem: Problem) -> None:
-        contact = model.solve(problem)
-        for name in ("rolling_speed", "density", "normal_force"):
-            assert_close(getattr(contact, name), getattr(problem, name), f"the {name} of the contact")
+        assert_carries(model.solve(problem), problem)
 
     for_each(LINE_PROBLEMS, examine)
 

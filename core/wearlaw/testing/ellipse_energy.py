@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.elliptic_contact import EllipticContact
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import QUADRATURE, ContactModel
 from wearlaw.testing.contact_energy import CHANCE, REFINEMENTS, assert_improved, refinements
@@ -70,7 +70,7 @@ def refined_strips_improve_the_forces(model: ContactModel) -> None:
     )
 
 
-Measure = Callable[[Problem, EllipticContact], Array]
+Measure = Callable[[Problem, Contact], Array]
 
 
 def _each(measure: Measure, model: ContactModel, problem: Problem) -> Array:
@@ -79,17 +79,17 @@ def _each(measure: Measure, model: ContactModel, problem: Problem) -> Array:
     return np.array([measure(part, model.solve_ellipse(part)) for part in parts])
 
 
-def _energy_error(problem: Problem, contact: EllipticContact) -> Array:
+def _energy_error(problem: Problem, contact: Contact) -> Array:
     return np.abs(contact.cell_wear_index - problem.power(forces_of(contact))) / sliding_power(problem)
 
 
-def _traction_error(problem: Problem, contact: EllipticContact) -> Array:
+def _traction_error(problem: Problem, contact: Contact) -> Array:
     sums = sums_of(contact)
     off: Array = np.hypot(sums.longitudinal - contact.force_x, sums.lateral - contact.force_y)
     return off / friction_limit(problem)
 
 
-def _forces(problem: Problem, contact: EllipticContact) -> Array:
+def _forces(problem: Problem, contact: Contact) -> Array:
     return np.array([contact.force_x, contact.force_y]) / friction_limit(problem)
 
 

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.elliptic_contact import EllipticContact
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.testing.bisection import Indices, find_jumps
@@ -61,7 +61,7 @@ def _compare_turned(model: ContactModel, problem: Problem, signs: tuple[float, f
     assert_close(other.wear_index, contact.wear_index, f"the wear index {message}", 0.0, rounding)
 
 
-def _parts_of_power(problem: Problem, contact: EllipticContact) -> Array:
+def _parts_of_power(problem: Problem, contact: Contact) -> Array:
     """Return |ξFx| + |ηFy| + |φMz|, which the rounding of their sum is a share of."""
     return (
         np.abs(problem.longitudinal_creepage * contact.force_x)

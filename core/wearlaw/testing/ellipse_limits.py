@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.elliptic_contact import EllipticContact
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.testing.ellipses import (
@@ -109,7 +109,7 @@ def full_slip_on_the_ellipse_is_met_from_both_sides(model: ContactModel) -> None
     """
     problem = random_ellipses(POINTS)
 
-    def solved(reduced: Array) -> EllipticContact:
+    def solved(reduced: Array) -> Contact:
         return model.solve_ellipse(at_magnitude(problem, reduced))
 
     full = full_slip(solved, np.full(POINTS, FAR))

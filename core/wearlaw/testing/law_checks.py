@@ -15,6 +15,7 @@ from wearlaw.models.wear_law import WearLaw
 from wearlaw.testing.examples import SAME, assert_close, for_each
 from wearlaw.testing.law_shape import contacts_for
 from wearlaw.testing.sampling import aimed, at_nodes, forward, random_contacts, retotalled, rows
+from wearlaw.testing.shared_checks import arrays_of
 
 
 def order_of_nodes_does_not_matter(law: WearLaw) -> None:
@@ -76,7 +77,7 @@ def each_node_wears_by_itself(law: WearLaw) -> None:
             names = ("pressure", "traction", "slip", "traction_bound", "x")
             own = {name: getattr(contact, name)[..., node : node + 1] for name in names}
             alike = {name: np.broadcast_to(value, rate.shape).copy() for name, value in own.items()}
-            found = law.rate(dataclasses.replace(contact, **alike), law.numbers)[..., node]
+            found = law.rate(contact.replaced(**alike), law.numbers)[..., node]
             assert_close(found, rate[..., node], f"the rate at node {node} among others like it")
 
     for_each(contacts_for(law), examine)
@@ -145,13 +146,13 @@ def _where(chosen: Array, first: Contact, second: Contact) -> Contact:
         value: Array = np.where(chosen.reshape(chosen.shape + (1,) * (one.ndim - 1)), one, other)
         return value
 
-    return Contact(**{field.name: mixed(field.name) for field in dataclasses.fields(first)})
+    return first.replaced(**{name: mixed(name) for name in arrays_of(first)})
 
 
 def _nodes(contact: Contact, change: Callable[[Array], Array]) -> Contact:
     """Return the contact with its arrays of nodes changed and its totals kept."""
     names = ("pressure", "traction", "slip", "traction_bound", "area", "x")
-    return dataclasses.replace(contact, **{name: change(getattr(contact, name)) for name in names})
+    return contact.replaced(**{name: change(getattr(contact, name)) for name in names})
 
 
 OF_SEVERAL_NODES = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import dataclasses
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from hypothesis import strategies as st
@@ -34,12 +34,15 @@ def rate_has_the_shape_of_the_nodes(law: WearLaw) -> None:
 
     def examine(contact: Contact) -> None:
         for shape in ((), (1,), (2, 1)):
-            fields = {f.name: getattr(contact, f.name)[0] for f in dataclasses.fields(contact)}
-            batch = Contact(**{n: np.broadcast_to(v, shape + v.shape).copy() for n, v in fields.items()})
+            batch = contact[0].mapped(partial(_repeated, shape))
             found, due = np.shape(law.rate(batch, law.numbers)), batch.pressure.shape
             assert found == due, f"rates of shape {found} for nodes of shape {due}"
 
     for_each(contacts_for(law), examine)
+
+
+def _repeated(shape: tuple[int, ...], array: Array) -> Array:
+    return np.broadcast_to(array, shape + array.shape).copy()
 
 
 def rate_is_finite(law: WearLaw) -> None:
@@ -96,8 +99,7 @@ def memory_layout_does_not_matter(law: WearLaw) -> None:
     def examine(contact: Contact) -> None:
         rate = law.rate(contact, law.numbers)
         for message, layout in LAYOUTS.items():
-            fields = {f.name: layout(getattr(contact, f.name)) for f in dataclasses.fields(contact)}
-            assert_close(law.rate(Contact(**fields), law.numbers), rate, f"the rate for {message} arrays")
+            assert_close(law.rate(contact.mapped(layout), law.numbers), rate, f"the rate for {message} arrays")
 
     for_each(contacts_for(law), examine)
 

@@ -15,9 +15,9 @@ import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.material import Material
-from wearlaw.contact.problem import Geometry
+from wearlaw.contact.problem import Body, Geometry
 from wearlaw.errors import ConditionsError, InputError, UnitError, WearlawError, described
-from wearlaw.models.rig import Body, Rig
+from wearlaw.models.rig import Rig
 from wearlaw.testing.examples import assert_close
 from wearlaw.units.quantities import Q, Quantity, parse, scalar_si
 

@@ -155,8 +155,7 @@ def forward(contact: Contact) -> Contact:
 
 def rows(contact: Contact, index: object) -> Contact:
     """Return some of the operating points of a batch."""
-    fields = (field.name for field in dataclasses.fields(contact))
-    return Contact(**{name: getattr(contact, name)[index] for name in fields})
+    return contact[index]
 
 
 def at_nodes(contact: Contact, variable: str) -> Array:

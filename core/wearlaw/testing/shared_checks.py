@@ -13,7 +13,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.models.contact_model import Claim, ContactModel
-from wearlaw.testing.examples import SAME, SUM
+from wearlaw.testing.examples import SAME, SUM, assert_close
 
 Claims: TypeAlias = Mapping[Claim, tuple[Callable[..., None], ...]]
 """The checks of each claim that a contact model may be exempt from."""
@@ -28,19 +28,33 @@ def friction_limit(problem: Problem) -> Array:
     return problem.friction_coefficient * problem.normal_force
 
 
+def arrays_of(contact: Contact) -> dict[str, Array]:
+    """Return the fields and totals of a contact by name."""
+    fields = {field.name: getattr(contact, field.name) for field in dataclasses.fields(contact)}
+    return {name: value for name, value in fields.items() if value is not None and name != "problem"}
+
+
 def assert_finite(contact: Contact) -> None:
     """Assert that every field and total is a finite number; the traction bound may be infinite."""
-    for field in dataclasses.fields(contact):
-        value = getattr(contact, field.name)
-        bad = np.isnan(value).any() or (field.name != "traction_bound" and np.isinf(value).any())
-        assert not bad, f"{field.name} is not finite: {value!r}"
+    for name, value in arrays_of(contact).items():
+        bad = np.isnan(value).any() or (name != "traction_bound" and np.isinf(value).any())
+        assert not bad, f"{name} is not finite: {value!r}"
 
 
 def assert_double(contact: Contact) -> None:
     """Assert that every field and total is a float64."""
-    for field in dataclasses.fields(contact):
-        kind = getattr(contact, field.name).dtype
-        assert kind == np.float64, f"{field.name} is of type {kind}, not float64"
+    for name, value in arrays_of(contact).items():
+        assert value.dtype == np.float64, f"{name} is of type {value.dtype}, not float64"
+
+
+def assert_carries(contact: Contact, problem: Problem) -> None:
+    """Assert that rolling speed, density and normal force are those of the problem, and that it knows the problem."""
+    for name in ("rolling_speed", "density", "normal_force"):
+        assert_close(getattr(contact, name), getattr(problem, name), f"the {name} of the contact")
+    known = contact.problem
+    for field in dataclasses.fields(problem) if known is not None else ():
+        same = np.array_equal(getattr(known, field.name), getattr(problem, field.name))
+        assert same, f"the contact's problem has another {field.name}"
 
 
 def assert_unchanged(problem: Problem, before: Problem) -> None:
@@ -56,10 +70,10 @@ def assert_solved_alike(model: ContactModel, problem: Problem, other: Problem) -
     kept = copy.deepcopy(first)
     model.solve(other)
     second = model.solve(problem)
-    for field in dataclasses.fields(kept):
+    for name, value in arrays_of(kept).items():
         for contact in (first, second):
-            same = np.array_equal(getattr(contact, field.name), getattr(kept, field.name))
-            assert same, f"two solutions of one problem differ in {field.name}"
+            same = np.array_equal(getattr(contact, name), value)
+            assert same, f"two solutions of one problem differ in {name}"
 
 
 def full_slip(solved: Solved, high: Array) -> Array:

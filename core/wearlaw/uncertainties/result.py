@@ -208,14 +208,14 @@ class Uncertainty:
         broadcast({name: one.values for name, one in self.known.items()})  # names the shapes if they do not fit
         firsts = {one.name: one.distribution.first for one in self.inputs if not one.of_law}
         # What is wrong here is wrong with the conditions, and not with single samples.
-        shape: tuple[int, ...] = self._predict.rig.checked_problem({**self._given, **firsts}).batch_shape
+        shape: tuple[int, ...] = self._predict.posed({**self._given, **firsts}, of_one_patch="uncertainty").batch_shape
         return shape
 
     def _problem(self, sampled: Mapping[str, Any]) -> Problem:
         """Return the contact problem at all operating points and samples, the latter along the last axis."""
         known = {name: one.at_samples() for name, one in self.known.items()}
         try:
-            return self._predict.rig.checked_problem({**self._given, **known, **sampled})
+            return self._predict.posed({**self._given, **known, **sampled})
         except InputError as error:
             raise InputError(f"{error}{OTHERS}") from None
 

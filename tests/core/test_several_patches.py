@@ -1,0 +1,231 @@
+"""Rigs whose bodies touch in several places, and rigs that balance their loads around the contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.strategies import EPS
+from wearlaw import Array, Q
+
+RADIUS, CONICITY, FLANGE = 0.46, 0.05, 6e-3
+WHEEL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
+PATCHES = ("side", "patch")
+CREEP: Any = {"longitudinal_creepage": "0.2 %", "spin": "0.3 1/m", "friction_coefficient": 0.3}
+GIVEN: Any = {"load": "80 kN", "displacement": Q([0.0, 5.0, 7.0], "mm"), **CREEP}
+EXISTS = np.array([[[1, 0], [1, 0]], [[1, 0], [1, 0]], [[1, 0], [1, 1]]], dtype=bool)
+SHARE = 0.25
+
+
+class Axle(wl.Rig):
+    """Two wheels; beyond a displacement of 6 mm the right one also touches with its flange, which takes a quarter."""
+
+    name: ClassVar[str] = "axle"
+    source: ClassVar[str] = "a test"
+    creepage: ClassVar[str] = "longitudinal_creepage"
+    dims: ClassVar[tuple[str, ...]] = PATCHES
+
+    @property
+    def bodies(self) -> Mapping[str, wl.Body]:
+        """Those of one wheel."""
+        return WHEEL.bodies
+
+    def problem(self, *, load: wl.QuantityLike, displacement: wl.QuantityLike, **creepages: Any) -> wl.Problem:
+        """Return the problem of four patches, of which there are two or three."""
+        place = wl.Unit("mm", positive=False).si(displacement, "displacement")[..., None, None]
+        flange, right = np.array([0.0, 1.0]), np.array([[-1.0], [1.0]])
+        exists = (flange == 0.0) | ((place > FLANGE) & (right > 0.0))
+        two = (right > 0.0) & (place > FLANGE)
+        share = np.where(two, np.where(flange > 0.0, SHARE, 1.0 - SHARE), 1.0)
+        found = WHEEL.problem(normal_force=Q(share * wl.Unit("N").si(load, "load"), "N"), **creepages)
+        radius = np.broadcast_to(RADIUS + CONICITY * right * place, exists.shape)
+        bodies = {"wheel": wl.Body(WHEEL.material, radius), "rail": found.bodies["rail"]}
+        return found.replaced(dims=self.dims, exists=exists, bodies=bodies)
+
+
+KTH = wl.wear_law("kth")
+PREDICT: Any = Axle() | wl.contact_model("fastsim") | KTH
+ALONE: Any = WHEEL | wl.contact_model("fastsim") | KTH
+LOADS = Q(np.array([[[80.0, np.nan]] * 2] * 2 + [[[80.0, np.nan], [60.0, 20.0]]]), "kN")
+
+
+def alone(name: str) -> Array:
+    """Return what single wheels give on each of the patches."""
+    found = np.full(EXISTS.shape, np.nan)
+    for place in zip(*np.nonzero(EXISTS), strict=True):
+        found[place] = getattr(ALONE(normal_force=LOADS[place], **CREEP), name).to_base_units().magnitude
+    return found
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["wear_rate", "wear_rate_error", "longitudinal_force", "spin_moment", "wear_index", "mean_slip", "stick_ratio",
+     "patch_area", "max_pressure", "semi_axis_a", "mass_per_distance"],
+)  # fmt: skip
+def test_each_patch_is_a_contact_of_its_own_and_missing_ones_are_nan(name: str) -> None:
+    found = getattr(PREDICT(**GIVEN), name).to_base_units().magnitude
+    assert found.shape == EXISTS.shape
+    assert (np.isnan(found) == ~EXISTS).all()
+    # errors of the wear rate are differences of rates, which sums in another order round
+    rounding = 1e3 * EPS * np.nanmax(alone("wear_rate")) if name == "wear_rate_error" else 0.0
+    np.testing.assert_allclose(found, alone(name), rtol=64 * EPS, atol=rounding)
+
+
+def test_only_patches_that_exist_are_solved(monkeypatch: pytest.MonkeyPatch) -> None:
+    solved: list[int] = []
+    model = type(wl.contact_model("fastsim"))
+    solve = model.solve_ellipse
+
+    def counted(self: Any, problem: wl.Problem) -> wl.Contact:
+        solved.append(problem.size)
+        return solve(self, problem)
+
+    monkeypatch.setattr(model, "solve_ellipse", counted)
+    found = PREDICT(**GIVEN)
+    _ = found.wear_rate, found.longitudinal_force, found.contact, found.mean_slip
+    assert solved == [EXISTS.sum()]
+
+
+def test_the_contact_has_the_axes_of_the_patches() -> None:
+    contact = PREDICT(**GIVEN).contact
+    assert contact.pressure.shape[:3] == EXISTS.shape
+    assert (np.isnan(contact.traction).all(axis=(-1, -2)) == ~EXISTS).all()
+    assert contact.problem.dims == PATCHES
+
+
+def test_each_patch_has_the_rolling_radius_of_its_place() -> None:
+    found = PREDICT(**GIVEN)
+    profile = found.wear_profile("wheel")
+    assert profile.depth.dims == ("point_0", "side", "patch", "strip")
+    radius = RADIUS + CONICITY * np.array([[0.0, 0.0], [-5e-3, 5e-3], [-7e-3, 7e-3]])[..., None]
+    single = ALONE(normal_force="80 kN", **CREEP).wear_profile("wheel").depth.values
+    np.testing.assert_allclose(profile.depth.values[1, 1, 0] * radius[1, 1] / RADIUS, single, rtol=64 * EPS)
+    lost = found.mass_per_cycle("wheel").to("kg").magnitude
+    np.testing.assert_allclose(lost, alone("mass_per_distance") * 2 * np.pi * radius, rtol=64 * EPS)
+
+
+@pytest.mark.parametrize("model", ["exact", "fastsim"])
+def test_patches_of_a_line_may_be_missing_too(model: str) -> None:
+    class Twice(wl.Rig):
+        """Two discs side by side, of which the second may be lifted off."""
+
+        name: ClassVar[str] = "twice"
+        source: ClassVar[str] = "a test"
+
+        def problem(self, *, creepage: wl.QuantityLike, lifted: bool) -> wl.Problem:
+            """Return the problem of both."""
+            both = Q(np.full(2, wl.Unit("", positive=False).si(creepage, "creepage")), "")
+            found = discs.problem(creepage=both, max_pressure="1.5 GPa", friction_coefficient=0.46)
+            return found.replaced(dims=("disc",), exists=np.array([True, not lifted]))
+
+    discs = wl.TwinDisc.suros()
+    for law in ("usfd", "kth"):
+        pipeline: Any = (Twice() | wl.contact_model(model)).with_law(wl.wear_law(law))
+        both, one = pipeline(creepage="1 %", lifted=False), pipeline(creepage="1 %", lifted=True)
+        for name in ("wear_rate", "tangential_force", "mean_slip", "half_width", "max_pressure"):
+            first, second = getattr(both, name).magnitude
+            assert first == second
+            np.testing.assert_array_equal(getattr(one, name).magnitude, [first, np.nan])
+        assert one.profile.pressure.dims == ("disc", "cell")
+        assert np.isnan(one.profile.pressure.values[1]).all()
+
+
+def test_what_warns_looks_at_patches_that_exist() -> None:
+    with pytest.warns(wl.RangeWarning, match="maximum pressure reaches"):
+        PREDICT(**{**GIVEN, "load": "8000 kN"})
+
+
+@pytest.mark.parametrize("exists", [np.array([1.0, 0.0]), np.array([True]), [True, False]])
+def test_a_wrong_mask_is_the_rigs_fault(exists: Any) -> None:
+    class Wrong(Axle):
+        name: ClassVar[str] = "wrong"
+
+        def problem(self, **conditions: Any) -> wl.Problem:
+            return super().problem(**conditions).replaced(exists=exists)
+
+    with pytest.raises(wl.ModelError, match=r"rig 'wrong' gave .* as `exists`; it must be an array of bool"):
+        (Wrong() | wl.contact_model("fastsim"))(**GIVEN)
+
+
+def test_applications_that_take_one_patch_say_so() -> None:
+    with pytest.raises(
+        wl.CompositionError, match=r"sweep: needs one patch .* 'axle' makes several, along side and patch"
+    ):
+        wl.sweep(PREDICT, **GIVEN)
+    with pytest.raises(wl.CompositionError, match="uncertainty: needs one patch"):
+        wl.uncertainty(PREDICT, **{**GIVEN, "load": wl.uniform("60 kN", "80 kN")}, samples=4).interval()
+    creepages = {name: value for name, value in GIVEN.items() if name != "longitudinal_creepage"}
+    with pytest.raises(wl.CompositionError, match="creepage_for: needs one patch"):
+        wl.creepage_for(Axle() | wl.contact_model("fastsim"), tangential_force="1 kN", **creepages)
+
+
+ANGLE = np.deg2rad(70.0)
+
+
+class Flange(wl.Rig):
+    """A flange at 70 degrees: what is given is the vertical load, N cos δ + Fy sin δ."""
+
+    name: ClassVar[str] = "flange"
+    source: ClassVar[str] = "a test"
+    creepage: ClassVar[str] = "longitudinal_creepage"
+
+    def problem(self, *, vertical_load: wl.QuantityLike, **creepages: Any) -> wl.Problem:
+        """Return the problem under the normal force that carries the load without friction."""
+        load = wl.Unit("N").si(vertical_load, "vertical_load") / np.cos(ANGLE)
+        return WHEEL.problem(normal_force=Q(load, "N"), **creepages)
+
+    def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
+        """Return the problem under the normal force that carries the load with friction."""
+        load = problem.normal_force * np.cos(ANGLE)
+        for _ in range(60):  # each step leaves μ tan δ / 3 of the error at the most, Fy growing no faster than N
+            lateral = forces(problem).lateral
+            problem = problem.with_normal_force((load - lateral * np.sin(ANGLE)) / np.cos(ANGLE))
+        return problem
+
+
+def test_a_rig_balances_its_loads_around_the_contact() -> None:
+    creepages: Any = {"longitudinal_creepage": Q([0.1, 0.5], "%"), "lateral_creepage": "0.1 %"}
+    predict: Any = Flange() | wl.contact_model("fastsim") | KTH
+    found = predict(vertical_load="20 kN", friction_coefficient=0.2, **creepages)
+    carried = found.normal_force * np.cos(ANGLE) + found.lateral_force * np.sin(ANGLE)
+    np.testing.assert_allclose(carried.to("kN").magnitude, 20.0, rtol=1e-9)
+    alone = ALONE(normal_force=found.normal_force, friction_coefficient=0.2, **creepages)
+    for name in ("wear_rate", "max_pressure", "semi_axis_a", "semi_axis_b", "lateral_force"):
+        np.testing.assert_allclose(getattr(found, name).magnitude, getattr(alone, name).magnitude, rtol=64 * EPS)
+    swept = wl.sweep(predict, vertical_load="20 kN", friction_coefficient=0.2, **creepages)
+    np.testing.assert_array_equal(swept.wear_rate.values, found.wear_rate.to(swept.wear_rate.units).magnitude)
+
+
+def test_the_creepage_that_loads_depend_on_is_not_looked_for() -> None:
+    with pytest.raises(wl.CompositionError, match="loads of rig 'flange' depend on the creepage"):
+        wl.creepage_for(
+            Flange() | wl.contact_model("fastsim"),
+            tangential_force="1 kN",
+            vertical_load="20 kN",
+            friction_coefficient=0.2,
+        )
+
+
+def test_what_balances_must_return_a_problem() -> None:
+    class Forgetful(Flange):
+        name: ClassVar[str] = "forgetful"
+
+        def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> Any:
+            forces(problem)
+
+    with pytest.raises(wl.ModelError, match=r"`balanced` of rig 'forgetful' returned None, not a wearlaw.Problem"):
+        (Forgetful() | wl.contact_model("fastsim"))(vertical_load="20 kN", **CREEP)
+
+
+@pytest.mark.parametrize("factor", [0.1, 3.0])
+def test_another_normal_force_gives_the_patch_of_hertz(factor: float) -> None:
+    discs: Any = {"creepage": "1 %", "friction_coefficient": 0.4}
+    for rig, given in ((wl.TwinDisc.suros(), discs), (WHEEL, CREEP)):
+        one, other = (rig.problem(normal_force=Q(7.0 * f, "kN"), **given) for f in (1.0, factor))
+        loaded = one.with_normal_force(factor * one.normal_force)
+        for name in ("a", "b", "normal_force", "max_pressure"):
+            assert getattr(loaded, name) == pytest.approx(getattr(other, name), rel=16 * EPS)
