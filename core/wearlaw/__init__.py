@@ -228,4 +228,4 @@ def __getattr__(name: str) -> object:
 if _sys.modules.get("hypothesis") is not None:  # its entry point came too early to know the types
     from _wearlaw_hypothesis import register_types as _register_types
 
-    _register_types()
+    _register_types(_sys.modules[__name__])

@@ -25,7 +25,8 @@ from wearlaw.output.results import table as results_table
 from wearlaw.pipeline.variables import UNITS
 from wearlaw.report.tables import summaries, tables
 from wearlaw.study.case import Case, case_schema, case_text, load_case, written
-from wearlaw.study.study import Study, axes_of, main_axis, run
+from wearlaw.study.results import axes_of, main_axis
+from wearlaw.study.study import Study, run
 from wearlaw.sweeping import points
 
 WHEEL = {

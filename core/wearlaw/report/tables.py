@@ -18,7 +18,8 @@ from wearlaw.pipeline.variables import label as label_of
 from wearlaw.pipeline.variables import name_of
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.study.study import Study, along_main_axis, axes_of, main_axis, used
+from wearlaw.study.results import along_main_axis, axes_of, main_axis
+from wearlaw.study.study import Study, used
 from wearlaw.units.registry import symbol
 
 if TYPE_CHECKING:

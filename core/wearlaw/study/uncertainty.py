@@ -12,8 +12,7 @@ from wearlaw.errors import InputError
 from wearlaw.pipeline.notes import Notes
 from wearlaw.study.case import Case
 from wearlaw.study.pairs import Pair, pairs_of
-from wearlaw.uncertainties.figure import CONFIDENCE
-from wearlaw.uncertainties.result import Uncertainty, uncertainty
+from wearlaw.uncertainties.result import CONFIDENCE, Uncertainty, uncertainty
 from wearlaw.units.quantities import WEAR_RATE
 
 if TYPE_CHECKING:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
@@ -12,13 +13,14 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.models.wear_law import Numbers
 from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_wear
 from wearlaw.pipeline.composition import check_traction, warn_of_geometry
 from wearlaw.pipeline.ranges import RangeWatch, mean_over_patch
+from wearlaw.pipeline.variables import UNITS, label
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
-from wearlaw.uncertainties.figure import CONFIDENCE, figure_data
 from wearlaw.uncertainties.inputs import OTHERS, Known, Uncertain, check_samples, parameter, split
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, QuantityLike, from_si, shortened
 
@@ -28,9 +30,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from wearlaw.contact.conditions import FrictionLaw
-    from wearlaw.contact.problem import Problem
-    from wearlaw.figures.curves import FigureData
     from wearlaw.pipeline.pipeline import Pipeline
+
+CONFIDENCE = 0.95
+"""The share of the samples in an interval, where none is given."""
+
+STEPS = 512
+"""Points of the cumulative distribution in a figure."""
 
 MOST_SAMPLES = 2**22
 """The most samples that are taken on."""
@@ -178,8 +184,14 @@ class Uncertainty:
         return pd.DataFrame(table, index=index)
 
     def figure_data(self) -> FigureData:
-        """Return what `plot` draws."""
-        return figure_data(self)
+        """Return what `plot` draws.
+
+        Raises
+        ------
+        InputError
+            If the operating points differ in more than one condition.
+        """
+        return _figure_data(self)
 
     def plot(self) -> Figure:
         """Return a figure: the cumulative distribution, or the band of 95 % along the one axis of the conditions."""
@@ -260,3 +272,45 @@ class Uncertainty:
             lines += [f"{'median':20} {self.median!r}", f"{share:20} {low!r} to {high!r}"]
         lines += [f"{one.name:20} {one.shown}" for one in self.inputs]
         return "\n  ".join(lines)
+
+
+def _figure_data(uncertainty: Uncertainty) -> FigureData:
+    """Return the cumulative distribution of one operating point, or the band along the axis of several."""
+    inputs = ", ".join(f"{one.name} {one.shown}" for one in uncertainty.inputs)
+    panel = _cumulative(uncertainty) if math.prod(uncertainty.shape) == 1 else _along_axis(uncertainty)
+    caption = f"{uncertainty.samples} samples of {inputs}."
+    return FigureData("uncertainty", uncertainty.title, (panel,), caption, f"{CONFIDENCE:.0%} of the samples")
+
+
+def _cumulative(uncertainty: Uncertainty) -> Panel:
+    rates = _plain(uncertainty.wear_rate)
+    share = (np.arange(STEPS) + 0.5) / STEPS
+    low, high = (_plain(end) for end in uncertainty.interval(CONFIDENCE))
+    median = _plain(uncertainty.median)
+    tail = 0.5 - 0.5 * CONFIDENCE
+    curves = (
+        Curve("wear rate", np.quantile(rates, share), share),
+        Curve(f"median and {CONFIDENCE:.0%} of the samples", np.concatenate([low, median, high]),
+              np.array([tail, 0.5, 1.0 - tail]), colour=1, points=True),
+    )  # fmt: skip
+    y = PlotAxis("share of the samples below [-]", ends=(0.0, 1.0))
+    return Panel(PlotAxis(label("wear_rate")), y, curves)
+
+
+def _along_axis(uncertainty: Uncertainty) -> Panel:
+    axes = {name: one for name, one in uncertainty.known.items() if np.size(one.values) > 1}
+    if len(axes) != 1:
+        raise InputError(f"plot: needs one condition with several values, or none; there are {', '.join(axes)}")
+    ((name, one),) = axes.items()
+    x, shown = np.ravel(one.values), f"{name.replace('_', ' ')} [{one.unit or '-'}]"
+    if name in UNITS:
+        x, shown = Q(x, one.unit or "").to(UNITS[name]).magnitude, label(name)
+    order = np.argsort(x)
+    low, high = (_plain(end)[order] for end in uncertainty.interval(CONFIDENCE))
+    median = _plain(uncertainty.median)[order]
+    curve = Curve("median", x[order], median, low=low, high=high)
+    return Panel(PlotAxis(shown), PlotAxis(label("wear_rate")), (curve,))
+
+
+def _plain(quantity: Quantity) -> Array:
+    return np.ravel(quantity.to(UNITS["wear_rate"]).magnitude)
