@@ -33,8 +33,6 @@ def register_types(wearlaw: ModuleType) -> None:
 
     def resolver(name: str) -> Any:
         def draw_from(_: type[Any]) -> st.SearchStrategy[Any]:
-            import wearlaw.testing
-
             strategy: st.SearchStrategy[Any] = getattr(wearlaw.testing, name)()
             return strategy
 

@@ -17,6 +17,22 @@ KNOWN = {
 """The one circle that there is, to be removed: `rig | model` makes a pipeline, and hooks are typed with rigs."""
 
 
+DEFERRED = {
+    ("wearlaw.arrays.kernels", "numba"): "is optional, and takes a second to load",
+    ("wearlaw.cli.model_commands", "wearlaw.testing"): "needs hypothesis, which is optional",
+    ("wearlaw.figures.plot", "wearlaw.figures.drawing"): "matplotlib takes longer to load than all else; few plot",
+    ("wearlaw.models.rig", "wearlaw.pipeline.pipeline"): "makes `rig | model`; to be removed with the circle",
+    ("wearlaw.numerics.crossings", "scipy.optimize"): "takes as long to load as the rest of wearlaw",
+    ("wearlaw.pipeline.prediction", "xarray"): "takes as long to load as the rest of wearlaw; for profiles alone",
+    ("wearlaw.sweeping.evaluation", "zarr"): "is optional",
+    ("wearlaw.testing.decorator", "pytest"): "is not needed to run the checks of the kit",
+    ("wearlaw.wear_tests.tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",
+    ("wearlaw_sheffield", "wearlaw_sheffield"): "its sections need pandas, which looking up a plugin must not load",
+}
+"""All imports inside functions: by file and what is imported, and why. scipy loads its other parts by itself when they
+are used; `wearlaw.__getattr__` and the table of commands load the applications."""
+
+
 def modules() -> dict[str, Path]:
     """Return all files of core and plugins by their module."""
     found = {}
@@ -81,3 +97,20 @@ def test_a_circle_is_found_whichever_way_it_is_imported() -> None:
 def test_no_files_import_each_other_in_a_circle(graph: dict[str, set[str]]) -> None:
     assert {"wearlaw", "wearlaw.study.case", "wearlaw_kth", "_wearlaw_hypothesis"} <= graph.keys()
     assert [sorted(circle) for circle in circles(graph) if not circle <= KNOWN] == []
+
+
+def deferred(source: str) -> Iterator[str]:
+    """Yield what a source imports inside functions."""
+    functions = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
+    for node in {inner: None for function in functions for inner in ast.walk(function)}:
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield str(node.module)
+
+
+def test_imports_inside_functions_are_few_and_each_has_its_reason() -> None:
+    assert [*deferred("import a\ndef f():\n    def g():\n        from b import c, d\n        import e")] == ["b", "e"]
+    found = [(name, one) for name, path in modules().items() for one in deferred(path.read_text(encoding="utf-8"))]
+    assert sorted(found) == sorted(DEFERRED)
+    assert len(DEFERRED) <= 10

@@ -190,6 +190,7 @@ __all__ = [
 ]
 
 if _TYPE_CHECKING:
+    from wearlaw import testing as testing
     from wearlaw.fitting.compare import compare
     from wearlaw.fitting.comparison import Comparison
     from wearlaw.fitting.fit import fit
@@ -220,6 +221,8 @@ _LATER = {
 
 
 def __getattr__(name: str) -> object:
+    if name == "testing":
+        return _import_module("wearlaw.testing")
     if name not in _LATER:
         raise AttributeError(f"module 'wearlaw' has no attribute {name!r}")
     return getattr(_import_module(_LATER[name]), name)

@@ -327,9 +327,9 @@ def test_its_uncertainty_is_that_of_direct_samples() -> None:
 def test_a_run_that_was_interrupted_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(points, "BLOCK", 4)
     cases.write(Path("c.toml"), ON_RAIL)
-    from wearlaw.sweeping import sweep, worker
+    from wearlaw.sweeping import evaluation, sweep
 
-    evaluated, count = worker.evaluated, []
+    evaluated, count = evaluation.evaluated, []
 
     def interrupt(*arguments: Any, **named: Any) -> Any:
         count.append(1)

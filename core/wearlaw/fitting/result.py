@@ -9,11 +9,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+import pandas as pd
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.plot import plot
 from wearlaw.fitting.law_files import write_wear_law
 from wearlaw.fitting.observations import Observations, Scatter, predictions, wear_index_density
 from wearlaw.models.wear_law import WearLaw
@@ -24,7 +26,6 @@ from wearlaw.wear_tests.columns import head
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.figure import Figure
 
     from wearlaw.pipeline.pipeline import Pipeline
@@ -129,8 +130,6 @@ class Fit:
     @property
     def residuals(self) -> pd.DataFrame:
         """A row for each measurement: the test, what was measured and what is predicted, and the residual."""
-        import pandas as pd
-
         rows = []
         for one in self.observations:
             predicted = self._fitted(one)
@@ -151,8 +150,6 @@ class Fit:
 
     def table(self) -> pd.DataFrame:
         """Return the parameters with their intervals, a row for each."""
-        import pandas as pd
-
         rows = []
         for name, value in self.parameters.items():
             low, high = self.intervals[name]
@@ -188,9 +185,7 @@ class Fit:
 
     def plot(self) -> Figure:
         """Return a drawing of `figure_data`."""
-        from wearlaw.figures.drawing import draw
-
-        return draw(self.figure_data())
+        return plot(self.figure_data())
 
     def values_in_si(self, which: Mapping[str, Quantity] | None = None) -> dict[str, Array]:
         """Return the fitted parameters, or others, as SI arrays of one axis."""

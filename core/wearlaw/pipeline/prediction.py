@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -208,20 +209,15 @@ class Prediction:
         return self.contact
 
     def _profile(self, more: dict[str, tuple[Array, str]]) -> xarray.Dataset:
-        import xarray
-
         contact = self._cells()
         names = ("x", "pressure", "traction", "traction_bound", "slip")
         columns = {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more}
-        dims = (*(f"point_{axis}" for axis in range(len(self.problem.batch_shape))), "cell")
+        batch = [f"point_{axis}" for axis in range(len(self.problem.batch_shape))]
+        dims = [*batch, "cell"] if batch else ["x"]
         data = {
-            name: xarray.DataArray(from_si(values, unit).magnitude, dims=dims, attrs={"units": unit})
-            for name, (values, unit) in columns.items()
+            name: (dims, from_si(values, unit).magnitude, {"units": unit}) for name, (values, unit) in columns.items()
         }
-        if len(dims) == 1:
-            x = data.pop("x")
-            return xarray.Dataset({k: v.rename(cell="x") for k, v in data.items()}, coords={"x": x.rename(cell="x")})
-        return xarray.Dataset(data).set_coords("x")
+        return _dataset({"x": data.pop("x")}, data)
 
     def wear_profile(self, body: str, strips: int | None = None) -> xarray.Dataset:
         """Return the depth lost and the distance slid across an elliptic patch, over y.
@@ -401,8 +397,6 @@ class Prediction:
 
 
 def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str) -> xarray.Dataset:
-    import xarray
-
     batch = [f"point_{axis}" for axis in range(y.ndim - 1)]
     dims = [*batch, "strip"] if batch else ["y"]
     place = (dims, in_unit(y, "mm"), {"units": "mm", "long_name": "position across the patch"})
@@ -410,7 +404,13 @@ def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str) -> 
         name: (dims, in_unit(values, unit), {"units": unit, "long_name": f"{name.replace('_', ' ')} per {per}"})
         for name, (values, unit) in columns.items()
     }
-    return xarray.Dataset(data, coords={"y": place})
+    return _dataset({"y": place}, data)
+
+
+def _dataset(coordinates: Mapping[str, Any], variables: Mapping[str, Any]) -> xarray.Dataset:
+    import xarray
+
+    return xarray.Dataset(variables, coordinates)
 
 
 def _brief(quantity: Quantity) -> str:

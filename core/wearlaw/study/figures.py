@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.models.labels import labels
@@ -20,8 +21,6 @@ from wearlaw.study.measured_points import measured_points
 from wearlaw.study.results import Results, along, main_axis
 
 if TYPE_CHECKING:
-    import xarray
-
     from wearlaw.arrays.array import Array
     from wearlaw.study.grid import Grid
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+
+import xarray
 
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.study.case import Case
 from wearlaw.study.pairs import Pair
-
-if TYPE_CHECKING:
-    import xarray
 
 
 @dataclass(frozen=True)

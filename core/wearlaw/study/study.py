@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.material import Material
@@ -35,14 +36,11 @@ from wearlaw.study.figures import figures_of
 from wearlaw.study.pairs import Pair, pairs_of
 from wearlaw.study.results import Results
 from wearlaw.study.sections import Section
-from wearlaw.sweeping.checkpoint import Checkpoint
-from wearlaw.sweeping.evaluator import Evaluator
+from wearlaw.sweeping.checkpoint import Checkpoint, Evaluator
 from wearlaw.sweeping.points import Points
 from wearlaw.version import __version__
 
 if TYPE_CHECKING:
-    import xarray
-
     from wearlaw.figures.curves import FigureData
     from wearlaw.plugins.shelf import Shelf
     from wearlaw.study.grid import Grid
@@ -170,8 +168,6 @@ def used(case: Case) -> dict[str, dict[str, str]]:
 
 def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: Evaluator) -> xarray.Dataset:
     """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
-    import xarray
-
     points = grid.points(case.units)
     axes = points.dims
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
@@ -291,8 +287,6 @@ def _band_ends(pipeline: Pipeline[...]) -> list[Pipeline[...]]:
 
 def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes) -> xarray.Dataset:
     """Return what is seen in the patch: fields of each contact model, and the wear of each pair."""
-    import xarray
-
     problem = grid.problem(case.rig)
     contacts: dict[str, xarray.Dataset] = {}
     wear: list[xarray.Dataset] = []
@@ -322,8 +316,6 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
     It runs along the patch of a line, over x. That of an ellipse runs across the patch, over y, with the wear of each
     body.
     """
-    import xarray
-
     if prediction.problem.geometry == "line":
         return ["wear_rate"], prediction.profile
     across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in rig.bodies}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from wearlaw.errors import InputError
 from wearlaw.pipeline.notes import Notes
@@ -14,9 +14,6 @@ from wearlaw.study.case import Case
 from wearlaw.study.pairs import Pair, pairs_of
 from wearlaw.uncertainties.result import CONFIDENCE, Uncertainty, uncertainty
 from wearlaw.units.quantities import WEAR_RATE
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -73,8 +70,6 @@ def uncertainty_of(
     InputError
         If nothing in the case is uncertain.
     """
-    import pandas as pd
-
     notes = Notes()
     pairs = pairs_of(case, notes)
     if not any(point.varies(pair.wear_law) for point in case.uncertainty.values() for pair in pairs):

@@ -8,12 +8,15 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
+import scipy
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.plot import plot
 from wearlaw.models.wear_law import Numbers
 from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_wear
@@ -25,7 +28,6 @@ from wearlaw.uncertainties.inputs import OTHERS, Known, Uncertain, check_samples
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, QuantityLike, from_si, shortened
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
@@ -122,9 +124,7 @@ class Uncertainty:
     @cached_property
     def wear_rate(self) -> Quantity:
         """The samples of the wear rate [kg/m/m²]; they are the last axis."""
-        from scipy.stats import qmc
-
-        sequence = qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
+        sequence = scipy.stats.qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
         probability = sequence.random_base2(self.samples.bit_length() - 1).T
         return from_si(self._rates(probability, stacklevel=4), WEAR_RATE)
 
@@ -160,9 +160,6 @@ class Uncertainty:
         InputError
             If the conditions that are not distributed hold more than one operating point, or the rate does not vary.
         """
-        import pandas as pd
-        from scipy.stats import sobol_indices, uniform
-
         if self.shape:
             raise InputError("sobol: needs one operating point; give each condition that is not distributed one value")
         if np.ptp(self.wear_rate.magnitude) == 0.0:
@@ -171,10 +168,10 @@ class Uncertainty:
         if len(self.inputs) == 1:  # scipy takes no fewer than two
             alone = {"first_order": 1.0, "first_order_error": 0.0, "total_order": 1.0, "total_order_error": 0.0}
             return pd.DataFrame(alone, index=index)
-        every: list[Any] = [uniform()] * len(self.inputs)
+        every: list[Any] = [scipy.stats.uniform()] * len(self.inputs)
         size = max(self.samples // SEQUENCES, 2)
         found = [
-            sobol_indices(func=lambda x: self._rates(x)[None, :], n=size, dists=every, rng=rng)
+            scipy.stats.sobol_indices(func=lambda x: self._rates(x)[None, :], n=size, dists=every, rng=rng)
             for rng in np.random.default_rng(self._seed).spawn(SEQUENCES)
         ]
         table: dict[str, Array] = {}
@@ -195,9 +192,7 @@ class Uncertainty:
 
     def plot(self) -> Figure:
         """Return a figure: the cumulative distribution, or the band of 95 % along the one axis of the conditions."""
-        from wearlaw.figures.drawing import draw
-
-        return draw(self.figure_data())
+        return plot(self.figure_data())
 
     def _quantile(self, probability: float) -> Quantity:
         rates = self.wear_rate
