@@ -228,6 +228,11 @@ def __getattr__(name: str) -> object:
     return getattr(_import_module(_LATER[name]), name)
 
 
+def __dir__() -> list[str]:
+    """Return the public names, those among them that are loaded later; the rooms of the package are not for users."""
+    return __all__
+
+
 if _sys.modules.get("hypothesis") is not None:  # its entry point came too early to know the types
     from _wearlaw_hypothesis import register_types as _register_types
 

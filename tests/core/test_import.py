@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import inspect
 import subprocess
 import sys
 
@@ -58,6 +59,18 @@ def test_commands_that_only_print_do_not_load_what_others_need(arguments: list[s
 
 def test_a_worker_process_loads_no_labels() -> None:
     assert not {"xarray", "pandas", "rich", "scipy.optimize"} & loaded("import wearlaw.sweeping.workers")
+
+
+def test_dir_shows_the_public_names_also_those_loaded_later_and_no_room() -> None:
+    code = f"{IMPORT}; import wearlaw.study.study; assert dir(wl) == sorted(wl.__all__), dir(wl)"
+    assert "wearlaw.study.study" in loaded(code)
+    modules = [name for name in dir(wl) if inspect.ismodule(getattr(wl, name))]
+    assert modules == ["hertz", "hertz_ellipse", "kalker"]
+    assert {"fit", "sweep", "Uncertainty", "load_case"} <= set(dir(wl))
+
+
+def test_the_conformance_kit_is_loaded_when_the_package_is_asked_for_it() -> None:
+    assert "wearlaw.testing" in loaded(f"{IMPORT}; wl.testing.checks")
 
 
 def test_every_public_name_is_there() -> None:
