@@ -7,40 +7,36 @@ last has the types registered.
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import Any
 
-if TYPE_CHECKING:
-    from hypothesis.strategies import SearchStrategy
+from hypothesis import strategies as st
+
+STRATEGIES = {
+    "Material": "materials",
+    "TwinDisc": "rigs",
+    "WheelRail": "wheel_rails",
+    "Problem": "problems",
+    "Contact": "contacts",
+}
+"""The public types, and the names of their strategies in `wearlaw.testing`."""
 
 
 def register() -> None:
     """Register the types if wearlaw is imported already; the entry point of hypothesis."""
     if "wearlaw" in sys.modules:
-        register_types()
+        register_types(sys.modules["wearlaw"])
 
 
-def register_types() -> None:
-    """Register the types; the strategies are imported when one is drawn from."""
-    from hypothesis import strategies as st
-
-    import wearlaw as wl
-
-    names: dict[type[Any], str] = {
-        wl.Material: "materials",
-        wl.TwinDisc: "rigs",
-        wl.WheelRail: "wheel_rails",
-        wl.Problem: "problems",
-        wl.Contact: "contacts",
-    }
+def register_types(wearlaw: ModuleType) -> None:
+    """Register the types of the package; the strategies are imported when one is drawn from."""
 
     def resolver(name: str) -> Any:
-        def draw_from(_: type[Any]) -> SearchStrategy[Any]:
-            import wearlaw.testing
-
-            strategy: SearchStrategy[Any] = getattr(wearlaw.testing, name)()
+        def draw_from(_: type[Any]) -> st.SearchStrategy[Any]:
+            strategy: st.SearchStrategy[Any] = getattr(wearlaw.testing, name)()
             return strategy
 
         return draw_from
 
-    for cls, name in names.items():
-        st.register_type_strategy(cls, resolver(name))
+    for cls, name in STRATEGIES.items():
+        st.register_type_strategy(getattr(wearlaw, cls), resolver(name))

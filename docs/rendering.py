@@ -29,7 +29,8 @@ class CommandLine(Directive):
 
     def run(self) -> list[nodes.Node]:
         program = click.Context(main, info_name="wearlaw")
-        return [self._section(click.Context(main.commands[name], program, name)) for name in main.commands]
+        commands = {name: main.get_command(program, name) for name in main.list_commands(program)}
+        return [self._section(click.Context(command, program, name)) for name, command in commands.items()]
 
     def _section(self, command: click.Context) -> nodes.section:
         name, text = command.command_path, command.get_help()

@@ -18,6 +18,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import click
 import pytest
 import tomli_w
 import xarray as xr
@@ -245,5 +246,7 @@ def inline_commands() -> Iterator[tuple[str, list[str]]]:
 def test_commands_and_options_of_wearlaw_within_sentences_are_there() -> None:
     found = [*inline_commands()]
     assert {"run", "case", "show", "check", "compare", "new-plugin"} <= {name for name, _ in found}
-    known = {name: {opt for param in command.params for opt in param.opts} for name, command in main.commands.items()}
+    context = click.Context(main)
+    commands = {name: main.get_command(context, name) for name in main.list_commands(context)}
+    known = {name: {opt for one in command.params for opt in one.opts} for name, command in commands.items() if command}
     assert [(name, options) for name, options in found if not {*options} <= known.get(name, {None})] == []

@@ -188,6 +188,7 @@ __all__ = [
 ]
 
 if _TYPE_CHECKING:
+    from wearlaw import testing as testing
     from wearlaw.fitting.compare import compare
     from wearlaw.fitting.comparison import Comparison
     from wearlaw.fitting.fit import fit
@@ -218,12 +219,19 @@ _LATER = {
 
 
 def __getattr__(name: str) -> object:
+    if name == "testing":
+        return _import_module("wearlaw.testing")
     if name not in _LATER:
         raise AttributeError(f"module 'wearlaw' has no attribute {name!r}")
     return getattr(_import_module(_LATER[name]), name)
 
 
+def __dir__() -> list[str]:
+    """Return the public names, those among them that are loaded later; the rooms of the package are not for users."""
+    return __all__
+
+
 if _sys.modules.get("hypothesis") is not None:  # its entry point came too early to know the types
     from _wearlaw_hypothesis import register_types as _register_types
 
-    _register_types()
+    _register_types(_sys.modules[__name__])

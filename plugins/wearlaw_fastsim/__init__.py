@@ -10,6 +10,7 @@ from pydantic import Field
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw_fastsim import _solution
 from wearlaw_fastsim._kernel import elliptic_excess, parabolic_excess
 
 ON_ELLIPSE = ("march", "strips", "slip", "interpolation")
@@ -104,8 +105,6 @@ class Fastsim(wl.LineContactModel):
 
     def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
         """Return the contact on strips."""
-        from wearlaw_fastsim import _solution  # most of what there is to import, and not needed on a line
-
         solve = _solution.adaptive if self.march == "adaptive" else _solution.uniform
         patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
         contact = solve(problem, patches, self.strips)
@@ -115,8 +114,6 @@ class Fastsim(wl.LineContactModel):
         """Return the contact on strips at y = `shares` × b; a uniform march has its own strips."""
         if self.march == "uniform":
             return None
-        from wearlaw_fastsim import _solution
-
         patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
         contact = _solution.on_strips(problem, patches, self.strips, shares)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact

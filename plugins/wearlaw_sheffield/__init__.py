@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import wearlaw as wl
@@ -29,30 +30,15 @@ def wearlaw_tests() -> dict[str, str]:
 @wl.hookimpl
 def wearlaw_sections() -> dict[str, Callable[[wl.Study], wl.Section]]:
     """Return the tables of the paper, its claims put to the test, and the fit of its Table 4."""
-    return {
-        "tassini2010_tables": _tables,
-        "tassini2010_claims": _claims,
-        "tassini2010_table_4": _table_4,
-    }
+    return {f"tassini2010_{name}": partial(_section, name) for name in ("tables", "claims", "table_4")}
 
 
 def _text(file: str) -> str:
     return Path(__file__).with_name(file).read_text(encoding="utf-8")
 
 
-def _tables(study: wl.Study) -> wl.Section:
-    from wearlaw_sheffield.tables import section
+def _section(name: str, study: wl.Study) -> wl.Section:
+    from wearlaw_sheffield import claims, table_4, tables
 
-    return section(study)
-
-
-def _claims(study: wl.Study) -> wl.Section:
-    from wearlaw_sheffield.claims import section
-
-    return section(study)
-
-
-def _table_4(study: wl.Study) -> wl.Section:
-    from wearlaw_sheffield.table_4 import section
-
-    return section(study)
+    make = {"tables": tables.section, "claims": claims.section, "table_4": table_4.section}[name]
+    return make(study)

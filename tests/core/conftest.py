@@ -75,7 +75,7 @@ def point() -> Study:
 @pytest.fixture
 def blank_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave figures empty, whose drawing takes most of the time of a small run."""
-    monkeypatch.setattr("wearlaw.figures.drawing.draw", lambda _: Figure(figsize=(1.0, 1.0)))
+    monkeypatch.setattr("wearlaw.output.results.draw", lambda _: Figure(figsize=(1.0, 1.0)))
 
 
 @pytest.fixture

@@ -25,7 +25,8 @@ from wearlaw.output.results import table as results_table
 from wearlaw.pipeline.variables import UNITS
 from wearlaw.report.tables import summaries, tables
 from wearlaw.study.case import Case, case_schema, case_text, load_case, written
-from wearlaw.study.study import Study, axes_of, main_axis, run
+from wearlaw.study.results import axes_of, main_axis
+from wearlaw.study.study import Study, run
 from wearlaw.sweeping import points
 
 WHEEL = {
@@ -326,9 +327,9 @@ def test_its_uncertainty_is_that_of_direct_samples() -> None:
 def test_a_run_that_was_interrupted_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(points, "BLOCK", 4)
     cases.write(Path("c.toml"), ON_RAIL)
-    from wearlaw.sweeping import sweep, worker
+    from wearlaw.sweeping import evaluation, sweep
 
-    evaluated, count = worker.evaluated, []
+    evaluated, count = evaluation.evaluated, []
 
     def interrupt(*arguments: Any, **named: Any) -> Any:
         count.append(1)

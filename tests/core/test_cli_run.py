@@ -125,11 +125,11 @@ def test_of_two_runs_of_two_cases_into_one_folder_one_says_where_its_results_are
     winners: list[Result] = []
 
     def late(*arguments: Any) -> list[str]:
-        monkeypatch.setattr(output, "write", write_results)
+        monkeypatch.setattr("wearlaw.cli.study_commands.write", write_results)
         winners.append(wearlaw("run", "kth.toml", *options))
         return write_results(*arguments)
 
-    monkeypatch.setattr(output, "write", late)
+    monkeypatch.setattr("wearlaw.cli.study_commands.write", late)
     loser = wearlaw("run", "usfd.toml", *options)
     (winner,) = winners
     assert (winner.exit_code, loser.exit_code) == (0, 1), (winner.output, loser.output)

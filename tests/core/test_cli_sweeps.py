@@ -19,7 +19,7 @@ import wearlaw as wl
 from tests.core.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
 from tests.core.sweeps import contents, interrupted_after, overwrite
 from wearlaw.output import results as output
-from wearlaw.sweeping import checkpoint, space
+from wearlaw.sweeping import checkpoint, storage
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 
@@ -174,7 +174,7 @@ def test_results_are_on_disk_before_the_journal_lists_their_block(
 
     def flush(self: np.memmap[Any, Any]) -> None:
         path = Path(str(self.filename))
-        assert (path.parent / checkpoint.JOURNAL).read_bytes().count(b"\n") == 1
+        assert (path.parent / storage.JOURNAL).read_bytes().count(b"\n") == 1
         flushed.append(f"{path.parent.name}/{path.name}")
 
     monkeypatch.setattr(np.memmap, "flush", flush)
@@ -241,10 +241,10 @@ def test_a_case_too_large_for_memory_or_disk_says_what_it_needs_before_it_starts
 ) -> None:
     million = {**LONG, "creepage": {"from": "0.1 %", "to": "10 %", "points": 10_000_000}}
     case = long_case(folder / "big.toml", sweeps={"long": million})
-    monkeypatch.setattr(space, "available_memory", lambda: 2**30)
+    monkeypatch.setattr(storage, "available_memory", lambda: 2**30)
     # 17 numbers twice and a row of the table of 800 bytes for each point: 10^7 (17 x 16 + 800) / 2^30 GiB
     assert_refused(wearlaw("run", case), "the results need 9.98 GiB of memory, but 1 GiB are free")
-    monkeypatch.setattr(space, "available_memory", lambda: 2**40)
+    monkeypatch.setattr(storage, "available_memory", lambda: 2**40)
     monkeypatch.setattr("shutil.disk_usage", lambda _: type("Usage", (), {"free": 2**30}))
     assert_refused(wearlaw("run", case), "the results need 6.26 GiB on disk, but")
     assert [path.name for path in folder.iterdir()] == ["big.toml"]
@@ -264,7 +264,7 @@ def test_a_run_whose_folder_was_taken_keeps_its_results_beside_and_no_checkpoint
         return write_results(*arguments)
 
     with monkeypatch.context() as patched:
-        patched.setattr(output, "write", late)
+        patched.setattr("wearlaw.cli.study_commands.write", late)
         assert_refused(wearlaw("run", case, "-o", "out"), f"The results are in '{folder / 'out-2'}'")
     assert sorted(path.name for path in folder.iterdir()) == ["big.toml", "out", "out-2"]
     assert contents(folder / "out-2") == whole()
@@ -275,7 +275,7 @@ def test_a_checkpoint_that_another_run_made_meanwhile_is_left_to_it(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     case = long_case(folder / "big.toml")
-    monkeypatch.setattr(output, "check_room", lambda *_: (folder / "out.partial").mkdir())
+    monkeypatch.setattr("wearlaw.cli.study_commands.check_room", lambda *_: (folder / "out.partial").mkdir())
     message = "'out.partial' was made by another run meanwhile; choose another folder with -o"
     assert_refused(wearlaw("run", case, "-o", "out"), message)
     assert contents(folder).keys() == {"big.toml"}

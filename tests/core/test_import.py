@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import inspect
 import subprocess
 import sys
 
@@ -12,7 +13,7 @@ import wearlaw as wl
 
 HEAVY = {
     *("matplotlib", "plotly", "jinja2", "xarray", "pandas", "click", "rich", "h5netcdf", "h5py", "tomli_w", "dask"),
-    *("numba", "distributed", "zarr", "hypothesis", "pytest", "wearlaw.testing"),
+    *("numba", "distributed", "zarr", "hypothesis", "pytest", "wearlaw.testing", "scipy.optimize", "scipy.stats"),
 }
 
 
@@ -40,10 +41,36 @@ def test_what_only_reports_need_is_not_loaded(code: str) -> None:
     assert not (HEAVY - {"dask"}) & loaded(code)
 
 
-def test_importing_loads_no_optimizer_and_no_plugin() -> None:
+def test_importing_loads_no_special_functions_and_no_plugin() -> None:
     found = loaded(IMPORT)
-    assert "scipy.optimize" not in found
+    assert "scipy.special" not in found
     assert not [name for name in found if name.startswith("wearlaw_")]
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["plugins"], ["show", "usfd"], ["case", "tassini2010"]], ids=str)
+def test_commands_that_only_print_do_not_load_what_others_need(arguments: list[str]) -> None:
+    code = (
+        "import io; from wearlaw.cli import main\n"
+        "out, sys.stdout = sys.stdout, io.TextIOWrapper(io.BytesIO(), 'utf-8')\n"
+        f"main({arguments!r}, standalone_mode=False)\nsys.stdout = out"
+    )
+    assert not (HEAVY - {"dask", "click", "rich", "tomli_w"}) & loaded(code)
+
+
+def test_a_worker_process_loads_no_labels() -> None:
+    assert not {"xarray", "pandas", "rich", "scipy.optimize"} & loaded("import wearlaw.sweeping.workers")
+
+
+def test_dir_shows_the_public_names_also_those_loaded_later_and_no_room() -> None:
+    code = f"{IMPORT}; import wearlaw.study.study; assert dir(wl) == sorted(wl.__all__), dir(wl)"
+    assert "wearlaw.study.study" in loaded(code)
+    modules = [name for name in dir(wl) if inspect.ismodule(getattr(wl, name))]
+    assert modules == ["hertz", "hertz_ellipse", "kalker"]
+    assert {"fit", "sweep", "Uncertainty", "load_case"} <= set(dir(wl))
+
+
+def test_the_conformance_kit_is_loaded_when_the_package_is_asked_for_it() -> None:
+    assert "wearlaw.testing" in loaded(f"{IMPORT}; wl.testing.checks")
 
 
 def test_every_public_name_is_there() -> None:

@@ -38,7 +38,7 @@ def written(study: Study, tmp_path_factory: pytest.TempPathFactory) -> tuple[Pat
     """Write the results, with blank figures, whose drawing takes most of the time."""
     folder = tmp_path_factory.mktemp("results")
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("wearlaw.figures.drawing.draw", lambda _: Figure(figsize=(1.0, 1.0)))
+        patched.setattr("wearlaw.output.results.draw", lambda _: Figure(figsize=(1.0, 1.0)))
         return folder, write(study, folder)
 
 

@@ -540,7 +540,7 @@ def test_after_an_interruption_everything_is_as_before(
         assert list(tmp_path.rglob(CSV)), "the break must come in the middle of writing"
         raise error
 
-    monkeypatch.setattr("wearlaw.figures.drawing.draw", break_off)
+    monkeypatch.setattr("wearlaw.output.results.draw", break_off)
     expected = wl.OutputError if error is OSError else error
     with pytest.raises(expected), fresh_folder(out, True, RESULTS) as fresh:
         write(point, fresh)

@@ -160,10 +160,31 @@ def test_pipelines_of_different_settings_are_different() -> None:
 
 def test_a_pipeline_prints_its_stages_in_order() -> None:
     shown = repr(RIG | EXACT | wl.patch_mean() | FITTED["global"])
-    parts = shown.split(" | ")
+    parts = shown[1:-1].split("\n | ")
     assert [part.partition("(")[0] for part in parts] == ["TwinDisc", "Exact", "patch_mean", "USFD"]
     assert "track_width=10.0 mm" in shown
     assert str(RIG | EXACT | KTH) == repr(RIG | EXACT | KTH)
+
+
+class Plain(wl.Rig):
+    """A rig whose repr makes it again, as those of models without quantities do."""
+
+    name = "plain"
+    source = "a test"
+    text: str = "short"
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        raise NotImplementedError
+
+
+def test_a_pipeline_prints_on_one_line_or_if_that_is_long_a_line_for_each_part() -> None:
+    short = Plain() | EXACT
+    assert repr(short) == f"{Plain()!r} | {EXACT!r}"
+    long = Plain(text="x" * 100) | EXACT | wl.patch_mean()
+    assert repr(long) == f"({long.rig!r}\n | {EXACT!r}\n | patch_mean())"
+    names = {"Plain": Plain, "Exact": type(EXACT), "patch_mean": wl.patch_mean}
+    for predict in (short, long):
+        assert eval(repr(predict), names) == predict
 
 
 @pytest.mark.parametrize("predict", [RIG | EXACT, RIG | EXACT | KTH], ids=["contact", "wear"])

@@ -17,7 +17,8 @@ from tests.core.studies import FRICTIONS, LOADS, MEASURED, lattice_study
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS, offered
-from wearlaw.study.study import Study, along_main_axis, axes_of, main_axis, run
+from wearlaw.study.results import along_main_axis, axes_of, main_axis
+from wearlaw.study.study import Study, run
 
 MODELS = {"global": wl.contact_model("global"), "exact": wl.contact_model("exact")}
 LAWS = {"usfd": wl.wear_law("usfd"), "kth": wl.wear_law("kth"), "brr": wl.wear_law("brr")}

@@ -12,7 +12,7 @@ import xarray as xr
 
 import wearlaw as wl
 from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, deadly, ending, predictor
-from wearlaw.sweeping import cluster
+from wearlaw.sweeping import workers
 
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.usefixtures("small_blocks")
@@ -95,7 +95,7 @@ def test_there_are_tasks_before_there_are_workers() -> None:
         def nthreads(self) -> dict[str, int]:
             return {}
 
-    assert cluster._Members(Empty()).threads == 1
+    assert workers._Members(Empty()).threads == 1
 
 
 def test_a_block_at_which_every_worker_of_the_cluster_dies_is_given_up(client: Any, tmp_path: Path) -> None:

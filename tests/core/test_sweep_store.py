@@ -25,8 +25,8 @@ import wearlaw as wl
 from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, interrupted_after, overwrite, predictor
 from wearlaw import Q
 from wearlaw.sweeping import journal
+from wearlaw.sweeping.evaluation import write_block
 from wearlaw.sweeping.points import Block
-from wearlaw.sweeping.store import write_block
 
 pytest.importorskip("zarr")
 pytestmark = pytest.mark.usefixtures("small_blocks")
@@ -174,7 +174,7 @@ def test_each_chunk_is_on_disk_before_the_journal_lists_its_block(
         assert (tmp_path / "map.zarr.journal").read_bytes().count(b"\n") == 1
         synced.append(str(chunk.relative_to(path)))
 
-    monkeypatch.setattr("wearlaw.sweeping.store.sync_file", sync)
+    monkeypatch.setattr("wearlaw.sweeping.storage.sync_file", sync)
     interrupted(path, monkeypatch)
     assert sorted(synced) == [f"{name}/c/{number}/0/0" for name in (FORCE, RATE) for number in range(3)]
     assert (tmp_path / "map.zarr.journal").read_bytes().count(b"\n") == 4
@@ -189,7 +189,7 @@ def test_a_chunk_that_is_gone_before_it_is_synced_is_found_to_be_damaged(
             (Path(store) / RATE / "c/1/0/0").unlink()
 
     with monkeypatch.context() as patched:
-        patched.setattr("wearlaw.sweeping.worker.write_block", written_and_gone)
+        patched.setattr("wearlaw.sweeping.evaluation.write_block", written_and_gone)
         interrupted(tmp_path / "map.zarr", monkeypatch)
     with pytest.warns(wl.ResumeWarning, match="^1 of the 3 blocks"):
         swept = wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=True)

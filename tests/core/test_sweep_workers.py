@@ -16,7 +16,7 @@ import wearlaw as wl
 from tests.core.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, ending, predictor
 from wearlaw import Q
 from wearlaw.arrays import kernels
-from wearlaw.sweeping import processes
+from wearlaw.sweeping import workers
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 
@@ -55,12 +55,12 @@ def test_where_no_room_for_larger_pipes_is_left_workers_have_those_of_the_system
             super().__init__(command, **rest)
 
     monkeypatch.setattr(subprocess, "Popen", Refused)
-    monkeypatch.setattr(processes, "_idle", queue.SimpleQueue())
+    monkeypatch.setattr(workers, "_idle", queue.SimpleQueue())
     predict = predictor()
     swept = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, workers=2)
-    processes._close()
+    workers._close()
     assert None in sizes
-    assert processes.PIPE in sizes
+    assert workers.PIPE in sizes
     assert swept.identical(wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
 
 
@@ -74,7 +74,7 @@ def test_a_worker_that_dies_is_reported_and_its_block_evaluated_again(tmp_path: 
 
 
 def test_a_block_at_which_every_worker_dies_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(processes, "ATTEMPTS", 2)
+    monkeypatch.setattr(workers, "ATTEMPTS", 2)
     predict = deadly(tmp_path / "die always", always=True)
     with pytest.raises(
         wl.SweepError, match=r"block \d was given up, since the worker processes died in all 2 attempts"
@@ -86,7 +86,7 @@ def test_what_a_model_raises_in_a_worker_is_raised_here_and_the_worker_lives_on(
     failing = predictor(Failing(slope=Q(1.0, "mm")))
     with pytest.raises(wl.ModelError, match="wear law 'failing' failed: OverflowError: too much"):
         wl.sweep(failing, **CONDITIONS, workers=2)
-    assert processes._idle.qsize() > 0
+    assert workers._idle.qsize() > 0
     assert wl.sweep(predictor(), **CONDITIONS, workers=2).wear_rate.notnull().all()
 
 
@@ -94,7 +94,7 @@ def test_what_a_model_raises_in_a_worker_is_raised_here_and_the_worker_lives_on(
 def test_what_would_end_a_worker_is_an_error_here_and_the_worker_lives_on(error: str) -> None:
     with pytest.raises(wl.ModelError, match=f"{error}: 0"):
         wl.sweep(ending(error), **CONDITIONS, workers=2)
-    assert processes._idle.qsize() > 0
+    assert workers._idle.qsize() > 0
 
 
 class Choosing(Failing):

@@ -4,18 +4,55 @@ from __future__ import annotations
 
 import sys
 import traceback
+from importlib import import_module
 from io import TextIOWrapper
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
-from wearlaw.cli import data_commands, model_commands, study_commands, uncertainty_commands
 from wearlaw.errors import WearlawError, described, message_of
 from wearlaw.version import __version__
 
 
+class _Command(NamedTuple):
+    """A command: its module in this package, its function there, and what the list of commands says of it."""
+
+    module: str
+    function: str
+    help: str
+
+
+COMMANDS = {
+    "case": _Command("case_commands", "case", "Print a case file, to edit a copy."),
+    "check": _Command("model_commands", "check", "Check that a model keeps what wearlaw relies on."),
+    "compare": _Command("data_commands", "compare", "Rank models by how well they predict your tests."),
+    "fit": _Command("data_commands", "fit", "Fit the parameters of a wear law to your tests."),
+    "new-plugin": _Command("model_commands", "new_plugin", "Write a small plugin to start from."),
+    "plugins": _Command("model_commands", "list_plugins", "List what the installed plugins provide."),
+    "run": _Command("study_commands", "run", "Run a study and write its results and report."),
+    "schema": _Command("case_commands", "schema", "Print the JSON Schema of case files."),
+    "show": _Command("model_commands", "show", "Explain a rig, a contact model or a wear law."),
+    "uncertainty": _Command("study_commands", "uncertainty", "Say how uncertain the predictions of a case are."),
+}
+"""All commands. Their modules import pandas, matplotlib and more, so each is loaded when a command of it is used."""
+
+
 class _Commands(click.Group):
     """Commands that end with one clear line when wearlaw raises an error on purpose, or a plugin ends the program."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
+        if cmd_name not in COMMANDS:
+            return None
+        module, function, _ = COMMANDS[cmd_name]
+        command: click.Command = getattr(import_module(f"{__name__}.{module}"), function)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, command.help) for name, command in COMMANDS.items()])
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
@@ -53,8 +90,3 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")  # a pipe or an old terminal may not have Greek letters
-
-
-for _module in (study_commands, uncertainty_commands, data_commands, model_commands):
-    for _command in _module.COMMANDS:
-        main.add_command(_command)

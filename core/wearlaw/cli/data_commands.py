@@ -3,24 +3,36 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from wearlaw.cli.formats import CommandT, written_formats
-from wearlaw.cli.printing import print_notes, print_results
+from wearlaw.cli.shared import (
+    CommandT,
+    contact_model,
+    fields,
+    listed,
+    print_notes,
+    print_results,
+    read_rig,
+    wear_law,
+    written_formats,
+)
 from wearlaw.errors import FitError
+from wearlaw.figures.curves import FigureFormat
+from wearlaw.fitting.compare import Predictor, compare_named
+from wearlaw.fitting.comparison import Comparison, Names
+from wearlaw.fitting.fit import fit as fit_parameters
+from wearlaw.fitting.result import Fit
+from wearlaw.output.data import COMPARISON, FIT, write_comparison, write_fit
+from wearlaw.output.folder import fresh_folder
 from wearlaw.pipeline.notes import Notes
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.settings.parameters import numbers
+from wearlaw.study.pairs import Pair, compose
 from wearlaw.sweeping.progress import Bar
-
-if TYPE_CHECKING:
-    from wearlaw.figures.formats import FigureFormat
-    from wearlaw.fitting.compare import Predictor
-    from wearlaw.fitting.comparison import Comparison
-    from wearlaw.fitting.result import Fit
-    from wearlaw.pipeline.pipeline import Pipeline
-    from wearlaw.study.pairs import Pair
-    from wearlaw.wear_tests.tests import WearTests
+from wearlaw.wear_tests.reader import read_tests
+from wearlaw.wear_tests.tests import WearTests
 
 
 def common(command: CommandT) -> CommandT:
@@ -78,9 +90,6 @@ def fit(
     The folder then holds law.toml, the fitted law, to be used wherever a law is asked for; parameters.csv with
     confidence intervals; residuals.csv; a figure; and fit.json with all that the fit comes from.
     """  # noqa: D301
-    from wearlaw.output.data import FIT, write_fit
-    from wearlaw.output.folder import fresh_folder
-
     folder = output if output is not None else Path(f"{Path(tests).stem}-fit")
     notes = Notes()
     with fresh_folder(folder, overwrite, FIT) as fresh:
@@ -105,9 +114,6 @@ def _fit(
     **settings: Any,
 ) -> Fit:
     """Return the fit that the options ask for."""
-    from wearlaw.cli.parsing import contact_model, fields, listed
-    from wearlaw.fitting.fit import fit as fit_parameters
-
     names, given = listed("--free", free), fields("--fixed", fixed)
     both = [name for name in names if name in given]
     if both:
@@ -130,9 +136,6 @@ def _fit(
 
 def _with_law(stage: Pipeline[...], text: str, given: dict[str, str], free: list[str], notes: Notes) -> Pipeline[...]:
     """Return the pipeline with the law to fit; what it was fitted for does not matter, but what it keeps does."""
-    from wearlaw.cli.parsing import wear_law
-    from wearlaw.settings.parameters import numbers
-
     law = wear_law(text, given)
     kept = [f"{name} = {value!r}" for name, value in numbers(law.explicit()).items() if name not in free]
     if kept:
@@ -172,9 +175,6 @@ def compare(
     contact. The folder then holds ranking.csv, the table that is printed; predictions.csv; a figure of measured against
     predicted wear rates; and comparison.json with all models.
     """  # noqa: D301
-    from wearlaw.output.data import COMPARISON, write_comparison
-    from wearlaw.output.folder import fresh_folder
-
     folder = output if output is not None else Path(f"{Path(tests).stem}-comparison")
     notes = Notes()
     with fresh_folder(folder, overwrite, COMPARISON) as fresh:
@@ -197,11 +197,6 @@ def _compare(
     scatter: str,
 ) -> Comparison:
     """Return the comparison that the options ask for."""
-    from wearlaw.cli.parsing import contact_model, listed, wear_law
-    from wearlaw.fitting.compare import compare_named
-    from wearlaw.fitting.comparison import Names
-    from wearlaw.study.pairs import compose
-
     tests = _tests(path, friction, False, notes)
     named = {text: wear_law(text) for text in listed("--laws", laws)}
     models = {text: contact_model(text) for text in listed("--contacts", contacts)}
@@ -209,9 +204,9 @@ def _compare(
     predictors: list[tuple[Names, Predictor]] = [
         (Names(pair.label, pair.wear_law, pair.contact_model), pair.pipeline) for pair in pairs
     ]
-    for law, fields in _freed(free, list(named)).items():
+    for law, freed in _freed(free, list(named)).items():
         of_law = [pair for pair in pairs if pair.wear_law == law]
-        fits = _fits(of_law, listed("--free", fields), tests, notes, friction_coefficient=friction, scatter=scatter)
+        fits = _fits(of_law, listed("--free", freed), tests, notes, friction_coefficient=friction, scatter=scatter)
         predictors += [(Names(f"{law} fitted on {contact}", f"{law} fitted", contact), one) for contact, one in fits]
     comparison = compare_named(predictors, tests, friction)
     for note in comparison.notes:
@@ -240,8 +235,6 @@ def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **
     FitError
         If there is no fit on any contact.
     """
-    from wearlaw.fitting.fit import fit as fit_parameters
-
     found, refused = [], []
     with Bar(len(pairs)) as shown:
         shown.stage("fitting")
@@ -262,8 +255,6 @@ def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **
 
 
 def _rig(path: Path | None, notes: Notes) -> Any:
-    from wearlaw.cli.parsing import read_rig
-
     if path is None:
         notes.add("the rig is taken to be SUROS, 47 mm steel discs and a track of 10 mm; give yours with --rig")
     return read_rig(path)
@@ -271,12 +262,7 @@ def _rig(path: Path | None, notes: Notes) -> Any:
 
 def _tests(path: str, friction: float | None, fitted: bool, notes: Notes) -> WearTests:
     """Return the tests, and say where a friction coefficient was given in vain."""
-    from wearlaw.wear_tests.reader import read_tests
-
     tests = read_tests(path)
     if friction is not None and not fitted and tests.friction_coefficient is not None:
         notes.add(f"--friction {friction:g} is not used, since the tests have a column friction_coefficient")
     return tests
-
-
-COMMANDS = (fit, compare)

@@ -12,13 +12,16 @@ import click
 from rich.console import Console
 from rich.table import Table
 
+from wearlaw.cli.describe import describe
+from wearlaw.cli.scaffold import Kind, Licence, write_plugin
+from wearlaw.cli.shared import fields
 from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
+from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.rig import Rig
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import unknown
 
 if TYPE_CHECKING:
-    from wearlaw.cli.scaffold import Kind, Licence
-    from wearlaw.models.contact_model import Model
     from wearlaw.testing import Check
 
 
@@ -40,8 +43,6 @@ def list_plugins() -> None:
 @click.argument("name")
 def show(name: str) -> None:
     """Explain a rig, a contact model or a wear law: its fields with units and defaults, its source and its range."""
-    from wearlaw.cli.describe import describe
-
     click.echo(describe(_model_class(name)))
 
 
@@ -72,8 +73,6 @@ def new_plugin(name: str, kind: Kind | None, output: Path, licence: Licence) -> 
     and a CI workflow, and passes its tests, ruff and mypy --strict as it is. NAME is what the model will be called in
     wearlaw.wear_law("NAME") or wearlaw.rig("NAME") and in case files: lower-case letters, digits and underscores.
     """
-    from wearlaw.cli.scaffold import write_plugin
-
     if kind is None:
         raise click.UsageError("say what it provides: --wear-law, --contact-model or --rig")
     folder = write_plugin(name, kind, output, licence)
@@ -96,9 +95,6 @@ def check(name: str, options: tuple[str, ...]) -> None:
     wearlaw check usfd --option fitted_for=exact
     wearlaw check twin_disc --option track_width="8 mm"
     """  # noqa: D301
-    from wearlaw.cli.parsing import fields
-    from wearlaw.models.contact_model import ContactModel
-
     model = _made(_model_class(name), fields("--option", options))
     outcomes = [_outcome(one) for one in _checks(model)]
     not_claimed = model.exemptions if isinstance(model, ContactModel) else {}
@@ -111,8 +107,6 @@ def check(name: str, options: tuple[str, ...]) -> None:
 
 def _made(model: type[Model], options: dict[str, str]) -> Model:
     """Return the model with some fields, and a rig with those of its `example_fields` besides."""
-    from wearlaw.models.rig import Rig
-
     own = model.example_fields if issubclass(model, Rig) else {}
     try:
         return model(**{**own, **options})
@@ -158,6 +152,3 @@ def _model_class(name: str) -> type[Model]:
             return model
     known = [one for shelf in shelves for one in shelf.items()]
     raise UnknownModelError(unknown("model", name, known, found.broken))
-
-
-COMMANDS = (list_plugins, show, new_plugin, check)

@@ -1,12 +1,10 @@
-"""Commands about case files: run one, print one, and the schema of them all."""
+"""Commands that run case files: a study, or how uncertain its predictions are."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 from rich import box
@@ -14,16 +12,19 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from wearlaw.cli.formats import written_formats
-from wearlaw.cli.printing import print_notes, print_results
+from wearlaw.cli.shared import print_notes, print_results, written_formats
+from wearlaw.figures.curves import FigureFormat
+from wearlaw.output.folder import ElsewhereError, fresh_folder
+from wearlaw.output.results import RESULTS, check_room, write
+from wearlaw.output.uncertainty import UNCERTAINTY, write_uncertainty
+from wearlaw.report.tables import NamedTable, summaries
+from wearlaw.study.case import load_case
+from wearlaw.study.study import Study, evaluations, provenance, used
+from wearlaw.study.study import run as run_case
+from wearlaw.study.uncertainty import uncertainty_of
+from wearlaw.sweeping.checkpoint import Checkpoint
 from wearlaw.sweeping.progress import Bar
 from wearlaw.version import __version__
-
-if TYPE_CHECKING:
-    from wearlaw.figures.formats import FigureFormat
-    from wearlaw.report.tables import NamedTable
-    from wearlaw.study.study import Study
-    from wearlaw.sweeping.checkpoint import Checkpoint
 
 
 @click.command()
@@ -50,14 +51,6 @@ def run(
     a browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default
     spelt out.
     """
-    from wearlaw.output.folder import fresh_folder
-    from wearlaw.output.results import RESULTS, check_room, write
-    from wearlaw.report.tables import summaries
-    from wearlaw.study.case import load_case
-    from wearlaw.study.study import evaluations, provenance
-    from wearlaw.study.study import run as run_case
-    from wearlaw.sweeping.checkpoint import Checkpoint
-
     loaded = load_case(case)
     folder = output if output is not None else Path(f"{Path(case).stem}-results")
     checkpoint = Checkpoint(folder.parent / f"{folder.name}.partial", provenance(loaded), resume)
@@ -76,8 +69,6 @@ def run(
 @contextmanager
 def _kept(checkpoint: Checkpoint) -> Iterator[None]:
     """Keep a checkpoint until the results are in a folder, and say after an interrupt where it is."""
-    from wearlaw.output.folder import ElsewhereError
-
     try:
         yield
     except ElsewhereError:
@@ -90,27 +81,8 @@ def _kept(checkpoint: Checkpoint) -> Iterator[None]:
     checkpoint.remove()
 
 
-@click.command()
-@click.argument("name")
-def case(name: str) -> None:
-    """Print a case file: NAME is the name of a shipped one (tassini2010, wheel_on_rail), or a path."""
-    from wearlaw.study.case import case_text
-
-    click.echo(case_text(name).encode(), nl=False)  # TOML is UTF-8, whatever the terminal speaks
-
-
-@click.command()
-def schema() -> None:
-    """Print the JSON Schema of a case file with the options of the installed models."""
-    from wearlaw.study.case import case_schema
-
-    click.echo(json.dumps(case_schema(), indent=2, ensure_ascii=False).encode())
-
-
 def _print_used(study: Study) -> None:
     """Print the version of wearlaw, and a line for each other distribution with what came from it."""
-    from wearlaw.study.study import used
-
     provided: dict[str, list[str]] = {f"wearlaw {__version__}": []}
     for kind, names in used(study.case).items():
         for name, distribution in names.items():
@@ -134,4 +106,40 @@ def _summary(summary: NamedTable) -> Table:
     return table
 
 
-COMMANDS = (run, case, schema)
+@click.command()
+@click.argument("case")
+@click.option("--samples", type=int, default=2**14, show_default=True, help="How many, rounded up to a power of two.")
+@click.option("--seed", type=int, default=0, show_default=True, help="The same seed gives the same samples.")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-uncertainty]."
+)
+@click.option("--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay.")
+@written_formats
+def uncertainty(
+    case: str,
+    samples: int,
+    seed: int,
+    output: Path | None,
+    overwrite: bool,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+) -> None:
+    """Say how uncertain predictions are: CASE is a case file with tables [uncertainty.NAME].
+
+    Every contact model of the case is paired with every wear law. Written are wear_rates.csv with medians and 95 %
+    intervals, sobol_indices.csv with the share of the variance that each input explains, and a figure of each pair.
+    """
+    loaded = load_case(case)
+    folder = output if output is not None else Path(f"{Path(case).stem}-uncertainty")
+    total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.wear_laws)
+    with fresh_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as shown:
+        found = uncertainty_of(loaded, samples, seed, shown)
+        shown.stage("writing results")
+        names = write_uncertainty(loaded, found, seed, fresh, figure_formats, latex)
+    if found.samples != samples:
+        click.echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
+    print_notes(found.notes)
+    for table in (found.wear_rates, found.indices):
+        if len(table):
+            click.echo(table.to_string(index=False, float_format=lambda number: f"{number:.4g}"))
+    print_results(folder, names)

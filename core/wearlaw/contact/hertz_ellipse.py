@@ -19,6 +19,7 @@ E* is that of `wearlaw.contact.hertz`.
 from __future__ import annotations
 
 import numpy as np
+import scipy
 
 from wearlaw.arrays.array import Array
 
@@ -76,11 +77,9 @@ def semi_axes(
     a, b : ndarray
         In the shape to which all arguments broadcast.
     """
-    from scipy.special import elliprd  # as long to load as the rest of `import wearlaw`
-
     elongation = _elongation(curvature_x, curvature_y)
     # The curvature along the minor axis depends least on the elongation.
-    shape = elliprd(0.0, elongation**2, 1.0) / np.maximum(curvature_x, curvature_y)
+    shape = scipy.special.elliprd(0.0, elongation**2, 1.0) / np.maximum(curvature_x, curvature_y)
     minor = np.cbrt(normal_force / (2.0 * np.pi * effective_modulus) * shape)
     major = minor * elongation
     long = curvature_y >= curvature_x
@@ -94,9 +93,7 @@ def max_pressure(normal_force: Array, a: Array, b: Array) -> Array:
 
 def approach(normal_force: Array, a: Array, b: Array, effective_modulus: Array | float) -> Array:
     """Return δ [m], by how much distant points of the two bodies come closer (Johnson, eq. 4.26c)."""
-    from scipy.special import elliprf
-
-    distance: Array = normal_force * (1.5 / np.pi) / effective_modulus * elliprf(0.0, a**2, b**2)
+    distance: Array = normal_force * (1.5 / np.pi) / effective_modulus * scipy.special.elliprf(0.0, a**2, b**2)
     return distance
 
 
@@ -123,10 +120,8 @@ def _elongation(curvature_x: Array, curvature_y: Array) -> Array:
 
 def _log_curvature_ratio(log_elongation: Array) -> tuple[Array, Array]:
     """Return the logarithm of the ratio of the curvatures, and its derivative by that of the elongation."""
-    from scipy.special import elliprd
-
     square = np.exp(2.0 * log_elongation)
-    across, along = elliprd(0.0, square, 1.0), elliprd(0.0, 1.0, square)
+    across, along = scipy.special.elliprd(0.0, square, 1.0), scipy.special.elliprd(0.0, 1.0, square)
     near_circle = log_elongation < 1e-4  # where the difference has no digits, and the slope is 3/2 + O(logarithm²)
     mixed = (across - along) / np.where(near_circle, 1.0, square - 1.0)
     slope = np.where(near_circle, 1.5, 3.0 - mixed * (square / across + 1.0 / along))

@@ -7,6 +7,9 @@ from typing import Literal
 
 from wearlaw.arrays.array import Array
 
+FigureFormat = Literal["png", "pdf", "svg"]
+"""The format of a figure's file."""
+
 BLACK = 6
 """The number of black, the last colour of the palette: of what was measured, and of lines to compare with."""
 

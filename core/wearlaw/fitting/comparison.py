@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 
 from wearlaw.arrays.array import Array
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.plot import plot
 from wearlaw.fitting.agreement import Agreement, Information
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.variables import label
@@ -16,7 +18,6 @@ from wearlaw.units.quantities import WEAR_RATE, in_unit
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.figure import Figure
 
 
@@ -81,8 +82,6 @@ class Comparison:
         The measures are those of `Agreement`, with AIC and AICc of `Information`; where one does not exist the cell is
         blank (NA), never infinite. `fitted` counts the parameters that were fitted to these tests.
         """
-        import pandas as pd
-
         rows = [_row(one) for one in self.compared]
         counts = dict.fromkeys(COUNTS, "Int64")
         measures = {name: "Float64" for name in rows[0] if name != "predictor"}
@@ -118,9 +117,7 @@ class Comparison:
 
     def plot(self) -> Figure:
         """Return a drawing of `figure_data`."""
-        from wearlaw.figures.drawing import draw
-
-        return draw(self.figure_data())
+        return plot(self.figure_data())
 
     def _caption(self) -> str:
         """Say where the tests come from, and what cannot be shown."""

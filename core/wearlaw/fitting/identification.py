@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from wearlaw.errors import FitError
@@ -94,12 +95,10 @@ def _collinear(fit: Solutions, free: FreeParameters) -> list[str]:
 
 def _is_worse(one: Solutions, best: Solutions, more: int) -> bool:
     """Return whether a fit with fewer parameters is worse than the best one by more than chance."""
-    from scipy.special import fdtri
-
     tests, count = best.jacobian.shape[1:]
     cost = float(best.cost[0])
     excess: float = (float(one.cost[0]) - cost) / more
-    least = float(fdtri(more, tests - count, SIGNIFICANCE)) * cost / (tests - count)
+    least = float(scipy.special.fdtri(more, tests - count, SIGNIFICANCE)) * cost / (tests - count)
     return bool(excess > least)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
@@ -63,10 +64,8 @@ def leverage(fit: Solutions) -> Array:
 
 def student_intervals(fit: Solutions, confidence: float) -> tuple[Array, Array]:
     """Return the ends of the intervals by Student's t with n - p degrees of freedom, each (p,)."""
-    from scipy.special import stdtrit
-
     tests, count = fit.jacobian.shape[1:]
-    reach = stdtrit(tests - count, 0.5 + 0.5 * confidence) * standard_errors(fit)[0]
+    reach = scipy.special.stdtrit(tests - count, 0.5 + 0.5 * confidence) * standard_errors(fit)[0]
     return fit.theta[0] - reach, fit.theta[0] + reach
 
 

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import tomli_w
+
 from wearlaw.errors import ConfigurationError, InputError, OutputError, with_problems
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
@@ -23,8 +25,6 @@ def write_wear_law(path: str | os.PathLike[str], law: WearLaw, provenance: Mappi
     OutputError
         If the file cannot be written.
     """
-    import tomli_w
-
     target = Path(path)
     text = tomli_w.dumps({"wear_law": specification(law), "provenance": dict(provenance)})
     temporary = target.with_name(f".{target.name}.{os.getpid()}")

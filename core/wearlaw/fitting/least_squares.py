@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
@@ -128,7 +129,6 @@ def fit_many(model: Model, targets: Array, start: Array, bounds: Bounds) -> Solu
 
 def refine(model: Model, target: Array, start: Array, bounds: Bounds) -> Solutions:
     """Fit one set of data by the trust-region method of scipy; `target` is of shape (n,), `start` of shape (p,)."""
-    from scipy import optimize
 
     def predicted(theta: Array) -> Array:
         one: Array = model(theta[None])[0]
@@ -138,7 +138,7 @@ def refine(model: Model, target: Array, start: Array, bounds: Bounds) -> Solutio
         one: Array = jacobian(model, theta[None], model(theta[None]), bounds)[0]
         return one
 
-    least_squares: Any = optimize.least_squares
+    least_squares: Any = scipy.optimize.least_squares
     found = least_squares(
         lambda theta: predicted(theta) - target,
         start,
@@ -183,11 +183,9 @@ def search(
     list of Solutions
         The refined fits, the one from `start` first.
     """
-    from scipy.stats import qmc
-
     chosen = [bounds.clip(start)]
     if starts:
-        shares = qmc.LatinHypercube(start.size, rng=np.random.default_rng(seed)).random(starts)
+        shares = scipy.stats.qmc.LatinHypercube(start.size, rng=np.random.default_rng(seed)).random(starts)
         points = bounds.clip(near.low + shares * (near.high - near.low))
         with np.errstate(over="ignore"):
             cost = _squares(model(points) - target)

@@ -1,31 +1,46 @@
-"""What a fit returns: parameters with their intervals, residuals, the fitted law, and where it all comes from."""
+"""The result of a fit: parameters with their intervals, residuals, the fitted law, its provenance and its figure."""
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+import pandas as pd
 
 from wearlaw.arrays.array import Array
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError
+from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.plot import plot
 from wearlaw.fitting.law_files import write_wear_law
-from wearlaw.fitting.observations import Observations, Scatter
+from wearlaw.fitting.observations import Observations, Scatter, predictions, wear_index_density
 from wearlaw.models.wear_law import WearLaw
-from wearlaw.pipeline.variables import UNITS
-from wearlaw.units.quantities import Quantity, from_si
+from wearlaw.pipeline.variables import UNITS, label
+from wearlaw.units.quantities import Quantity, from_si, in_unit
 from wearlaw.units.registry import si_factor
 from wearlaw.wear_tests.columns import head
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.figure import Figure
 
-    from wearlaw.figures.curves import FigureData
     from wearlaw.pipeline.pipeline import Pipeline
+
+BETWEEN = 8
+"""Points of a curve from one test to the next."""
+
+MOST_SAMPLES = 200
+"""Replicates that make a band; more change it less than can be seen."""
+
+SAME = 1e-3
+"""Relative difference up to which loads, friction and the like of tests are drawn as one curve."""
+
+VARIES = ("longitudinal_creepage", "traction_coefficient")
+"""What differs from test to test along one curve."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,8 +130,6 @@ class Fit:
     @property
     def residuals(self) -> pd.DataFrame:
         """A row for each measurement: the test, what was measured and what is predicted, and the residual."""
-        import pandas as pd
-
         rows = []
         for one in self.observations:
             predicted = self._fitted(one)
@@ -137,8 +150,6 @@ class Fit:
 
     def table(self) -> pd.DataFrame:
         """Return the parameters with their intervals, a row for each."""
-        import pandas as pd
-
         rows = []
         for name, value in self.parameters.items():
             low, high = self.intervals[name]
@@ -170,15 +181,11 @@ class Fit:
 
     def figure_data(self) -> FigureData:
         """Return measured and fitted values, with the band that the bootstrap replicates span."""
-        from wearlaw.fitting.figure import figure_data
-
-        return figure_data(self)
+        return _figure_data(self)
 
     def plot(self) -> Figure:
         """Return a drawing of `figure_data`."""
-        from wearlaw.figures.drawing import draw
-
-        return draw(self.figure_data())
+        return plot(self.figure_data())
 
     def values_in_si(self, which: Mapping[str, Quantity] | None = None) -> dict[str, Array]:
         """Return the fitted parameters, or others, as SI arrays of one axis."""
@@ -204,3 +211,85 @@ class Fit:
 
     def _count(self) -> str:
         return " and ".join(f"{one.measured.size} {one.observable.replace('_', ' ')}s" for one in self.observations)
+
+
+def _figure_data(fit: Fit) -> FigureData:
+    """Return a panel for each kind of measurement: wear rates against Tγ/A, tractions against creepage."""
+    panels = tuple(_panel(fit, one) for one in fit.observations)
+    band = f"band: {fit.confidence:.0%} of the bootstrap replicates" if fit.samples else "no bootstrap, no band"
+    apart = (
+        ""
+        if all(_one_series(one.problem) for one in fit.observations)
+        else "; the tests differ in load, friction or other conditions"
+    )
+    names = ", ".join(fit.parameters)
+    return FigureData(
+        "fit",
+        f"Fit of {names}",
+        panels,
+        f"{names} fitted to {fit.tests.source or 'tests'}; {band}{apart}.",
+        f"{fit.confidence:.0%} of the bootstrap replicates",
+    )
+
+
+def _panel(fit: Fit, one: Observations) -> Panel:
+    x = "wear_index_density" if one.observable == "wear_rate" else "creepage"
+    measured = Curve("measured", _along(fit, one.problem, x), _shown(one, one.measured), colour=BLACK, points=True)
+    scale: Literal["log", "linear"] = (
+        "log" if one.observable == "wear_rate" and (one.measured > 0.0).all() else "linear"
+    )
+    axes = PlotAxis(label(x), scale), PlotAxis(label(one.observable), scale)
+    return Panel(*axes, (_fitted(fit, one, x), measured))
+
+
+def _fitted(fit: Fit, one: Observations, x: str) -> Curve:
+    """Return the fitted values: as a curve through the tests, or at each of them where their loads differ."""
+    together = _one_series(one.problem)
+    problem = _between(one) if together else one.problem
+    along = _along(fit, problem, x)
+    order = np.argsort(along, kind="stable")
+
+    def at(values: dict[str, Array]) -> Array:
+        return _shown(one, predictions(one.observable, fit.predict, problem, values))[:, order]
+
+    best = at(fit.values_in_si())[0]
+    low = high = None
+    if fit.samples:
+        values = fit.values_in_si(fit.samples)
+        count = len(next(iter(values.values())))
+        chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).round().astype(int))
+        tail = 0.5 - 0.5 * fit.confidence
+        low, high = np.quantile(at({name: some[chosen] for name, some in values.items()}), [tail, 1.0 - tail], axis=0)
+    return Curve("fitted", along[order], best, low=low, high=high, points=not together)
+
+
+def _arrays(problem: Problem) -> dict[str, Array]:
+    """Return the arrays of a problem, by name."""
+    found = ((field.name, getattr(problem, field.name)) for field in dataclasses.fields(problem))
+    return {name: value for name, value in found if isinstance(value, np.ndarray)}
+
+
+def _one_series(problem: Problem) -> bool:
+    """Return whether operating points differ in their longitudinal creepage alone, and in the traction measured."""
+    others = (value for name, value in _arrays(problem).items() if name not in VARIES)
+    return all(np.ptp(array) <= SAME * np.abs(array).mean() for array in others)
+
+
+def _between(one: Observations) -> Problem:
+    """Return operating points at the tests and between them, in the order of their creepage."""
+    problem = one.problem.forward()
+    order = np.argsort(problem.creepage, kind="stable")
+    places = np.arange(order.size, dtype=np.float64)
+    fine = np.linspace(0.0, places[-1], BETWEEN * (order.size - 1) + 1)
+    return problem.replaced(
+        **{name: np.interp(fine, places, values[order]) for name, values in _arrays(problem).items()}
+    )
+
+
+def _along(fit: Fit, problem: Problem, x: str) -> Array:
+    si = problem.rigid_slip if x == "creepage" else wear_index_density(fit.predict, problem)
+    return in_unit(si, UNITS[x])
+
+
+def _shown(one: Observations, values: Array) -> Array:
+    return in_unit(values, UNITS[one.observable])

@@ -106,14 +106,19 @@ def _sample_shares() -> Array:
     return np.sort(np.concatenate([equal, equal[0] + near_end, equal[-1] - near_end]))
 
 
+def _elementwise() -> Any:
+    """Return scipy's search for roots and minima of many functions at once, which takes long to load."""
+    from scipy.optimize import elementwise
+
+    return elementwise
+
+
 def _searched(variable: _Variable, value: Array) -> Array:
     """Return the crossings of a breakpoint (points, 1), as shares of Ψ (points, CROSSINGS); 1 where there is none."""
     found = np.ones((variable.samples.shape[0], CROSSINGS))
     for point, column, low, high in (_sign_changes(variable, value), _hidden_humps(variable, value)):
         if point.size:
-            from scipy.optimize import elementwise  # loaded where it is used, as in `inverse`
-
-            root = elementwise.find_root(
+            root = _elementwise().find_root(
                 lambda share, who: variable.at(share, who) - value[who.astype(np.intp), 0],
                 (low, high),
                 args=(point.astype(np.float64),),
@@ -152,9 +157,7 @@ def _hidden_humps(variable: _Variable, value: Array) -> Brackets:
     point = points[may_reach & (middle >= np.maximum(left, right))]
     low, high = share[top[point] - 1], share[top[point] + 1]
     if point.size:
-        from scipy.optimize import elementwise
-
-        peak = elementwise.find_minimum(
+        peak = _elementwise().find_minimum(
             lambda where, who: -variable.at(where, who),
             (low, share[top[point]], high),
             args=(point.astype(np.float64),),

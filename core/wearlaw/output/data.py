@@ -5,18 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pandas as pd
 
 from wearlaw.errors import OutputError
-from wearlaw.figures.curves import FigureData
+from wearlaw.figures.curves import FigureData, FigureFormat
 from wearlaw.fitting.comparison import Comparison
 from wearlaw.fitting.result import Fit
-from wearlaw.output.results import FigureFormat, save_figure, save_table
+from wearlaw.output.results import save_figure, save_table
 from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 FIT = "fit.json"
 COMPARISON = "comparison.json"

@@ -5,23 +5,22 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
+
+import matplotlib as mpl
+import pandas as pd
+import xarray
 
 from wearlaw.errors import OutputError
-from wearlaw.figures.formats import FigureFormat as FigureFormat
+from wearlaw.figures.curves import FigureData, FigureFormat
+from wearlaw.figures.drawing import draw
 from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS
 from wearlaw.report.latex import latex_table
+from wearlaw.report.page import report
 from wearlaw.report.tables import tables
 from wearlaw.study.case import CASE_FILE, Case, written
 from wearlaw.study.study import Study, numbers
-from wearlaw.sweeping.space import check_disk, check_memory
-from wearlaw.sweeping.targets import ITEM
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray
-
-    from wearlaw.figures.curves import FigureData
+from wearlaw.sweeping.storage import ITEM, check_disk, check_memory
 
 RESULTS = "results.nc"
 CSV = "results.csv"
@@ -78,8 +77,6 @@ def write(
     OutputError
         If a file cannot be written, or two figures or tables have one name.
     """
-    from wearlaw.report.page import report
-
     case_files = written(study.case)
     try:
         on_stage("writing results")
@@ -128,10 +125,6 @@ def write_figures(
 
 def save_figure(figure: FigureData, folder: Path, name: str, formats: Sequence[FigureFormat]) -> list[str]:
     """Write a figure, as the same bytes each time, with no date in it, and return the names of the files."""
-    import matplotlib as mpl
-
-    from wearlaw.figures.drawing import draw
-
     drawn = draw(figure)
     files: dict[FigureFormat, str] = {extension: f"{name}.{extension}" for extension in formats}
     for extension, file in files.items():
@@ -157,8 +150,6 @@ def _by_name(kind: str, named: Iterable[tuple[str, T]]) -> dict[str, T]:
 
 def write_netcdf(study: Study, path: Path) -> None:
     """Write all datasets into one netCDF file, each in a group: sweeps/NAME and profiles/NAME."""
-    import xarray
-
     groups = {f"sweeps/{name}": dataset for name, dataset in study.sweeps.items()}
     groups |= {f"profiles/{name}": dataset for name, dataset in study.profiles.items() if dataset}
     xarray.DataTree.from_dict(groups).to_netcdf(path, engine="h5netcdf")
@@ -169,8 +160,6 @@ def table(study: Study) -> pd.DataFrame:
 
     What a sweep does not have stays empty there.
     """
-    import pandas as pd
-
     rows = pd.concat([_rows(name, sweep) for name, sweep in study.sweeps.items()], ignore_index=True)
     units = {**UNITS, **study.case.units}
     of_point = [name for name in (*OF_POINT, *study.case.units) if name in rows and name not in OF_CONTACT]

@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from wearlaw.errors import OutputError
-from wearlaw.output.results import FigureFormat, save_figure, save_table
+from wearlaw.figures.curves import FigureFormat
+from wearlaw.output.results import save_figure, save_table
 from wearlaw.study.case import Case, written
 from wearlaw.study.study import provenance
 from wearlaw.study.uncertainty import CaseUncertainty

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.optimize import elementwise
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
@@ -101,8 +102,6 @@ def creepage_for(
     rounded = np.where(due == 0.0, ROUNDED * flat.friction_coefficient, 0.0)  # a force of zero is rounded on nodes
     search = np.flatnonzero(at_start > rounded)
     if search.size:
-        from scipy.optimize import elementwise  # half of the time of `import wearlaw`, so only where it is used
-
         root = elementwise.find_root(lacking, (start[search], np.zeros(search.size)), args=(points[search],))
         creepage[search] = np.exp(root.x)
     return from_si(np.copysign(creepage.reshape(shape), target), "%")

@@ -29,6 +29,9 @@ from wearlaw.settings.configuration import Configuration
 
 ORDER = 'the order is rig | wl.contact_model("exact") | wl.patch_mean(), where it is needed, | wl.wear_law("usfd")'
 
+LINE = 100
+"""Characters of a pipeline that is shown on one line; a longer one has a line for each part."""
+
 
 class PatchMean(Configuration):
     """The stage that replaces a resolved contact by its patch means."""
@@ -104,7 +107,9 @@ class Pipeline(Configuration, Generic[P]):
         return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages, laws=(law,))
 
     def __repr__(self) -> str:
-        return " | ".join(map(repr, (self.rig, self.contact_model, *self.stages, *self.laws)))
+        parts = [repr(part) for part in (self.rig, self.contact_model, *self.stages, *self.laws)]
+        line = " | ".join(parts)
+        return line if len(line) <= LINE else "({})".format("\n | ".join(parts))
 
     def __or__(self, stage: WearLaw | PatchMean) -> Pipeline[P]:
         """Return the pipeline with a wear law, or with the contact's patch means."""

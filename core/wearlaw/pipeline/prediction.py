@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -209,20 +210,16 @@ class Prediction:
         return self.contact if problem.exists is None else self.contact[problem.exists]
 
     def _profile(self, more: dict[str, tuple[Array, str]]) -> xarray.Dataset:
-        import xarray
-
         contact = self._cells()
         names = ("x", "pressure", "traction", "traction_bound", "slip")
         columns = {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more}
-        dims = (*_batch_dims(len(self.problem.batch_shape), self.problem.dims), "cell")
+        batch = _batch_dims(len(self.problem.batch_shape), self.problem.dims)
+        dims = [*batch, "cell"] if batch else ["x"]
         data = {
-            name: xarray.DataArray(in_unit(self._in_batch(values), unit), dims=dims, attrs={"units": unit})
+            name: (dims, in_unit(self._in_batch(values), unit), {"units": unit})
             for name, (values, unit) in columns.items()
         }
-        if len(dims) == 1:
-            x = data.pop("x")
-            return xarray.Dataset({k: v.rename(cell="x") for k, v in data.items()}, coords={"x": x.rename(cell="x")})
-        return xarray.Dataset(data).set_coords("x")
+        return _dataset({"x": data.pop("x")}, data)
 
     def _in_batch(self, values: Array) -> Array:
         return values if self.problem.exists is None else self.problem.unflatten(values)
@@ -407,8 +404,6 @@ class Prediction:
 
 
 def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str, named: tuple[str, ...]) -> xarray.Dataset:
-    import xarray
-
     batch = _batch_dims(y.ndim - 1, named)
     dims = [*batch, "strip"] if batch else ["y"]
     place = (dims, in_unit(y, "mm"), {"units": "mm", "long_name": "position across the patch"})
@@ -416,7 +411,13 @@ def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str, nam
         name: (dims, in_unit(values, unit), {"units": unit, "long_name": f"{name.replace('_', ' ')} per {per}"})
         for name, (values, unit) in columns.items()
     }
-    return xarray.Dataset(data, coords={"y": place})
+    return _dataset({"y": place}, data)
+
+
+def _dataset(coordinates: Mapping[str, Any], variables: Mapping[str, Any]) -> xarray.Dataset:
+    import xarray
+
+    return xarray.Dataset(variables, coordinates)
 
 
 def _batch_dims(axes: int, named: tuple[str, ...]) -> list[str]:

@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from importlib.metadata import Distribution, EntryPoint, PackageNotFoundError, distributions, version
+from importlib.metadata import Distribution, EntryPoint, distributions
 from itertools import chain
 from threading import RLock
 from typing import Any
@@ -21,7 +21,7 @@ from packaging.utils import canonicalize_name
 
 from wearlaw import hookspecs
 from wearlaw.contact.material import Material
-from wearlaw.errors import InputError, PluginWarning, described
+from wearlaw.errors import PluginWarning, described
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
@@ -187,38 +187,6 @@ def materials() -> Mapping[str, Material]:
 def parameter_sets() -> Mapping[str, WearLaw]:
     """Return the installed parameter sets by name."""
     return installed().parameter_sets.items()
-
-
-def require(needed: Mapping[str, str]) -> None:
-    """Refuse to go on unless distributions are installed in the versions asked for.
-
-    Parameters
-    ----------
-    needed : mapping of str to str
-        Names of distributions with version ranges such as ">=1.2,<2"; "" for any version.
-
-    Raises
-    ------
-    InputError
-        If one is missing, has another version, or its range is not one.
-    """
-    from packaging.specifiers import InvalidSpecifier, SpecifierSet
-
-    for name, versions in needed.items():
-        try:
-            allowed = SpecifierSet(versions)
-        except InvalidSpecifier:
-            raise InputError(
-                f"plugins.{name}: '{versions}' is no version range; write one such as '>=1.2,<2'"
-            ) from None
-        try:
-            found = version(name)
-        except PackageNotFoundError:
-            raise InputError(
-                f"plugins.{name}: is not installed; install it with: pip install '{name}{versions}'"
-            ) from None
-        if not allowed.contains(found, prereleases=True):
-            raise InputError(f"plugins.{name}: version {found} is installed, but {versions} is needed")
 
 
 def _entry_points() -> list[tuple[EntryPoint, Origin]]:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pandas as pd
 
 from wearlaw.report import tables
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _GREEK = {
     letter: unicodedata.name(letter).rsplit()[-1].replace("LAMDA", "LAMBDA")
@@ -80,8 +79,6 @@ def _row(cells: list[str]) -> str:
 
 def _columns(frame: pd.DataFrame) -> str:
     """Return the alignment of each column: numbers to the right, long texts in lines."""
-    import pandas as pd
-
     kinds = []
     for number, dtype in enumerate(frame.dtypes):
         longest = max((len(str(value)) for value in frame.iloc[:, number]), default=0)

@@ -8,17 +8,16 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING
+
+import pandas as pd
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+from plotly.offline import get_plotlyjs
 
 from wearlaw.figures.curves import FigureData
 from wearlaw.report.interactive import plotly_figure
 from wearlaw.report.tables import Cell, cell, models, parameters, profiles, summaries
 from wearlaw.study.study import Study, used
 from wearlaw.version import __version__
-
-if TYPE_CHECKING:
-    import pandas as pd
-    from jinja2 import Template
 
 
 def report(study: Study, case_text: str) -> str:
@@ -31,8 +30,6 @@ def report(study: Study, case_text: str) -> str:
     case_text : str
         The case, as TOML.
     """
-    from plotly.offline import get_plotlyjs
-
     claims = [claim for section in study.sections for claim in section.claims]
     return _template().render(
         study=study,
@@ -51,8 +48,6 @@ def report(study: Study, case_text: str) -> str:
 @cache
 def _template() -> Template:
     """Return the template of the page; compiling it takes longer than filling it in."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
     environment = Environment(
         autoescape=True,
         loader=PackageLoader("wearlaw.report"),

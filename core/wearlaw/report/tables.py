@@ -8,22 +8,21 @@ from __future__ import annotations
 import numbers
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
 import pint
+import xarray
 
 from wearlaw.models.contact_model import Model
 from wearlaw.pipeline.variables import label as label_of
 from wearlaw.pipeline.variables import name_of
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.study.study import Study, along_main_axis, axes_of, main_axis, used
+from wearlaw.study.results import along_main_axis, axes_of, main_axis
+from wearlaw.study.study import Study, used
 from wearlaw.units.registry import symbol
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray
 
 COLUMNS = 5
 """Values of the main axis at which wear rates are shown."""
@@ -49,8 +48,6 @@ class Cell:
 
 def cell(value: Any) -> Cell:
     """Return the text of a table cell: numbers with four digits, empty if the value is missing."""
-    import pandas as pd
-
     if value is None or value is pd.NA or value != value:
         return Cell("")
     if isinstance(value, (bool, np.bool_)):
@@ -87,8 +84,6 @@ def _fixed(sweep: xarray.Dataset, creepage: str) -> str:
 
 def summary(sweep: xarray.Dataset, creepage: str) -> pd.DataFrame:
     """Return wear rates at a few values of a sweep's main axis: a row for each pair, and for the ends of its band."""
-    import pandas as pd
-
     axis = main_axis(sweep, creepage)
     line = along_main_axis(sweep, creepage)
     count = line.sizes[axis]
@@ -106,8 +101,6 @@ def summary(sweep: xarray.Dataset, creepage: str) -> pd.DataFrame:
 
 def profiles(study: Study) -> list[NamedTable]:
     """Return a short table for each profile across the patch: where each body loses most, by pair."""
-    import pandas as pd
-
     found = []
     for name, profile in study.profiles.items():
         columns: dict[str, Any] = {"pair": profile.pair.values} if "y" in profile.coords else {}
@@ -133,8 +126,6 @@ def _four_digits(value: float) -> str:
 
 def parameters(study: Study) -> NamedTable:
     """Return every parameter of the rig and of the models."""
-    import pandas as pd
-
     subjects: list[tuple[str, Configuration]] = [("rig", study.case.rig), *_contact_models(study), *_wear_laws(study)]
     rows = [(subject, *row) for subject, record in subjects for row in _fields(record)]
     columns = ["of", "parameter", "value", "meaning"]
@@ -143,8 +134,6 @@ def parameters(study: Study) -> NamedTable:
 
 def models(study: Study) -> NamedTable:
     """Return where each model comes from: the distribution, and the literature."""
-    import pandas as pd
-
     origins = used(study.case)
     rows = [
         (label, kind, origins[kind][model.name], model.source)

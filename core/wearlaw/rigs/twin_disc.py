@@ -213,6 +213,8 @@ class TwinDisc(Rig):
             max_pressure = hertz.max_pressure(per_width, half_width)
         check_sizes({"half width": half_width, "max pressure": max_pressure}, arrays["friction_coefficient"])
         shape, same = arrays["creepage"].shape, self._same
+        if shape:
+            same = {name: np.broadcast_to(value, shape) for name, value in same.items()}
         return Problem(
             geometry="line",
             a=half_width,
@@ -221,13 +223,17 @@ class TwinDisc(Rig):
             friction_coefficient=arrays["friction_coefficient"],
             longitudinal_creepage=arrays["creepage"],
             traction_coefficient=arrays.get("traction_coefficient"),
-            bodies=self.bodies,
-            **({name: np.broadcast_to(value, shape) for name, value in same.items()} if shape else same),
+            bodies=self._bodies,
+            **same,
         )
 
-    @cached_property
+    @property
     def bodies(self) -> Mapping[str, Body]:
         """The two discs, "disc_1" and "disc_2"."""
+        return self._bodies
+
+    @cached_property
+    def _bodies(self) -> dict[str, Body]:
         discs = {"disc_1": self.disc_1, "disc_2": self.disc_2}
         return {name: Body(disc.material, 0.5 * scalar_si(disc.diameter, "m")) for name, disc in discs.items()}
 

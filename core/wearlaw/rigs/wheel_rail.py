@@ -134,9 +134,13 @@ class WheelRail(Rig):
             )
         return self
 
-    @cached_property
+    @property
     def bodies(self) -> Mapping[str, Body]:
         """The "wheel" and the "rail"."""
+        return self._bodies
+
+    @cached_property
+    def _bodies(self) -> dict[str, Body]:
         return {
             "wheel": Body(self.material, scalar_si(self.wheel_radius, "m")),
             "rail": Body(self.material, np.inf),
@@ -198,7 +202,7 @@ class WheelRail(Rig):
         }
         shape = arrays["longitudinal_creepage"].shape
         constant = {name: np.broadcast_to(np.float64(value), shape) for name, value in same.items()}
-        return Problem.ellipse_from_si(a=a, b=b, bodies=self.bodies, **arrays, **constant)
+        return Problem.ellipse_from_si(a=a, b=b, bodies=self._bodies, **arrays, **constant)
 
     @cached_property
     def _patch(self) -> _Patch:

@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import tomllib
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
+import tomli_w
+from packaging.specifiers import InvalidSpecifier, SpecifierSet
 from pydantic import (
     AfterValidator,
     BeforeValidator,
@@ -63,6 +66,36 @@ def _models(value: Any) -> Any:
     return value
 
 
+def _require(needed: Mapping[str, str]) -> None:
+    """Refuse to go on unless distributions are installed in the versions asked for.
+
+    Parameters
+    ----------
+    needed : mapping of str to str
+        Names of distributions with version ranges such as ">=1.2,<2"; "" for any version.
+
+    Raises
+    ------
+    InputError
+        If one is missing, has another version, or its range is not one.
+    """
+    for name, versions in needed.items():
+        try:
+            allowed = SpecifierSet(versions)
+        except InvalidSpecifier:
+            raise InputError(
+                f"plugins.{name}: '{versions}' is no version range; write one such as '>=1.2,<2'"
+            ) from None
+        try:
+            found = version(name)
+        except PackageNotFoundError:
+            raise InputError(
+                f"plugins.{name}: is not installed; install it with: pip install '{name}{versions}'"
+            ) from None
+        if not allowed.contains(found, prereleases=True):
+            raise InputError(f"plugins.{name}: version {found} is installed, but {versions} is needed")
+
+
 def _section(name: str) -> str:
     found = loader.installed()
     found.sections.find(name, found.broken)
@@ -106,7 +139,7 @@ class Case(Configuration):
         if isinstance(fields, dict):
             needed = fields.get("plugins", {})
             if isinstance(needed, dict):
-                loader.require({str(name): str(versions) for name, versions in needed.items()})
+                _require({str(name): str(versions) for name, versions in needed.items()})
         return fields
 
     @field_validator("sweeps", "profiles", "uncertainty")
@@ -338,8 +371,6 @@ def written(case: Case) -> dict[str, str]:
 
     Tests that a plugin ships are none of them.
     """
-    import tomli_w
-
     fields = case.model_dump(mode="json", by_alias=True, exclude_none=True)
     files = {}
     if case.measured is not None and not case.measured.shipped:

@@ -11,71 +11,69 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.models.labels import labels
 from wearlaw.pipeline.variables import UNITS, label, name_of
 from wearlaw.study.figure_spec import ACROSS, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
 from wearlaw.study.measured_points import measured_points
-from wearlaw.study.study import along, main_axis
+from wearlaw.study.results import Results, along, main_axis
 
 if TYPE_CHECKING:
-    import xarray
-
     from wearlaw.arrays.array import Array
     from wearlaw.study.grid import Grid
-    from wearlaw.study.study import Study
 
 
-def figures_of(study: Study) -> tuple[FigureData, ...]:
+def figures_of(results: Results) -> tuple[FigureData, ...]:
     """Return what each figure of a study shows."""
-    asked = study.case.figures or dict(_usual(study))
-    return tuple(_figure(study, name, spec) for name, spec in asked.items())
+    asked = results.case.figures or dict(_usual(results))
+    return tuple(_figure(results, name, spec) for name, spec in asked.items())
 
 
-def _usual(study: Study) -> Iterator[tuple[str, FigureSpec]]:
+def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
     """Give the figures of a case that asks for none: wear and traction over each sweep, and each patch."""
-    creepage = study.case.rig.creepage
-    for name, sweep in study.sweeps.items():
+    creepage = results.case.rig.creepage
+    for name, sweep in results.sweeps.items():
         axis = main_axis(sweep, creepage)
         for x in ("wear_index", axis):
             spec = FigureSpec(sweep=name, x=x, y=("wear_rate",), x_scale="log", y_scale="log")
             yield f"{name}_wear_rate_against_{x}", spec
         if axis == creepage:
-            measured = study.case.measured is not None
+            measured = results.case.measured is not None
             spec = FigureSpec(sweep=name, x=axis, y=("traction_coefficient",), x_scale="log", measured=measured)
             yield f"{name}_traction_against_{axis}", spec
-    for name, profile in study.profiles.items():
+    for name, profile in results.profiles.items():
         if "y" in profile.coords:
-            across = tuple(Window(title=body, y=(y,), body=body) for y in ACROSS for body in study.case.rig.bodies)
+            across = tuple(Window(title=body, y=(y,), body=body) for y in ACROSS for body in results.case.rig.bodies)
             yield f"{name}_across_the_patch", FigureSpec(profile=name, x="y", panels=across)
         elif profile:
             panels = (Window(y=("pressure", "traction", "traction_bound")), Window(y=("slip",)))
             yield f"{name}_along_the_patch", FigureSpec(profile=name, panels=panels)
 
 
-def _figure(study: Study, name: str, spec: FigureSpec) -> FigureData:
-    grid = study.case.sweeps[spec.sweep] if spec.sweep else study.case.profiles[spec.profile or ""]
-    axis = axis_along(grid, spec.x, study.case.rig.creepage) if spec.sweep else ""
-    fixed = _conditions(grid, axis, study.case.units)
+def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
+    grid = results.case.sweeps[spec.sweep] if spec.sweep else results.case.profiles[spec.profile or ""]
+    axis = axis_along(grid, spec.x, results.case.rig.creepage) if spec.sweep else ""
+    fixed = _conditions(grid, axis, results.case.units)
     heads = [text for condition, text in fixed.items() if condition in grid.axes()]
     panels = []
     for window in spec.windows():
-        units = {**UNITS, **study.case.units}
+        units = {**UNITS, **results.case.units}
         x = spec.x
         if spec.sweep:
-            curves = _over_sweep(study, spec, window, axis)
-        elif "y" in study.profiles[spec.profile or ""].coords:
-            x, body = "y", window.body or next(iter(study.case.rig.bodies))
-            curves = _across_the_patch(study, spec, window, body)
-            profile = study.profiles[spec.profile or ""]
+            curves = _over_sweep(results, spec, window, axis)
+        elif "y" in results.profiles[spec.profile or ""].coords:
+            x, body = "y", window.body or next(iter(results.case.rig.bodies))
+            curves = _across_the_patch(results, spec, window, body)
+            profile = results.profiles[spec.profile or ""]
             units |= {name: profile[f"{body}_{name}"].attrs["units"] for name in window.shown}
         else:
-            curves = _along_the_patch(study, spec, window)
+            curves = _along_the_patch(results, spec, window)
         title = ", ".join(filter(None, (window.title, *heads)))
         panels.append(Panel(*_axes(x, window, curves, units), curves=tuple(curves), title=title))
     caption = spec.caption or f"At {', '.join(fixed.values())}."
-    return FigureData(name=name, title=spec.title or study.case.title, panels=tuple(panels), caption=caption)
+    return FigureData(name=name, title=spec.title or results.case.title, panels=tuple(panels), caption=caption)
 
 
 def _conditions(grid: Grid, axis: str, units: Mapping[str, str]) -> dict[str, str]:
@@ -89,22 +87,22 @@ def _conditions(grid: Grid, axis: str, units: Mapping[str, str]) -> dict[str, st
     return found
 
 
-def _over_sweep(study: Study, spec: FigureSpec, window: Window, axis: str) -> list[Curve]:
+def _over_sweep(results: Results, spec: FigureSpec, window: Window, axis: str) -> list[Curve]:
     """Return the wear rate of each pair, or other variables of each contact model."""
-    line = along(study.sweeps[spec.sweep or ""], axis)
+    line = along(results.sweeps[spec.sweep or ""], axis)
     shown = window.shown
     if shown == ("wear_rate",):
-        curves = [_rate(study, line, spec.x, pair) for pair in spec.pairs or line.pair.values.tolist()]
+        curves = [_rate(results, line, spec.x, pair) for pair in spec.pairs or line.pair.values.tolist()]
     else:
         models = spec.contact_models or line.contact_model.values.tolist()
         curves = []
         for y in shown:
             alike = None if "contact_model" in line[y].dims or "contact_model" in line[spec.x].dims else 1
-            curves += [_of_contact(study, line, spec.x, shown, y, model, alike) for model in models[:alike]]
-    return curves + [_measured(study, spec.x, y) for y in shown if spec.measured]
+            curves += [_of_contact(results, line, spec.x, shown, y, model, alike) for model in models[:alike]]
+    return curves + [_measured(results, spec.x, y) for y in shown if spec.measured]
 
 
-def _rate(study: Study, line: xarray.Dataset, x: str, pair: str) -> Curve:
+def _rate(results: Results, line: xarray.Dataset, x: str, pair: str) -> Curve:
     one = line.sel(pair=pair)
     low, high = one.wear_rate_low.values, one.wear_rate_high.values
     has_band = bool((high > low).any())
@@ -112,18 +110,18 @@ def _rate(study: Study, line: xarray.Dataset, x: str, pair: str) -> Curve:
         pair,
         _magnitude(line, x, one.pair_contact_model.item()),
         one.wear_rate.values,
-        *_style(study, pair),
+        *_style(results, pair),
         low=low if has_band else None,
         high=high if has_band else None,
     )
 
 
 def _of_contact(
-    study: Study, line: xarray.Dataset, x: str, shown: tuple[str, ...], variable: str, model: str, alike: int | None
+    results: Results, line: xarray.Dataset, x: str, shown: tuple[str, ...], variable: str, model: str, alike: int | None
 ) -> Curve:
     """Return a variable of one contact model, or of all where they are alike."""
     along = _magnitude(line, x, model)
-    dash = 0 if alike else _dash(study, model)
+    dash = 0 if alike else _dash(results, model)
     several = name_of(variable) if alike else f"{name_of(variable)}, {model}"
     return Curve(
         label=model if len(shown) == 1 and not alike else several,
@@ -141,11 +139,11 @@ def _magnitude(line: xarray.Dataset, variable: str, model: str) -> Array:
     return magnitude
 
 
-def _measured(study: Study, x: str, y: str) -> Curve:
+def _measured(results: Results, x: str, y: str) -> Curve:
     """Return measured points, as magnitudes like all that is drawn over a sweep."""
-    measured = study.case.measured
+    measured = results.case.measured
     assert measured is not None
-    values = measured_points(measured.data, study.case.rig)
+    values = measured_points(measured.data, results.case.rig)
     along, across = abs(values[x]), abs(values[y])
     there = np.isfinite(along) & np.isfinite(across)
     uncertainty = measured.data.wear_rate_uncertainty if y == "wear_rate" else None
@@ -161,60 +159,60 @@ def _measured(study: Study, x: str, y: str) -> Curve:
     )
 
 
-def _along_the_patch(study: Study, spec: FigureSpec, window: Window) -> list[Curve]:
+def _along_the_patch(results: Results, spec: FigureSpec, window: Window) -> list[Curve]:
     """Return variables along the patch: wear rate for each pair, others for each contact model that resolves it."""
-    profile = study.profiles[spec.profile or ""]
+    profile = results.profiles[spec.profile or ""]
     curves = []
     for variable in window.shown:
         if variable == "creepage":
-            grid = study.case.profiles[spec.profile or ""]
-            level = np.full(2, grid.level(study.case.rig.creepage, study.case.units))
+            grid = results.case.profiles[spec.profile or ""]
+            level = np.full(2, grid.level(results.case.rig.creepage, results.case.units))
             curves.append(Curve(name_of(variable), profile.x.values[[0, -1]], level, OF_PROFILE.index(variable)))
         elif variable == "wear_rate":
             for pair in spec.pairs or profile.pair.values.tolist():
                 one = profile.wear_rate.sel(pair=pair).dropna("x")
-                curves.append(Curve(pair, one.x.values, one.values, *_style(study, pair)))
+                curves.append(Curve(pair, one.x.values, one.values, *_style(results, pair)))
         else:
             models = spec.contact_models or profile.contact_model.values.tolist()
             alike = 1 if variable == "pressure" else None
-            curves += [_field(study, profile, variable, model) for model in models[:alike]]
+            curves += [_field(results, profile, variable, model) for model in models[:alike]]
     return curves
 
 
-def _across_the_patch(study: Study, spec: FigureSpec, window: Window, body: str) -> list[Curve]:
+def _across_the_patch(results: Results, spec: FigureSpec, window: Window, body: str) -> list[Curve]:
     """Return the wear of a body across the patch: the depth for each pair, the distance slid for each contact model."""
-    profile = study.profiles[spec.profile or ""]
+    profile = results.profiles[spec.profile or ""]
     curves = []
     for variable in window.shown:
         values = profile[f"{body}_{variable}"]
         if "pair" in values.dims:
             for pair in spec.pairs or profile.pair.values.tolist():
                 one = values.sel(pair=pair).dropna("y")
-                curves.append(Curve(pair, one.y.values, one.values, *_style(study, pair)))
+                curves.append(Curve(pair, one.y.values, one.values, *_style(results, pair)))
         else:
             for model in spec.contact_models or profile.contact_model.values.tolist():
                 one = values.sel(contact_model=model).dropna("y")
-                curves.append(Curve(model, one.y.values, one.values, _dash(study, model), _dash(study, model)))
+                curves.append(Curve(model, one.y.values, one.values, _dash(results, model), _dash(results, model)))
     return curves
 
 
-def _field(study: Study, profile: xarray.Dataset, variable: str, model: str) -> Curve:
+def _field(results: Results, profile: xarray.Dataset, variable: str, model: str) -> Curve:
     """Return a field along the patch; the pressure is Hertz's for all contact models alike."""
     one = profile[variable].sel(contact_model=model).dropna("x")
     colour = OF_PROFILE.index(variable)
     if variable == "pressure":
         return Curve(name_of(variable), one.x.values, one.values, colour)
-    return Curve(f"{name_of(variable)}, {model}", one.x.values, one.values, colour, _dash(study, model))
+    return Curve(f"{name_of(variable)}, {model}", one.x.values, one.values, colour, _dash(results, model))
 
 
-def _dash(study: Study, model: str) -> int:
-    return labels(study.case.contact_models).index(model)
+def _dash(results: Results, model: str) -> int:
+    return labels(results.case.contact_models).index(model)
 
 
-def _style(study: Study, label_of_pair: str) -> tuple[int, int]:
+def _style(results: Results, label_of_pair: str) -> tuple[int, int]:
     """Return the colour of a pair's wear law and the dash of its contact model."""
-    (pair,) = (pair for pair in study.pairs if pair.label == label_of_pair)
-    return labels(study.case.wear_laws).index(pair.wear_law), _dash(study, pair.contact_model)
+    (pair,) = (pair for pair in results.pairs if pair.label == label_of_pair)
+    return labels(results.case.wear_laws).index(pair.wear_law), _dash(results, pair.contact_model)
 
 
 def _axes(x: str, window: Window, curves: list[Curve], units: Mapping[str, str]) -> tuple[PlotAxis, PlotAxis]:

@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.material import Material
@@ -19,7 +20,6 @@ from wearlaw.errors import (
     WearlawError,
     WearlawWarning,
     described,
-    did_you_mean,
     message_of,
 )
 from wearlaw.models.contact_model import Model
@@ -32,16 +32,15 @@ from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS, offered
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import known_name, parts
 from wearlaw.study.case import Case
+from wearlaw.study.figures import figures_of
 from wearlaw.study.pairs import Pair, pairs_of
+from wearlaw.study.results import Results
 from wearlaw.study.sections import Section
-from wearlaw.sweeping.checkpoint import Checkpoint
-from wearlaw.sweeping.evaluator import Evaluator
+from wearlaw.sweeping.checkpoint import Checkpoint, Evaluator
 from wearlaw.sweeping.points import Points
 from wearlaw.version import __version__
 
 if TYPE_CHECKING:
-    import xarray
-
     from wearlaw.figures.curves import FigureData
     from wearlaw.plugins.shelf import Shelf
     from wearlaw.study.grid import Grid
@@ -55,7 +54,7 @@ PROFILE_STRIPS = 101
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(Results):
     """The results of a case.
 
     Attributes
@@ -72,31 +71,13 @@ class Study:
         What plugins add to the report, as the case lists it.
     """
 
-    case: Case
-    pairs: tuple[Pair, ...]
-    sweeps: dict[str, xarray.Dataset]
-    profiles: dict[str, xarray.Dataset]
     notes: tuple[str, ...]
     sections: tuple[Section, ...] = ()
 
     @cached_property
     def figures(self) -> tuple[FigureData, ...]:
         """What the figures of the study show."""
-        from wearlaw.study.figures import figures_of
-
         return figures_of(self)
-
-    def sweep(self, name: str) -> xarray.Dataset:
-        """Return the results of a sweep.
-
-        Raises
-        ------
-        InputError
-            If the case has none of that name.
-        """
-        if name not in self.sweeps:
-            raise InputError(f"the case has no sweep '{name}'{did_you_mean(name, self.sweeps)} Add [sweeps.{name}]")
-        return self.sweeps[name]
 
 
 def run(
@@ -187,8 +168,6 @@ def used(case: Case) -> dict[str, dict[str, str]]:
 
 def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: Evaluator) -> xarray.Dataset:
     """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
-    import xarray
-
     points = grid.points(case.units)
     axes = points.dims
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
@@ -308,8 +287,6 @@ def _band_ends(pipeline: Pipeline[...]) -> list[Pipeline[...]]:
 
 def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes) -> xarray.Dataset:
     """Return what is seen in the patch: fields of each contact model, and the wear of each pair."""
-    import xarray
-
     problem = grid.problem(case.rig)
     contacts: dict[str, xarray.Dataset] = {}
     wear: list[xarray.Dataset] = []
@@ -339,45 +316,8 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
     It runs along the patch of a line, over x. That of an ellipse runs across the patch, over y, with the wear of each
     body.
     """
-    import xarray
-
     if prediction.problem.geometry == "line":
         return ["wear_rate"], prediction.profile
     across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in rig.bodies}
     named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
     return [f"{body}_depth" for body in across], xarray.Dataset(named)
-
-
-def axes_of(sweep: xarray.Dataset) -> list[str]:
-    """Return the axes of a sweep's grid."""
-    return [str(dim) for dim in sweep.dims if dim not in ("pair", "contact_model")]
-
-
-def main_axis(sweep: xarray.Dataset, creepage: str) -> str:
-    """Return the axis that tables and figures run along: the creepage of the rig if it is one, else the longest.
-
-    Where a sweep has no axis it is the creepage, or else another condition, of its one point.
-    """
-    axes = axes_of(sweep)
-    if creepage in axes or not axes:
-        return creepage if creepage in sweep else _other(sweep)
-    return max(axes, key=lambda axis: sweep.sizes[axis])
-
-
-def along_main_axis(sweep: xarray.Dataset, creepage: str) -> xarray.Dataset:
-    """Return a sweep along its main axis, with the other axes at their middle value."""
-    return along(sweep, main_axis(sweep, creepage))
-
-
-def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
-    """Return a sweep along an axis, with the others at their middle value; one point becomes an axis of length 1."""
-    line = sweep.isel({other: sweep.sizes[other] // 2 for other in axes_of(sweep) if other != axis})
-    if axes_of(line):
-        return line
-    at = axis if axis in line else _other(line)
-    return line.set_coords(at).expand_dims(at)
-
-
-def _other(point: xarray.Dataset) -> str:
-    """Return a variable of the operating point of a sweep without axes."""
-    return next(str(name) for name in point.data_vars if not point[name].dims)

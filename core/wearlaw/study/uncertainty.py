@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from wearlaw.errors import InputError
 from wearlaw.pipeline.notes import Notes
 from wearlaw.study.case import Case
 from wearlaw.study.pairs import Pair, pairs_of
-from wearlaw.uncertainties.figure import CONFIDENCE
-from wearlaw.uncertainties.result import Uncertainty, uncertainty
+from wearlaw.uncertainties.result import CONFIDENCE, Uncertainty, uncertainty
 from wearlaw.units.quantities import WEAR_RATE
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -74,8 +70,6 @@ def uncertainty_of(
     InputError
         If nothing in the case is uncertain.
     """
-    import pandas as pd
-
     notes = Notes()
     pairs = pairs_of(case, notes)
     if not any(point.varies(pair.wear_law) for point in case.uncertainty.values() for pair in pairs):

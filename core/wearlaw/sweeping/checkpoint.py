@@ -1,23 +1,28 @@
-"""What an unfinished run of a case has done: a folder with the results of its blocks, until the run is finished."""
+"""Evaluating the sweeps of a case, with a folder that keeps what is done until the run is finished."""
 
 from __future__ import annotations
 
 import json
 import os
 import shutil
+import warnings
+from collections.abc import Callable, Sequence
+from contextlib import closing
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 from pydantic import TypeAdapter
 
-from wearlaw.errors import OutputError
+from wearlaw.arrays.array import Array
+from wearlaw.errors import OutputError, RangeWarning
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.variables import UNITS
 from wearlaw.sweeping.evaluation import Job
-from wearlaw.sweeping.journal import Journal, Run, check_same, run_of, write_whole
+from wearlaw.sweeping.journal import Run, check_same, write_whole
 from wearlaw.sweeping.points import Points
-from wearlaw.sweeping.targets import ITEM, Arrays, Memory, damage
+from wearlaw.sweeping.storage import Arrays, Files, Memory, damage
+from wearlaw.sweeping.sweep import check_importable, run
 
-RUN, JOURNAL = "run.json", "journal"
+RUN = "run.json"
 
 
 class Checkpoint:
@@ -109,42 +114,32 @@ class Checkpoint:
             shutil.rmtree(self.folder, ignore_errors=True)
 
 
-class Files(Arrays):
-    """Results in files that memory maps show, and a journal of what is done.
+class Evaluator:
+    """Evaluates pipelines at points.
 
-    A file holds the numbers of one output and nothing else, so that damage to a part of it leaves the rest of use.
-
-    Raises
-    ------
-    OutputError
-        If the files cannot be written, or the journal is damaged or that of another run.
+    Parameters
+    ----------
+    on_block : callable
+        Called with the number of evaluations done.
+    workers : int
+        How many processes take part.
+    checkpoint : Checkpoint, optional
+        Where an interrupted run leaves what is done.
     """
 
-    def __init__(self, job: Job, points: Points, folder: Path) -> None:
-        super().__init__(job, points)
-        path, run = folder / JOURNAL, run_of(job, points)
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            known = path.exists()
-            journal = Journal.resume(path, run, folder, self._sync) if known else Journal.begin(path, run, self._sync)
-            self._maps = {name: self._mapped(folder / f"{name}.f64") for name in job.units}
-        except OutputError:
-            raise
-        except OSError as error:
-            where = error.filename or folder
-            raise OutputError(
-                f"output: what is done cannot be kept in '{where}': {error.strerror or error};"
-                f" remove '{folder}' to begin it anew"
-            ) from None
-        self.arrays = dict(self._maps)
-        self._take_over(journal)
+    def __init__(self, on_block: Callable[[int], None], workers: int, checkpoint: Checkpoint | None) -> None:
+        self._on_block = on_block
+        self._workers = workers
+        self._checkpoint = checkpoint
 
-    def _mapped(self, path: Path) -> np.memmap[Any, Any]:
-        """Return the map of a file, which is made or brought to its length if need be."""
-        path.touch()
-        os.truncate(path, self.points.size * ITEM)
-        return np.memmap(path, dtype=np.float64, mode="r+", shape=(self.points.size,))
-
-    def _sync(self, _: list[int]) -> None:
-        for one in self._maps.values():
-            one.flush()
+    def __call__(self, key: str, pipeline: Pipeline[...], points: Points, outputs: Sequence[str]) -> dict[str, Array]:
+        """Return outputs in the units of `variables.UNITS`, of the shape of the points; `key` names them in the run."""
+        job = Job(pipeline, {name: UNITS[name] for name in outputs})
+        workers = min(self._workers, len(points.blocks()))
+        if workers > 1:
+            check_importable(pipeline)
+        target = self._checkpoint.target(key, job, points) if self._checkpoint else Memory(job, points)
+        with closing(target):
+            for note in run(target, self._on_block, workers):
+                warnings.warn(note, RangeWarning, stacklevel=2)
+        return {name: values.reshape(points.shape) for name, values in target.arrays.items()}

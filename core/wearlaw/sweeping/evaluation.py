@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import warnings
 import zlib
@@ -18,7 +19,7 @@ from wearlaw.arrays.extremes import extremes
 from wearlaw.errors import CompositionError, InputError, did_you_mean
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.variables import UNITS
-from wearlaw.sweeping.points import Points
+from wearlaw.sweeping.points import Block, Points
 from wearlaw.units.quantities import Quantity
 from wearlaw.units.registry import symbol
 
@@ -45,7 +46,7 @@ class Job:
 
 
 @dataclass(frozen=True)
-class Seen:
+class BlockRecord:
     """What is kept of a block besides its outputs: for warnings, and to find damage on disk.
 
     Attributes
@@ -67,7 +68,7 @@ class Seen:
     checksum: int
 
 
-def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, Seen]:
+def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, BlockRecord]:
     """Return the outputs of a block of operating points, and what else is kept of it.
 
     `on_block` is called with the number of points done, several times where that takes long.
@@ -78,11 +79,44 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     prediction = job.pipeline.watched(problem, watch, on_block)
     outputs = {name: _in_unit(getattr(prediction, name), unit) for name, unit in job.units.items()}
     ranges = {name: (seen.lowest, seen.highest, seen.outside) for name, seen in watch.seen.items()}
-    seen = Seen(watch.points, extremes(problem.max_pressure)[1], ranges, checksum=0)
+    seen = BlockRecord(watch.points, extremes(problem.max_pressure)[1], ranges, checksum=0)
     return outputs, replace(seen, checksum=checksum(seen, outputs.values()))
 
 
-def checksum(seen: Seen, outputs: Iterable[Array]) -> int:
+def evaluated(
+    job: Job, block: Block, part: Points, store: str | None, on_block: Callable[[int], None] | None = None
+) -> tuple[Outputs, BlockRecord]:
+    """Evaluate a block and return its outputs, or write them into a store and return none."""
+    outputs, seen = evaluate(job, part, on_block)
+    if store is None:
+        return outputs, seen
+    write_block(store, block, {name: values.reshape(part.shape) for name, values in outputs.items()})
+    return {}, seen
+
+
+def write_block(store: str, block: Block, outputs: Mapping[str, Array]) -> None:
+    """Write the outputs of a block."""
+    group = zarr_group(store)
+    for name, values in outputs.items():
+        group[name][block.slices] = values
+
+
+@functools.lru_cache(maxsize=8)
+def zarr_group(store: str) -> Any:
+    """Return the group of a store, open for writing."""
+    return load_zarr().open_group(store, mode="r+")
+
+
+def load_zarr() -> Any:
+    """Return the package zarr, or raise an error that says how to install it."""
+    try:
+        import zarr
+    except ImportError:
+        raise InputError('store: zarr is not installed; python -m pip install "wearlaw[dask]"') from None
+    return zarr
+
+
+def checksum(seen: BlockRecord, outputs: Iterable[Array]) -> int:
     """Return the CRC-32 of the outputs of a block in their order, and of what was seen of it.
 
     CRC-32 is the fastest checksum of the standard library, above 1 GB/s, and misses one in 2³² cases of accidental
@@ -94,7 +128,7 @@ def checksum(seen: Seen, outputs: Iterable[Array]) -> int:
     return found
 
 
-def notes(pipeline: Pipeline[...], blocks: Iterable[Seen]) -> list[str]:
+def notes(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> list[str]:
     """Return what a prediction of all blocks together would warn of."""
     every = list(blocks)
     watch = pipeline.range_watch()

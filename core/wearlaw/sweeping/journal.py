@@ -20,7 +20,7 @@ from wearlaw.errors import OutputError
 from wearlaw.models.contact_model import Model
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import parts
-from wearlaw.sweeping.evaluation import Job, Seen
+from wearlaw.sweeping.evaluation import BlockRecord, Job
 from wearlaw.sweeping.points import Points, Varying
 from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
@@ -113,17 +113,17 @@ class Journal:
     Parameters
     ----------
     path : Path
-    done : dict of int to Seen
+    done : dict of int to BlockRecord
         The blocks that it lists.
     sync : callable
         Called with the numbers of some blocks; waits until their results are on disk.
     """
 
-    def __init__(self, path: Path, done: Mapping[int, Seen], sync: Callable[[list[int]], None]) -> None:
+    def __init__(self, path: Path, done: Mapping[int, BlockRecord], sync: Callable[[list[int]], None]) -> None:
         self.path = path
         self.done = dict(done)
         self._sync = sync
-        self._waiting: dict[int, Seen] = {}
+        self._waiting: dict[int, BlockRecord] = {}
         self._thread = ThreadPoolExecutor(1)
         self._writing: Future[None] | None = None
         self._due = time.monotonic() + SYNC_S
@@ -148,7 +148,7 @@ class Journal:
         try:
             head, *lines = whole.splitlines()
             before = TypeAdapter(Run).validate_json(head)
-            line_type = TypeAdapter(tuple[int, Seen])
+            line_type = TypeAdapter(tuple[int, BlockRecord])
             done = dict(line_type.validate_json(line, strict=True) for line in lines)
         except ValueError:
             raise OutputError(
@@ -159,7 +159,7 @@ class Journal:
             os.truncate(path, len(whole))
         return cls(path, done, sync)
 
-    def add(self, number: int, seen: Seen) -> None:
+    def add(self, number: int, seen: BlockRecord) -> None:
         """Take note that a block is done; its line is written a little later."""
         self._waiting[number] = seen
         if time.monotonic() >= self._due and (self._writing is None or self._writing.done()):
@@ -172,7 +172,7 @@ class Journal:
         if self._writing is not None:
             self._writing.result()
 
-    def _write(self, blocks: Mapping[int, Seen]) -> None:
+    def _write(self, blocks: Mapping[int, BlockRecord]) -> None:
         """Write the lines of blocks once their results are on disk.
 
         Raises

@@ -1,4 +1,4 @@
-"""The operating points of a sweep: axes whose values are all combined, or a table taken row by row.
+"""The operating points of a sweep: axes whose values are all combined, or the rows of a table.
 
 They are never laid out whole. A block of them knows the few values that its conditions take, and lays them out where
 it is evaluated.
@@ -8,25 +8,29 @@ from __future__ import annotations
 
 import itertools
 import math
+import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
-from wearlaw.errors import ConditionsError, UnitError
-from wearlaw.units.quantities import Q, parse, real_array
+from wearlaw.errors import ConditionsError, DataError, UnitError
+from wearlaw.units.quantities import HEAD, Q, real_array
 from wearlaw.units.registry import symbol
-
-if TYPE_CHECKING:
-    import xarray
 
 BLOCK = 100_000
 """The most operating points of a block; most blocks have more than half of it."""
+
+ROW = "row"
+"""The dimension of the rows of a table that has no name for them."""
+
+Column: TypeAlias = tuple[str, str | None, Any, str | None]
+"""Head, dimension, values and unit of a column."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,21 +154,6 @@ class Points:
         shape = [-1 if dim == one.dim else 1 for dim in self.dims]
         return np.broadcast_to(one.values.reshape(shape), self.shape).reshape(-1)
 
-    def dataset(self, variables: Mapping[str, Array], units: Mapping[str, str]) -> xarray.Dataset:
-        """Return results, (points,) each, under their names, with the conditions as coordinates."""
-        import xarray
-
-        coordinates: dict[str, Any] = dict(self.rows)
-        for name, one in self.varying.items():
-            coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
-        numbers = {name: _number(value) for name, value in self.fixed.items()}
-        coordinates |= {name: number for name, number in numbers.items() if number is not None}
-        data = {
-            name: (self.dims, values.reshape(self.shape), {"units": units[name]}) for name, values in variables.items()
-        }
-        others = {name: str(self.fixed[name]) for name, number in numbers.items() if number is None}
-        return xarray.Dataset(data, coordinates, others)
-
 
 def outer_product(conditions: Mapping[str, Any]) -> Points:
     """Return the points of all combinations of the conditions that are arrays, in the order in which they are given.
@@ -232,11 +221,99 @@ def axis(name: str, dim: str, values: object, unit: str | None) -> Varying:
     return Varying(dim, np.ascontiguousarray(array), unit)
 
 
-def _number(value: Any) -> Any:
-    """Return a condition as a coordinate without axes, or None if it is a law of friction."""
-    if is_friction_law(value):
-        return None
-    quantity = parse(value) if isinstance(value, str) else value
-    if isinstance(quantity, pint.Quantity):
-        return (), float(quantity.magnitude), {"units": symbol(quantity.units, "~C")}
-    return (), float(quantity), {"units": ""}
+def from_table(table: Any, conditions: Mapping[str, Any]) -> Points:
+    """Return the points of a table, a row each, with conditions that are the same in all of them.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame or xarray.Dataset
+        Its columns are conditions. The unit of a column comes from its type (pint), from its `attrs["units"]`, or from
+        its head, as in "creepage [%]".
+    conditions : mapping of str to object
+        What is the same in all rows.
+
+    Raises
+    ------
+    DataError
+        If it is no such table, or a column is wrong.
+    """
+    fixed, arrays = split(conditions)
+    for name in arrays:
+        raise DataError(f"{name}: beside a table it must be one value; add it to the table as a column")
+    columns, rows = _columns(table)
+    found: dict[str, Varying] = {}
+    for head, dim, values, given_unit in columns:
+        name, unit = _named(head, given_unit)
+        if name in found or name in fixed:
+            raise DataError(f"table: {name} is given twice; keep one")
+        if dim is None:
+            fixed[name] = values if unit is None else Q(values, unit)
+        else:
+            found[name] = _column(head, name, dim, values, unit)
+    if not found:
+        raise DataError("table: has no columns")
+    return Points(fixed, found, rows)
+
+
+def _columns(table: Any) -> tuple[list[Column], dict[str, Any]]:
+    """Return the columns, and what the rows are called."""
+    pandas, xarray = sys.modules.get("pandas"), sys.modules.get("xarray")  # loaded if the table is one of theirs
+    if pandas is not None and isinstance(table, pandas.DataFrame):
+        return _of_pandas(table)
+    if xarray is not None and isinstance(table, xarray.Dataset):
+        return _of_xarray(table)
+    raise DataError(
+        f"table: must be a pandas.DataFrame or an xarray.Dataset with a row for each operating point, got"
+        f" {type(table).__name__}; give conditions by name, as in creepage=..."
+    )
+
+
+def _of_pandas(table: Any) -> tuple[list[Column], dict[str, Any]]:
+    if table.index.nlevels > 1:
+        raise DataError("table: its index has several levels; call reset_index() on it")
+    dim = str(table.index.name or ROW)
+    columns: list[Column] = [(str(head), dim, *_typed(table[head])) for head in table.columns]
+    return columns, {dim: (dim, table.index.to_numpy())}
+
+
+def _typed(column: Any) -> tuple[Any, str | None]:
+    """Return the values of a column, and their unit if its type or its attributes say one."""
+    units = getattr(column.dtype, "units", None)  # a PintType
+    if units is not None:
+        return np.asarray(column.pint.magnitude), symbol(units, "~C")
+    return column.to_numpy(), column.attrs.get("units")
+
+
+def _of_xarray(table: Any) -> tuple[list[Column], dict[str, Any]]:
+    dims = [str(dim) for dim in table.dims]
+    if len(dims) != 1:
+        raise DataError(f"table: must have one dimension, that of its rows, got {', '.join(dims) or 'none'}")
+    columns = [(str(head), *_variable(variable)) for head, variable in table.data_vars.items()]
+    named = {dim: (dim, table.indexes[dim].to_numpy()) for dim in dims if dim in table.indexes}
+    return columns, named
+
+
+def _variable(variable: Any) -> tuple[str | None, Any, str | None]:
+    data, dim = variable.data, str(variable.dims[0]) if variable.dims else None
+    if isinstance(data, pint.Quantity):
+        return dim, data.magnitude, symbol(data.units, "~C")
+    return dim, variable.to_numpy() if dim else variable.item(), variable.attrs.get("units")
+
+
+def _named(head: str, unit: str | None) -> tuple[str, str | None]:
+    """Return the name of a column, and its unit, which its head may give."""
+    match = HEAD.fullmatch(head)
+    if match is None or match["unit"] is None:
+        return head, unit
+    if unit is not None and unit != match["unit"]:
+        raise DataError(f"table: column '{head}' has the unit '{unit}' as well; keep one of the two")
+    return match["name"], "" if match["unit"] == "-" else match["unit"]
+
+
+def _column(head: str, name: str, dim: str, values: Any, unit: str | None) -> Varying:
+    try:
+        return axis(name, dim, values, unit)
+    except ConditionsError:
+        raise DataError("table: has no rows") from None
+    except UnitError as error:
+        raise DataError(f"table: column '{head}': {error}; leave out columns that are no conditions") from None

@@ -10,24 +10,21 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import xarray
+
 from wearlaw.errors import InputError, RangeWarning, ResumeWarning, WorkerWarning
 from wearlaw.pipeline.composition import warn_of_geometry
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.configuration import parts
-from wearlaw.sweeping.cluster import on_cluster
-from wearlaw.sweeping.evaluation import Job, notes, output_units
-from wearlaw.sweeping.points import Block, Points, outer_product
-from wearlaw.sweeping.processes import Done, in_processes
+from wearlaw.sweeping.evaluation import Job, evaluated, notes, output_units
+from wearlaw.sweeping.points import Block, Points, from_table, outer_product
 from wearlaw.sweeping.progress import Bar
-from wearlaw.sweeping.store import Store, finished
-from wearlaw.sweeping.tables import from_table
-from wearlaw.sweeping.targets import Memory, Target, damage
-from wearlaw.sweeping.worker import evaluated
+from wearlaw.sweeping.storage import Memory, Store, Target, damage, finished
+from wearlaw.sweeping.workers import Done, in_processes, on_cluster
 from wearlaw.units.quantities import shortened
 
 if TYPE_CHECKING:
     import pandas
-    import xarray
 
 
 def sweep(

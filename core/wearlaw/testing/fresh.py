@@ -14,6 +14,8 @@ import tomllib
 from collections.abc import Callable
 from typing import Any
 
+from wearlaw.errors import described
+
 
 def computed(model: Any, arguments: list[Any]) -> list[Any]:
     """Return what a wear law computes for contacts, a contact model for problems, or a rig for conditions."""
@@ -29,8 +31,6 @@ def computed(model: Any, arguments: list[Any]) -> list[Any]:
 
 def made_again(way: Callable[[], Any], arguments: list[Any]) -> tuple[str, Any]:
     """Return what a model computes, or why it could not be made."""
-    from wearlaw.errors import described  # once `sys.path` is that of the test
-
     try:
         return "", computed(way(), arguments)
     except KeyboardInterrupt:
@@ -56,9 +56,8 @@ def answer(contents: dict[str, Any]) -> dict[str, tuple[str, Any]]:
 
 def main() -> None:
     """Answer the request."""
-    path, request = pickle.load(sys.stdin.buffer)
-    sys.path[:] = path
-    pickle.dump([answer(contents) for contents in pickle.loads(request)], sys.stdout.buffer)
+    request = pickle.load(sys.stdin.buffer)
+    pickle.dump([answer(contents) for contents in request], sys.stdout.buffer)
 
 
 if __name__ == "__main__":

@@ -22,6 +22,10 @@ from wearlaw.testing.examples import assert_close
 from wearlaw.testing.sampling import random_contacts
 from wearlaw.units.quantities import Q
 
+START = "import pickle, runpy, sys; sys.path[:] = pickle.load(sys.stdin.buffer);"
+START += " runpy.run_path(sys.argv[1], run_name='__main__')"
+"""The program of the fresh process: it takes over `sys.path`, which what it reads and imports next needs."""
+
 
 class RoundTrip:
     """Three ways to write models, read again by one fresh process."""
@@ -51,9 +55,9 @@ class RoundTrip:
 
     @cached_property
     def _answers(self) -> list[dict[str, tuple[str, Any]]]:
-        # The path comes first and by itself, since reading the rest needs it.
-        request = pickle.dumps((sys.path, pickle.dumps([_written(model) for model in self.models])))
-        done = subprocess.run([sys.executable, fresh.__file__], input=request, capture_output=True, check=False)
+        request = pickle.dumps(sys.path) + pickle.dumps([_written(model) for model in self.models])
+        command = [sys.executable, "-c", START, fresh.__file__]
+        done = subprocess.run(command, input=request, capture_output=True, check=False)
         message = done.stderr.decode().strip().splitlines()
         names = ", ".join(f"{type(model).__module__}.{type(model).__qualname__}" for model in self.models)
         assert done.returncode == 0, f"a fresh process cannot import {names}: {message[-1:]}"

@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 import pint
+import scipy
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, UnitError
@@ -36,9 +37,7 @@ class Distribution:
         """Return the values below which it lies with the given probabilities, for its two numbers in one unit."""
         if self.kind == "uniform":
             return first + (second - first) * probability
-        from scipy.special import ndtri  # scipy is loaded where it is used
-
-        deviates: Array = ndtri(probability)
+        deviates: Array = scipy.special.ndtri(probability)
         if self.kind == "normal":
             return first + second * deviates
         values: Array = first * np.exp(np.log(second) * deviates)

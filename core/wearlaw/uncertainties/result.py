@@ -2,35 +2,43 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
+import scipy
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.plot import plot
 from wearlaw.models.wear_law import Numbers
 from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_wear
 from wearlaw.pipeline.composition import check_traction, warn_of_geometry
 from wearlaw.pipeline.ranges import RangeWatch, mean_over_patch
+from wearlaw.pipeline.variables import UNITS, label
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
-from wearlaw.uncertainties.figure import CONFIDENCE, figure_data
 from wearlaw.uncertainties.inputs import OTHERS, Known, Uncertain, check_samples, parameter, split
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, QuantityLike, from_si, shortened
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
     from wearlaw.contact.conditions import FrictionLaw
-    from wearlaw.contact.problem import Problem
-    from wearlaw.figures.curves import FigureData
     from wearlaw.pipeline.pipeline import Pipeline
+
+CONFIDENCE = 0.95
+"""The share of the samples in an interval, where none is given."""
+
+STEPS = 512
+"""Points of the cumulative distribution in a figure."""
 
 MOST_SAMPLES = 2**22
 """The most samples that are taken on."""
@@ -116,9 +124,7 @@ class Uncertainty:
     @cached_property
     def wear_rate(self) -> Quantity:
         """The samples of the wear rate [kg/m/m²]; they are the last axis."""
-        from scipy.stats import qmc
-
-        sequence = qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
+        sequence = scipy.stats.qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
         probability = sequence.random_base2(self.samples.bit_length() - 1).T
         return from_si(self._rates(probability, stacklevel=4), WEAR_RATE)
 
@@ -154,9 +160,6 @@ class Uncertainty:
         InputError
             If the conditions that are not distributed hold more than one operating point, or the rate does not vary.
         """
-        import pandas as pd
-        from scipy.stats import sobol_indices, uniform
-
         if self.shape:
             raise InputError("sobol: needs one operating point; give each condition that is not distributed one value")
         if np.ptp(self.wear_rate.magnitude) == 0.0:
@@ -165,10 +168,10 @@ class Uncertainty:
         if len(self.inputs) == 1:  # scipy takes no fewer than two
             alone = {"first_order": 1.0, "first_order_error": 0.0, "total_order": 1.0, "total_order_error": 0.0}
             return pd.DataFrame(alone, index=index)
-        every: list[Any] = [uniform()] * len(self.inputs)
+        every: list[Any] = [scipy.stats.uniform()] * len(self.inputs)
         size = max(self.samples // SEQUENCES, 2)
         found = [
-            sobol_indices(func=lambda x: self._rates(x)[None, :], n=size, dists=every, rng=rng)
+            scipy.stats.sobol_indices(func=lambda x: self._rates(x)[None, :], n=size, dists=every, rng=rng)
             for rng in np.random.default_rng(self._seed).spawn(SEQUENCES)
         ]
         table: dict[str, Array] = {}
@@ -178,14 +181,18 @@ class Uncertainty:
         return pd.DataFrame(table, index=index)
 
     def figure_data(self) -> FigureData:
-        """Return what `plot` draws."""
-        return figure_data(self)
+        """Return what `plot` draws.
+
+        Raises
+        ------
+        InputError
+            If the operating points differ in more than one condition.
+        """
+        return _figure_data(self)
 
     def plot(self) -> Figure:
         """Return a figure: the cumulative distribution, or the band of 95 % along the one axis of the conditions."""
-        from wearlaw.figures.drawing import draw
-
-        return draw(self.figure_data())
+        return plot(self.figure_data())
 
     def _quantile(self, probability: float) -> Quantity:
         rates = self.wear_rate
@@ -260,3 +267,45 @@ class Uncertainty:
             lines += [f"{'median':20} {self.median!r}", f"{share:20} {low!r} to {high!r}"]
         lines += [f"{one.name:20} {one.shown}" for one in self.inputs]
         return "\n  ".join(lines)
+
+
+def _figure_data(uncertainty: Uncertainty) -> FigureData:
+    """Return the cumulative distribution of one operating point, or the band along the axis of several."""
+    inputs = ", ".join(f"{one.name} {one.shown}" for one in uncertainty.inputs)
+    panel = _cumulative(uncertainty) if math.prod(uncertainty.shape) == 1 else _along_axis(uncertainty)
+    caption = f"{uncertainty.samples} samples of {inputs}."
+    return FigureData("uncertainty", uncertainty.title, (panel,), caption, f"{CONFIDENCE:.0%} of the samples")
+
+
+def _cumulative(uncertainty: Uncertainty) -> Panel:
+    rates = _plain(uncertainty.wear_rate)
+    share = (np.arange(STEPS) + 0.5) / STEPS
+    low, high = (_plain(end) for end in uncertainty.interval(CONFIDENCE))
+    median = _plain(uncertainty.median)
+    tail = 0.5 - 0.5 * CONFIDENCE
+    curves = (
+        Curve("wear rate", np.quantile(rates, share), share),
+        Curve(f"median and {CONFIDENCE:.0%} of the samples", np.concatenate([low, median, high]),
+              np.array([tail, 0.5, 1.0 - tail]), colour=1, points=True),
+    )  # fmt: skip
+    y = PlotAxis("share of the samples below [-]", ends=(0.0, 1.0))
+    return Panel(PlotAxis(label("wear_rate")), y, curves)
+
+
+def _along_axis(uncertainty: Uncertainty) -> Panel:
+    axes = {name: one for name, one in uncertainty.known.items() if np.size(one.values) > 1}
+    if len(axes) != 1:
+        raise InputError(f"plot: needs one condition with several values, or none; there are {', '.join(axes)}")
+    ((name, one),) = axes.items()
+    x, shown = np.ravel(one.values), f"{name.replace('_', ' ')} [{one.unit or '-'}]"
+    if name in UNITS:
+        x, shown = Q(x, one.unit or "").to(UNITS[name]).magnitude, label(name)
+    order = np.argsort(x)
+    low, high = (_plain(end)[order] for end in uncertainty.interval(CONFIDENCE))
+    median = _plain(uncertainty.median)[order]
+    curve = Curve("median", x[order], median, low=low, high=high)
+    return Panel(PlotAxis(shown), PlotAxis(label("wear_rate")), (curve,))
+
+
+def _plain(quantity: Quantity) -> Array:
+    return np.ravel(quantity.to(UNITS["wear_rate"]).magnitude)

@@ -1,12 +1,15 @@
-"""What is written on the command line, as rigs and models."""
+"""What commands share: options, what is written in them, and how results are printed."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any, TypeVar, get_args
 
 import click
 
 from wearlaw.errors import ConfigurationError, InputError, with_problems
+from wearlaw.figures.curves import FigureFormat
 from wearlaw.fitting.law_files import read_toml, read_wear_law
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.rig import Rig
@@ -14,6 +17,23 @@ from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import RigField
 from wearlaw.settings.configuration import Configuration
+
+CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+
+
+def written_formats(command: CommandT) -> CommandT:
+    """Add the options `figure_formats` and `latex` to a command."""
+    formats = click.option(
+        "--figure-format",
+        "figure_formats",
+        type=click.Choice(get_args(FigureFormat)),
+        multiple=True,
+        default=["png"],
+        show_default=True,
+        help="Format of the figures; may be repeated.",
+    )
+    latex = click.option("--latex", is_flag=True, help="Write the tables for LaTeX too.")
+    return formats(latex(command))
 
 
 class _WithRig(Configuration, extra="ignore"):
@@ -76,3 +96,16 @@ def wear_law(text: str, fixed: dict[str, str] | None = None) -> WearLaw:
         return law.model_copy(update=fixed) if fixed else law
     name, *settings = text.split(":")
     return loader.wear_law(name, **fields(text, tuple(settings)) | (fixed or {}))
+
+
+def print_notes(notes: Iterable[str]) -> None:
+    """Print notes on standard error, a line each."""
+    for note in notes:
+        click.echo(f"note: {note}", err=True)
+
+
+def print_results(folder: Path, names: Iterable[str]) -> None:
+    """Print where the files of a folder of results are."""
+    click.echo(f"Results in {folder}:")
+    for name in names:
+        click.echo(f"  {folder / name}")

@@ -1,0 +1,22 @@
+"""Commands that print case files and their schema, without what runs them."""
+
+from __future__ import annotations
+
+import json
+
+import click
+
+from wearlaw.study.case import case_schema, case_text
+
+
+@click.command()
+@click.argument("name")
+def case(name: str) -> None:
+    """Print a case file: NAME is the name of a shipped one (tassini2010, wheel_on_rail), or a path."""
+    click.echo(case_text(name).encode(), nl=False)  # TOML is UTF-8, whatever the terminal speaks
+
+
+@click.command()
+def schema() -> None:
+    """Print the JSON Schema of a case file with the options of the installed models."""
+    click.echo(json.dumps(case_schema(), indent=2, ensure_ascii=False).encode())

@@ -1,0 +1,78 @@
+"""The datasets that running a case gives, and how tables and figures take them apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import xarray
+
+from wearlaw.errors import InputError, did_you_mean
+from wearlaw.study.case import Case
+from wearlaw.study.pairs import Pair
+
+
+@dataclass(frozen=True)
+class Results:
+    """The sweeps and profiles of a case.
+
+    Attributes
+    ----------
+    case : Case
+        What was run.
+    pairs : tuple of Pair
+        The pairs that were evaluated.
+    sweeps, profiles : dict of str to xarray.Dataset
+        The datasets by the names that the case gives them.
+    """
+
+    case: Case
+    pairs: tuple[Pair, ...]
+    sweeps: dict[str, xarray.Dataset]
+    profiles: dict[str, xarray.Dataset]
+
+    def sweep(self, name: str) -> xarray.Dataset:
+        """Return the results of a sweep.
+
+        Raises
+        ------
+        InputError
+            If the case has none of that name.
+        """
+        if name not in self.sweeps:
+            raise InputError(f"the case has no sweep '{name}'{did_you_mean(name, self.sweeps)} Add [sweeps.{name}]")
+        return self.sweeps[name]
+
+
+def axes_of(sweep: xarray.Dataset) -> list[str]:
+    """Return the axes of a sweep's grid."""
+    return [str(dim) for dim in sweep.dims if dim not in ("pair", "contact_model")]
+
+
+def main_axis(sweep: xarray.Dataset, creepage: str) -> str:
+    """Return the axis that tables and figures run along: the creepage of the rig if it is one, else the longest.
+
+    Where a sweep has no axis it is the creepage, or else another condition, of its one point.
+    """
+    axes = axes_of(sweep)
+    if creepage in axes or not axes:
+        return creepage if creepage in sweep else _other(sweep)
+    return max(axes, key=lambda axis: sweep.sizes[axis])
+
+
+def along_main_axis(sweep: xarray.Dataset, creepage: str) -> xarray.Dataset:
+    """Return a sweep along its main axis, with the other axes at their middle value."""
+    return along(sweep, main_axis(sweep, creepage))
+
+
+def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
+    """Return a sweep along an axis, with the others at their middle value; one point becomes an axis of length 1."""
+    line = sweep.isel({other: sweep.sizes[other] // 2 for other in axes_of(sweep) if other != axis})
+    if axes_of(line):
+        return line
+    at = axis if axis in line else _other(line)
+    return line.set_coords(at).expand_dims(at)
+
+
+def _other(point: xarray.Dataset) -> str:
+    """Return a variable of the operating point of a sweep without axes."""
+    return next(str(name) for name in point.data_vars if not point[name].dims)

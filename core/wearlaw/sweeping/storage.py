@@ -1,0 +1,361 @@
+"""Where the results of a sweep go: into memory, into files, or into a zarr store; and whether there is room."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pint
+import xarray
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.conditions import is_friction_law
+from wearlaw.errors import InputError, OutputError
+from wearlaw.sweeping.evaluation import BlockRecord, Job, checksum, load_zarr, zarr_group
+from wearlaw.sweeping.journal import Journal, Run, check_same, run_of, sync_file
+from wearlaw.sweeping.points import Block, Points
+from wearlaw.units.quantities import parse
+from wearlaw.units.registry import symbol
+
+ITEM = np.dtype(np.float64).itemsize
+
+GIB = 2.0**30
+
+JOURNAL = "journal"
+"""The file in a folder of results that lists what is done."""
+
+METADATA = "zarr.json"
+"""The file of a group or an array in a zarr store that says what it is."""
+
+COMPLETE, INCOMPLETE = "complete", "incomplete"
+"""The attribute "status" of results."""
+
+
+class Target(ABC):
+    """What takes the results of the blocks of a sweep.
+
+    Attributes
+    ----------
+    store : str or None
+        Where those who evaluate blocks write the outputs themselves; None if they hand them back.
+    done : dict of int to BlockRecord
+        What was seen of each block that is done, by its number.
+    listed, damaged : int
+        How many blocks an interrupted sweep has left, and how many of them are damaged, so that they are not done.
+    """
+
+    store: str | None = None
+
+    def __init__(self, job: Job, points: Points) -> None:
+        self.job = job
+        self.points = points
+        self.done: dict[int, BlockRecord] = {}
+        self.listed = self.damaged = 0
+        self._journal: Journal | None = None
+
+    @abstractmethod
+    def places(self, block: Block) -> list[Array]:
+        """Return where the outputs of a block go that are handed back, (points,) each, in the order of the job."""
+
+    def add(self, number: int, seen: BlockRecord) -> None:
+        """Take note that a block is done, also in the journal if there is one."""
+        self.done[number] = seen
+        if self._journal is not None:
+            self._journal.add(number, seen)
+
+    def close(self) -> None:
+        """Leave what there is as it is."""
+        if self._journal is not None:
+            self._journal.close()
+
+    def _take_over(self, journal: Journal) -> None:
+        """Keep a journal, and count the blocks it lists as done where their results are still those computed."""
+        self._journal = journal
+        blocks = {block.number: block for block in self.points.blocks()}
+        for number, seen in journal.done.items():
+            if number in blocks and checksum(seen, self._kept(blocks[number])) == seen.checksum:
+                self.done[number] = seen
+        self.listed = len(journal.done)
+        self.damaged = self.listed - len(self.done)
+
+    @abstractmethod
+    def _kept(self, block: Block) -> list[Array]:
+        """Return the outputs of a block as they are on disk, or nothing where they cannot be read."""
+
+    @property
+    def size(self) -> int:
+        """How many bytes the outputs take."""
+        return self.points.size * len(self.job.units) * ITEM
+
+
+class Arrays(Target):
+    """Results in arrays of this process.
+
+    Attributes
+    ----------
+    arrays : dict of str to ndarray, (points,)
+        The outputs by name.
+    """
+
+    arrays: dict[str, Array]
+
+    def places(self, block: Block) -> list[Array]:
+        """Return where the outputs of a block go."""
+        return [array[block.flat] for array in self.arrays.values()]
+
+    _kept = places
+
+
+class Memory(Arrays):
+    """Results in memory."""
+
+    def __init__(self, job: Job, points: Points) -> None:
+        super().__init__(job, points)
+        check_memory(self.size, 'give a folder for them, store="..."')
+        self.arrays = {name: np.empty(points.size) for name in job.units}
+
+    def finish(self, notes: Sequence[str]) -> xarray.Dataset:
+        """Return the results with their labels."""
+        found = dataset(self.points, self.arrays, self.job.units)
+        return found.assign_attrs(attributes(run_of(self.job, self.points), notes))
+
+
+class Files(Arrays):
+    """Results in files that memory maps show, and a journal of what is done.
+
+    A file holds the numbers of one output and nothing else, so that damage to a part of it leaves the rest of use.
+
+    Raises
+    ------
+    OutputError
+        If the files cannot be written, or the journal is damaged or that of another run.
+    """
+
+    def __init__(self, job: Job, points: Points, folder: Path) -> None:
+        super().__init__(job, points)
+        path, run = folder / JOURNAL, run_of(job, points)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            known = path.exists()
+            journal = Journal.resume(path, run, folder, self._sync) if known else Journal.begin(path, run, self._sync)
+            self._maps = {name: self._mapped(folder / f"{name}.f64") for name in job.units}
+        except OutputError:
+            raise
+        except OSError as error:
+            where = error.filename or folder
+            raise OutputError(
+                f"output: what is done cannot be kept in '{where}': {error.strerror or error};"
+                f" remove '{folder}' to begin it anew"
+            ) from None
+        self.arrays = dict(self._maps)
+        self._take_over(journal)
+
+    def _mapped(self, path: Path) -> np.memmap[Any, Any]:
+        """Return the map of a file, which is made or brought to its length if need be."""
+        path.touch()
+        os.truncate(path, self.points.size * ITEM)
+        return np.memmap(path, dtype=np.float64, mode="r+", shape=(self.points.size,))
+
+    def _sync(self, _: list[int]) -> None:
+        for one in self._maps.values():
+            one.flush()
+
+
+class Store(Target):
+    """Results in a zarr store.
+
+    Beside it, in a file of the same name and ".journal", stands what is done, until all is.
+    """
+
+    def __init__(self, job: Job, points: Points, path: Path, resume: bool) -> None:
+        super().__init__(job, points)
+        self.path, self.store = path, str(path.absolute())
+        self._run = run_of(job, points)
+        beside = _beside(path)
+        if resume and beside.exists():
+            journal = Journal.resume(beside, self._run, path, self._sync)
+        else:
+            check_disk(self.size, path)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            journal = Journal.begin(beside, self._run, self._sync)
+        self._lay_out()
+        self._take_over(journal)
+
+    def _lay_out(self) -> None:
+        """Write all of the store but the results, also where it is there already and may be damaged."""
+        empty = dataset(self.points, {}, {}).assign_attrs(status=INCOMPLETE)
+        for name in map(str, empty.coords):
+            shutil.rmtree(self.path / name, ignore_errors=True)
+        for name in ("", *self.job.units):
+            (self.path / name / METADATA).unlink(missing_ok=True)
+        group = load_zarr().open_group(self.store, mode="a", zarr_format=3)
+        for name, unit in self.job.units.items():
+            group.create_array(
+                name,
+                shape=self.points.shape,
+                chunks=self.points.block_shape,
+                dtype="float64",
+                compressors=None,
+                fill_value=np.nan,
+                dimension_names=self.points.dims,
+                attributes={"units": unit},
+            )
+        empty.to_zarr(self.store, mode="a", consolidated=False, zarr_format=3)
+
+    def places(self, block: Block) -> list[Array]:  # noqa: ARG002
+        """Return nothing, since nothing is handed back."""
+        return []
+
+    def _kept(self, block: Block) -> list[Array]:
+        """Return the outputs of a block as they are on disk, or nothing where they cannot be read."""
+        try:
+            return [zarr_group(self.store)[name][block.slices] for name in self.job.units]
+        except (OSError, ValueError):
+            return []
+
+    def _sync(self, numbers: list[int]) -> None:
+        blocks = self.points.blocks()
+        for name in self.job.units:
+            array = zarr_group(self.store)[name]
+            for number in numbers:
+                which = (one.start // size for one, size in zip(blocks[number].slices, array.chunks, strict=True))
+                with suppress(FileNotFoundError):  # zarr writes none where all values are NaN
+                    sync_file(self.path / name / array.metadata.encode_chunk_key(tuple(which)))
+
+    def finish(self, notes: Sequence[str]) -> xarray.Dataset:
+        """Mark the store as complete, and return what is in it; values are read when they are used."""
+        for cut_off in self.path.rglob("*.partial"):  # of a worker that died as it wrote
+            cut_off.unlink()
+        load_zarr().open_group(self.store, mode="r+").attrs.update(attributes(self._run, notes))
+        assert self._journal is not None
+        self._journal.remove()
+        return _opened(self.path)
+
+
+def finished(job: Job, points: Points, path: Path, resume: bool) -> xarray.Dataset | None:
+    """Return the results that a place holds if they may be resumed, or None if nothing or a part is there.
+
+    Raises
+    ------
+    OutputError
+        If something else is there, or what is there is not to be resumed.
+    """
+    load_zarr()
+    if path.exists() and not path.is_dir():
+        raise OutputError(f"store: '{path}' is a file, not a folder; choose another name")
+    if not path.is_dir() or not any(path.iterdir()):
+        return None
+    if _beside(path).exists():
+        if not resume:
+            raise OutputError(f"store: '{path}' holds an unfinished sweep; add resume=True, or remove it")
+        return None
+    found = _attributes(path)
+    if found.get("status") != COMPLETE or "provenance" not in found:
+        raise OutputError(f"store: '{path}' is not empty, and holds no sweep of wearlaw; choose another folder")
+    if not resume:
+        raise OutputError(f"store: '{path}' holds the results of a sweep; choose another folder, or remove it")
+    check_same(path, json.loads(found["provenance"]), run_of(job, points))
+    return _opened(path)
+
+
+def _beside(path: Path) -> Path:
+    return path.with_name(f"{path.name}.journal")
+
+
+def _attributes(path: Path) -> dict[str, Any]:
+    zarr = load_zarr()
+    try:
+        return dict(zarr.open_group(str(path), mode="r").attrs)
+    except (OSError, ValueError, KeyError):
+        return {}
+
+
+def _opened(path: Path) -> xarray.Dataset:
+    found: xarray.Dataset = xarray.open_zarr(str(path), chunks=None, consolidated=False)
+    return found
+
+
+def dataset(points: Points, variables: Mapping[str, Array], units: Mapping[str, str]) -> xarray.Dataset:
+    """Return results, (points,) each, under their names, with the conditions as coordinates."""
+    coordinates: dict[str, Any] = dict(points.rows)
+    for name, one in points.varying.items():
+        coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
+    numbers = {name: _number(value) for name, value in points.fixed.items()}
+    coordinates |= {name: number for name, number in numbers.items() if number is not None}
+    data = {
+        name: (points.dims, values.reshape(points.shape), {"units": units[name]}) for name, values in variables.items()
+    }
+    others = {name: str(points.fixed[name]) for name, number in numbers.items() if number is None}
+    return xarray.Dataset(data, coordinates, others)
+
+
+def _number(value: Any) -> Any:
+    """Return a condition as a coordinate without axes, or None if it is a law of friction."""
+    if is_friction_law(value):
+        return None
+    quantity = parse(value) if isinstance(value, str) else value
+    if isinstance(quantity, pint.Quantity):
+        return (), float(quantity.magnitude), {"units": symbol(quantity.units, "~C")}
+    return (), float(quantity), {"units": ""}
+
+
+def damage(damaged: int, listed: int, where: Path) -> str:
+    """Return what is said of blocks that are damaged on disk."""
+    return f"{damaged} of the {listed} blocks kept in '{where}' were damaged, and are computed again"
+
+
+def attributes(run: Run, notes: Sequence[str]) -> dict[str, str]:
+    """Return the attributes of finished results: where they come from, and what a reader must know."""
+    return {"status": COMPLETE, "provenance": json.dumps(run), "notes": "\n".join(notes)}
+
+
+def check_memory(size: int, advice: str) -> None:
+    """Refuse what does not fit into memory, where it is known how much there is.
+
+    Raises
+    ------
+    InputError
+        With the size that is needed.
+    """
+    there = available_memory()
+    if there is not None and size > there:
+        raise InputError(
+            f"the results need {size / GIB:.3g} GiB of memory, but {there / GIB:.3g} GiB are free; {advice}"
+        )
+
+
+def check_disk(size: int, path: Path) -> None:
+    """Raise an error if the results do not fit on the disk.
+
+    Raises
+    ------
+    InputError
+        With the size that is needed.
+    """
+    nearest = next(parent for parent in (path.absolute(), *path.absolute().parents) if parent.exists())
+    there = shutil.disk_usage(nearest).free
+    if size > there:
+        raise InputError(
+            f"the results need {size / GIB:.3g} GiB on disk, but '{nearest}' has {there / GIB:.3g} GiB free;"
+            " choose another disk, fewer outputs or fewer points"
+        )
+
+
+def available_memory() -> int | None:
+    """Return the memory that can still be used, in bytes, or None where the system does not say."""
+    try:
+        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+        return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:"))
+    except (OSError, StopIteration):
+        pass
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):
+        return None

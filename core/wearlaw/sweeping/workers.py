@@ -1,0 +1,274 @@
+"""Blocks in other processes: on this machine, and on a cluster of dask.distributed.
+
+The worker processes of this machine are kept from one sweep to the next. They are started as programs of their own and
+not by `multiprocessing`, which would run the user's script again in each of them. One that dies takes nothing with it
+but the block that it was at.
+"""
+
+from __future__ import annotations
+
+import atexit
+import functools
+import os
+import pickle
+import queue
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Generator, Iterable
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from typing import IO, Any, BinaryIO, TypeAlias
+
+from wearlaw.arrays.array import Array
+from wearlaw.errors import ModelError, SweepError, described
+from wearlaw.sweeping.evaluation import BlockRecord, Job, evaluated
+from wearlaw.sweeping.points import Block, Points
+
+ATTEMPTS = 3
+"""How often a block is tried whose worker dies."""
+
+START = "import pickle, sys; sys.path[:] = pickle.load(sys.stdin.buffer);"
+START += " from wearlaw.sweeping.workers import serve; serve()"
+
+PIPE = 2**20
+"""Bytes on their way between two processes, on Linux; with fewer they wait for each other more often."""
+
+Into: TypeAlias = Callable[[Block], list[Array]]
+"""Gives the places for the outputs of a block."""
+
+Done: TypeAlias = tuple[Block, BlockRecord, list[str]]
+"""A block that was evaluated, what was seen of it, and the deaths of workers that it took."""
+
+AHEAD = 4
+"""Blocks that are handed out for each thread of the cluster, so that none waits for work."""
+
+CHECKED_S = 1.0
+"""Time from one count of the workers to the next."""
+
+
+class _DeathError(Exception):
+    """The worker process ended where an answer was due."""
+
+
+class _Worker:
+    """A process that runs `serve`."""
+
+    def __init__(self) -> None:
+        command = [sys.executable, "-c", START]
+        try:
+            self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, pipesize=PIPE)
+        except PermissionError:  # this user has no more room in pipes
+            self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self._send(sys.path)
+
+    def evaluate(self, task: bytes, into: list[Array]) -> BlockRecord | Exception:
+        """Return what was seen of a block, once its outputs are in their places, or what it raised."""
+        try:
+            self._send(task)
+            answer: BlockRecord | Exception = pickle.load(_given(self._process.stdout))
+            if isinstance(answer, BlockRecord):
+                for place in into:
+                    self._receive(place)
+        except (EOFError, OSError, pickle.UnpicklingError):
+            raise _DeathError(f"exit code {self._process.wait()}") from None
+        return answer
+
+    def _send(self, what: object) -> None:
+        pipe = _given(self._process.stdin)
+        pickle.dump(what, pipe)
+        pipe.flush()
+
+    def _receive(self, place: Array) -> None:
+        missing = place.data.cast("B")
+        while missing:
+            count = _given(self._process.stdout).readinto(missing)  # type: ignore[attr-defined]
+            if not count:
+                raise EOFError
+            missing = missing[count:]
+
+    def close(self) -> None:
+        """End the process."""
+        self._process.kill()
+        self._process.wait()
+        for pipe in (self._process.stdin, self._process.stdout):
+            _given(pipe).close()
+
+
+def _given(pipe: IO[bytes] | None) -> IO[bytes]:
+    assert pipe is not None
+    return pipe
+
+
+_idle: queue.SimpleQueue[_Worker] = queue.SimpleQueue()
+"""The worker processes that wait for work."""
+
+
+def in_processes(
+    workers: int, job: bytes, store: str | None, points: Points, blocks: Iterable[Block], into: Into
+) -> Generator[Done, None, None]:
+    """Evaluate blocks in worker processes and give each one that is done, in any order."""
+
+    def evaluate(block: Block) -> Done:
+        task = pickle.dumps((job, block, points.part(block.slices), store))
+        return _evaluated_by_worker(block, task, into(block))
+
+    with ThreadPoolExecutor(workers) as threads:
+        futures: list[Future[Done]] = [threads.submit(evaluate, block) for block in blocks]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+        finally:
+            threads.shutdown(cancel_futures=True)
+
+
+def _evaluated_by_worker(block: Block, task: bytes, into: list[Array]) -> Done:
+    deaths: list[str] = []
+    while len(deaths) < ATTEMPTS:
+        worker = _worker()
+        try:
+            answer = worker.evaluate(task, into)
+        except _DeathError as death:
+            worker.close()
+            deaths.append(f"a worker process died ({death}) at block {block.number}, which is evaluated again")
+            continue
+        _idle.put(worker)
+        if isinstance(answer, Exception):
+            raise answer
+        return block, answer, deaths
+    raise SweepError(
+        f"block {block.number} was given up, since the worker processes died in all {ATTEMPTS} attempts to evaluate it;"
+        " does it need more memory than there is?"
+    )
+
+
+def _worker() -> _Worker:
+    try:
+        return _idle.get_nowait()
+    except queue.Empty:
+        return _Worker()
+
+
+@atexit.register
+def _close() -> None:
+    while True:
+        try:
+            _idle.get_nowait().close()
+        except queue.Empty:
+            return
+
+
+def serve() -> None:
+    """Take blocks from standard input and answer on standard output until there are no more: the worker process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that asks decides what Ctrl-C ends
+    tasks, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what a model prints must not come among the answers
+    while True:
+        try:
+            task: bytes = pickle.load(tasks)
+        except EOFError:
+            return
+        _answer(task, answers)
+
+
+def _answer(task: bytes, answers: BinaryIO) -> None:
+    try:
+        job, block, part, store = pickle.loads(task)
+        outputs, seen = evaluated(_job_of(job), block, part, store)
+    except BaseException as error:  # a model's SystemExit would end the worker, and Ctrl-C is not for it
+        pickle.dump(_portable(error), answers)
+    else:
+        pickle.dump(seen, answers)
+        for values in outputs.values():
+            answers.write(values.data)
+    answers.flush()
+
+
+@functools.lru_cache(maxsize=8)
+def _job_of(pickled: bytes) -> Job:
+    """Return the job that was pickled, the same one for all blocks of a sweep."""
+    job: Job = pickle.loads(pickled)
+    return job
+
+
+def _portable(error: BaseException) -> Exception:
+    """Return the exception, or a `ModelError` if it would end a process or cannot be sent to one."""
+    try:
+        pickle.loads(pickle.dumps(error))
+        return error if isinstance(error, Exception) else ModelError(described(error))
+    except BaseException:
+        return ModelError(described(error))
+
+
+def on_cluster(
+    client: Any, job: bytes, store: str | None, points: Points, blocks: Iterable[Block], into: Into
+) -> Generator[Done, None, None]:
+    """Evaluate blocks on a cluster and give each one that is done, in any order.
+
+    A task of the cluster is a block with the few values that its conditions take; the operating points are laid out by
+    the worker. The cluster itself tries a block again whose worker died, as often as its setting
+    `distributed.scheduler.allowed-failures` says.
+    """
+    distributed = sys.modules["distributed"]  # the client comes from there
+    members = _Members(client)
+    left = iter(blocks)
+    pending: dict[Any, Block] = {}
+    waiting: Any = distributed.as_completed([])
+
+    def hand_out() -> None:
+        while len(pending) < AHEAD * members.threads and (block := next(left, None)) is not None:
+            future = client.submit(_evaluate, job, block, points.part(block.slices), store, pure=False)
+            pending[future] = block
+            waiting.add(future)
+
+    hand_out()
+    try:
+        for future in waiting:
+            block = pending.pop(future)
+            outputs, seen = _result(future, block)
+            for place, values in zip(into(block), outputs, strict=True):
+                place[:] = values
+            hand_out()
+            yield block, seen, members.left(at_once=not pending)
+    finally:
+        client.cancel(list(pending))
+
+
+def _evaluate(job: bytes, block: Block, part: Points, store: str | None) -> tuple[list[Array], BlockRecord]:
+    try:
+        outputs, seen = evaluated(_job_of(job), block, part, store)
+    except Exception:
+        raise
+    except BaseException as error:  # a model's SystemExit would end the worker
+        raise ModelError(described(error)) from None
+    return list(outputs.values()), seen
+
+
+def _result(future: Any, block: Block) -> tuple[list[Array], BlockRecord]:
+    try:
+        found: tuple[list[Array], BlockRecord] = future.result()
+    except sys.modules["distributed"].KilledWorker as error:
+        raise SweepError(f"block {block.number} was given up by the cluster, since its workers died: {error}") from None
+    return found
+
+
+class _Members:
+    """The workers of a cluster, as they come and go."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        self._known: dict[str, int] = client.nthreads()
+        self._checked = time.monotonic()
+
+    @property
+    def threads(self) -> int:
+        """How many threads they have, or 1 where there are no workers yet."""
+        return max(1, sum(self._known.values()))
+
+    def left(self, at_once: bool) -> list[str]:
+        """Return a warning about lost workers, or nothing if they were counted a moment ago."""
+        if not at_once and time.monotonic() < self._checked + CHECKED_S:
+            return []
+        before, self._known, self._checked = self._known, self._client.nthreads(), time.monotonic()
+        gone = sorted(set(before) - set(self._known))
+        return [f"worker {address} left the cluster, and its blocks are evaluated again" for address in gone]

@@ -1,0 +1,116 @@
+"""Imports between the files of core and plugins, read from the source: those inside functions and for types count."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import pytest
+
+from tests.environments import ROOT
+
+KNOWN = {
+    *("wearlaw.hookspecs", "wearlaw.models.rig", "wearlaw.pipeline.composition", "wearlaw.pipeline.pipeline"),
+    *("wearlaw.pipeline.prediction", "wearlaw.plugins.fields", "wearlaw.plugins.loader"),
+}
+"""The one circle that there is, to be removed: `rig | model` makes a pipeline, and hooks are typed with rigs."""
+
+
+DEFERRED = {
+    ("wearlaw.arrays.kernels", "numba"): "is optional, and takes a second to load",
+    ("wearlaw.cli.model_commands", "wearlaw.testing"): "needs hypothesis, which is optional",
+    ("wearlaw.figures.plot", "wearlaw.figures.drawing"): "matplotlib takes longer to load than all else; few plot",
+    ("wearlaw.models.rig", "wearlaw.pipeline.pipeline"): "makes `rig | model`; to be removed with the circle",
+    ("wearlaw.numerics.crossings", "scipy.optimize"): "takes as long to load as the rest of wearlaw",
+    ("wearlaw.pipeline.prediction", "xarray"): "takes as long to load as the rest of wearlaw; for profiles alone",
+    ("wearlaw.sweeping.evaluation", "zarr"): "is optional",
+    ("wearlaw.testing.decorator", "pytest"): "is not needed to run the checks of the kit",
+    ("wearlaw.wear_tests.tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",
+    ("wearlaw_sheffield", "wearlaw_sheffield"): "its sections need pandas, which looking up a plugin must not load",
+}
+"""All imports inside functions: by file and what is imported, and why. scipy loads its other parts by itself when they
+are used; `wearlaw.__getattr__` and the table of commands load the applications."""
+
+
+def modules() -> dict[str, Path]:
+    """Return all files of core and plugins by their module."""
+    found = {}
+    for root in (ROOT / "core", ROOT / "plugins"):
+        for path in root.rglob("*.py"):
+            if "templates" not in path.parts:
+                parts = path.relative_to(root).with_suffix("").parts
+                found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return found
+
+
+def imported(source: str, known: Mapping[str, object]) -> Iterator[str]:
+    """Yield the modules among the known ones that a source imports anywhere."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in known)
+        elif isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                yield from (name for name in [inner if inner in known else str(node.module)] if name in known)
+
+
+def circles(graph: Mapping[str, set[str]]) -> list[set[str]]:
+    """Return the sets of modules of which each reaches each."""
+
+    def reach(start: str) -> set[str]:
+        seen: set[str] = set()
+        left = [start]
+        while left:
+            new = graph[left.pop()] - seen
+            seen |= new
+            left += new
+        return seen
+
+    reached = {name: reach(name) for name in graph}
+    found: list[set[str]] = []
+    for name in sorted(graph):
+        circle = {other for other in reached[name] if name in reached[other]}
+        if circle and circle not in found:
+            found.append(circle)
+    return found
+
+
+@pytest.fixture(scope="module")
+def graph() -> dict[str, set[str]]:
+    known = modules()
+    return {name: set(imported(path.read_text(encoding="utf-8"), known)) for name, path in known.items()}
+
+
+def test_a_circle_is_found_whichever_way_it_is_imported() -> None:
+    sources = {
+        "a": "from a import b",
+        "a.b": "if TYPE_CHECKING:\n    import a.c",
+        "a.c": "def f():\n    from a.b import X",
+        "d": "import a.b\nfrom a import X",
+    }
+    graph = {name: set(imported(text, sources)) for name, text in sources.items()}
+    assert graph == {"a": {"a.b"}, "a.b": {"a.c"}, "a.c": {"a.b"}, "d": {"a", "a.b"}}
+    assert circles(graph) == [{"a.b", "a.c"}]
+
+
+def test_no_files_import_each_other_in_a_circle(graph: dict[str, set[str]]) -> None:
+    assert {"wearlaw", "wearlaw.study.case", "wearlaw_kth", "_wearlaw_hypothesis"} <= graph.keys()
+    assert [sorted(circle) for circle in circles(graph) if not circle <= KNOWN] == []
+
+
+def deferred(source: str) -> Iterator[str]:
+    """Yield what a source imports inside functions."""
+    functions = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
+    for node in {inner: None for function in functions for inner in ast.walk(function)}:
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield str(node.module)
+
+
+def test_imports_inside_functions_are_few_and_each_has_its_reason() -> None:
+    assert [*deferred("import a\ndef f():\n    def g():\n        from b import c, d\n        import e")] == ["b", "e"]
+    found = [(name, one) for name, path in modules().items() for one in deferred(path.read_text(encoding="utf-8"))]
+    assert sorted(found) == sorted(DEFERRED)
+    assert len(DEFERRED) <= 10
