@@ -10,18 +10,10 @@ import pytest
 
 from tests.environments import ROOT
 
-KNOWN = {
-    *("wearlaw.hookspecs", "wearlaw.models.rig", "wearlaw.pipeline.composition", "wearlaw.pipeline.pipeline"),
-    *("wearlaw.pipeline.prediction", "wearlaw.plugins.fields", "wearlaw.plugins.loader"),
-}
-"""The one circle that there is, to be removed: `rig | model` makes a pipeline, and hooks are typed with rigs."""
-
-
 DEFERRED = {
     ("wearlaw.arrays.kernels", "numba"): "is optional, and takes a second to load",
     ("wearlaw.cli.model_commands", "wearlaw.testing"): "needs hypothesis, which is optional",
     ("wearlaw.figures.plot", "wearlaw.figures.drawing"): "matplotlib takes longer to load than all else; few plot",
-    ("wearlaw.models.rig", "wearlaw.pipeline.pipeline"): "makes `rig | model`; to be removed with the circle",
     ("wearlaw.numerics.crossings", "scipy.optimize"): "takes as long to load as the rest of wearlaw",
     ("wearlaw.pipeline.prediction", "xarray"): "takes as long to load as the rest of wearlaw; for profiles alone",
     ("wearlaw.sweeping.evaluation", "zarr"): "is optional",
@@ -96,7 +88,7 @@ def test_a_circle_is_found_whichever_way_it_is_imported() -> None:
 
 def test_no_files_import_each_other_in_a_circle(graph: dict[str, set[str]]) -> None:
     assert {"wearlaw", "wearlaw.study.case", "wearlaw_kth", "_wearlaw_hypothesis"} <= graph.keys()
-    assert [sorted(circle) for circle in circles(graph) if not circle <= KNOWN] == []
+    assert [sorted(circle) for circle in circles(graph)] == []
 
 
 def deferred(source: str) -> Iterator[str]:

@@ -49,9 +49,8 @@ from wearlaw.models.contact_model import Claim, ContactModel, Scale
 from wearlaw.models.creep_force_model import CreepForceModel
 from wearlaw.models.functions import as_wear_law
 from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import BreakpointMap, Calibration, LocalWear, Numbers, WearLaw
-from wearlaw.pipeline.pipeline import PatchMean, Pipeline, patch_mean
+from wearlaw.pipeline.pipeline import PatchMean, Pipeline, Rig, patch_mean
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.plugins.fields import ContactModelField, WearLawField
 from wearlaw.plugins.loader import (

@@ -13,8 +13,7 @@ import pluggy
 
 if TYPE_CHECKING:
     from wearlaw.contact.material import Material
-    from wearlaw.models.contact_model import ContactModel
-    from wearlaw.models.rig import Rig
+    from wearlaw.models.contact_model import ContactModel, Model
     from wearlaw.models.wear_law import WearLaw
 
 PROJECT = "wearlaw"
@@ -31,8 +30,8 @@ hookimpl = pluggy.HookimplMarker(PROJECT)
 
 
 @hookspec
-def wearlaw_rigs() -> Iterable[type[Rig]]:  # type: ignore[empty-body]
-    """Return the rigs that the plugin provides."""
+def wearlaw_rigs() -> Iterable[type[Model]]:  # type: ignore[empty-body]
+    """Return the rigs that the plugin provides, subclasses of `wearlaw.Rig`."""
 
 
 @hookspec

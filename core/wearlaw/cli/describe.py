@@ -13,8 +13,8 @@ import pint
 from wearlaw.contact.contact import UNITS
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.units.quantities import from_si, text_of

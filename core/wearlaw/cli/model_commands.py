@@ -17,7 +17,7 @@ from wearlaw.cli.scaffold import Kind, Licence, write_plugin
 from wearlaw.cli.shared import fields
 from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.rig import Rig
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import unknown
 

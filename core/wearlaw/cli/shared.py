@@ -12,10 +12,9 @@ from wearlaw.errors import ConfigurationError, InputError, with_problems
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.fitting.law_files import read_toml, read_wear_law
 from wearlaw.models.contact_model import ContactModel
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.plugins import loader
-from wearlaw.plugins.fields import RigField
 from wearlaw.settings.configuration import Configuration
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])

@@ -18,8 +18,8 @@ from wearlaw.fitting.observations import FLOOR, Observations, named, wear_index_
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.task import Task
 from wearlaw.models.contact_model import Model
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import Calibration, WearLaw
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import known_name
 from wearlaw.settings.parameters import changed

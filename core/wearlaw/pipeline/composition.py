@@ -6,8 +6,7 @@ import warnings
 
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
-from wearlaw.models.contact_model import PATCHES, ContactModel, Scale
-from wearlaw.models.rig import Rig
+from wearlaw.models.contact_model import PATCHES, ContactModel, Model, Scale
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
 
@@ -16,6 +15,13 @@ PEAKS = (
     " on an ellipse, so that cells see other loads at the same mean."
 )
 """Why parameters do not carry over from line to ellipse."""
+
+
+def law_among(laws: tuple[WearLaw, ...], model: ContactModel) -> WearLaw:
+    """Return the wear law of a pipeline with this contact model, or raise a `CompositionError` if it has none."""
+    if not laws:
+        raise CompositionError(f"the pipeline has no wear law; give one, as in rig | {model!r} | wl.wear_law('usfd')")
+    return laws[0]
 
 
 def check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
@@ -27,9 +33,8 @@ def check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
         )
 
 
-def check_geometry(rig: Rig, model: ContactModel, geometry: Geometry | None = None) -> None:
-    """Refuse a contact model of another geometry than the rig's, or than that of a problem which the rig has made."""
-    geometry = geometry or rig.geometry
+def check_geometry(rig: Model, model: ContactModel, geometry: Geometry | None) -> None:
+    """Refuse a contact model that does not solve contacts of the geometry of a rig; None where that is not known."""
     if geometry is not None and geometry not in model.geometries():
         able = [name for name, one in loader.contact_models().items() if geometry in one.geometries()]
         raise CompositionError(
@@ -66,11 +71,11 @@ def warn_of_calibration(
 
 
 def warn_of_geometry(
-    rig: Rig, model: ContactModel, scale: Scale, law: WearLaw, problem: Problem, stacklevel: int
+    declared: Geometry | None, model: ContactModel, scale: Scale, law: WearLaw, geometry: Geometry, stacklevel: int
 ) -> None:
-    """Warn of parameters fitted for another shape of patch, for a rig whose problems only tell that shape."""
-    calibration, geometry = law.calibration, problem.geometry
-    if rig.geometry is None and calibration is not None and calibration.geometry != geometry:
+    """Warn of parameters fitted for another shape of patch, where the rig has not declared that of its problems."""
+    calibration = law.calibration
+    if declared is None and calibration is not None and calibration.geometry != geometry:
         warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
 
 

@@ -12,8 +12,8 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, ConditionsError, UnitError
-from wearlaw.models.rig import Rig
 from wearlaw.numerics.integrate import integrate_forces
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si, real_array
 
 if TYPE_CHECKING:

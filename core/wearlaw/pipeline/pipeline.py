@@ -1,17 +1,25 @@
-"""Composition: rig | contact model | patch mean, where it is needed, | wear law."""
+"""What a user composes: a `Rig`, which poses contact problems, and the `Pipeline` that begins with it.
+
+The order is rig | contact model | patch mean, where it is needed, | wear law.
+"""
 
 from __future__ import annotations
 
+import inspect
+import warnings
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from functools import partial
-from typing import TYPE_CHECKING, Any, Generic, Literal, Self
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, ParamSpec, Protocol, Self
 
+import numpy as np
 from pydantic import model_validator
 
-from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError
-from wearlaw.models.contact_model import Blame, Scale
-from wearlaw.models.rig import P, Rig
+from wearlaw.arrays.array import Array, type_name
+from wearlaw.arrays.extremes import extremes
+from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
+from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, RangeWarning, did_you_mean
+from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_forces, integrate_wear
@@ -19,18 +27,210 @@ from wearlaw.pipeline.composition import (
     check_geometry,
     check_scale,
     check_traction,
+    law_among,
     warn_of_calibration,
     warn_of_geometry,
 )
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.ranges import RangeWatch, mean_over_patch
-from wearlaw.plugins.fields import ContactModelField, RigField, WearLawField
+from wearlaw.plugins.fields import RIG, ContactModelField, WearLawField
 from wearlaw.settings.configuration import Configuration
+from wearlaw.units.quantities import from_si, scalar_si
 
 ORDER = 'the order is rig | wl.contact_model("exact") | wl.patch_mean(), where it is needed, | wl.wear_law("usfd")'
 
 LINE = 100
 """Characters of a pipeline that is shown on one line; a longer one has a line for each part."""
+
+
+P = ParamSpec("P")
+
+TINY = float(np.sqrt(np.finfo(np.float64).tiny))
+"""The least length or pressure in SI whose square is a float of full precision."""
+
+LEAST_FRICTION = 1e-12
+"""The least friction coefficient; below it creepage over that of full slip overflows in formulas of fourth order."""
+
+
+class Poses(Protocol[P]):
+    """What type checkers see of a rig: the conditions that it takes."""
+
+    def problem(self, *args: P.args, **conditions: P.kwargs) -> Problem:
+        """Return the problem that the conditions pose."""
+        ...
+
+
+class Rig(Model):
+    """Two bodies that roll on each other under given conditions.
+
+    A rig of your own implements `problem`, with the conditions as keyword arguments. Its fields are what stays the same
+    from test to test.
+    """
+
+    kind: ClassVar[str] = "rig"
+
+    geometry: ClassVar[Geometry | None] = None
+    """The shape of the patch, by which a contact model that cannot solve it is refused at once; None where only the
+    problem tells."""
+
+    creepage: ClassVar[str] = "creepage"
+    """The condition that is the creepage: `creepage_for` looks for it, and the tables of a case run along it."""
+
+    example: ClassVar[Mapping[str, Any]] = {}
+    """Conditions of one test, to try the rig with, such as {"mass": "20 kg", "creepage": "1 %"}."""
+
+    example_fields: ClassVar[Mapping[str, Any]] = {}
+    """Values of the fields without a default, to try the rig with."""
+
+    @classmethod
+    def subject(cls) -> str:
+        """Return what messages call this rig."""
+        return cls.__name__
+
+    @abstractmethod
+    def problem(self, *args: Any, **conditions: Any) -> Problem:
+        """Return the contact problem that the conditions pose; arrays broadcast against each other."""
+
+    def balanced(self, problem: Problem, forces: Callable[[Problem], CreepForces]) -> Problem:  # noqa: ARG002
+        """Return the problem with loads that balance the forces which its contact transmits.
+
+        On a flange, for example, the normal force depends on the lateral force. A rig whose loads do not depend on the
+        forces leaves this as it is.
+
+        Parameters
+        ----------
+        problem : Problem
+            What `problem` returned.
+        forces : callable
+            Solves a problem with the contact model of the pipeline, and returns the forces.
+        """
+        return problem
+
+    @property
+    def bodies(self) -> Mapping[str, Body]:
+        """The two bodies by name, of which the first is the one whose wear is predicted; {} where they are unknown."""
+        return {}
+
+    @classmethod
+    def conditions(cls) -> tuple[str, ...]:
+        """Return the names of the conditions that `problem` takes.
+
+        If it takes `**conditions`, their names are not known, and () is returned; override this to name them.
+        """
+        parameters = list(inspect.signature(cls.problem).parameters.values())[1:]
+        return () if any(one.kind is one.VAR_KEYWORD for one in parameters) else tuple(one.name for one in parameters)
+
+    @classmethod
+    def needed(cls) -> tuple[str, ...]:
+        """Return the names of the conditions that must always be given: those of `problem` without a default."""
+        known = cls.conditions()
+        parameters = inspect.signature(cls.problem).parameters.values()
+        return tuple(one.name for one in parameters if one.default is one.empty and one.name in known)
+
+    @classmethod
+    def presets(cls) -> Mapping[str, Callable[..., Rig]]:
+        """Return functions that make known rigs of this class, by name; their arguments are what may be overridden.
+
+        Case files name them, as in ``preset = "suros"``. The arguments are checked by their annotations.
+        """
+        return {}
+
+    def checked_problem(self, conditions: Mapping[str, Any]) -> Problem:
+        """Return `problem` of the conditions, or raise an error that says whether they or the rig are wrong.
+
+        Raises
+        ------
+        ConditionsError
+            If a condition is missing or unknown.
+        ModelError
+            If the rig fails, or returns no problem.
+        """
+        try:
+            with Blame(self):
+                problem = self.problem(**conditions)
+        except ModelError:
+            self.check_names(conditions)
+            raise
+        if not isinstance(problem, Problem):
+            raise ModelError(f"rig '{self.name}' returned {problem!r}, not a wearlaw.Problem")
+        if problem.exists is not None:
+            problem = self._masked(problem)
+        return problem if problem.bodies else problem.replaced(bodies=self.bodies)
+
+    def _masked(self, problem: Problem) -> Problem:
+        """Return the problem with NaN in the place of patches that do not exist."""
+        exists = problem.exists
+        if type(exists) is not np.ndarray or exists.dtype != np.bool_ or exists.shape != problem.batch_shape:
+            raise ModelError(
+                f"rig '{self.name}' gave {type_name(exists)} as `exists`; it must be an array of bool of the shape of"
+                f" the batch, {problem.batch_shape}"
+            )
+        masked = problem.mapped(lambda array: np.where(exists, array, np.nan))
+        return masked.replaced(exists=exists)
+
+    def check_names(self, conditions: Mapping[str, Any]) -> None:
+        """Check the names of conditions; a rig whose `conditions` are not known takes any.
+
+        Raises
+        ------
+        ConditionsError
+            If a condition is missing or unknown.
+        """
+        known = self.conditions()
+        for name in conditions if known else ():
+            if name not in known:
+                raise ConditionsError(
+                    f"{name}: unknown condition{did_you_mean(name, known)} The conditions are: {', '.join(known)}"
+                )
+        for name in self.needed():
+            if name not in conditions:
+                raise ConditionsError(f"{name}: is missing; rig '{self.name}' takes {', '.join(known)}")
+
+    def __or__(self: Poses[P], model: ContactModel) -> Pipeline[P]:
+        """Return the pipeline that solves this rig's contact with a contact model."""
+        if not isinstance(model, ContactModel):
+            raise CompositionError(
+                f"a rig is followed by a contact model, not by {model!r};"
+                ' for example rig | wl.contact_model("fastsim") | wl.wear_law("usfd")'
+            )
+        assert isinstance(self, Rig)
+        return Pipeline(rig=self, contact_model=model)
+
+    def warn_of_plasticity(self, max_pressure: Array, stacklevel: int) -> None:
+        """Warn once if the maximum pressure [Pa] is beyond the elastic limit of a body's material."""
+        limit = self._elastic_limit
+        highest = extremes(max_pressure)[1] if max_pressure.size else 0.0
+        if highest > limit:
+            warnings.warn(
+                f"the maximum pressure reaches {from_si(highest, 'MPa')!r}, beyond the material's elastic limit of"
+                f" {from_si(limit, 'MPa')!r}; the elastic contact models no longer hold there",
+                RangeWarning,
+                stacklevel=stacklevel + 1,
+            )
+
+    @cached_property
+    def _elastic_limit(self) -> float:
+        """The lowest of the bodies' elastic limits [Pa]; infinite where none is known."""
+        limits = (body.material.elastic_limit for body in self.bodies.values())
+        return min((scalar_si(limit, "Pa") for limit in limits if limit is not None), default=np.inf)
+
+
+RigField = Annotated[Rig, *RIG]
+"""A field that takes a rig, its name, or a table of its fields with its name as `type` or that of a `preset`."""
+
+
+def check_sizes(sizes: dict[str, Array], friction_coefficient: Array) -> None:
+    """Refuse loads and sizes [SI] so far from any contact that floats overflow or lose their precision."""
+    for name, value in sizes.items():
+        low, high = extremes(value)
+        if not (low > TINY and high < 1.0 / TINY):
+            spread = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+            raise ConditionsError(
+                f"the load gives a {name} of {spread} in SI units,"
+                " which no contact has; check the units of the load and of the rig"
+            )
+    if extremes(friction_coefficient)[0] < LEAST_FRICTION:
+        raise ConditionsError(f"friction_coefficient: must be at least {LEAST_FRICTION:g}, which no contact comes near")
 
 
 class PatchMean(Configuration):
@@ -71,7 +271,7 @@ class Pipeline(Configuration, Generic[P]):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        check_geometry(self.rig, self.contact_model)
+        check_geometry(self.rig, self.contact_model, self.rig.geometry)
         if len(self.laws) > 1:
             raise CompositionError(f"a pipeline has one wear law, got {' and '.join(law.name for law in self.laws)}")
         for law in self.laws:
@@ -96,11 +296,7 @@ class Pipeline(Configuration, Generic[P]):
         CompositionError
             If the pipeline has none.
         """
-        if not self.laws:
-            raise CompositionError(
-                f"the pipeline has no wear law; give one, as in rig | {self.contact_model!r} | wl.wear_law('usfd')"
-            )
-        return self.laws[0]
+        return law_among(self.laws, self.contact_model)
 
     def with_law(self, law: WearLaw) -> Pipeline[P]:
         """Return the pipeline with this law in place of its own, without a warning of what it was fitted for."""
@@ -180,7 +376,7 @@ class Pipeline(Configuration, Generic[P]):
             raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
         self.rig.warn_of_plasticity(problem.existing().max_pressure, stacklevel=stacklevel)
         for law in self.laws:
-            warn_of_geometry(self.rig, self.contact_model, self.scale, law, problem, stacklevel + 1)
+            warn_of_geometry(self.rig.geometry, self.contact_model, self.scale, law, problem.geometry, stacklevel + 1)
         watch = self.range_watch()
         found = self.watched(problem, watch, on_block)
         watch.warn(stacklevel)
@@ -205,12 +401,13 @@ class Pipeline(Configuration, Generic[P]):
                 on_block(part.size)
 
         wear = integrate_wear(model, law, problem, scale, see)
-        found = Prediction(self, problem, wear.forces, wear)
+        found = Prediction(problem, model, scale, self.laws, forces=wear.forces, wear=wear)
         law.check_not_negative(wear.wear_rate, lambda: found.wear_rate_error.to("kg/m^3").magnitude)
         return found
 
     def _without_wear(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None) -> Prediction:
-        found = Prediction(self, problem, integrate_forces(self.contact_model, problem))
+        forces = integrate_forces(self.contact_model, problem)
+        found = Prediction(problem, self.contact_model, self.scale, forces=forces)
         watch.points += problem.size
         if on_block is not None:
             on_block(problem.size)

@@ -13,16 +13,18 @@ from wearlaw.contact.contact import UNITS, Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.errors import CompositionError, InputError
+from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics import integrate
 from wearlaw.numerics.integrate import SlipTotals, WearTotals
 from wearlaw.numerics.solving import Solver
+from wearlaw.pipeline.composition import law_among
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
 
 if TYPE_CHECKING:
     import xarray
 
-    from wearlaw.pipeline.pipeline import Pipeline
 
 PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
@@ -43,21 +45,30 @@ class Prediction:
 
     Attributes
     ----------
-    pipeline : Pipeline
-        What made it.
     problem : Problem
         The contact problem, as SI arrays.
+    contact_model : ContactModel
+        The theory of the tangential contact.
+    scale : {"patch", "cells"}
+        Whether the law saw the means of the patch or its cells.
+    laws : tuple of WearLaw
+        The law of wear; empty where only the contact was predicted.
     """
 
     def __init__(
         self,
-        pipeline: Pipeline[...],
         problem: Problem,
+        contact_model: ContactModel,
+        scale: Scale,
+        laws: tuple[WearLaw, ...] = (),
+        *,
         forces: CreepForces | None = None,
         wear: WearTotals | None = None,
     ) -> None:
-        self.pipeline = pipeline
         self.problem = problem
+        self.contact_model = contact_model
+        self.scale = scale
+        self.laws = laws
         self._given_forces = forces
         self._given_wear = wear
 
@@ -185,26 +196,26 @@ class Prediction:
     @cached_property
     def contact(self) -> Contact:
         """The solved contact as SI arrays, on nodes that suit the wear law, or that the contact model chose."""
-        model, scale = self.pipeline.contact_model, self.pipeline.scale
+        model, scale = self.contact_model, self.scale
         if self._solved is not None:
             return integrate.seen_by_law(model, self._solved.unflattened(self.problem), scale)
-        if self.problem.geometry == "ellipse" or not self.pipeline.laws:
+        if self.problem.geometry == "ellipse" or not self.laws:
             return integrate.solve(model, self.problem, scale)
-        contact = integrate.contact_for(model, self.pipeline.wear_law, self.problem.flatten(), scale)
+        contact = integrate.contact_for(model, self._law, self.problem.flatten(), scale)
         return contact.unflattened(self.problem)
 
     @cached_property
     def profile(self) -> xarray.Dataset:
         """Pressure, traction, traction bound, slip and the wear rate along the patch of a line, with units."""
-        if not self.pipeline.laws:
+        if not self.laws:
             return self._profile({})
-        return self._profile({"wear_rate": (self.pipeline.wear_law.checked_rate(self._cells()), WEAR_RATE)})
+        return self._profile({"wear_rate": (self._law.checked_rate(self._cells()), WEAR_RATE)})
 
     def _cells(self) -> Contact:
         """Return the contact of the patches that exist, on uniform cells where the model can give them."""
-        model, problem = self.pipeline.contact_model, self.problem
+        model, problem = self.contact_model, self.problem
         problem.needs("line", "profile")
-        if self.pipeline.scale == "cells" and isinstance(model, LineContactModel):
+        if self.scale == "cells" and isinstance(model, LineContactModel):
             there = problem.existing()
             return Solver(model).at(there, uniform_cells(there.half_width, PROFILE_CELLS), totals=False)
         return self.contact if problem.exists is None else self.contact[problem.exists]
@@ -252,18 +263,18 @@ class Prediction:
         CompositionError
             If the contact is not resolved across the patch, or is a line.
         """
-        model, problem = self.pipeline.contact_model, self.problem
+        model, problem = self.contact_model, self.problem
         radius, density = np.asarray(problem.body(body).rolling_radius), self._density(body)
         if problem.geometry == "line":
             raise CompositionError("wear_profile: a line wears evenly across its width; take depth_per_distance")
-        if self.pipeline.scale == "patch":
+        if self.scale == "patch":
             raise CompositionError(
                 f"wear_profile: {model!r} gives means of the whole patch; take a contact model that"
                 ' resolves it, such as wl.contact_model("fastsim")'
             )
         if strips is not None and (isinstance(strips, bool) or not isinstance(strips, int) or strips < 2):
             raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
-        law, solved = self.pipeline.wear_law, self._solved
+        law, solved = self._law, self._solved
         if not (problem.density == density).all():
             problem = problem.replaced(density=np.full_like(problem.density, density))
             flat = problem.flatten()
@@ -287,7 +298,7 @@ class Prediction:
     @cached_property
     def wear_rate_error(self) -> Quantity:
         """Estimate of the numerical error in `wear_rate` [kg/m/m²]; slow on an ellipse, which is solved again."""
-        model, law, scale = self.pipeline.contact_model, self.pipeline.wear_law, self.pipeline.scale
+        model, law, scale = self.contact_model, self._law, self.scale
         return from_si(integrate.wear_rate_error(model, law, self.problem, scale, self._wear), WEAR_RATE)
 
     def depth_per_distance(self, body: str) -> Quantity:
@@ -334,11 +345,15 @@ class Prediction:
         """Return the mass that a body loses in one of its revolutions, over πD rolled [kg]."""
         return from_si(self._mass_per_distance(body) * self._circumference(body), "ug")
 
+    @property
+    def _law(self) -> WearLaw:
+        return law_among(self.laws, self.contact_model)
+
     @cached_property
     def _forces(self) -> CreepForces:
         if self._given_forces is not None:
             return self._given_forces
-        return integrate.integrate_forces(self.pipeline.contact_model, self.problem)
+        return integrate.integrate_forces(self.contact_model, self.problem)
 
     @cached_property
     def _force(self) -> Array:
@@ -351,7 +366,7 @@ class Prediction:
 
     @cached_property
     def _slip(self) -> SlipTotals:
-        return integrate.integrate_slip(self.pipeline.contact_model, self.problem, self.pipeline.scale, self._solved)
+        return integrate.integrate_slip(self.contact_model, self.problem, self.scale, self._solved)
 
     @property
     def _solved(self) -> Contact | None:
@@ -361,13 +376,13 @@ class Prediction:
     @cached_property
     def _patch_area(self) -> Array:
         if self._given_wear is None:
-            return integrate.patch_area(self.pipeline.contact_model, self.problem, self.pipeline.scale)
+            return integrate.patch_area(self.contact_model, self.problem, self.scale)
         return self.problem.patch_area if self._given_wear.patch_area is None else self._given_wear.patch_area
 
     @cached_property
     def _wear(self) -> WearTotals:
         """The outcome of the wear law, or a `CompositionError` where there is none."""
-        self.pipeline.wear_law  # noqa: B018  raises where there is none
+        self._law  # noqa: B018  raises where there is none
         assert self._given_wear is not None
         return self._given_wear
 
@@ -383,8 +398,7 @@ class Prediction:
         if np.array_equal(density, self.problem.density):
             return self._wear.wear_rate
         of_body = self.problem.replaced(density=density)
-        predict = self.pipeline
-        return integrate.integrate_wear(predict.contact_model, predict.wear_law, of_body, predict.scale).wear_rate
+        return integrate.integrate_wear(self.contact_model, self._law, of_body, self.scale).wear_rate
 
     def _density(self, body: str) -> float:
         return scalar_si(self.problem.body(body).material.density, "kg/m^3")
@@ -397,7 +411,7 @@ class Prediction:
 
     def __repr__(self) -> str:
         summary = OF_LINE if self.problem.geometry == "line" else OF_ELLIPSE
-        names = ("wear_rate", *summary) if self.pipeline.laws else summary
+        names = ("wear_rate", *summary) if self.laws else summary
         rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in names)
         points = "1 operating point" if self.problem.size == 1 else f"{self.problem.size} operating points"
         return f"{type(self).__name__} of {points}{rows}"

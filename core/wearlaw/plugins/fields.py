@@ -12,7 +12,6 @@ from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema, cr
 from wearlaw.contact.material import Material
 from wearlaw.errors import ConfigurationError, Fault, InputError, PluginWarning, WearlawError, described, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import Configuration
@@ -24,9 +23,17 @@ if TYPE_CHECKING:
     from pydantic_core import core_schema
 
 
+RIGS = "rig"
+"""The kind of models that are written with `type` in place of `model`."""
+
+
+def _is_rig(value: object) -> bool:
+    return isinstance(value, Model) and value.kind == RIGS
+
+
 def specification(model: Model) -> dict[str, Any]:
     """Return a model as a table of its name and fields, from which it can be made again."""
-    key = "type" if isinstance(model, Rig) else "model"
+    key = "type" if model.kind == RIGS else "model"
     return {key: model.name, **model.model_dump(mode="json", exclude_none=True)}
 
 
@@ -73,12 +80,12 @@ def _rig(value: Any) -> Any:
         if value not in loader.rigs() and value in known_presets():
             raise InputError(f"'{value}' is a preset; write {{preset = \"{value}\"}}")
         return loader.rig(value)
-    if not isinstance(value, Rig):
+    if not _is_rig(value):
         raise InputError(f"must be a rig, its name, or a table of its name and fields; got {shortened(value)}")
     return value
 
 
-def _rig_of_table(table: Mapping[str, Any]) -> Rig:
+def _rig_of_table(table: Mapping[str, Any]) -> Any:
     """Return the rig of a table with `type`, `preset` or both, and fields."""
     given = {name: value for name, value in table.items() if name not in ("type", "preset")}
     kind, preset = table.get("type"), table.get("preset")
@@ -105,9 +112,9 @@ def _without_type(given: Mapping[str, Any]) -> str:
     return f"{text}; or a preset: {presets}" if presets else text
 
 
-def known_presets() -> dict[str, list[type[Rig]]]:
+def known_presets() -> dict[str, list[type[Any]]]:
     """Return the rigs that have a preset, by the name of the preset."""
-    found: dict[str, list[type[Rig]]] = {}
+    found: dict[str, list[type[Any]]] = {}
     for rig in loader.rigs().values():
         try:
             names = [str(name) for name in rig.presets()]
@@ -119,7 +126,7 @@ def known_presets() -> dict[str, list[type[Rig]]]:
     return found
 
 
-def _of_preset(kind: str | None, preset: str, given: Mapping[str, Any]) -> Rig:
+def _of_preset(kind: str | None, preset: str, given: Mapping[str, Any]) -> Any:
     """Return the rig that a preset makes, with some of its arguments given."""
     presets = {
         name: rigs
@@ -137,12 +144,12 @@ def _of_preset(kind: str | None, preset: str, given: Mapping[str, Any]) -> Rig:
         raise
     except Exception as error:
         raise InputError(f"preset '{preset}' of rig '{rig.name}' failed: {described(error)}") from error
-    if not isinstance(made, Rig):
+    if not _is_rig(made):
         raise InputError(f"preset '{preset}' of rig '{rig.name}' must return a rig, got {shortened(made)}")
     return made
 
 
-def _no_preset(kind: str | None, preset: str, presets: Mapping[str, list[type[Rig]]]) -> Fault:
+def _no_preset(kind: str | None, preset: str, presets: Mapping[str, list[type[Any]]]) -> Fault:
     if preset in presets:
         names = " and ".join(rig.name for rig in presets[preset])
         return Fault(("preset",), f"'{preset}' is a preset of {names}; add the type")
@@ -154,7 +161,7 @@ def _no_preset(kind: str | None, preset: str, presets: Mapping[str, list[type[Ri
     return Fault(("preset",), f"{of} '{preset}'{did_you_mean(preset, presets)} There are: {known}")
 
 
-def preset_fields(rig: type[Rig], preset: str) -> type[Configuration]:
+def preset_fields(rig: type[Any], preset: str) -> type[Configuration]:
     """Return what a table may give of a preset: the arguments of its function, checked by their annotations."""
     make = rig.presets()[preset]
     annotations, docs = get_type_hints(make, include_extras=True), field_docstrings(rig)
@@ -174,8 +181,8 @@ class OpenPreset(Configuration, extra="allow"):
     """A preset whose function takes any keyword."""
 
 
-RigField = Annotated[Rig, BeforeValidator(_rig), _AS_TABLE, _SCHEMA]
-"""A field that takes a rig, its name, or a table of its fields with its name as `type` or that of a `preset`."""
+RIG = (BeforeValidator(_rig), _AS_TABLE, _SCHEMA)
+"""Annotations of a field that takes a rig, its name, or a table with its name as `type` or that of a `preset`."""
 
 ContactModelField = Annotated[
     ContactModel,

@@ -23,7 +23,6 @@ from wearlaw import hookspecs
 from wearlaw.contact.material import Material
 from wearlaw.errors import PluginWarning, described
 from wearlaw.models.contact_model import ContactModel
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins.shelf import Broken, Origin, Shelf, add_model
 from wearlaw.settings.configuration import Configuration, known_as
@@ -33,7 +32,7 @@ from wearlaw.settings.configuration import Configuration, known_as
 class Installed:
     """Everything that discovery found."""
 
-    rigs: Shelf[type[Rig]] = field(default_factory=lambda: Shelf("rig", type))
+    rigs: Shelf[type[Any]] = field(default_factory=lambda: Shelf("rig", type))
     contact_models: Shelf[type[ContactModel]] = field(default_factory=lambda: Shelf("contact model", type))
     wear_laws: Shelf[type[WearLaw]] = field(default_factory=lambda: Shelf("wear law", type))
     parameter_sets: Shelf[WearLaw] = field(default_factory=lambda: Shelf("parameter set", WearLaw))  # type: ignore[type-abstract]
@@ -111,7 +110,7 @@ def _isolated(found: Installed, origin: Origin) -> Iterator[None]:
         found.broken.append(Broken(origin, described(error)))
 
 
-def rigs() -> Mapping[str, type[Rig]]:
+def rigs() -> Mapping[str, type[Any]]:
     """Return the installed rigs by name."""
     return installed().rigs.items()
 
@@ -261,11 +260,11 @@ class _Plugin:
 
 def _add_models(plugin: _Plugin, origin: Origin, found: Installed) -> None:
     for rig_class in chain.from_iterable(plugin.answers("wearlaw_rigs")):
-        add_model(found.rigs, Rig, rig_class, origin)
+        add_model(found.rigs, rig_class, origin)
     for model in chain.from_iterable(plugin.answers("wearlaw_contact_models")):
-        add_model(found.contact_models, ContactModel, model, origin)
+        add_model(found.contact_models, model, origin)
     for law in chain.from_iterable(plugin.answers("wearlaw_wear_laws")):
-        add_model(found.wear_laws, WearLaw, law, origin)
+        add_model(found.wear_laws, law, origin)
 
 
 def _add_named(plugin: _Plugin, origin: Origin, found: Installed) -> None:

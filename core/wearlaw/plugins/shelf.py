@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from wearlaw.errors import UnknownModelError, did_you_mean
 from wearlaw.models.contact_model import Model
@@ -83,10 +83,10 @@ class Shelf(Generic[T]):
         raise UnknownModelError(unknown(self.kind, name, self.items(), broken))
 
 
-def add_model(shelf: Shelf[type[ModelT]], base: type[Model], model: object, origin: Origin) -> None:
-    """Put a model on its shelf under its own name, or raise `TypeError` if it is none."""
-    if not (inspect.isclass(model) and issubclass(model, base)):
-        raise TypeError(f"{model!r} is not a subclass of {base.__name__}")
+def add_model(shelf: Shelf[type[ModelT]], model: Any, origin: Origin) -> None:
+    """Put a model on the shelf of its kind under its own name, or raise `TypeError` if it is none."""
+    if not (inspect.isclass(model) and issubclass(model, Model) and getattr(model, "kind", None) == shelf.kind):
+        raise TypeError(f"{model!r} is not a subclass of {shelf.kind.title().replace(' ', '')}")
     if inspect.isabstract(model):
         raise TypeError(f"{model.__name__} does not implement {', '.join(sorted(model.__abstractmethods__))}")
     name = getattr(model, "name", None)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from wearlaw.hookspecs import hookimpl
-from wearlaw.models.rig import Rig
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
 

@@ -15,7 +15,7 @@ from wearlaw.contact.conditions import COEFFICIENTS, CREEPAGE, LOADS, ConditionT
 from wearlaw.contact.material import Material, steel
 from wearlaw.contact.problem import Body, Geometry, Problem
 from wearlaw.errors import InputError, UnitError
-from wearlaw.models.rig import Rig, check_sizes
+from wearlaw.pipeline.pipeline import Rig, check_sizes
 from wearlaw.plugins.fields import MaterialField
 from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import (

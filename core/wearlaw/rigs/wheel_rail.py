@@ -13,7 +13,7 @@ from wearlaw.contact import hertz, hertz_ellipse
 from wearlaw.contact.conditions import COEFFICIENTS, CREEPAGE, SPIN, ConditionTable, FrictionLaw, condition_arrays
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Body, Geometry, Problem
-from wearlaw.models.rig import Rig, check_sizes
+from wearlaw.pipeline.pipeline import Rig, check_sizes
 from wearlaw.plugins.fields import MaterialField
 from wearlaw.units.quantities import Length, Quantity, QuantityLike, Speed, Unit, scalar_si
 

@@ -39,10 +39,10 @@ from wearlaw.errors import (
 )
 from wearlaw.models.contact_model import Model
 from wearlaw.models.labels import labelled, labels
-from wearlaw.models.rig import Rig
+from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.pipeline.variables import name_of
 from wearlaw.plugins import loader
-from wearlaw.plugins.fields import ContactModelField, RigField, WearLawField, known_presets, preset_fields
+from wearlaw.plugins.fields import ContactModelField, WearLawField, known_presets, preset_fields
 from wearlaw.plugins.shelf import Shelf
 from wearlaw.settings.configuration import Configuration, known_as
 from wearlaw.settings.text_files import read_text

@@ -10,9 +10,9 @@ from typing import Any
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean
 from wearlaw.models.contact_model import ContactModel
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.composition import check_geometry
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS, offered
 from wearlaw.study.figure_spec import ACROSS, OF_LOAD, OF_PROFILE, FigureSpec, Window, axis_along, wrong_range
@@ -132,7 +132,7 @@ class Contents:
         if not across:
             return Variables(("x",), OF_PROFILE, UNITS)
         units = dict(UNITS)
-        resolved = [one for one in across if one.pipeline.scale == "cells"]
+        resolved = [one for one in across if one.scale == "cells"]
         for body in self.rig.bodies if resolved else ():
             columns = resolved[0].wear_profile(body).data_vars.items()
             units |= {f"{body}_{name}": column.attrs["units"] for name, column in columns}

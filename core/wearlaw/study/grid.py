@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import ConfigurationError, Fault, InputError, UnitError, WearlawError, did_you_mean
-from wearlaw.models.rig import Rig
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.pipeline.variables import UNITS
 from wearlaw.settings.configuration import Configuration
 from wearlaw.sweeping.points import Points, Varying

@@ -9,7 +9,7 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import InputError
-from wearlaw.models.rig import Rig
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.pipeline.variables import UNITS
 from wearlaw.units.quantities import from_si, in_unit
 from wearlaw.wear_tests.columns import COLUMNS

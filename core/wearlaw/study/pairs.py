@@ -9,11 +9,10 @@ from typing import Any
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.labels import labelled
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.composition import check_geometry, warn_of_geometry
 from wearlaw.pipeline.notes import Notes
-from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.study.case import Case
 
 
@@ -67,10 +66,10 @@ def compose(
         for law_label, law in wear_laws.items():
             try:
                 with notes.of(f"{law_label} on {contact_label}"):
-                    check_geometry(rig, model, geometry)
+                    check_geometry(rig, model, geometry or rig.geometry)
                     pipeline = rig | model | law
-                    if problem is not None:
-                        warn_of_geometry(rig, model, pipeline.scale, law, problem, stacklevel=1)
+                    if geometry is not None:
+                        warn_of_geometry(rig.geometry, model, pipeline.scale, law, geometry, stacklevel=1)
                     pairs.append(Pair(contact_label, law_label, pipeline))
             except CompositionError as error:
                 notes.add(f"{law_label} on {contact_label} is left out: {error}")

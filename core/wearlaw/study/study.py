@@ -23,10 +23,9 @@ from wearlaw.errors import (
     message_of,
 )
 from wearlaw.models.contact_model import Model
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.notes import Notes
-from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS, offered
 from wearlaw.plugins import loader

@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from wearlaw.errors import ConfigurationError, Fault, InputError, did_you_mean
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.settings.configuration import Configuration
 from wearlaw.study.grid import Value, wrong_conditions
 from wearlaw.uncertainties.distributions import (

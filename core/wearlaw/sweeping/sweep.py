@@ -145,7 +145,8 @@ def _check_conditions(pipeline: Pipeline[...], points: Points, not_given: Mappin
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
         problem = pipeline.rig.checked_problem({**not_given, **line.conditions()})
         for law in pipeline.laws if dim == points.dims[0] else ():
-            warn_of_geometry(pipeline.rig, pipeline.contact_model, pipeline.scale, law, problem, stacklevel=4)
+            model, scale = pipeline.contact_model, pipeline.scale
+            warn_of_geometry(pipeline.rig.geometry, model, scale, law, problem.geometry, stacklevel=4)
 
 
 def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:

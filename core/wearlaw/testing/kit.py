@@ -10,8 +10,8 @@ from typing import TypeAlias
 from wearlaw.errors import InputError, described
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.line_contact_model import LineContactModel
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.testing import (
     acceleration,
     contact_checks,

@@ -17,7 +17,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Body, Geometry
 from wearlaw.errors import ConditionsError, InputError, UnitError, WearlawError, described
-from wearlaw.models.rig import Rig
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.testing.examples import assert_close
 from wearlaw.units.quantities import Q, Quantity, parse, scalar_si
 

@@ -13,8 +13,8 @@ import tomli_w
 
 from wearlaw.contact.problem import Geometry
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.testing import fresh
 from wearlaw.testing.ellipses import random_ellipses

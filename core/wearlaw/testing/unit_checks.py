@@ -18,8 +18,8 @@ from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry
 from wearlaw.errors import WearlawError
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.testing.contact_checks import random_problems
 from wearlaw.testing.ellipses import WHEEL_RAIL, random_ellipses

@@ -12,8 +12,8 @@ import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, UnitError, did_you_mean
-from wearlaw.models.rig import Rig
 from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange, uniform
 from wearlaw.units.quantities import Q, Unit, coefficient, from_si, parse, real_array, shortened

@@ -255,7 +255,7 @@ class Uncertainty:
         wear = integrate_wear(model, self._law, flat, scale, see if stacklevel is not None else None, p)
         if stacklevel is not None:
             predict.rig.warn_of_plasticity(flat.max_pressure, stacklevel=stacklevel)
-            warn_of_geometry(predict.rig, model, scale, self._law, flat, stacklevel + 1)
+            warn_of_geometry(predict.rig.geometry, model, scale, self._law, flat.geometry, stacklevel + 1)
             watch.warn(stacklevel)
         return wear.wear_rate.reshape(shape)
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from wearlaw.models.contact_model import ContactModel
-    from wearlaw.models.rig import Rig
+    from wearlaw.pipeline.pipeline import Rig
 
 
 @dataclass(frozen=True, eq=False, repr=False)
