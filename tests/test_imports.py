@@ -17,7 +17,7 @@ DEFERRED = {
     ("wearlaw.numerics.crossings", "scipy.optimize"): "takes as long to load as the rest of wearlaw",
     ("wearlaw.pipeline.prediction", "xarray"): "takes as long to load as the rest of wearlaw; for profiles alone",
     ("wearlaw.sweeping.evaluation", "zarr"): "is optional",
-    ("wearlaw.testing.decorator", "pytest"): "is not needed to run the checks of the kit",
+    ("wearlaw.testing.kit", "pytest"): "is not needed to run the checks of the kit",
     ("wearlaw.wear_tests.tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",
     ("wearlaw_sheffield", "wearlaw_sheffield"): "its sections need pandas, which looking up a plugin must not load",
 }

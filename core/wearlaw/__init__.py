@@ -188,8 +188,7 @@ __all__ = [
 
 if _TYPE_CHECKING:
     from wearlaw import testing as testing
-    from wearlaw.fitting.compare import compare
-    from wearlaw.fitting.comparison import Comparison
+    from wearlaw.fitting.comparison import Comparison, compare
     from wearlaw.fitting.fit import fit
     from wearlaw.fitting.law_files import read_wear_law
     from wearlaw.fitting.result import Fit
@@ -209,7 +208,7 @@ _LATER = {
     "sweep": "wearlaw.sweeping.sweep",
     "creepage_for": "wearlaw.pipeline.inverse",
     "Comparison": "wearlaw.fitting.comparison",
-    "compare": "wearlaw.fitting.compare",
+    "compare": "wearlaw.fitting.comparison",
     "Fit": "wearlaw.fitting.result",
     "fit": "wearlaw.fitting.fit",
     "read_wear_law": "wearlaw.fitting.law_files",

@@ -13,8 +13,7 @@ import wearlaw as wl
 from tests.core.comparisons import CREEPAGE, EXACT, GLOBAL, RIG, TRACTION, by_label, made, order, scattered, usfd
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.fitting.compare import Predictor, compare_named
-from wearlaw.fitting.comparison import Names
+from wearlaw.fitting.comparison import Names, Predictor, compare_named
 
 # What is compared
 

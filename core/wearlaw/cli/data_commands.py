@@ -20,11 +20,10 @@ from wearlaw.cli.shared import (
 )
 from wearlaw.errors import FitError
 from wearlaw.figures.curves import FigureFormat
-from wearlaw.fitting.compare import Predictor, compare_named
-from wearlaw.fitting.comparison import Comparison, Names
+from wearlaw.fitting.comparison import Comparison, Names, Predictor, compare_named
 from wearlaw.fitting.fit import fit as fit_parameters
 from wearlaw.fitting.result import Fit
-from wearlaw.output.data import COMPARISON, FIT, write_comparison, write_fit
+from wearlaw.output.analyses import COMPARISON, FIT, write_comparison, write_fit
 from wearlaw.output.folder import fresh_folder
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline

@@ -14,9 +14,9 @@ from rich.text import Text
 
 from wearlaw.cli.shared import print_notes, print_results, written_formats
 from wearlaw.figures.curves import FigureFormat
+from wearlaw.output.analyses import UNCERTAINTY, write_uncertainty
 from wearlaw.output.folder import ElsewhereError, fresh_folder
 from wearlaw.output.results import RESULTS, check_room, write
-from wearlaw.output.uncertainty import UNCERTAINTY, write_uncertainty
 from wearlaw.report.tables import NamedTable, summaries
 from wearlaw.study.case import load_case
 from wearlaw.study.study import Study, evaluations, provenance, used

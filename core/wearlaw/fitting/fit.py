@@ -13,7 +13,7 @@ import numpy as np
 from wearlaw.errors import FitError, FitWarning
 from wearlaw.fitting.intervals import DECIDED_ALONE, Replicates, leverage, replicate
 from wearlaw.fitting.least_squares import Solutions
-from wearlaw.fitting.observations import named
+from wearlaw.fitting.observations import test_names
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.summary import summarise
 from wearlaw.fitting.task import Task
@@ -144,8 +144,8 @@ def _decided_alone(task: Task, best: Solutions) -> Iterator[str]:
         which = alone[task.groups == number]
         if which.any():
             yield (
-                f"the fit meets {named(one.tests, which)} whatever is measured there: so few tests decide a parameter"
-                " that nothing checks it, and its interval rests on the scatter of the others"
+                f"the fit meets {test_names(one.tests, which)} whatever is measured there: so few tests decide a"
+                " parameter that nothing checks it, and its interval rests on the scatter of the others"
             )
 
 

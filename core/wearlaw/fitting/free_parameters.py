@@ -146,7 +146,7 @@ def _is_positive(record: Configuration, name: str) -> bool:
     )
 
 
-def named(free: Any) -> Sequence[str]:
+def free_names(free: Any) -> Sequence[str]:
     """Return the names of free parameters, of which one alone may be a text."""
     names = [free] if isinstance(free, str) else free
     if not (isinstance(names, Sequence) and all(isinstance(name, str) for name in names)):

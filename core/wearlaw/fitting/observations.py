@@ -179,7 +179,7 @@ def _unit(tests: WearTests, measured: Array, scatter: Scatter) -> Array:
     stated = tests.columns["wear_rate_uncertainty"]
     if np.isnan(stated).any():
         raise FitError(
-            f"wear_rate_uncertainty: is missing in {named(tests, np.isnan(stated))}; give it for every test with a"
+            f"wear_rate_uncertainty: is missing in {test_names(tests, np.isnan(stated))}; give it for every test with a"
             " wear rate, or for none"
         )
     return stated
@@ -189,8 +189,8 @@ def _refuse_zeros(observable: Observable, tests: WearTests, measured: Array) -> 
     zero = measured <= 0.0
     if zero.any():
         raise FitError(
-            f"{observable}: is zero in {named(tests, zero)}, but is taken to scatter by a factor, and no factor leads"
-            f' to zero; leave these tests out, or fit with scatter="absolute"'
+            f"{observable}: is zero in {test_names(tests, zero)}, but is taken to scatter by a factor, and no factor"
+            ' leads to zero; leave these tests out, or fit with scatter="absolute"'
         )
 
 
@@ -199,12 +199,12 @@ def _refuse_rest(observable: Observable, tests: WearTests, problem: Problem) -> 
     name = observable.replace("_", " ")
     if still.any():
         raise FitError(
-            f"creepage: is zero in {named(tests, still)}, where the predicted {name} is zero, whatever the parameters;"
-            " leave these tests out"
+            f"creepage: is zero in {test_names(tests, still)}, where the predicted {name} is zero, whatever the"
+            " parameters; leave these tests out"
         )
 
 
-def named(tests: WearTests, which: NDArray[np.bool_]) -> str:
+def test_names(tests: WearTests, which: NDArray[np.bool_]) -> str:
     """Return which tests are meant."""
     numbers = np.flatnonzero(which)
     shown = [tests.labels[i] for i in numbers[:5]]

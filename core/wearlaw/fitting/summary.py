@@ -14,7 +14,7 @@ from wearlaw.errors import ConfigurationError, FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
 from wearlaw.fitting.intervals import Replicates, covariance, student_intervals, studentised_intervals
 from wearlaw.fitting.least_squares import Solutions
-from wearlaw.fitting.observations import FLOOR, Observations, named, wear_index_density
+from wearlaw.fitting.observations import FLOOR, Observations, test_names, wear_index_density
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.task import Task
 from wearlaw.models.contact_model import Model
@@ -92,7 +92,7 @@ def _fitted_law(
     one = observations[0]
     nothing = one.predicted(values)[0] <= FLOOR
     if one.scatter == "relative" and nothing.any():
-        raise FitError(f"the best fit predicts no wear in {named(one.tests, nothing)}; leave these tests out")
+        raise FitError(f"the best fit predicts no wear in {test_names(one.tests, nothing)}; leave these tests out")
     of_law = {
         name: float(value.magnitude) if isinstance(like, float) else value
         for (name, value), like in zip(parameters.items(), task.free.like, strict=True)

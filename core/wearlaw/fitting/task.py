@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import FitError
-from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, named
+from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, free_names
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
 from wearlaw.fitting.observations import Observations, Scatter, observe
@@ -64,7 +64,7 @@ class Task:
         if predict.laws:
             law = predict.wear_law.explicit()
             predict = predict.with_law(law)
-        free = named(free)
+        free = free_names(free)
         fits_friction = FRICTION in free
         first = _first_friction(tests, friction) if fits_friction else friction
         parameters = FreeParameters.of(law, free, first, bounds)

@@ -49,8 +49,7 @@ from wearlaw.settings.text_files import read_text
 from wearlaw.study.figure_check import Contents
 from wearlaw.study.figure_spec import FigureSpec
 from wearlaw.study.grid import Condition, Grid
-from wearlaw.study.measured_points import check_rig, known_variables
-from wearlaw.study.measurement import Measurement
+from wearlaw.study.measured import MeasuredTests, check_rig, known_variables
 from wearlaw.study.uncertain_point import Condition as UncertainCondition
 from wearlaw.study.uncertain_point import UncertainPoint
 
@@ -125,7 +124,7 @@ class Case(Configuration):
     wear across that of an ellipse."""
     uncertainty: dict[str, UncertainPoint] = Field(default_factory=dict)
     """Operating points that are not known exactly, each under a name; for `wearlaw uncertainty`."""
-    measured: Measurement | None = None
+    measured: MeasuredTests | None = None
     """Tests of a lab, to be shown beside the predictions."""
     sections: tuple[Annotated[str, AfterValidator(_section)], ...] = ()
     """The sections that plugins add to the report, by name."""

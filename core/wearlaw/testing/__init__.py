@@ -11,8 +11,7 @@ except ModuleNotFoundError as error:
         'wearlaw.testing needs hypothesis; install it with: pip install "wearlaw[test]"', name=error.name
     ) from error
 
-from wearlaw.testing.decorator import conformance
-from wearlaw.testing.kit import Check, checks
+from wearlaw.testing.kit import Check, checks, conformance
 from wearlaw.testing.strategies import (
     conditions,
     contacts,

@@ -1,13 +1,13 @@
-"""The checks of a model, as named functions that raise an `AssertionError`."""
+"""The checks of a model, as named functions that raise an `AssertionError`, and as tests of pytest."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
-from wearlaw.errors import InputError, described
+from wearlaw.errors import InputError, described, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.line_contact_model import LineContactModel
 from wearlaw.models.wear_law import WearLaw
@@ -27,7 +27,6 @@ from wearlaw.testing import (
     law_branches,
     law_checks,
     law_shape,
-    law_varies,
     rig_checks,
     unit_checks,
 )
@@ -35,6 +34,8 @@ from wearlaw.testing.roundtrip import RoundTrip
 from wearlaw.testing.shared_checks import Claims
 
 CheckFunction: TypeAlias = Callable[..., None]
+
+TestFunction = TypeVar("TestFunction", bound="Callable[[Check], None]")
 
 COMMON: tuple[CheckFunction, ...] = (*declarations.COMMON, *unit_checks.CHECKS)
 """Checks of every model."""
@@ -114,6 +115,45 @@ def checks(model: Model) -> Iterator[Check]:
         yield Check(f"round_trip_{way.__name__}", inspect.getdoc(way) or "", way)
 
 
+def conformance(
+    model: Model, *, expected_failures: Mapping[str, str] | None = None
+) -> Callable[[TestFunction], TestFunction]:
+    """Return a decorator that runs a test function of one argument, `check`, with every check of a model.
+
+    Parameters
+    ----------
+    model : Rig, ContactModel or WearLaw
+        With the options that are to be checked.
+    expected_failures : mapping of str to str, optional
+        Names of checks that are known to fail, each with the reason; the test fails once one of them passes.
+
+    Raises
+    ------
+    InputError
+        If an expected failure is no check of this model.
+    """
+    import pytest
+
+    expected = dict(expected_failures or {})
+    found = list(checks(model))
+    names = [check.name for check in found]
+    for name in expected:
+        if name not in names:
+            hint = did_you_mean(name, names)
+            raise InputError(f"expected_failures: no check of '{model.name}' is called '{name}'{hint}")
+
+    def parameter(check: Check) -> object:
+        marks = [pytest.mark.xfail(strict=True, reason=expected[check.name])] if check.name in expected else []
+        return pytest.param(check, id=check.name, marks=marks)
+
+    def decorate(test: TestFunction) -> TestFunction:
+        mark = pytest.mark.parametrize("check", [parameter(check) for check in found])
+        decorated: TestFunction = mark(test)
+        return decorated
+
+    return decorate
+
+
 def _of_rig(rig: Rig) -> list[CheckFunction]:
     of_creepage = rig_checks.OF_CREEPAGE if rig.creepage in rig_checks.varied(rig) else ()
     return [*rig_checks.CHECKS, *of_creepage, *COMMON]
@@ -125,7 +165,7 @@ def _of_law(law: WearLaw) -> list[CheckFunction]:
         idle += law_branches.OF_BREAKPOINTS
     if law.ramps(law.numbers) is None:
         idle += law_branches.OF_RAMPS
-    functions = [*law_shape.CHECKS, *law_varies.CHECKS, *law_checks.CHECKS, *law_branches.CHECKS]
+    functions = [*law_shape.CHECKS, *law_checks.CHECKS, *law_branches.CHECKS]
     return [
         *(function for function in functions if function not in idle),
         *COMMON,

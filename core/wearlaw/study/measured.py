@@ -1,18 +1,23 @@
-"""Wear tests as the variables that figures show."""
+"""The measured tests that a case shows beside its predictions, as the variables of figures."""
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+from pydantic import model_validator
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import InputError
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.pipeline.variables import UNITS
+from wearlaw.plugins import loader
+from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import from_si, in_unit
 from wearlaw.wear_tests.columns import COLUMNS
+from wearlaw.wear_tests.reader import parse_tests, text_of_tests
 from wearlaw.wear_tests.tests import WearTests
 
 OF_TESTS = ("half_width", "max_pressure", "normal_force", "normal_force_per_width", "creepage", "friction_coefficient")
@@ -22,6 +27,36 @@ OF_TRACTION = (
     "traction_coefficient", "tangential_force", "wear_index", "averaged_wear_index", "wear_index_density",
 )  # fmt: skip
 """What is known of tests that have a traction."""
+
+
+class MeasuredTests(Configuration):
+    """Tests of a lab, to be shown beside the predictions."""
+
+    label: str
+    """What the legend calls them."""
+    tests: str
+    """The name of tests that a plugin ships, or the path of a CSV file, from the folder of the case file."""
+
+    @model_validator(mode="after")
+    def _readable(self) -> MeasuredTests:
+        """Find what is wrong with the tests when the case is read, not when it has run."""
+        _ = self.data
+        return self
+
+    @cached_property
+    def text(self) -> str:
+        """The tests as CSV."""
+        return text_of_tests(self.tests)
+
+    @cached_property
+    def data(self) -> WearTests:
+        """The tests."""
+        return parse_tests(self.text, self.tests)
+
+    @property
+    def shipped(self) -> bool:
+        """Whether a plugin ships the tests; otherwise they are a file."""
+        return self.tests in loader.installed().test_sets.providers
 
 
 def known_variables(tests: WearTests) -> tuple[str, ...]:
