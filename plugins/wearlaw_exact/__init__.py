@@ -57,7 +57,7 @@ class Exact(wl.LineContactModel):
         bound = problem.friction_coefficient * pressure
         # μp - (c/a) μp0 √(1-((x+a-c)/c)²) as √A - √B = (A-B)/(√A + √B), which loses no digits and is never negative.
         roots = np.sqrt(before) + np.sqrt(np.maximum(-into, 0.0))
-        growth = np.divide(length * np.sqrt(behind), roots, out=np.zeros_like(roots), where=roots > 0)
+        growth = length * np.sqrt(behind) / np.maximum(roots, 1e-150)  # zero only at the trailing edge of what sticks
         stuck = problem.friction_coefficient * problem.max_pressure / a * growth
         everywhere = problem.creepage + k * nodes.x
         if self.slip == "as_printed":

@@ -378,11 +378,9 @@ class Problem:
         return self._map(_flat)
 
     def _map(self, function: Callable[[Array], Array]) -> Self:
-        fields: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
-        for name, value in fields.items():
-            if value is not None and name != "geometry":
-                fields[name] = function(value)
-        return type(self)(**fields)
+        values = ((name, getattr(self, name)) for name in self.__slots__ if name != "geometry")
+        arrays: dict[str, Any] = {name: value if value is None else function(value) for name, value in values}
+        return type(self)(geometry=self.geometry, **arrays)
 
 
 def _flat(array: Array) -> Array:

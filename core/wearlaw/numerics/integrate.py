@@ -229,14 +229,9 @@ def _over_line(
     on_block: OnBlock | None,
     p: Numbers,
 ) -> WearTotals:
-    solver = Solver(model)
     with Blame(law, p):
         ramps = law.ramps(p) if scale == "cells" else None
     closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
-
-    def columns(part: Problem, points: slice) -> Columns:
-        found = closed and closed_form(*closed, part, points)
-        return found or _from_nodes(solver, law, _at_points(p, points), part, scale)
 
     if closed and problem.batch_shape == ():  # scalars are computed as scalars
         with Blame(model):
@@ -246,6 +241,12 @@ def _over_line(
             if on_block is not None:
                 on_block(problem, found)
             return WearTotals(wear_rate=found["wear_rate"])
+    solver = Solver(model)
+
+    def columns(part: Problem, points: slice) -> Columns:
+        found = closed and closed_form(*closed, part, points)
+        return found or _from_nodes(solver, law, _at_points(p, points), part, scale)
+
     block = NODE_BLOCK
     if closed:
         block = COMPILED_BLOCK if accelerated(problem.creepage.size) else BLOCK
@@ -387,7 +388,7 @@ def closed_form(
     check_type(model, "tangential_force_per_width", force, problem.batch_shape)
     total: Array | float = 0.0
     for ramp in ramps:
-        threshold, slope = (_per_point(number, points) for number in ramp)
+        threshold, slope = _per_point(ramp[0], points), _per_point(ramp[1], points)
         above = np.any(threshold > 0.0) if isinstance(threshold, np.ndarray) else threshold > 0.0
         excess = model.excess_dissipation(forward, threshold) if above else force * forward.creepage
         if excess is None:
