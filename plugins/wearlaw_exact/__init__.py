@@ -44,20 +44,20 @@ class Exact(wl.LineContactModel):
 
     def slip_length(self, problem: wl.Problem) -> Array:
         """Return 2 (a - c)."""
-        return 2.0 * np.minimum(problem.creepage * _inverse_k(problem), problem.half_width)
+        return _slip_length(problem, _inverse_k(problem))
 
     def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
         """Return the fields of the paper's eqs. (7) and (8), corrected."""
-        a, k = problem.half_width, 1.0 / _inverse_k(problem)
+        a, inverse_k = problem.half_width, _inverse_k(problem)
+        k, length = 1.0 / inverse_k, _slip_length(problem, inverse_k)
         before, behind = nodes.from_trailing, nodes.from_leading  # a - x and x + a
-        length = self.slip_length(problem)
         into = length - before  # x + a - 2c, the distance from where slip begins
         slipping = into > 0.0
         pressure = problem.max_pressure * np.sqrt(before * behind) / a
         bound = problem.friction_coefficient * pressure
         # μp - (c/a) μp0 √(1-((x+a-c)/c)²) as √A - √B = (A-B)/(√A + √B), which loses no digits and is never negative.
         roots = np.sqrt(before) + np.sqrt(np.maximum(-into, 0.0))
-        growth = np.divide(length * np.sqrt(behind), roots, out=np.zeros_like(roots), where=roots > 0)
+        growth = length * np.sqrt(behind) / np.maximum(roots, 1e-150)  # zero only at the trailing edge of what sticks
         stuck = problem.friction_coefficient * problem.max_pressure / a * growth
         everywhere = problem.creepage + k * nodes.x
         if self.slip == "as_printed":
@@ -82,9 +82,9 @@ class Exact(wl.LineContactModel):
             return wl.hertz.distances_at_pressure(value, problem.half_width, problem.max_pressure)
         if variable != "slip":
             return None
-        a, length = problem.half_width, self.slip_length(problem)
-        grown = value * _inverse_k(problem)
-        everywhere = a + problem.creepage * _inverse_k(problem) - grown
+        a, inverse_k = problem.half_width, _inverse_k(problem)
+        length, grown = _slip_length(problem, inverse_k), value * inverse_k
+        everywhere = a + problem.creepage * inverse_k - grown
         if self.slip == "as_printed":
             return everywhere[..., None]
         c = a - 0.5 * length
@@ -108,6 +108,11 @@ class Exact(wl.LineContactModel):
 def _inverse_k(problem: wl.Problem) -> Array:
     """Return 1/k = R/μ [m], a/ξ_sat."""
     return problem.half_width / _saturation(problem)
+
+
+def _slip_length(problem: wl.Problem, inverse_k: Array) -> Array:
+    """Return 2 (a - c) [m]."""
+    return 2.0 * np.minimum(problem.creepage * inverse_k, problem.half_width)
 
 
 def _saturation(problem: wl.Problem) -> Array:

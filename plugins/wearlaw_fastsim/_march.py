@@ -24,7 +24,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_fastsim._march_loops import along, compiled_march, strip
+from wearlaw_fastsim._march_loops import WIDTH, along, compiled_march, strip
 
 BLOCK = 12800
 """Strips of a block in NumPy: its arrays stay in the cache, and are long enough for the calls not to count."""
@@ -124,8 +124,11 @@ def strip_centres(strips: int) -> Array:
 
 
 def march(ellipses: Ellipses, cells: Cells, *, compiled: bool) -> None:
-    """March over every strip of ellipses and fill the cells, in NumPy or compiled by numba, the same to rounding."""
-    if compiled:
+    """March over every strip of ellipses and fill the cells, in NumPy or compiled by numba, the same to rounding.
+
+    More than `WIDTH` strips always take NumPy.
+    """
+    if compiled and cells.x.shape[2] <= WIDTH:
         compiled_march(np.stack(ellipses.arrays, axis=1), ellipses.elliptic, *cells.arrays)
         return
     points, _, strips = cells.x.shape

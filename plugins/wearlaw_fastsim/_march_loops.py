@@ -10,8 +10,8 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 
-WIDTH = 264
-"""Strips side by side in a compiled march; not a power of two, so that their rows do not share cache lines' places."""
+WIDTH = 1000
+"""Most strips of a compiled march; not a power of two, so that their rows do not share cache lines' places."""
 
 Y, HALF_LENGTH, GROW_X, GROW_Y, TURN, BOUND, TO_SLIP_X, TO_SLIP_Y, SLIP_Y = (WIDTH * row for row in range(1, 10))
 """Where the rows begin, as constants, from which a compiler sees that they do not overlap."""
@@ -60,20 +60,18 @@ def compiled_march(
     slip_y: Array,
     bound: Array,
 ) -> None:
-    """Fill the cells of ellipses, of shape (points, quantities), one after the other."""
+    """Fill the cells of ellipses, of shape (points, quantities), one after the other; `WIDTH` strips at most."""
     points, count, strips = x.shape
     rows = np.empty(10 * WIDTH)
     for p in range(points):
-        for first in range(0, strips, WIDTH):
-            part = slice(first, min(first + WIDTH, strips))
-            _start_rows(rows, part, ellipses[p], elliptic, count, strips)
-            _march_rows(rows, part, elliptic, x[p], traction_x[p], traction_y[p], slip_x[p], slip_y[p], bound[p])
+        _start_rows(rows, ellipses[p], elliptic, count, strips)
+        _march_rows(rows, elliptic, x[p], traction_x[p], traction_y[p], slip_x[p], slip_y[p], bound[p])
 
 
-def _start_rows(rows: Array, part: slice, ellipse: Array, elliptic: bool, count: int, strips: int) -> None:
-    """Lay out some strips of a patch side by side."""
-    for i in range(part.stop - part.start):
-        v = (2.0 * (part.start + i) + 1.0) / strips - 1.0
+def _start_rows(rows: Array, ellipse: Array, elliptic: bool, count: int, strips: int) -> None:
+    """Lay out the strips of a patch side by side."""
+    for i in range(strips):
+        v = (2.0 * i + 1.0) / strips - 1.0
         s = math.sqrt(1.0 - v * v)
         length, grow_x, grow_y, turn, bound, to_slip_x, to_slip_y = strip(ellipse, elliptic, v, s, count)
         rows[i] = rows[Y + i] = 0.0
@@ -84,7 +82,6 @@ def _start_rows(rows: Array, part: slice, ellipse: Array, elliptic: bool, count:
 
 def _march_rows(
     rows: Array,
-    part: slice,
     elliptic: bool,
     x: Array,
     traction_x: Array,
@@ -93,12 +90,12 @@ def _march_rows(
     slip_y: Array,
     bound: Array,
 ) -> None:
-    """March along some strips of a patch; in two loops, as compilers give up on loops that write too many arrays."""
+    """March along the strips of a patch; in two loops, as compilers give up on loops that write too many arrays."""
     before, count = 0.0, x.shape[0]
     for k in range(count):
         middle, end = along(k, count, elliptic)
-        to_traction_x, to_traction_y, to_slip_x = traction_x[k, part], traction_y[k, part], slip_x[k, part]
-        to_x, to_slip_y, to_bound = x[k, part], slip_y[k, part], bound[k, part]
+        to_traction_x, to_traction_y, to_slip_x = traction_x[k], traction_y[k], slip_x[k]
+        to_x, to_slip_y, to_bound = x[k], slip_y[k], bound[k]
         for i in range(to_x.size):
             free_x = rows[i] + rows[GROW_X + i]
             free_y = rows[Y + i] + (rows[TURN + i] * middle + rows[GROW_Y + i])

@@ -55,7 +55,6 @@ def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array
     flat = problem.flatten()
     along = max(round(STICK_NODES_PER_STRIP * count), 4), max(round(SLIP_NODES_PER_STRIP * count), 8)
     found = _strips.strips(patches, shares, *along)
-    b = flat.b[:, None]
     rolls_freely = (flat.longitudinal_creepage == 0.0) & (flat.lateral_creepage == 0.0) & (flat.spin == 0.0)
     if rolls_freely.any():  # nodes of no length at the trailing edge slip
         for field in (found.traction_x, found.traction_y, found.slip_x, found.slip_y):
@@ -64,9 +63,9 @@ def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array
         flat,
         _strips.forces(patches, shares, widths, found),
         x=found.x,
-        y=b * shares,
+        y=np.outer(shares, flat.b).T,  # in memory as the nodes are, strip by strip
         length=found.length,
-        strip_width=b * widths,
+        strip_width=np.outer(widths, flat.b).T,
         traction=(found.traction_x, found.traction_y),
         slip=(found.slip_x, found.slip_y),
         traction_bound=found.bound,

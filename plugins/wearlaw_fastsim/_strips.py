@@ -7,15 +7,15 @@ the same nodes, shared out to their zones.
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_fastsim._first_slip import Growth
 from wearlaw_fastsim._march import Ellipses
-from wearlaw_fastsim._zones import stick_and_slip
+from wearlaw_fastsim._zones import NODES, Strips, stick_and_slip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,11 +38,11 @@ class StripFields:
 
     x: Array
     length: Array
+    bound: Array
     traction_x: Array
     traction_y: Array
     slip_x: Array
     slip_y: Array
-    bound: Array
 
 
 def even_strips(count: int) -> tuple[Array, Array]:
@@ -62,37 +62,33 @@ def strips(ellipses: Ellipses, y_share: Array, stick_nodes: int, slip_nodes: int
     Each has `stick_nodes` before it first slips, and `slip_nodes` from there on.
     The last axis counts the strips, but the first in memory is that of the nodes.
     """
-    half_length, greatest, growth = _growth(ellipses, y_share)
-    zones = zip(*stick_and_slip(growth, ellipses.elliptic, stick_nodes, slip_nodes), strict=True)
-    x, length, bound, traction_x, traction_y, excess = (np.concatenate(parts) for parts in zones)
-    slip = greatest / half_length * np.maximum(excess, 0.0) / bound  # to L q, whose direction it has
-    fields = {
-        "x": half_length * x,
-        "length": half_length * length,
-        "traction_x": greatest * traction_x,
-        "traction_y": greatest * traction_y,
-        "slip_x": ellipses.longitudinal_flexibility[:, None] * slip * traction_x,
-        "slip_y": ellipses.lateral_flexibility[:, None] * slip * traction_y,
-        "bound": greatest * bound,
-    }
-    return StripFields(**{name: field.swapaxes(0, 1) for name, field in fields.items()})
+    rows = _rows(ellipses, y_share[:, None])
+    compiled = wl.accelerated(rows[0].size * (stick_nodes + slip_nodes) // NODES)
+    *fields, _ = stick_and_slip(Strips(rows, ellipses.elliptic, compiled), stick_nodes, slip_nodes)
+    names = (field.name for field in dataclasses.fields(StripFields))
+    return StripFields(**{name: np.moveaxis(field, -1, 0) for name, field in zip(names, fields, strict=True)})
 
 
 def forces(ellipses: Ellipses, y_share: Array, width_share: Array, fields: StripFields) -> wl.CreepForces:
     """Return the forces and the moment of strips at y = b y_share that stand for widths of b width_share."""
-    b = ellipses.b[:, None]
-    along = np.einsum("pkj,pkj->pj", fields.length, fields.traction_x)
-    across = np.einsum("pkj,pkj->pj", fields.length, fields.traction_y)
-    turning = np.einsum("pkj,pkj,pkj->pj", fields.length, fields.x, fields.traction_y) + b * y_share * along
-    longitudinal, lateral, moment = ((b * width_share * part).sum(axis=-1) for part in (along, across, turning))
+    names = ("length", "x", "traction_x", "traction_y")
+    length, x, q_x, q_y = (np.moveaxis(getattr(fields, name), 0, -1) for name in names)  # as they are in memory
+    along, across = np.einsum("kjp,kjp->jp", length, q_x), np.einsum("kjp,kjp->jp", length, q_y)
+    turning = np.einsum("kjp,kjp,kjp->jp", length, x, q_y) + y_share[:, None] * ellipses.b * along
+    width = np.multiply.outer(width_share, ellipses.b)
+    longitudinal, lateral, moment = ((width * part).sum(axis=0) for part in (along, across, turning))
     return wl.CreepForces(longitudinal=longitudinal, lateral=lateral, spin_moment=-moment)
 
 
-def _growth(ellipses: Ellipses, y_share: Array) -> tuple[Array, Array, Growth]:
-    """Return half length, greatest bound and growth of strips."""
-    a, b, creepage_x, creepage_y, spin, l1, l2, l3, centre = (array[:, None] for array in ellipses.arrays)
+def _rows(ellipses: Ellipses, y_share: Array) -> Array:
+    """Return strips at y = b y_share as rows of an array, (7, strips, points), as in `_zone_loops`."""
+    a, b, creepage_x, creepage_y, spin, l1, l2, l3, centre = ellipses.arrays
     root = np.sqrt((1.0 - y_share) * (1.0 + y_share))
     half_length, greatest = a * root, centre * (root if ellipses.elliptic else root * root)
     unit = half_length / greatest
-    along = (creepage_x / l1 - spin * b * y_share / l3) * unit
-    return half_length, greatest, Growth(along, creepage_y / l2 * unit, 0.5 * spin / l3 * half_length * unit)
+    growth = (
+        (creepage_x / l1 - spin * b * y_share / l3) * unit,
+        creepage_y / l2 * unit,
+        0.5 * spin / l3 * half_length * unit,
+    )
+    return np.stack([*growth, half_length, greatest, l1 / unit, l2 / unit])

@@ -83,11 +83,9 @@ class KTH(wl.WearLaw):
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         """Return the wear rate at the nodes [kg/m/m²]."""
         speed = contact.slip_speed
-        k = np.select(
-            [contact.pressure >= p["pressure_threshold"], speed < p["lower_slip_speed"], speed < p["upper_slip_speed"]],
-            [p["coefficient.high_pressure"], p["coefficient.low_speed"], p["coefficient.mid_speed"]],
-            p["coefficient.high_speed"],
-        )
+        fast = np.where(speed < p["upper_slip_speed"], p["coefficient.mid_speed"], p["coefficient.high_speed"])
+        below = np.where(speed < p["lower_slip_speed"], p["coefficient.low_speed"], fast)
+        k = np.where(contact.pressure >= p["pressure_threshold"], p["coefficient.high_pressure"], below)
         density = contact.per_node(contact.density)
         rate: Array = density * k * contact.pressure * np.abs(contact.slip) / p["hardness"]
         return rate

@@ -14,6 +14,7 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
+from tests.core.cases import Linear
 from tests.core.sweeps import CONDITIONS, OUTPUTS, predictor
 from wearlaw import Q
 from wearlaw.sweeping import storage
@@ -45,6 +46,45 @@ def test_a_sweep_is_the_prediction_at_all_combinations() -> None:
         # Both are right to their error estimates; T is one formula of few operations.
         assert abs(float(at.wear_rate) - r.wear_rate.magnitude) <= 2 * r.wear_rate_error.magnitude
         assert float(at.tangential_force) == pytest.approx(r.tangential_force.magnitude, rel=1e-14)
+
+
+def test_a_sweep_solves_each_point_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    model, solved, made = type(wl.contact_model("fastsim")), [], []
+    solve_ellipse, problem = model.solve_ellipse, wl.WheelRail.problem
+
+    def counted(self: Any, contact: wl.Problem) -> wl.Contact:
+        solved.append(contact.size)
+        return solve_ellipse(self, contact)
+
+    def counted_problem(self: Any, **conditions: Any) -> wl.Problem:
+        made.append(conditions)
+        return problem(self, **conditions)
+
+    monkeypatch.setattr(model, "solve_ellipse", counted)
+    monkeypatch.setattr(wl.WheelRail, "problem", counted_problem)
+    rig = wl.WheelRail(
+        wheel_radius=Q(460, "mm"),
+        rail_head_radius=Q(300, "mm"),
+        wheel_profile_radius=Q(np.inf, "mm"),
+        material=wl.steel(),
+        rolling_speed=Q(30, "m/s"),
+    )
+    predict = rig | wl.contact_model("fastsim") | Linear(slope=Q(1, "mm"))
+    outputs = ["wear_rate", "mean_slip", "mass_per_distance", "longitudinal_force", "semi_axis_a", "patch_area"]
+    load, creepage = Q([60.0, 80.0], "kN"), Q([0.1, 0.2, 0.3], "%")
+    others: dict[str, Any] = {"friction_coefficient": 0.3, "lateral_creepage": Q(0.0, "%"), "spin": Q(0.1, "1/m")}
+    ds = wl.sweep(predict, normal_force=load, longitudinal_creepage=creepage, **others, outputs=outputs)
+    assert solved == [6]
+    assert len(made) == 3  # along each axis to check the conditions, and for the only block
+    units = {name: ds[name].attrs["units"] for name in outputs}
+    assert units == {
+        "wear_rate": "ug/m/mm^2",
+        "mean_slip": "%",
+        "mass_per_distance": "ug/m",
+        "longitudinal_force": "N",
+        "semi_axis_a": "mm",
+        "patch_area": "mm^2",
+    }
 
 
 def test_results_are_labelled_as_the_conditions_were_given_with_units() -> None:

@@ -7,7 +7,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from tests.plugins.fastsim_marks import each_bound
+import wearlaw as wl
+from tests.plugins.fastsim_marks import COMPILED, each_bound
 from tests.plugins.fastsim_strips import CASE, ROUNDING, ellipses, limit, sample, solve
 from tests.strategies import EPS
 from wearlaw import Array
@@ -243,6 +244,45 @@ def test_fields_keep_their_laws_however_strips_stick_and_slip(elliptic: bool) ->
     assert check_laws(patches, np.zeros(1)).mean() > 0.2
 
 
+@pytest.mark.skipif(True not in COMPILED, reason="numba is not installed")
+@each_bound
+def test_compiled_loops_are_the_same_as_numpy(elliptic: bool) -> None:
+    # strips that slip from the leading edge, that stick again, that stick in part and that do not slip
+    patches = ellipses(
+        [3e-2, 1e-4, -2e-4, 2e-3, 0.0], [0, 1e-3, 1e-4, -1e-3, 0], [0, 1.5, 2, 0.2, 0], elliptic=elliptic
+    )
+    shares = np.array([-0.9, -0.3, -0.01, 0.02, 0.5])
+    found = []
+    for on in (False, True):
+        wl.accelerate(on)
+        found.append(strips(patches, shares, 4, 10))
+    wl.accelerate(None)
+    for name in (field.name for field in dataclasses.fields(found[0])):
+        plain, compiled = (getattr(fields, name) for fields in found)
+        # rounding of some ten operations in each of the nodes, as where a patch is mirrored
+        np.testing.assert_allclose(compiled, plain, rtol=0.0, atol=1000 * EPS * np.abs(plain).max(), err_msg=name)
+
+
+def test_the_nodes_of_strips_say_whether_loops_are_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int] = []
+
+    def accelerated(points: int) -> bool:
+        asked.append(points)
+        return False
+
+    monkeypatch.setattr(wl, "accelerated", accelerated)
+    strips(sample(elliptic=False, count=60), even_strips(7)[0], 3, 8)
+    assert asked == [1155]  # 60 × 7 × 11 / 4
+
+
+@each_bound
+def test_a_thousand_nodes_may_slip_from_the_leading_edge(elliptic: bool) -> None:
+    patches = ellipses(0.9, 0.0, 0.1, elliptic=elliptic)
+    fields = strips(patches, np.array([-0.5, 0.0]), 3, 1000)
+    # spin turns w by a tenth of a per cent only
+    np.testing.assert_allclose(fields.traction_x[:, 3:], fields.bound[:, 3:], rtol=1e-5)
+
+
 @each_bound
 def test_without_creepage_there_is_no_traction_and_no_slip(elliptic: bool) -> None:
     found = solve(ellipses(0.0, elliptic=elliptic))
@@ -255,7 +295,8 @@ def test_without_creepage_there_is_no_traction_and_no_slip(elliptic: bool) -> No
 def test_a_slip_zone_whose_excess_does_not_fall_to_zero_after_all_sticks_where_it_is_least() -> None:
     x = np.array([0.1, 0.4, 0.7])[:, None]
     bound = 1.0 - x**2
-    zone = Zone(x, np.ones((3, 1)), bound, 0.6 * bound, -0.8 * bound, np.array([[3.0], [0.5], [2.0]]))
+    none = np.zeros((3, 1))
+    zone = Zone(x, none + 1.0, bound, 0.6 * bound, -0.8 * bound, none, none, np.array([[3.0], [0.5], [2.0]]))
     point = _where_it_sticks(zone, elliptic=False)
     assert np.cos(point.angle) == pytest.approx(0.4, rel=ROUNDING)
     assert (point.x[0], point.y[0]) == pytest.approx((0.6 * 0.84, -0.8 * 0.84), rel=ROUNDING)

@@ -99,8 +99,9 @@ def approach(normal_force: Array, a: Array, b: Array, effective_modulus: Array |
 
 def pressure(x: Array, y: Array, a: Array, b: Array, max_pressure: Array) -> Array:
     """Return p = p0 √(1-(x/a)²-(y/b)²) [Pa] inside the ellipse, 0 outside (Johnson, section 3.5)."""
-    inside = np.maximum((1.0 - x / a) * (1.0 + x / a) - (y / b) ** 2, 0.0)
-    return max_pressure * np.sqrt(inside)
+    half_length = a * np.sqrt(np.maximum((1.0 - y / b) * (1.0 + y / b), 0.0))  # at y
+    inside = np.maximum((half_length - x) * (half_length + x), 0.0)
+    return max_pressure / a * np.sqrt(inside)
 
 
 def _elongation(curvature_x: Array, curvature_y: Array) -> Array:

@@ -113,12 +113,13 @@ class Zone:
         """
         end = self.angle[..., None]
         if splits is None:
-            edges = end * np.linspace(0.0, 1.0, panels + 1)
+            edges = end * (np.arange(panels + 1) / panels)
         else:
             edges = np.concatenate([np.zeros_like(end), splits, end], axis=-1)
         abscissas, weights = _gauss_legendre()
-        quarter_panel = 0.25 * np.diff(edges)[..., None]
-        half_angle = 0.25 * (edges[..., 1:] + edges[..., :-1])[..., None] + quarter_panel * abscissas
+        before, behind = edges[..., :-1, None], edges[..., 1:, None]
+        quarter_panel = 0.25 * (behind - before)
+        half_angle = 0.25 * (before + behind) + quarter_panel * abscissas
         flat = (*half_angle.shape[:-2], half_angle.shape[-2] * ORDER)
         sine, cosine = np.sin(half_angle).reshape(flat), np.cos(half_angle).reshape(flat)
         span = self.span[..., None]

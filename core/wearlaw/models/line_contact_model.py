@@ -89,11 +89,12 @@ class LineContactModel(ContactModel):
 
     def at(self, problem: Problem, nodes: Nodes) -> Contact:
         """Return the contact on the given nodes, mirrored where the creepage is negative."""
-        sign = np.sign(problem.creepage)[..., None]
         fields = self.fields(problem.forward()[..., None], nodes)
-        mirrored = dataclasses.replace(fields, traction=sign * fields.traction, slip=sign * fields.slip)
+        if not (problem.creepage > 0.0).all():
+            sign = np.sign(problem.creepage)[..., None]
+            fields = dataclasses.replace(fields, traction=sign * fields.traction, slip=sign * fields.slip)
         force = self._mirrored_force(problem)
-        return Contact.from_line(problem, mirrored, x=nodes.x, length=nodes.length, force_per_width=force)
+        return Contact.from_line(problem, fields, x=nodes.x, length=nodes.length, force_per_width=force)
 
     def solve_line(self, problem: Problem) -> Contact:
         """Return the contact on quadrature nodes of the stick zone and the slip zone."""

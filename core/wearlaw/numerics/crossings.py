@@ -55,25 +55,32 @@ def crossings(
         ψ of each crossing, as exact as rounding lets it be; the zone's angle where there is none. k is at most
         2 × the number of breakpoints.
     """
-    columns = [np.empty((problem.creepage.size, 0))]
+    points = problem.creepage.size
+    distances, columns = [np.empty((points, 0))], [np.empty((points, 0))]
     for name, values in breakpoints.items():
-        levels = [np.broadcast_to(value, (zone.angle.size, 1)) for value in values]
-        found = _in_closed_form(model, problem, zone, name, np.concatenate(levels, axis=-1)) if levels else None
+        if not values:
+            continue
+        levels = np.empty((points, len(values)))
+        for column, value in enumerate(values):
+            levels[:, column : column + 1] = value
+        found = _in_closed_form(model, problem, name, levels)
         if found is not None:
-            columns.append(found)
-        elif levels:
+            distances.append(found)
+        else:
             searched = _Variable(model, problem, zone, name)
-            columns += [zone.angle[:, None] * _searched(searched, level) for level in levels]
+            columns += [zone.angle[:, None] * _searched(searched, level[:, None]) for level in levels.T]
+    columns.append(zone.angle_of(np.concatenate(distances, axis=-1)))
     return np.sort(np.concatenate(columns, axis=-1), axis=-1)
 
 
-def _in_closed_form(model: LineContactModel, problem: Problem, zone: Zone, name: str, levels: Array) -> Array | None:
-    """Return the ψ at which a variable crosses levels (points, k), of shape (points, m), or None if not known."""
-    each = problem[:, None]
+def _in_closed_form(model: LineContactModel, problem: Problem, name: str, levels: Array) -> Array | None:
+    """Return how far from the trailing edge a variable crosses levels (points, k), or None if not known."""
+    points, count = levels.shape
     if name == "slip_speed":
-        name, levels = "slip", levels / each.rolling_speed
-    distance = model.crossings(each.broadcast_to(levels.shape), cast(FieldVariable, name), levels)
-    return None if distance is None else zone.angle_of(distance.reshape(zone.angle.size, -1))
+        name, levels = "slip", levels / problem.rolling_speed[:, None]
+    each = problem if count == 1 else problem[np.repeat(np.arange(points), count)]
+    distance = model.crossings(each, cast(FieldVariable, name), levels.ravel())
+    return None if distance is None else distance.reshape(points, -1)
 
 
 class _Variable:

@@ -229,14 +229,9 @@ def _over_line(
     on_block: OnBlock | None,
     p: Numbers,
 ) -> WearTotals:
-    solver = Solver(model)
     with Blame(law, p):
         ramps = law.ramps(p) if scale == "cells" else None
     closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
-
-    def columns(part: Problem, points: slice) -> Columns:
-        found = closed and closed_form(*closed, part, points)
-        return found or _from_nodes(solver, law, _at_points(p, points), part, scale)
 
     if closed and problem.batch_shape == ():  # scalars are computed as scalars
         with Blame(model):
@@ -246,6 +241,12 @@ def _over_line(
             if on_block is not None:
                 on_block(problem, found)
             return WearTotals(wear_rate=found["wear_rate"])
+    solver = Solver(model)
+
+    def columns(part: Problem, points: slice) -> Columns:
+        found = closed and closed_form(*closed, part, points)
+        return found or _from_nodes(solver, law, _at_points(p, points), part, scale)
+
     block = NODE_BLOCK
     if closed:
         block = COMPILED_BLOCK if accelerated(problem.creepage.size) else BLOCK
@@ -385,7 +386,7 @@ def closed_form(
     check_type(model, "tangential_force_per_width", force, problem.batch_shape)
     total: Array | float = 0.0
     for ramp in ramps:
-        threshold, slope = (_per_point(number, points) for number in ramp)
+        threshold, slope = _per_point(ramp[0], points), _per_point(ramp[1], points)
         above = np.any(threshold > 0.0) if isinstance(threshold, np.ndarray) else threshold > 0.0
         excess = model.excess_dissipation(forward, threshold) if above else force * forward.creepage
         if excess is None:
@@ -433,21 +434,22 @@ def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Nu
     stick, slip = model.zones(problem)
     splits = splits_of(model, law, p, problem, slip)
     totals = solver.block_is_summed()
-    force = model.tangential_force(problem)
     if splits is None:
-        rate, error = _over_panels(solver, law, p, problem, (stick, slip), None, totals)
-        return {"wear_rate": rate, "wear_rate_error": error, "longitudinal": force}
+        return _over_panels(solver, law, p, problem, (stick, slip), None, totals)
     needed = np.sum((splits > 0.0) & (splits < slip.angle[:, None]), axis=-1)
     first = np.sum(splits <= 0.0, axis=-1)
-    counts = np.unique(needed)
-    rate, error = np.empty(problem.creepage.shape), np.empty(problem.creepage.shape)
+    counts = np.flatnonzero(np.bincount(needed))
+    whole: Columns = {}
     for count in counts:
         points: Any = ALL if counts.size == 1 else np.flatnonzero(needed == count)
         own_splits = np.take_along_axis(splits[points], first[points, None] + np.arange(count), axis=-1)
         part, zones = (problem, (stick, slip)) if counts.size == 1 else (problem[points], (stick[points], slip[points]))
-        own = _at_points(p, points)
-        rate[points], error[points] = _over_panels(solver, law, own, part, zones, own_splits, totals)
-    return {"wear_rate": rate, "wear_rate_error": error, "longitudinal": force}
+        found = _over_panels(solver, law, _at_points(p, points), part, zones, own_splits, totals)
+        if counts.size == 1:
+            return found
+        for name, values in found.items():
+            whole.setdefault(name, np.empty(problem.creepage.shape))[points] = values
+    return whole
 
 
 def splits_of(model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem, slip: Zone) -> Array | None:
@@ -468,8 +470,8 @@ def _over_panels(
     zones: tuple[Zone, Zone],
     splits: Array | None,
     totals: bool,
-) -> tuple[Array, Array]:
-    """Return the mean of a law's rate over the patch and its error estimate, by panels of the slip zone.
+) -> Columns:
+    """Return the mean of a law's rate over the patch, its error estimate and the force, by panels of the slip zone.
 
     Where nothing slips nothing wears, so that one node is enough there, unless sums are compared with `totals`.
     """
@@ -481,7 +483,8 @@ def _over_panels(
     total = weighted.sum(axis=-1)
     slipping = weighted[..., sticking.length.shape[-1] :]
     error = ROUNDINGS * EPS * np.abs(weighted).sum(axis=-1) + remainder(slipping)
-    return total / problem.patch_area, error / problem.patch_area
+    area = problem.patch_area
+    return {"wear_rate": total / area, "wear_rate_error": error / area, "longitudinal": contact.tangential_force}
 
 
 def thinning_error(contact: Contact, rate: Array) -> Array:

@@ -244,8 +244,10 @@ def _rounding_of_traction(model: ContactModel) -> float:
 
 def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> None:
     """Compare sums over the nodes with the totals, to what the model declares of its sums."""
-    rest = (*VECTORS, *TOTALS) if contact.on_strips else LINE_TOTALS
-    if not all(math.isfinite(_product(values, values)) for values in (getattr(contact, name) for name in rest)):
+    ellipse = contact.on_strips
+    totals = np.stack([getattr(contact, name) for name in (TOTALS if ellipse else LINE_TOTALS)])
+    vectors = (getattr(contact, name) for name in (VECTORS if ellipse else ()))
+    if not all(math.isfinite(_product(values, values)) for values in (totals, *vectors)):
         check_finite(model, contact, problem)
     limit = np.maximum(problem.friction_coefficient * problem.normal_force, np.abs(contact.tangential_force))
     area = contact.area

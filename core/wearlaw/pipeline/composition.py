@@ -79,6 +79,15 @@ def warn_of_geometry(
         warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
 
 
+def check_one_patch(problem: Problem, rig: Model, application: str) -> None:
+    """Refuse several patches at an operating point for an application that takes one."""
+    if problem.dims:
+        raise CompositionError(
+            f"{application}: needs one patch at each operating point; rig '{rig.name}' makes several, along"
+            f" {' and '.join(problem.dims)}"
+        )
+
+
 def check_traction(model: ContactModel, problem: Problem) -> None:
     """Refuse a measured traction for a contact model that has no use for it."""
     if problem.traction_coefficient is not None and not model.uses_measured_traction:

@@ -25,6 +25,7 @@ from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_forces, integrate_wear
 from wearlaw.pipeline.composition import (
     check_geometry,
+    check_one_patch,
     check_scale,
     check_traction,
     law_among,
@@ -341,11 +342,8 @@ class Pipeline(Configuration, Generic[P]):
             If there must be one patch, and the rig makes several.
         """
         rig, problem = self.rig, self.rig.checked_problem(conditions)
-        if of_one_patch and problem.dims:
-            raise CompositionError(
-                f"{of_one_patch}: needs one patch at each operating point; rig '{rig.name}' makes several, along"
-                f" {' and '.join(problem.dims)}"
-            )
+        if of_one_patch:
+            check_one_patch(problem, rig, of_one_patch)
         if type(rig).balanced is Rig.balanced:
             return problem
         with Blame(rig):

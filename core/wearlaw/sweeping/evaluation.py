@@ -16,8 +16,11 @@ import pint
 from wearlaw.arrays import kernels
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.extremes import extremes
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean
+from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import UNITS
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.units.quantities import Quantity
@@ -144,17 +147,17 @@ def notes(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> list[str]:
     return [str(one.message) for one in caught]
 
 
-def output_units(pipeline: Pipeline[...], points: Points, outputs: list[str]) -> dict[str, str]:
-    """Return the unit in which each output is written, found by evaluating the first operating point.
+def output_units(pipeline: Pipeline[...], problem: Problem, points: Points, outputs: list[str]) -> dict[str, str]:
+    """Return the unit in which each output is written; `problem` is that of the first operating point, (1,).
 
     Raises
     ------
     InputError
         If there is no such output, or it is a condition.
     """
-    first = points.part([slice(0, 1)] * len(points.dims)).conditions()
-    problem = pipeline.posed(first, of_one_patch="sweep")
-    prediction = pipeline.watched(problem, pipeline.range_watch())
+    if problem.geometry == "line":
+        check_traction(pipeline.contact_model, problem)
+    prediction = Prediction.unsolved(problem, pipeline.contact_model, pipeline.scale, pipeline.laws)
     given = {*points.varying, *points.fixed}
     units = {}
     for name in outputs:

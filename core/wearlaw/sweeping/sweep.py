@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import xarray
 
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, RangeWarning, ResumeWarning, WorkerWarning
-from wearlaw.pipeline.composition import warn_of_geometry
+from wearlaw.pipeline.composition import check_one_patch, warn_of_geometry
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, notes, output_units
@@ -86,8 +87,9 @@ def sweep(
     if not isinstance(store, str | os.PathLike | None):
         raise InputError(f'store: must be the path of a folder, such as "map.zarr"; got {shortened(store)}')
     points = outer_product(conditions) if table is None else from_table(table, conditions)
-    _check_conditions(predict, points, {name: None for name, value in conditions.items() if value is None})
-    job = _checked_job(predict, points, outputs, workers > 1 or client is not None)
+    not_given = {name: None for name, value in conditions.items() if value is None}
+    first = _checked_conditions(predict, points, not_given)
+    job = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
     if store is None:
         if resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
@@ -107,7 +109,9 @@ def sweep(
         return target.finish(texts)
 
 
-def _checked_job(pipeline: Pipeline[...], points: Points, outputs: Sequence[str], elsewhere: bool) -> Job:
+def _checked_job(
+    pipeline: Pipeline[...], first: Problem, points: Points, outputs: Sequence[str], elsewhere: bool
+) -> Job:
     """Return what is done at every point, once the outputs are found to be possible.
 
     Raises
@@ -120,7 +124,7 @@ def _checked_job(pipeline: Pipeline[...], points: Points, outputs: Sequence[str]
         raise InputError(f'outputs: must be a list of names, such as ["wear_rate"], got {outputs!r}')
     if elsewhere:
         check_importable(pipeline)
-    return Job(pipeline, output_units(pipeline, points, list(dict.fromkeys(names))))
+    return Job(pipeline, output_units(pipeline, first, points, list(dict.fromkeys(names))))
 
 
 def check_importable(pipeline: Pipeline[...]) -> None:
@@ -139,14 +143,19 @@ def check_importable(pipeline: Pipeline[...]) -> None:
             )
 
 
-def _check_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapping[str, None]) -> None:
-    """Find invalid conditions before anything is evaluated: along each dimension, at the first values of the others."""
+def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapping[str, None]) -> Problem:
+    """Return the problem of the first operating point, once no condition is found to be invalid.
+
+    They are looked at along each dimension, at the first values of the others.
+    """
     for dim in points.dims:
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
         problem = pipeline.rig.checked_problem({**not_given, **line.conditions()})
         for law in pipeline.laws if dim == points.dims[0] else ():
             model, scale = pipeline.contact_model, pipeline.scale
             warn_of_geometry(pipeline.rig.geometry, model, scale, law, problem.geometry, stacklevel=4)
+    check_one_patch(problem, pipeline.rig, "sweep")
+    return problem.flatten()[:1]
 
 
 def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:
