@@ -252,7 +252,7 @@ def test_a_case_may_name_the_distributions_it_needs(versions: str) -> None:
     [
         ({"wearlaw": ">=99"}, "plugins.wearlaw: version .* is installed, but >=99 is needed"),
         ({"wearlaw-zobory": ">=1"}, "plugins.wearlaw-zobory: is not installed; install it with: pip install "),
-        ({"wearlaw": "new"}, "plugins.wearlaw: 'new' is no version range; write one such as '>=1.2,<2'"),
+        ({"wearlaw": "new"}, "plugins.wearlaw: 'new' is not a version range; write one such as '>=1.2,<2'"),
     ],
 )
 def test_a_case_whose_plugins_are_missing_is_refused_for_that_alone(needed: Any, message: str) -> None:

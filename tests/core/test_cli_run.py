@@ -135,7 +135,7 @@ def test_of_two_runs_of_two_cases_into_one_folder_one_says_where_its_results_are
     assert (winner.exit_code, loser.exit_code) == (0, 1), (winner.output, loser.output)
     assert "kth on global" in (folder / "out" / "report.html").read_text(encoding="utf-8")
     assert "Results in out:" in winner.stdout
-    assert_refused(loser, "Error: output: 'out' was taken by another run or program meanwhile")
+    assert_refused(loser, "Error: output: 'out' was meanwhile taken by another run or program")
     assert str(folder / "out-2") in loser.stderr
     assert "usfd on global" in (folder / "out-2" / "report.html").read_text(encoding="utf-8")
 

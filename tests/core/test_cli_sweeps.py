@@ -38,7 +38,7 @@ def interrupted(case: str, monkeypatch: pytest.MonkeyPatch, blocks: int = 6) -> 
         interrupted_after(blocks, patched)
         result = wearlaw("run", case, "-o", "out")
     assert result.exit_code == 1
-    assert "What is done is kept in 'out.partial'; add --resume to go on with it." in result.stderr
+    assert "Finished blocks are kept in 'out.partial'; add --resume to go on with it." in result.stderr
     assert not Path("out").exists()
 
 
@@ -154,7 +154,7 @@ def test_a_spoilt_journal_is_refused_with_what_to_remove(
     interrupted(case, monkeypatch)
     with (folder / "out.partial" / "long-0" / "journal").open("a", encoding="utf-8") as file:
         file.write(line + "\n")
-    message = f"is no record of a sweep that can be resumed; remove it and '{Path('out.partial') / 'long-0'}'"
+    message = f"is not the journal of a sweep that can be resumed; remove it and '{Path('out.partial') / 'long-0'}'"
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), message)
 
 
@@ -196,7 +196,7 @@ def test_a_changed_case_or_version_is_not_resumed_and_told_what_changed(
     case = long_case(folder / "big.toml")
     interrupted(case, monkeypatch)
     before = contents(folder / "out.partial")
-    assert_refused(wearlaw("run", case, "-o", "out"), "'out.partial' holds what an interrupted run has done")
+    assert_refused(wearlaw("run", case, "-o", "out"), "'out.partial' holds the finished blocks of an interrupted run")
     long_case(folder / "big.toml", sweeps={"long": {**LONG, "friction_coefficient": 0.3}})
     assert_refused(
         wearlaw("run", case, "-o", "out", "--resume"), "case.sweeps.long.friction_coefficient: was 0.46, is 0.3"
@@ -224,7 +224,7 @@ def test_a_spoilt_record_of_what_is_run_is_refused(record: str, folder: Path, mo
     case = long_case(folder / "big.toml")
     interrupted(case, monkeypatch)
     (folder / "out.partial" / checkpoint.RUN).write_text(record, encoding="latin-1")
-    message = "run.json' is no record of a run; remove 'out.partial' and begin anew"
+    message = "run.json' is not the record of a run; remove 'out.partial' to start again"
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), message)
 
 
@@ -276,7 +276,7 @@ def test_a_checkpoint_that_another_run_made_meanwhile_is_left_to_it(
 ) -> None:
     case = long_case(folder / "big.toml")
     monkeypatch.setattr("wearlaw.cli.study_commands.check_room", lambda *_: (folder / "out.partial").mkdir())
-    message = "'out.partial' was made by another run meanwhile; choose another folder with -o"
+    message = "'out.partial' was meanwhile created by another run; choose another folder with -o"
     assert_refused(wearlaw("run", case, "-o", "out"), message)
     assert contents(folder).keys() == {"big.toml"}
     assert (folder / "out.partial").is_dir()
@@ -373,7 +373,7 @@ def test_a_seed_that_is_none_is_refused(folder: Path) -> None:
 def test_a_law_of_which_nothing_is_uncertain_is_left_out_and_said_so(folder: Path) -> None:
     certain = {"friction_coefficient": 0.46, "creepage": "1 %"}
     result = wearlaw("uncertainty", uncertain(folder / "case.toml", certain), "--samples", "64", "-o", "out")
-    assert "note: scatter: usfd on exact is left out, since nothing of it is uncertain" in result.stderr
+    assert "note: scatter: usfd on exact is left out, since none of its inputs is uncertain" in result.stderr
     assert list(pd.read_csv(folder / "out" / "wear_rates.csv").pair) == ["kth on exact"]
     result = wearlaw("uncertainty", uncertain(folder / "case.toml", {**certain, "laws": {}}))
     assert_refused(result, "nothing in the case is uncertain")

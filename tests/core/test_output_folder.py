@@ -224,7 +224,7 @@ def test_the_second_of_two_runs_into_one_folder_keeps_its_results_beside(
     elif at_first == "results":
         results(out, OLD)
     (tmp_path / "out-2").mkdir()
-    message = f"'{out}' was taken by another run or program meanwhile, .* The results are in '{tmp_path / 'out-3'}'"
+    message = f"'{out}' was meanwhile taken by another run or program, .* The results are in '{tmp_path / 'out-3'}'"
     with pytest.raises(wl.OutputError, match=message), fresh_folder(out, overwrite, RESULTS) as fresh:  # noqa: PT012
         fill(fresh, "second")
         results(out, NEW, overwrite)
@@ -237,7 +237,7 @@ def test_the_second_of_two_runs_into_one_folder_keeps_its_results_beside(
 def test_a_folder_that_was_exchanged_for_one_of_others_is_not_replaced(tmp_path: Path, later: str) -> None:
     out = tmp_path / "out"
     results(out, OLD)
-    with pytest.raises(wl.OutputError, match="was taken"), fresh_folder(out, True, RESULTS) as fresh:  # noqa: PT012
+    with pytest.raises(wl.OutputError, match="was meanwhile taken"), fresh_folder(out, True, RESULTS) as fresh:  # noqa: PT012
         fill(fresh)
         out.rename(tmp_path / "moved")
         if later == "files":
@@ -261,7 +261,7 @@ def test_another_run_that_comes_between_two_steps_of_a_replacement_is_not_undone
             results(out, NEW, overwrite=True)
         return rename(self, target)
 
-    with pytest.raises(wl.OutputError, match="was taken"), fresh_folder(out, True, RESULTS) as fresh:  # noqa: PT012
+    with pytest.raises(wl.OutputError, match="was meanwhile taken"), fresh_folder(out, True, RESULTS) as fresh:  # noqa: PT012
         fill(fresh, "second")
         monkeypatch.setattr(Path, "rename", late)
     assert texts(out) == NEW
@@ -282,7 +282,7 @@ def test_a_folder_that_goes_between_two_steps_of_a_replacement_is_not_replaced(
             rename(out, tmp_path / "moved")
         return rename(self, target)
 
-    with pytest.raises(wl.OutputError, match="was taken"), fresh_folder(out, True, RESULTS) as fresh:  # noqa: PT012
+    with pytest.raises(wl.OutputError, match="was meanwhile taken"), fresh_folder(out, True, RESULTS) as fresh:  # noqa: PT012
         fill(fresh)
         monkeypatch.setattr(Path, "rename", late)
     assert texts(tmp_path / "moved") == OLD
@@ -388,7 +388,8 @@ def test_a_folder_that_cannot_be_moved_back_is_named_and_kept(tmp_path: Path, mo
         return rename(self, target)
 
     message = (
-        "what '.*out' held is now in '(.*)', and cannot be moved back: Permission denied. The results are in '.*out-2'"
+        "contents of '.*out' are now in '(.*)', and could not be moved back: Permission denied."
+        " The results are in '.*out-2'"
     )
     with pytest.raises(wl.OutputError, match=message) as refused, fresh_folder(out, True, RESULTS) as fresh:  # noqa: PT012
         fill(fresh)
@@ -469,7 +470,7 @@ def test_of_two_processes_that_end_at_once_one_has_the_folder_and_the_other_says
     (winner,) = (name for name, answer in said.items() if answer == "done")
     (loser,) = {*said} - {winner}
     assert said[loser] == (
-        f"output: '{out}' was taken by another run or program meanwhile, and is left as it is."
+        f"output: '{out}' was meanwhile taken by another run or program, and is left unchanged."
         f" The results are in '{tmp_path / 'out-2'}'"
     )
     kept = {"out/thesis.tex": "years of work"} if at_first == "results" else {}
@@ -507,7 +508,7 @@ def test_a_folder_that_cannot_be_written_is_refused_at_once(
 
 def test_a_file_that_took_the_place_of_the_folder_meanwhile_is_left_alone(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    with pytest.raises(wl.OutputError, match="was taken by another"), fresh_folder(out) as fresh:  # noqa: PT012
+    with pytest.raises(wl.OutputError, match="was meanwhile taken by another"), fresh_folder(out) as fresh:  # noqa: PT012
         fill(fresh)
         out.write_text("somebody's file")
     assert texts(tmp_path) == {"out": "somebody's file", f"out-2/{RESULTS}": "new"}

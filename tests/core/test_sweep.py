@@ -227,7 +227,7 @@ def test_the_same_unit_in_the_head_and_beside_it_is_no_contradiction() -> None:
         (FRAME.rename(columns={"creepage [%]": "creepage"}), {}, "creepage: got array.*has no unit"),
         (FRAME.rename(columns={"creepage [%]": "crepage [%]"}), {}, "crepage: unknown condition; did you mean 'cree"),
         (FRAME.rename(columns={"creepage [%]": "creepage [N]"}), {}, "creepage: .*not a ratio"),
-        (FRAME.assign(label=["a", "b", "c"]), {}, "column 'label': .*leave out columns that are no conditions"),
+        (FRAME.assign(label=["a", "b", "c"]), {}, "column 'label': .*leave out columns that are not conditions"),
         (FRAME.assign(creepage=[1, 2, 3]), {}, "creepage is given twice"),
         (FRAME, {"friction_coefficient": 0.4}, "friction_coefficient is given twice; keep one"),
         (with_attribute("1"), {}, r"column 'creepage \[%\]' has the unit '1' as well; keep one of the two"),

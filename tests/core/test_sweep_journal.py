@@ -70,7 +70,8 @@ def test_a_line_that_is_none_of_a_journal_is_refused_with_what_to_remove(line: s
     journal(path)
     with path.open("a", encoding="utf-8") as file:
         file.write(line + "\n")
-    with pytest.raises(wl.OutputError, match=r"journal' is no record of a sweep that can be resumed; remove it and '"):
+    refusal = r"journal' is not the journal of a sweep that can be resumed; remove it and '"
+    with pytest.raises(wl.OutputError, match=refusal):
         Journal.resume(path, RUN, tmp_path, lambda _: None)
 
 
@@ -78,7 +79,7 @@ def test_a_line_that_is_none_of_a_journal_is_refused_with_what_to_remove(line: s
 def test_a_journal_without_a_head_is_refused(head: str, tmp_path: Path) -> None:
     path = tmp_path / "journal"
     path.write_text(head, encoding="utf-8")
-    with pytest.raises(wl.OutputError, match="is no record of a sweep that can be resumed"):
+    with pytest.raises(wl.OutputError, match="is not the journal of a sweep that can be resumed"):
         Journal.resume(path, RUN, tmp_path, lambda _: None)
 
 
@@ -112,7 +113,7 @@ def test_results_that_cannot_be_synced_are_not_listed_and_an_error(
     monkeypatch.setattr(sweep_journal, "SYNC_S", pause)
     begun = Journal.begin(tmp_path / "journal", RUN, full_disk)
     begun.add(0, BlockRecord(24, 1e9, {}, 0))
-    with pytest.raises(wl.OutputError, match="journal': what is done cannot be kept: No space left on device"):
+    with pytest.raises(wl.OutputError, match="journal': finished blocks cannot be kept: No space left on device"):
         begun.close()
     assert (tmp_path / "journal").read_bytes().count(b"\n") == 1
 

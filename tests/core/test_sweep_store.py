@@ -288,7 +288,7 @@ def test_what_is_in_the_way_is_refused_and_kept(tmp_path: Path, monkeypatch: pyt
 def test_a_spoilt_journal_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     interrupted(tmp_path / "map.zarr", monkeypatch)
     (tmp_path / "map.zarr.journal").write_text("spoilt\n", encoding="utf-8")
-    with pytest.raises(wl.OutputError, match="is no record of a sweep"):
+    with pytest.raises(wl.OutputError, match="is not the journal of a sweep"):
         wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=True)
 
 

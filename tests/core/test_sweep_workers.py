@@ -142,7 +142,7 @@ def test_a_script_needs_no_guard_and_laws_of_its_own_are_refused_with_a_reason(t
     done = subprocess.run([sys.executable, "-W", "error", script], capture_output=True, text=True, check=True)
     first, second = done.stdout.splitlines()
     assert first == "9"
-    assert second.startswith("mine: is defined in the script or notebook that runs")
+    assert second.startswith("mine: is defined in the running script or notebook")
     assert done.stderr == ""
 
 

@@ -61,7 +61,7 @@ HEAD_FAULTS = [
         "line 1: frictional_heat: is T × creepage × rolling speed; add a column 'rolling",
     ),
     ("label", "friction_coefficient [N]", "'friction_coefficient [N]': got 'N', which is not a ratio; give it as a pl"),
-    ("wear_rate", "wear_rate_uncertainty", "line 1: wear_rate_uncertainty: has no wear_rate that it belongs to"),
+    ("wear_rate", "wear_rate_uncertainty", "line 1: wear_rate_uncertainty: there is no wear_rate beside it"),
     (",wear_rate [ug/m/mm^2]\n", ",comment\n", "line 1: nothing is measured; add a column 'wear_rate [ug/m/mm^2]' or"),
 ]
 
@@ -189,14 +189,14 @@ NO_TABLES = {
     "only a header": (TESTS_HEAD.encode(), "line 1: no test follows the header"),
     "no header": (
         b"1,2,3\n4,5,6\n",
-        "line 1: is no header; the columns are: creepage [%], normal_force [kN], normal_f",
+        "line 1: is not a header; the columns are: creepage [%], normal_force [kN], normal_f",
     ),
-    "empty quotes": (b'""\n', "line 1: is no header; the columns are: creepage"),
+    "empty quotes": (b'""\n', "line 1: is not a header; the columns are: creepage"),
     "a workbook": (b"PK\x03\x04\x14\x00\x06\x00", "it is a workbook (.xlsx, .ods); save it as CSV and give that file"),
     "an old workbook": (b"\xd0\xcf\x11\xe0\xa1\xb1", "it is an old workbook (.xls); save it as CSV and give that file"),
     "a picture": (b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR", "it is no text; save it as CSV and give that file"),
-    "no known code": (b"label\x81\x8d,creepage [%]\n", "it is no text in UTF-8; save it as CSV in UTF-8"),
-    "half of UTF-16": (b"\xff\xfea", "it is no text in UTF-8; save it as CSV in UTF-8"),
+    "no known code": (b"label\x81\x8d,creepage [%]\n", "it is not text in UTF-8; save it as CSV in UTF-8"),
+    "half of UTF-16": (b"\xff\xfea", "it is not text in UTF-8; save it as CSV in UTF-8"),
     "an endless cell": (
         TESTS_HEAD.encode() + b'\n"' + b"a" * 200_000,
         "cannot be read as CSV: field larger than field lim",

@@ -15,7 +15,7 @@ from wearlaw.version import __version__
 
 
 class _Command(NamedTuple):
-    """A command: its module in this package, its function there, and what the list of commands says of it."""
+    """A command: its module in this package, its function there, and its line in the list of commands."""
 
     module: str
     function: str
@@ -38,7 +38,7 @@ COMMANDS = {
 
 
 class _Commands(click.Group):
-    """Commands that end with one clear line when wearlaw raises an error on purpose, or a plugin ends the program."""
+    """The commands. An error of wearlaw, or a plugin that ends the program, prints one clear line."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
         return list(COMMANDS)
@@ -65,7 +65,7 @@ class _Commands(click.Group):
             raise
         except Exception:
             raise
-        except BaseException as error:  # such as a model's SystemExit(0), after which all would seem well
+        except BaseException as error:  # such as a model's SystemExit(0), which would look like success
             place = traceback.extract_tb(error.__traceback__)[-1]
             raise click.ClickException(
                 f"the command was ended by {described(error)}, raised in {place.filename}, line {place.lineno}"

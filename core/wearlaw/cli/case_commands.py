@@ -1,4 +1,4 @@
-"""Commands that print case files and their schema, without what runs them."""
+"""Commands that print case files and their schema. They load nothing that only a run needs."""
 
 from __future__ import annotations
 

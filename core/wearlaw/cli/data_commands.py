@@ -35,7 +35,7 @@ from wearlaw.wear_tests.tests import WearTests
 
 
 def common(command: CommandT) -> CommandT:
-    """Add the options that both commands have."""
+    """Add the options that both commands share."""
     for option in (
         written_formats,
         click.option(
@@ -46,7 +46,7 @@ def common(command: CommandT) -> CommandT:
             type=click.Choice(["relative", "absolute"]),
             default="relative",
             show_default=True,
-            help="Whether measurements scatter by a factor or by an amount; tests that state uncertainties say it.",
+            help="Scatter of measurements, by a factor or by an amount; ignored if the tests state uncertainties.",
         ),
         click.option("--friction", type=float, help="Friction coefficient of tests without a column of it."),
         click.option(
@@ -64,7 +64,7 @@ def common(command: CommandT) -> CommandT:
 @click.option("--contact", required=True, metavar="MODEL", help="Contact model: exact, or NAME:FIELD=VALUE.")
 @click.option("--law", metavar="LAW", help="Wear law: usfd, NAME:FIELD=VALUE or a TOML file; none for traction.")
 @click.option(
-    "--free", required=True, metavar="FIELDS", help="What is fitted: fields of the law, or friction_coefficient."
+    "--free", required=True, metavar="FIELDS", help="Parameters to fit: fields of the law, or friction_coefficient."
 )
 @click.option("--fixed", metavar="FIELD=VALUE", multiple=True, help="Set a field of the law; may be repeated.")
 @common
@@ -112,7 +112,7 @@ def _fit(
     bootstrap: int,
     **settings: Any,
 ) -> Fit:
-    """Return the fit that the options ask for."""
+    """Return the fit for these options."""
     names, given = listed("--free", free), fields("--fixed", fixed)
     both = [name for name in names if name in given]
     if both:
@@ -134,7 +134,10 @@ def _fit(
 
 
 def _with_law(stage: Pipeline[...], text: str, given: dict[str, str], free: list[str], notes: Notes) -> Pipeline[...]:
-    """Return the pipeline with the law to fit; what it was fitted for does not matter, but what it keeps does."""
+    """Return the pipeline with the law to fit, and note the values of its fixed parameters.
+
+    There is no warning that the law was fitted for another contact: it is about to be fitted.
+    """
     law = wear_law(text, given)
     kept = [f"{name} = {value!r}" for name, value in numbers(law.explicit()).items() if name not in free]
     if kept:
@@ -195,7 +198,7 @@ def _compare(
     friction: float | None,
     scatter: str,
 ) -> Comparison:
-    """Return the comparison that the options ask for."""
+    """Return the comparison for these options."""
     tests = _tests(path, friction, False, notes)
     named = {text: wear_law(text) for text in listed("--laws", laws)}
     models = {text: contact_model(text) for text in listed("--contacts", contacts)}
@@ -214,7 +217,7 @@ def _compare(
 
 
 def _freed(settings: tuple[str, ...], laws: list[str]) -> dict[str, str]:
-    """Return the fields that are fitted, as they are written, by law."""
+    """Return the fields to fit, as the option gives them, by law."""
     found: dict[str, str] = {}
     for setting in settings:
         law, _, fields = setting.rpartition("=")
@@ -227,7 +230,7 @@ def _freed(settings: tuple[str, ...], laws: list[str]) -> dict[str, str]:
 
 
 def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **settings: Any) -> list[tuple[str, Fit]]:
-    """Return fits of a law by contact model; one that the tests do not determine is left out.
+    """Return the fits of a law by contact model, without those that the tests do not determine.
 
     Raises
     ------
@@ -260,7 +263,7 @@ def _rig(path: Path | None, notes: Notes) -> Any:
 
 
 def _tests(path: str, friction: float | None, fitted: bool, notes: Notes) -> WearTests:
-    """Return the tests, and say where a friction coefficient was given in vain."""
+    """Return the tests, and note an option --friction that they do not need."""
     tests = read_tests(path)
     if friction is not None and not fitted and tests.friction_coefficient is not None:
         notes.add(f"--friction {friction:g} is not used, since the tests have a column friction_coefficient")

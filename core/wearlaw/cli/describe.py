@@ -1,4 +1,4 @@
-"""Describing a model in words, from what its class declares."""
+"""A description of a model in words, made from the declarations of its class."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from wearlaw.units.registry import symbol
 
 
 def describe(model: type[Model]) -> str:
-    """Return what a user must know of a model: theory, source, fields with defaults, and what it declares."""
+    """Return the description of a model: theory, source, fields with defaults, and declarations."""
     lines = [_headline(model), "", inspect.getdoc(model) or "", "", *_wrapped("source: ", model.source), "", "fields:"]
     default = _default(model)
     schema = model.model_json_schema(by_alias=False).get("properties", {})
@@ -64,13 +64,13 @@ def _keywords(values: Mapping[str, Any]) -> list[str]:
 
 
 def _literal(value: Any) -> str:
-    """Return a value as it is written in Python, quantities as text."""
+    """Return a value as Python code, with quantities as text."""
     written = isinstance(value, str | pint.Quantity | Mapping)
     return json.dumps(value, ensure_ascii=False, default=text_of) if written else repr(value)
 
 
 def _default(model: type[Model]) -> Model | None:
-    """Return the model with its defaults, or None where fields must be given."""
+    """Return the model with its defaults, or None if it has required fields."""
     try:
         return model()
     except InputError:
@@ -91,7 +91,7 @@ def _shown(value: Any) -> str:
 
 
 def _choices(schema: Mapping[str, Any]) -> list[str]:
-    """Return the words that a field may be, from its JSON Schema."""
+    """Return the words that a field accepts, from its JSON Schema."""
     options: list[Mapping[str, Any]] = [schema, *schema.get("anyOf", [])]
     return [repr(word) for option in options for word in option.get("enum", [])]
 
@@ -132,6 +132,6 @@ def _si(variable: str, value: float) -> str:
 
 
 def _wrapped(prefix: str, text: str) -> list[str]:
-    """Return a text in lines of at most 100 characters, behind a prefix."""
+    """Return a text with a prefix, wrapped at 100 characters."""
     indent = " " * (len(prefix) if not prefix.strip() else 2)
     return textwrap.wrap(" ".join(text.split()), 100, initial_indent=prefix, subsequent_indent=indent)

@@ -1,4 +1,4 @@
-"""Commands about models: what is installed, what they are, checks of them, and plugins to begin with."""
+"""Commands about models: list, explain and check them, and begin a plugin."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 
 @click.command("plugins")
 def list_plugins() -> None:
-    """List what the installed plugins provide, by kind and name, and what failed to load."""
+    """List what the installed plugins provide, by kind and name, and the plugins that failed to load."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PluginWarning)  # what is left out is listed below
+        warnings.simplefilter("ignore", PluginWarning)  # the listing below names what is left out
         found = loader.installed()
     table = Table("kind", "name", "distribution", "version", box=None, pad_edge=False)
     for kind, name, origin in found.listing():
@@ -88,7 +88,7 @@ def new_plugin(name: str, kind: Kind | None, output: Path, licence: Licence) -> 
     "--option", "options", metavar="FIELD=VALUE", multiple=True, help="Set a field of the model; may be repeated."
 )
 def check(name: str, options: tuple[str, ...]) -> None:
-    """Check that an installed model keeps what wearlaw relies on: one line a check, exit code 1 if any fails.
+    """Check that an installed model keeps what wearlaw relies on. Prints a line a check; exit code 1 if any fails.
 
     \b
     wearlaw check usfd
@@ -106,7 +106,7 @@ def check(name: str, options: tuple[str, ...]) -> None:
 
 
 def _made(model: type[Model], options: dict[str, str]) -> Model:
-    """Return the model with some fields, and a rig with those of its `example_fields` besides."""
+    """Return the model with these fields; a rig takes others from its `example_fields`."""
     own = model.example_fields if issubclass(model, Rig) else {}
     try:
         return model(**{**own, **options})
@@ -131,7 +131,7 @@ def _checks(model: Model) -> Iterable[Check]:
 
 
 def _outcome(check: Check) -> bool:
-    """Run one check, print a line about it, and return whether it passed."""
+    """Run a check, print its line, and return whether it passed."""
     try:
         check()
     except AssertionError as error:
@@ -143,7 +143,7 @@ def _outcome(check: Check) -> bool:
 
 
 def _model_class(name: str) -> type[Model]:
-    """Return the rig, the contact model or the wear law of a name."""
+    """Return the class of the rig, contact model or wear law with this name."""
     found = loader.installed()
     shelves = (found.wear_laws, found.contact_models, found.rigs)
     for shelf in shelves:

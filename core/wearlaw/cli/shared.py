@@ -1,4 +1,4 @@
-"""What commands share: options, what is written in them, and how results are printed."""
+"""Shared by the commands: options, reading their values, and printing results."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def read_rig(path: Path | None) -> Rig:
 
 
 def listed(option: str, text: str) -> list[str]:
-    """Return what stands between commas, at least one."""
+    """Return the parts between commas, at least one."""
     found = [part for part in (part.strip() for part in text.split(",")) if part]
     if not found:
         raise click.UsageError(f"{option}: name at least one, got '{text}'")
@@ -75,18 +75,18 @@ def fields(option: str, settings: tuple[str, ...]) -> dict[str, str]:
 
 
 def contact_model(text: str) -> ContactModel:
-    """Return the contact model that "NAME" or "NAME:FIELD=VALUE:..." stands for."""
+    """Return the contact model of "NAME" or "NAME:FIELD=VALUE:..."."""
     name, *settings = text.split(":")
     return loader.contact_model(name, **fields(text, tuple(settings)))
 
 
 def wear_law(text: str, fixed: dict[str, str] | None = None) -> WearLaw:
-    """Return the wear law that "NAME", "NAME:FIELD=VALUE:..." or the path of a TOML file stands for.
+    """Return the wear law of "NAME", "NAME:FIELD=VALUE:..." or the path of a TOML file.
 
     Parameters
     ----------
     text : str
-        What is written on the command line.
+        As on the command line.
     fixed : dict of str to str, optional
         Further fields.
     """

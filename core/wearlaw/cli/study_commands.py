@@ -31,10 +31,8 @@ from wearlaw.version import __version__
 @click.argument("case")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-results].")
 @click.option("--overwrite", is_flag=True, help="Replace the files of an earlier run in that folder; others stay.")
-@click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Processes that take part.")
-@click.option(
-    "--resume", is_flag=True, help="Go on with what an interrupted run has left in FOLDER.partial, if it has."
-)
+@click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
+@click.option("--resume", is_flag=True, help="Go on from the finished blocks of an interrupted run, in FOLDER.partial.")
 @written_formats
 def run(
     case: str,
@@ -68,7 +66,7 @@ def run(
 
 @contextmanager
 def _kept(checkpoint: Checkpoint) -> Iterator[None]:
-    """Keep a checkpoint until the results are in a folder, and say after an interrupt where it is."""
+    """Remove the checkpoint once the results are in a folder; after an interrupt, say where it is."""
     try:
         yield
     except ElsewhereError:
@@ -76,13 +74,13 @@ def _kept(checkpoint: Checkpoint) -> Iterator[None]:
         raise
     except KeyboardInterrupt:
         if checkpoint.exists:
-            click.echo(f"What is done is kept in '{checkpoint.folder}'; add --resume to go on with it.", err=True)
+            click.echo(f"Finished blocks are kept in '{checkpoint.folder}'; add --resume to go on with it.", err=True)
         raise
     checkpoint.remove()
 
 
 def _print_used(study: Study) -> None:
-    """Print the version of wearlaw, and a line for each other distribution with what came from it."""
+    """Print the version of wearlaw, and each other distribution with the models it provided."""
     provided: dict[str, list[str]] = {f"wearlaw {__version__}": []}
     for kind, names in used(study.case).items():
         for name, distribution in names.items():

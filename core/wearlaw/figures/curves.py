@@ -1,4 +1,4 @@
-"""What a figure shows, apart from how it is drawn: curves and points with their axes."""
+"""The data of a figure: curves and points with their axes, independent of how they are drawn."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ FigureFormat = Literal["png", "pdf", "svg"]
 """The format of a figure's file."""
 
 BLACK = 6
-"""The number of black, the last colour of the palette: of what was measured, and of lines to compare with."""
+"""Index of black, the last colour of the palette, for measurements and reference lines."""
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """One curve, or a set of points, of a figure.
+    """A curve or a set of points in a figure.
 
     Attributes
     ----------
     label : str
-        What the legend calls it.
+        Its name in the legend.
     x, y : ndarray, (points,)
-        In the units that the labels of the axes give.
+        In the units of the axis labels.
     colour, dash : int
-        Numbers of its colour, with its marker, and its line style; the same number is the same in all of a report.
+        Index of its colour and marker, and of its line style; the same throughout a report.
     low, high : ndarray, (points,), or None
-        The ends of a band about it.
+        Ends of a band around it.
     points : bool
-        Whether it consists of points, which no line joins.
+        Whether it is a set of points, not joined by a line.
     """
 
     label: str
@@ -44,7 +44,7 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class PlotAxis:
-    """One axis of a panel: its label with the unit, its scale, and its ends where they are not those of the curves."""
+    """An axis of a panel: its label with the unit, its scale, and its ends if the curves do not set them."""
 
     label: str
     scale: Literal["linear", "log"] = "linear"
@@ -53,7 +53,7 @@ class PlotAxis:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """One pair of axes with its curves."""
+    """A pair of axes with its curves."""
 
     x: PlotAxis
     y: PlotAxis
@@ -63,17 +63,17 @@ class Panel:
 
 @dataclass(frozen=True, eq=False)
 class FigureData:
-    """A figure: its panels from left to right, and what a reader must know.
+    """A figure: its panels from left to right, with title and caption.
 
     Attributes
     ----------
     name : str
-        The name of its file, an identifier.
+        File name, an identifier.
     title, caption : str
-        Plain text; the caption also says what is not shown, and why.
+        Plain text; the caption also says what is missing, and why.
     panels : tuple of Panel
     bands : str
-        What the bands about curves are, where there are any.
+        Meaning of the bands, if there are any.
     """
 
     name: str
@@ -84,5 +84,5 @@ class FigureData:
 
 
 def has_band(figure: FigureData) -> bool:
-    """Return whether a figure has a band about any line; points have bars."""
+    """Return whether any line of a figure has a band; points have error bars."""
     return any(curve.low is not None and not curve.points for panel in figure.panels for curve in panel.curves)

@@ -1,7 +1,7 @@
 """Figures drawn with matplotlib in one style, for print.
 
-The palette can be told apart by colour-blind people (Okabe and Ito, 2008). Where only colour would tell lines apart,
-they have sparse markers too, for prints in grey. The legend stands below the panels, where it covers no curve.
+The palette is safe for colour-blind readers (Okabe and Ito, 2008). Lines that differ only in colour get sparse markers
+for prints in grey. The legend stands below the panels, where it covers no curve.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ LINES = ("-", "--", ":", "-.")
 MARKERS = ("s", "^", "D", "v", "P", "X", "o")
 """One for each colour."""
 SPACING = 0.2
-"""Of the markers along a line, as a share of its axes."""
+"""Distance between markers along a line, as a share of the axes."""
 STYLE: Any = {
     "axes.grid": True,
     "grid.alpha": 0.3,
@@ -43,11 +43,11 @@ STYLE: Any = {
 WIDTH, ROW_HEIGHT = 7.4, 3.6
 """Width of a figure and height of a row of panels, in inches."""
 LEGEND_WIDTH = 100
-"""How many characters fit below a figure."""
+"""Characters that fit below a figure."""
 
 
 def draw(figure: FigureData) -> Figure:
-    """Return a drawing of a figure; panels stand in rows of two, and an odd one first over a whole row."""
+    """Draw a figure: panels in rows of two, an odd first panel over a whole row."""
     count = len(figure.panels)
     cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
     rows: Any = [cells[start : start + 2] for start in range(0, len(cells), 2)]
@@ -62,7 +62,7 @@ def draw(figure: FigureData) -> Figure:
 
 
 def has_markers(figure: FigureData) -> bool:
-    """Return whether the lines of a figure have markers: if a panel has two of different colours in one line style."""
+    """Return whether lines need markers: if two lines of a panel differ only in colour."""
     for panel in figure.panels:
         lines = {(c.colour % len(PALETTE), c.dash % len(LINES)) for c in panel.curves if not c.points}
         if len(lines) > len({dash for _, dash in lines}):
@@ -71,12 +71,12 @@ def has_markers(figure: FigureData) -> bool:
 
 
 def marked_points(curve: Curve, panel: Panel) -> list[int]:
-    """Return the points of a line that have its marker: of those that the axes show, one for each spacing."""
+    """Return the indices of the visible points of a line that get a marker, one per `SPACING`."""
     across = _shares(curve.x, panel.x, [one.x for one in panel.curves])
     up = _shares(curve.y, panel.y, [one.y for one in panel.curves])
     seen = np.flatnonzero((across >= 0.0) & (across <= 1.0) & (up >= 0.0) & (up <= 1.0))
     way = np.append(0.0, np.cumsum(np.hypot(np.diff(across[seen]), np.diff(up[seen]))))
-    # Where lines coincide their markers do not, since each colour has its first one elsewhere.
+    # Each colour starts elsewhere, so that the markers of coinciding lines do not coincide.
     place = min(SPACING * (0.5 + 3 * curve.colour % len(PALETTE)) / len(PALETTE), 0.5 * way[-1])
     marked = []
     for point, length in zip(seen.tolist(), way.tolist(), strict=False):
@@ -87,7 +87,7 @@ def marked_points(curve: Curve, panel: Panel) -> list[int]:
 
 
 def _shares(values: Array, axis: PlotAxis, shown: list[Array]) -> Array:
-    """Return how far along an axis values lie, from 0 to 1; NaN where it cannot show them."""
+    """Return the positions of values along an axis from 0 to 1, NaN if it cannot show them."""
     scaled = np.log10 if axis.scale == "log" else np.asarray
     with np.errstate(divide="ignore", invalid="ignore"):
         ends = scaled(axis.ends or np.concatenate(shown))
@@ -128,15 +128,15 @@ def _looks(curve: Curve, marked: list[int] | None) -> dict[str, Any]:
         return {**looks, "linestyle": "", "markersize": 4, "zorder": 3}
     looks |= {"linestyle": LINES[curve.dash % len(LINES)], "markerfacecolor": "white", "markersize": 5}
     if curve.x.size == 1:
-        return looks  # it would not be seen without a marker
+        return looks  # a single point is invisible without a marker
     return {**looks, "marker": ""} if marked is None else {**looks, "markevery": marked}
 
 
 def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
-    """Add one legend for all panels, which names each curve once."""
+    """Add one legend for all panels, with each label once."""
     lines = [line for one in axes for line in one.get_lines()]
     entries = {str(line.get_label()): line for line in lines if not str(line.get_label()).startswith("_")}
-    widths = [len(name) + 8 for name in entries]  # in characters, with what stands for the line and the gap
+    widths = [len(name) + 8 for name in entries]  # in characters, with the line sample and the gap
     drawn.legend(
         list(entries.values()),
         list(entries),
@@ -147,6 +147,6 @@ def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
 
 
 def _literal(text: str) -> str:
-    """Return a text that matplotlib shows as it is: no formula between dollar signs, no hidden legend entry."""
+    """Escape a text for matplotlib: no formula between dollar signs, no hidden legend entry."""
     shown = text.replace("$", r"\$")
     return f" {shown}" if shown.startswith("_") else shown

@@ -1,4 +1,4 @@
-"""Drawing a figure when it is asked for: the one place that loads matplotlib for results that rarely need it."""
+"""Drawing a figure on demand: the one place that loads matplotlib for results that seldom need it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def plot(figure: FigureData) -> Figure:
-    """Return a drawing of a figure, as `wearlaw.figures.drawing.draw` does."""
+    """Draw a figure with `wearlaw.figures.drawing.draw`."""
     from wearlaw.figures.drawing import draw
 
     return draw(figure)

@@ -1,4 +1,4 @@
-"""How far predicted wear rates are from measured ones: each measure of error with its formula."""
+"""Measures of the error of predicted wear rates against measured ones, with their formulas."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from wearlaw.arrays.array import Array
 class Agreement:
     """Errors of predicted wear rates pᵢ against measured ones mᵢ, in n tests.
 
-    The ratios rᵢ = pᵢ/mᵢ exist where both rates are positive, in nᵣ of the tests. A measure made of ratios leaves the
-    other tests out, and is None where too few are left.
+    The ratios rᵢ = pᵢ/mᵢ exist where both rates are positive, in nᵣ of the tests. Measures of ratios leave the other
+    tests out, and are None if too few are left.
 
     Attributes
     ----------
     tests : int
         n.
     without_ratio : int
-        Tests in which one of the rates is zero and the other is not. (Where both are zero they agree.)
+        Tests in which one of the rates is zero and the other is not. (If both are zero, they agree.)
     bias : float or None
-        Geometric mean of the ratios, exp(Σ ln rᵢ / nᵣ); above 1 where too much wear is predicted.
+        Geometric mean of the ratios, exp(Σ ln rᵢ / nᵣ); above 1 if the prediction is too high.
     geometric_sd : float or None
-        Geometric standard deviation of the ratios, exp(√(Σ (ln rᵢ - ln bias)² / (nᵣ - 1))): the factor of scatter
-        that is left when the bias has been taken out. None for fewer than two ratios.
+        Geometric standard deviation of the ratios, exp(√(Σ (ln rᵢ - ln bias)² / (nᵣ - 1))): the scatter
+        that is left without the bias, as a factor. None for fewer than two ratios.
     rms_factor : float or None
-        Root mean square of the logarithmic error, as a factor, exp(√(Σ ln² rᵢ / nᵣ)): by which factor a prediction
-        is typically wrong, bias and scatter together.
+        Root mean square of the logarithmic error, as a factor, exp(√(Σ ln² rᵢ / nᵣ)): the factor by
+        which a prediction is typically wrong, bias and scatter together.
     largest_factor : float or None
         The factor of the worst test, max exp|ln rᵢ|.
     rms_error : float
@@ -46,10 +46,10 @@ class Agreement:
 
     @property
     def rank(self) -> tuple[float, float, float]:
-        """What predictors are ranked by, the least first: tests without a ratio, rms factor, rms error.
+        """Sort key of predictors, best first: tests without a ratio, rms factor, rms error.
 
         No wear where some was measured, or the reverse, is wrong by more than any factor. Six digits count, so that
-        rounding does not rank what is equal.
+        rounding does not separate equal predictors.
         """
         factor = np.inf if self.rms_factor is None else self.rms_factor
         return self.without_ratio, float(f"{factor:.6g}"), float(f"{self.rms_error:.6g}")
@@ -57,19 +57,19 @@ class Agreement:
 
 @dataclass(frozen=True)
 class Information:
-    """Akaike's information criterion of a law that was fitted to tests: what the fit is worth for its parameters.
+    """Akaike's information criterion of a fitted law, which weighs its agreement against its number of parameters.
 
-    Of laws that were fitted to the same tests the one with the least AIC is expected to predict others best; only
+    Of laws fitted to the same tests, the one with the least AIC is expected to predict other tests best. Only
     differences matter.
 
     Attributes
     ----------
     parameters : int
-        Parameters that were fitted; k counts the scatter as one more where it is estimated too.
+        Number of fitted parameters. If the scatter is estimated too, k counts it as one more.
     aic : float
         n ln(Σ rᵢ²/n) + 2k, rᵢ being the residuals of the fit; Σ rᵢ² + 2k where the tests state their uncertainty.
     aicc : float or None
-        AIC + 2k(k + 1)/(n - k - 1), for few tests; None where there are too few.
+        AIC + 2k(k + 1)/(n - k - 1), for few tests; None if there are too few.
 
     Notes
     -----
@@ -82,7 +82,7 @@ class Information:
 
 
 def agreement(predicted: Array, measured: Array) -> Agreement:
-    """Return how far predicted wear rates are from measured ones.
+    """Return the errors of predicted wear rates against measured ones.
 
     Parameters
     ----------

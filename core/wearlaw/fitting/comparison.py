@@ -1,4 +1,4 @@
-"""Comparing predictors on the same wear tests: `compare`, the ranking that it returns, and a figure."""
+"""Comparing predictors on the same wear tests: `compare`, its ranking, and a figure."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ Predictor: TypeAlias = Pipeline[...] | Fit
 """A pipeline with a wear law, or a fit of one."""
 
 COUNTS = ("tests", "without_ratio", "fitted")
-"""The columns of a table that hold whole numbers."""
+"""Columns of whole numbers."""
 
 
 class Names(NamedTuple):
-    """What a predictor, its law and its contact model are called."""
+    """The names of a predictor, its law and its contact model."""
 
     label: str
     law: str
@@ -51,15 +51,15 @@ class Compared:
     Attributes
     ----------
     names : Names
-        What it is called.
+        Its names.
     pipeline : Pipeline
-        What predicts.
+        The pipeline that predicts.
     predicted : ndarray, (tests,)
-        The wear rates that it predicts [kg/m/m²].
+        Its wear rates [kg/m/m²].
     agreement : Agreement
-        How far these are from the measured ones.
+        Their errors against the measured ones.
     information : Information or None
-        What the fit is worth, if it comes from one to these tests.
+        Akaike's criterion, if it was fitted to these tests.
     """
 
     names: Names
@@ -76,11 +76,11 @@ class Comparison:
     Attributes
     ----------
     tests : WearTests
-        The tests that they are compared on.
+        The tests for the comparison.
     compared : tuple of Compared
         The predictors, best first.
     notes : tuple of str
-        What a reader of the ranking must know, once each.
+        Remarks for the reader, once each.
     """
 
     tests: WearTests
@@ -90,8 +90,8 @@ class Comparison:
     def table(self) -> pd.DataFrame:
         """Return the ranking, a row for each predictor, best first.
 
-        The measures are those of `Agreement`, with AIC and AICc of `Information`; where one does not exist the cell is
-        blank (NA), never infinite. `fitted` counts the parameters that were fitted to these tests.
+        The measures are those of `Agreement`, with AIC and AICc of `Information`. A measure that does not exist is
+        blank (NA), never infinite. `fitted` is the number of parameters fitted to these tests.
         """
         rows = [_row(one) for one in self.compared]
         counts = dict.fromkeys(COUNTS, "Int64")
@@ -99,14 +99,14 @@ class Comparison:
         return pd.DataFrame(rows).astype(measures | counts)
 
     def predictions(self) -> pd.DataFrame:
-        """Return the tests with what each predictor gives for them; the units are in the heads of the columns."""
+        """Return the tests with the wear rates of each predictor; the heads of the columns hold the units."""
         predicted = {f"{one.names.label} [{WEAR_RATE}]": in_unit(one.predicted, WEAR_RATE) for one in self.compared}
         return self.tests.to_dataframe().assign(**predicted)
 
     def figure_data(self) -> FigureData:
         """Return measured against predicted wear rate, a panel for each contact model, on logarithmic axes.
 
-        Tests in which one of the two is zero cannot be shown there; the caption says how many these are.
+        Tests in which one of the two is zero are missing there; the caption says how many.
         """
         measured = self.tests.columns["wear_rate"]
         rates = np.concatenate([measured, *(one.predicted for one in self.compared)])
@@ -131,7 +131,7 @@ class Comparison:
         return plot(self.figure_data())
 
     def _caption(self) -> str:
-        """Say where the tests come from, and what cannot be shown."""
+        """Return the source of the tests and the number of tests that are not shown."""
         source = f" of {self.tests.source}" if self.tests.source else ""
         measured = self.tests.columns["wear_rate"]
         zeros = max(int(((one.predicted == 0) | (measured == 0)).sum()) for one in self.compared)
@@ -149,7 +149,7 @@ class Comparison:
 
 
 def _row(one: Compared) -> dict[str, Any]:
-    """Return the measures of a predictor by the heads of the table."""
+    """Return the measures of a predictor, by column of the table."""
     errors, fit = one.agreement, one.information
     return {
         "predictor": one.names.label,
@@ -173,7 +173,7 @@ def _cell(value: object) -> str:
 
 
 def _ends(rates: Array) -> tuple[float, float]:
-    """Return the ends of both axes: whole decades would waste half of the figure, so a factor of two about all."""
+    """Return the ends of both axes: a factor of two around all rates, since whole decades would waste space."""
     return (0.5 * rates.min(), 2.0 * rates.max()) if rates.size else (0.1, 10.0)
 
 
@@ -190,38 +190,37 @@ def compare(
     *,
     friction_coefficient: ArrayLike | None = None,
 ) -> Comparison:
-    """Return how well each predictor agrees with measured wear rates, ranked, all on the same tests.
+    """Rank predictors by how well they agree with measured wear rates, all on the same tests.
 
     Parameters
     ----------
     predictors : mapping of str to Pipeline or Fit, or sequence of these
-        What predicts the wear rate. In a sequence each is called after its law and contact model, such as
-        "usfd on exact", or "usfd fitted on exact" if it is a `Fit`.
+        The predictors of the wear rate. In a sequence, each is named after its law and contact model, such as
+        "usfd on exact", or "usfd fitted on exact" for a `Fit`.
     tests : WearTests
-        The tests; those without a wear rate are left out.
+        Measured tests. Those without a wear rate are left out.
     friction_coefficient : array_like of float, optional
-        μ [-] for tests that do not hold it.
+        μ [-] for tests without a friction coefficient.
 
     Returns
     -------
     Comparison
-        Ranked by, in this order: the number of tests in which one of predicted and measured rate is zero and the
-        other is not, which no factor can express; the root mean square of the logarithmic error, `rms_factor`; and
-        the root mean square error.
+        The predictors, ranked by: first the number of tests in which either the predicted or the measured rate is
+        zero, which no factor can express; then the root mean square of the logarithmic error, `rms_factor`; then the
+        root mean square error.
 
     Raises
     ------
     InputError
         If there is no predictor, two have the same name, or no test has a wear rate.
     ConditionsError
-        If the friction coefficient is not known, or the tests hold a condition that a predictor's rig does not take, or
-        lack one.
+        If the friction coefficient is unknown, or the conditions of the tests are not those of a predictor's rig.
 
     Notes
     -----
-    A law that was fitted to the same tests follows their scatter too, and agrees the better the more parameters it
-    has. AIC (see `Information`) weighs one against the other. It is blank for what was not fitted to the wear rates of
-    these very tests, and to them alone, and where fits take the tests to scatter in different ways.
+    A law fitted to these tests follows their scatter too: the more parameters it has, the better it agrees. AIC (see
+    `Information`) weighs one against the other. It is blank unless a law was fitted to the wear rates of exactly these
+    tests, and if fits assume different kinds of scatter.
     """
     return compare_named(_named(predictors), tests, friction_coefficient)
 
@@ -229,7 +228,7 @@ def compare(
 def compare_named(
     named: Sequence[tuple[Names, Predictor]], tests: WearTests, friction_coefficient: ArrayLike | None
 ) -> Comparison:
-    """Return what `compare` does, for predictors with the names of their laws and contact models."""
+    """Compare predictors that have names already; see `compare`."""
     taken = [names.label for names, _ in named]
     twice = [label for label in taken if taken.count(label) > 1]
     if twice:
@@ -244,7 +243,7 @@ def compare_named(
 
 
 def _named(predictors: Mapping[str, Predictor] | Sequence[Predictor]) -> list[tuple[Names, Predictor]]:
-    """Return the predictors with their names, made from their models where none are given."""
+    """Return the predictors with their names, made from their models unless given."""
     given = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
     if not given:
         raise InputError("give at least one predictor, such as rig | contact_model | law")
@@ -264,7 +263,7 @@ def _predicts_wear(one: object) -> bool:
 
 
 def _names(predictors: Sequence[Predictor]) -> list[Names]:
-    """Return what predictors are called after their models, as in a study."""
+    """Return names of predictors after their models, as in a study."""
     models = _labels([_pipeline(one).contact_model for one in predictors])
     laws = iter(_labels([one.wear_law for one in predictors if isinstance(one, Pipeline)]))
     names = []
@@ -276,7 +275,7 @@ def _names(predictors: Sequence[Predictor]) -> list[Names]:
 
 
 def _labels(models: Sequence[Model]) -> list[str]:
-    """Return the label of each model, equal ones the same; a model may hold what cannot be hashed."""
+    """Return a label for each model, the same for equal ones. Models need not be hashable."""
     distinct: list[Model] = []
     for model in models:
         if model not in distinct:
@@ -300,7 +299,7 @@ def _with_wear_rate(tests: WearTests, notes: Notes) -> WearTests:
     """Return the tests that have a wear rate."""
     there = _has_wear_rate(tests)
     if not there.any():
-        raise InputError(f"none of the {len(tests)} tests has a wear rate, which predictors are compared on")
+        raise InputError(f"none of the {len(tests)} tests has a wear rate, which a comparison needs")
     if not there.all():
         notes.add(f"{(~there).sum()} of {len(tests)} tests have no wear rate and are left out")
     return tests[there]
@@ -319,7 +318,7 @@ def _compared(names: Names, predictor: Predictor, tests: WearTests, friction: An
 
 
 def _predicted(name: str, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Array:
-    """Return the wear rates that are predicted for tests [kg/m/m²]."""
+    """Return the predicted wear rates of tests [kg/m/m²]."""
     pipeline = _pipeline(predictor)
     conditions = tests.conditions(pipeline.contact_model, friction, pipeline.rig)
     if isinstance(predictor, Fit) and FRICTION in predictor.parameters:
@@ -329,18 +328,18 @@ def _predicted(name: str, predictor: Predictor, tests: WearTests, friction: Any,
     if "traction_coefficient" in conditions:
         notes.add(f"{name}: takes the traction that was measured in the tests")
     with notes.of(name):
-        pipeline = pipeline.without_law() | pipeline.wear_law  # warns of parameters fitted for another contact
+        pipeline = pipeline.without_law() | pipeline.wear_law  # warns if the parameters were fitted for another contact
     with notes.of("tests"):
         prediction = pipeline.predict(pipeline.posed(conditions, of_one_patch="compare"))
     return np.asarray(prediction.wear_rate.to_base_units().magnitude)
 
 
 def _information(name: str, fit: Fit, tests: WearTests, notes: Notes) -> Information | None:
-    """Return what a fit to these very tests is worth."""
+    """Return Akaike's criterion of a fit, or None with a note if it was not fitted to exactly these tests."""
     of_traction = len(fit.observations) > 1
     if of_traction or fit.tests[_has_wear_rate(fit.tests)] != tests:
         why = "to tractions too" if of_traction else "to other tests"
-        notes.add(f"{name}: was fitted {why}, so that its AIC says nothing here and is left blank")
+        notes.add(f"{name}: was fitted {why}, so its AIC does not apply here and is left blank")
         return None
     free = len(fit.parameters)
     k = free + (fit.scatter != "uncertainty")

@@ -22,10 +22,10 @@ from wearlaw.units.quantities import QuantityLike
 from wearlaw.wear_tests.tests import WearTests
 
 AT_BOUND = 1e-6
-"""Distance from a bound, over that between both, at which a fit lies on it."""
+"""Distance from a bound, as a share of the range, up to which a fit counts as lying on it."""
 
 USABLE = 0.95
-"""Share of the replicates that must have converged and determine each parameter, for the intervals to be trusted."""
+"""Share of the replicates that must converge and determine each parameter, for reliable intervals."""
 
 
 def fit(
@@ -47,41 +47,40 @@ def fit(
     Parameters
     ----------
     predict : Pipeline
-        What predicts the tests. Parameters that are not free stay those of its law. Without a law, the friction
+        The pipeline to fit. Parameters that are not free keep the values of its law. Without a law, the friction
         coefficient is fitted to the measured traction.
     tests : WearTests
-        Those without a wear rate have no say in the parameters of the law.
+        Measured tests. Those without a wear rate do not affect the parameters of the law.
     free : sequence of str
-        Numbers among the fields of the law, with a dot for nested ones as in "coefficient.low_speed", and
-        "friction_coefficient", one for all tests, which is fitted to the traction: T/N, on an ellipse with
-        T = √(Fx² + Fy²).
+        Numeric fields of the law, nested ones with a dot as in "coefficient.low_speed", and "friction_coefficient".
+        The latter is one value for all tests, fitted to the traction T/N, on an ellipse with T = √(Fx² + Fy²).
     friction_coefficient : float, optional
-        μ of tests that do not hold it, or the first value where it is free.
+        μ of tests without one, or the starting value if it is free.
     scatter : str
-        "relative": measurements scatter by a factor, and the residual is ln(predicted/measured). "absolute": it is
-        predicted - measured. Where the tests state an uncertainty of the wear rate, it is (predicted - measured) over
-        that, whatever is given here.
+        "relative": measurements scatter by a factor, and the residual is ln(predicted/measured). "absolute": the
+        residual is predicted - measured. If the tests state an uncertainty of the wear rate, the residual is
+        (predicted - measured) over that, whatever is given here.
     bounds : mapping of str to pair, optional
-        Least and greatest values; without, a hundredth and a hundred times the first value.
+        Least and greatest values. Default: a hundredth and a hundred times the starting value.
     starts : int
-        Starting points besides the given law, within a factor of ten of it.
+        Number of further starting points, within a factor of ten of the given law.
     bootstrap : int
-        Replicates of the bootstrap, at least 2/(1 - confidence), so that there are some beyond each end of an interval;
-        0 for intervals by Student's t alone.
+        Replicates of the bootstrap, at least 2/(1 - confidence), so that some lie beyond each end of an interval. 0
+        for intervals by Student's t.
     seed : int
-        Of all random numbers; the same seed gives the same fit.
+        Seed of all random numbers; the same seed gives the same fit.
     confidence : float
-        Of the intervals.
+        Confidence level of the intervals.
     on_progress : callable, optional
-        Called with the number of replicates done, after each batch of them.
+        Called with the number of replicates in each finished batch.
 
     Raises
     ------
     FitError
-        If a parameter is not known or not determined by the tests, there are too few of them, no fit is found, or a
-        setting cannot be.
+        If a parameter is unknown, the tests do not determine it, there are too few tests, no fit is found, or a
+        setting is invalid.
     ConditionsError
-        If the tests hold a condition that the rig does not take, or lack one.
+        If the conditions of the tests are not those of the rig.
 
     Notes
     -----
@@ -111,8 +110,8 @@ def _check_settings(scatter: object, confidence: object, **counts: object) -> No
 
 
 def _check_replicates(bootstrap: int, confidence: float) -> None:
-    """Refuse replicates so few that the ends of an interval would be made up from the outermost ones."""
-    least = math.ceil(round(2.0 / (1.0 - confidence), 6))  # 1 - 0.9 and its like are off by a rounding
+    """Raise an error if there are too few replicates to have some beyond each end of an interval."""
+    least = math.ceil(round(2.0 / (1.0 - confidence), 6))  # since 1 - 0.9 is rounded
     if 0 < bootstrap < least:
         raise FitError(
             f"bootstrap: must be at least {least}, for replicates beyond both ends of an interval of confidence"
@@ -121,7 +120,7 @@ def _check_replicates(bootstrap: int, confidence: float) -> None:
 
 
 def _warn(task: Task, best: Solutions, replicates: Replicates | None) -> None:
-    """Warn of what makes a fit less certain than its intervals say; the caller of `fit` is named."""
+    """Warn the caller of `fit` if the fit is less certain than its intervals say."""
     for text in (*_at_bounds(task, best), *_decided_alone(task, best), *_unreliable(task, replicates)):
         warnings.warn(text, FitWarning, stacklevel=3)
 

@@ -1,4 +1,4 @@
-"""The parameters of a fit: which they are, how they are scaled, and within which bounds they stay."""
+"""The free parameters of a fit: their names, scaling and bounds."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
 from wearlaw.units.registry import symbol
 
 FRICTION = "friction_coefficient"
-"""The one parameter that is no field of the law."""
+"""The only parameter that is not a field of the law."""
 
 FACTOR = 100.0
-"""How far from its first value a parameter may go, up and down, where no bounds are given."""
+"""Default bounds of a parameter: this factor up and down from its first value."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FreeParameters:
-    """The parameters that are fitted.
+    """The free parameters of a fit.
 
     Positive parameters are fitted by θ = ln(x/x₀), others by θ = (x - x₀)/|x₀|, with their first values x₀.
 
@@ -36,11 +36,11 @@ class FreeParameters:
     ----------
     names : tuple of str
     like : tuple of Quantity or float
-        The first values, with the units in which the parameters are given.
+        The first values, with the units of the parameters.
     first : ndarray, (p,)
         The first values in SI.
     positive : ndarray of bool, (p,)
-        Which of them must be greater than zero.
+        Whether each must be greater than zero.
     bounds : Bounds
         Of θ.
     """
@@ -59,12 +59,12 @@ class FreeParameters:
         friction: float | None,
         bounds: Mapping[str, tuple[QuantityLike | float, QuantityLike | float]],
     ) -> Self:
-        """Return the parameters of a law, and the friction coefficient, that are fitted.
+        """Return the free parameters among those of a law and the friction coefficient.
 
         Raises
         ------
         FitError
-            If a name is not known or given twice, or its bounds are not.
+            If a name is unknown or given twice, or its bounds are invalid.
         """
         like = dict(numbers(law)) if law is not None else {}
         _check_names(law, tuple(free), like)
@@ -94,7 +94,7 @@ class FreeParameters:
         return np.where(self.positive, self.first * np.exp(np.where(self.positive, theta, 0.0)), self._linear(theta))
 
     def slopes(self, theta: Array) -> Array:
-        """Return how fast the values in SI grow with the scaled parameters, (..., p)."""
+        """Return the derivatives of the values in SI by the scaled parameters, (..., p)."""
         return np.where(self.positive, self.values(theta), self._size)
 
     def columns(self, theta: Array) -> dict[str, Array]:
@@ -123,8 +123,8 @@ def _check_names(law: WearLaw | None, free: tuple[str, ...], like: Mapping[str, 
         if law is not None and name not in known and name in type(law).model_fields:
             kind = type(getattr(law, name)).__name__
             raise FitError(
-                f"free: '{name}' of wear law '{law.name}' is a {kind} and no number, which cannot"
-                f" be fitted; its numbers are: {', '.join(like)}"
+                f"free: '{name}' of wear law '{law.name}' is a {kind} and not a number, so it"
+                f" cannot be fitted; its numbers are: {', '.join(like)}"
             )
         if name not in known:
             if law is None:
@@ -136,7 +136,7 @@ def _check_names(law: WearLaw | None, free: tuple[str, ...], like: Mapping[str, 
 
 
 def _is_positive(record: Configuration, name: str) -> bool:
-    """Return whether a field of a record, or of a record within it, must be greater than zero."""
+    """Return whether a field, or a nested one with a dot, must be greater than zero."""
     outer, _, inner = name.partition(".")
     if inner:
         return _is_positive(getattr(record, outer), inner)
@@ -147,7 +147,7 @@ def _is_positive(record: Configuration, name: str) -> bool:
 
 
 def free_names(free: Any) -> Sequence[str]:
-    """Return the names of free parameters, of which one alone may be a text."""
+    """Return the names of free parameters as a sequence; one name may be given as a text."""
     names = [free] if isinstance(free, str) else free
     if not (isinstance(names, Sequence) and all(isinstance(name, str) for name in names)):
         raise FitError(f'free: give names of parameters, such as ["q_s", "m_c"], got {free!r}')

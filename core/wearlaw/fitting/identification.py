@@ -16,10 +16,11 @@ from wearlaw.pipeline.variables import UNITS
 from wearlaw.units.quantities import from_si
 
 UNSEEN = 1e-6
-"""Influence of a parameter, over the greatest, that counts as none; a hundred times the error of the derivatives."""
+"""Influence of a parameter, relative to the greatest, below which it counts as none: a hundred times the error of the
+derivatives."""
 
 INVOLVED = 0.1
-"""Share in the combination that the tests do not determine, from which a parameter is named as one of it."""
+"""Share of a parameter in an undetermined combination from which the message names it."""
 
 SIGNIFICANCE = 0.99
 """Probability of the F test. A border that may lie anywhere finds more by chance than the test expects, hence not
@@ -27,24 +28,24 @@ SIGNIFICANCE = 0.99
 
 
 def refuse_undetermined(best: Solutions, fits: Sequence[Solutions], free: FreeParameters, where: str) -> None:
-    """Refuse a fit whose parameters the tests do not determine.
+    """Raise an error if the tests do not determine the parameters of a fit.
 
     Parameters
     ----------
     best : Solutions
         The best of the fits.
     fits : sequence of Solutions
-        Those from several starting points.
+        Fits from several starting points.
     free : FreeParameters
         The parameters.
     where : str
-        What the tests cover.
+        The range of the tests, in words.
 
     Raises
     ------
     FitError
-        If nothing depends on a parameter, only a combination of some matters, or a law in which nothing depends on
-        some fits about as well.
+        If nothing depends on a parameter, if only a combination of parameters matters, or if a fit in which nothing
+        depends on some parameters is about as good.
     """
     unseen = _unseen(best, free)
     if unseen:
@@ -69,7 +70,7 @@ def refuse_undetermined(best: Solutions, fits: Sequence[Solutions], free: FreePa
 
 
 def where_tested(observations: Sequence[Observations]) -> str:
-    """Return what the tests cover, for messages."""
+    """Return the range of the tests in words, for messages."""
     one = observations[0]
     ranges = {
         "creepage": one.problem.rigid_slip,

@@ -13,10 +13,10 @@ from wearlaw.arrays.array import Array
 from wearlaw.fitting.least_squares import Bounds, Model, Solutions, fit_many
 
 BATCH = 250
-"""Replicates that are fitted together; progress is told after each batch."""
+"""Replicates fitted together; progress is reported after each batch."""
 
 DECIDED_ALONE = 0.999
-"""Leverage from which a test decides a parameter by itself, so that its residual says nothing of the scatter."""
+"""Leverage from which a test decides a parameter alone: its residual then does not measure the scatter."""
 
 SINGULAR = 1e-12
 """Eigenvalues of JᵀJ, over the largest, that count as zero."""
@@ -24,16 +24,16 @@ SINGULAR = 1e-12
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Replicates:
-    """Fits to data that were drawn anew from the residuals.
+    """Fits to data resampled from the residuals.
 
     Attributes
     ----------
     theta : ndarray, (replicates, p)
         Parameters.
     standard_errors : ndarray, (replicates, p)
-        Of each replicate by its own covariance; zero where a replicate does not determine a parameter.
+        Standard errors of each replicate from its own covariance; zero if it does not determine a parameter.
     converged : float
-        Share of them that converged.
+        Share of the replicates that converged.
     """
 
     theta: Array
@@ -56,7 +56,7 @@ def standard_errors(fits: Solutions) -> Array:
 
 
 def leverage(fit: Solutions) -> Array:
-    """Return how much the prediction of each test follows its own measurement, from 0 to 1, of shape (n,)."""
+    """Return the leverage of each test, (n,): how much its prediction follows its measurement, from 0 to 1."""
     slopes = fit.jacobian[0]
     found: Array = np.einsum("np,pq,nq->n", slopes, _inverse_normal(fit.jacobian)[0], slopes)
     return found
@@ -78,34 +78,34 @@ def replicate(
     seed: int,
     on_progress: Callable[[int], None] | None = None,
 ) -> Replicates:
-    """Fit the model to data made of the fit and residuals that are drawn anew.
+    """Fit the model to the fitted values plus resampled residuals.
 
-    A residual is smaller than the scatter of its test by √(1 - leverage), since the fit follows the test; it is
-    drawn scaled by that, and about the mean of its group.
+    Since the fit follows each test, its residual is smaller than its scatter by √(1 - leverage). Residuals are scaled
+    up by that and centred in their group before they are drawn.
 
     Parameters
     ----------
     model : callable
-        The model that was fitted.
+        The fitted model.
     fit : Solutions
-        The fit, of one set of data.
+        The fit to one set of data.
     bounds : Bounds
-        Of the parameters.
+        Bounds of the parameters.
     groups : ndarray of int, (n,)
-        Kinds of measurement; residuals are drawn within each.
+        Kind of each measurement; residuals are drawn within each kind.
     count : int
         Number of replicates.
     seed : int
-        Of the random numbers.
+        Seed of the random numbers.
     on_progress : callable, optional
-        Called with the number of replicates done after each batch.
+        Called with the number of replicates in each finished batch.
 
     Notes
     -----
     A. C. Davison and D. V. Hinkley, Bootstrap Methods and their Application, Cambridge 1997, section 6.2.3.
     """
     generator = np.random.default_rng(seed)
-    predicted = fit.residuals[0]  # of a model whose target is zero, as good as the prediction itself
+    predicted = fit.residuals[0]  # as good as the prediction, since the target of the model is zero
     scatter = predicted / np.sqrt(1.0 - np.minimum(leverage(fit), DECIDED_ALONE))
     drawn = np.empty((count, scatter.size))
     for group in np.unique(groups):
@@ -129,7 +129,7 @@ def replicate(
 def studentised_intervals(fit: Solutions, replicates: Replicates, confidence: float) -> tuple[Array, Array]:
     """Return the ends of the intervals, each (p,), from the distribution of (θ* - θ)/(standard error of θ*).
 
-    Replicates that do not determine a parameter have no say in its interval.
+    Replicates that do not determine a parameter do not count for its interval.
 
     Notes
     -----
@@ -144,7 +144,7 @@ def studentised_intervals(fit: Solutions, replicates: Replicates, confidence: fl
 
 
 def _inverse_normal(slopes: Array) -> Array:
-    """Return (JᵀJ)⁻¹, with zeros for parameters on which nothing depends, of shape (sets, p, p)."""
+    """Return (JᵀJ)⁻¹ of shape (sets, p, p), with zeros for parameters without influence."""
     normal, size = _scaled_normal(slopes)
     inverse = np.linalg.pinv(normal, rcond=SINGULAR, hermitian=True)
     seen = (size > 0.0).astype(np.float64)
@@ -154,14 +154,14 @@ def _inverse_normal(slopes: Array) -> Array:
 
 
 def _collinear(slopes: Array) -> NDArray[np.bool_]:
-    """Return of which sets the parameters that have an influence cannot be told apart."""
+    """Return the sets whose influential parameters cannot be told apart, as a mask (sets,)."""
     normal, _ = _scaled_normal(slopes)
     singular: NDArray[np.bool_] = np.linalg.eigvalsh(normal)[:, 0] < SINGULAR
     return singular
 
 
 def _scaled_normal(slopes: Array) -> tuple[Array, Array]:
-    """Return JᵀJ for columns of length one, and the lengths; one on the diagonal where the length is zero."""
+    """Return JᵀJ for columns scaled to length one, and the lengths; the diagonal is one even for length zero."""
     size = np.linalg.norm(slopes, axis=1)
     scaled = slopes / np.where(size > 0.0, size, 1.0)[:, None, :]
     normal = scaled.swapaxes(1, 2) @ scaled

@@ -1,4 +1,4 @@
-"""Wear laws in files: a table of the law and one of where its parameters come from."""
+"""Wear laws in TOML files: a table of the law, and one of the provenance of its parameters."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from wearlaw.settings.text_files import read_text
 
 
 def write_wear_law(path: str | os.PathLike[str], law: WearLaw, provenance: Mapping[str, Any]) -> None:
-    """Write a law into a TOML file that is there whole or not at all; `read_wear_law` reads it.
+    """Write a law to a TOML file, whole or not at all; `read_wear_law` reads it.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def write_wear_law(path: str | os.PathLike[str], law: WearLaw, provenance: Mappi
 
 
 def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Return what a TOML file holds, which describes the subject.
+    """Return the contents of a TOML file; errors name it by its subject.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
-    """Return the wear law that a TOML file describes in its table ``[wear_law]``.
+    """Return the wear law of the table ``[wear_law]`` in a TOML file.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Least squares within bounds, for one set of data and for thousands at once.
 
-All functions take a *model* of many parameter sets: from θ of shape (sets, p) to what it predicts for the n tests,
-(sets, n). Parameters are meant to be scaled: of order one, or logarithms of ratios.
+All functions take a *model* of many parameter sets, from θ of shape (sets, p) to predictions for the n tests of shape
+(sets, n). Parameters should be scaled: of order one, or logarithms of ratios.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ Model: TypeAlias = Callable[[Array], Array]
 """From parameter sets (sets, p) to predictions (sets, n)."""
 
 STEP = float(np.sqrt(np.finfo(np.float64).eps))
-"""Step of the difference quotients: its error and that of rounding are about equal."""
+"""Step of the difference quotients, for which truncation and rounding errors are about equal."""
 
 TOLERANCE = 1e-8
-"""Change of the parameters below which a fit has converged; that of the sum of squares, relatively, is its square."""
+"""Change of the parameters below which a fit has converged; for the sum of squares, its square as a relative change."""
 
 ITERATIONS = 100
-"""Iterations after which a fit has not converged; smooth problems take about ten."""
+"""Most iterations of a fit; smooth problems take about ten."""
 
 REFINED = 4
-"""How many of the starting points of `search` are refined, besides the one that is given."""
+"""Number of starting points that `search` refines, besides the given one."""
 
 SOFTEST, STIFFEST = 1e-12, 1e12
-"""Least and greatest damping. A step that does not help at the greatest one is as small as rounding: where the model
-has a kink, the best fit may lie on it, and the gradient then does not vanish."""
+"""Least and greatest damping. At the greatest one, a step is as small as rounding. A fit that it does not improve has
+converged: the best fit may lie on a kink of the model, where the gradient does not vanish."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,7 +84,7 @@ def jacobian(model: Model, theta: Array, predicted: Array, bounds: Bounds) -> Ar
     theta : ndarray, (sets, p)
         Parameters.
     predicted : ndarray, (sets, n)
-        What the model predicts there.
+        Predictions of the model there.
     bounds : Bounds
 
     Returns
@@ -95,21 +95,21 @@ def jacobian(model: Model, theta: Array, predicted: Array, bounds: Bounds) -> Ar
     step = STEP * np.maximum(np.abs(theta), 1.0)
     step = np.where(theta + step > bounds.high, -step, step)
     moved = theta[:, None, :] + step[:, None, :] * np.eye(count)
-    taken = np.einsum("mpp->mp", moved) - theta  # what the rounding of the sum has left of the step
+    taken = np.einsum("mpp->mp", moved) - theta  # the step that remains after rounding of the sum
     changed = model(moved.reshape(-1, count)).reshape(sets, count, -1)
     quotient: Array = ((changed - predicted[:, None, :]) / taken[:, :, None]).swapaxes(1, 2)
     return quotient
 
 
 def fit_many(model: Model, targets: Array, start: Array, bounds: Bounds) -> Solutions:
-    """Fit many sets of data at once, by Levenberg's and Marquardt's method projected to the bounds.
+    """Fit many sets of data at once by the Levenberg-Marquardt method, projected to the bounds.
 
     Parameters
     ----------
     model : callable
         The model.
     targets : ndarray, (sets, n)
-        What it should predict.
+        The data to fit.
     start : ndarray, (sets, p)
         First parameters, within the bounds.
     bounds : Bounds
@@ -166,17 +166,17 @@ def search(
     model : callable
         The model.
     target : ndarray, (n,)
-        What it should predict.
+        The data to fit.
     start : ndarray, (p,)
         The first starting point.
     bounds : Bounds
-        Within which the parameters stay.
+        Bounds of the parameters.
     near : Bounds
-        Within which the other starting points lie, evenly (Latin hypercube).
+        Range of the other starting points, a Latin hypercube.
     starts : int
-        How many others; they are evaluated in one batch, and the best few refined.
+        Number of other starting points. They are evaluated in one batch, and the best few refined.
     seed : int
-        Of the Latin hypercube.
+        Seed of the Latin hypercube.
 
     Returns
     -------
@@ -194,7 +194,7 @@ def search(
 
 
 class _State:
-    """Where the fits stand; those that have not ended are `active`."""
+    """The state of many fits; `active` lists those that have not ended."""
 
     def __init__(self, model: Model, targets: Array, theta: Array, bounds: Bounds) -> None:
         self.model, self.targets, self.bounds = model, targets, bounds
@@ -218,7 +218,7 @@ class _State:
         tried = predicted - self.targets[who]
         linear = residuals + np.einsum("mnp,mp->mn", slopes, step)
         before = _squares(residuals)
-        with np.errstate(invalid="ignore"):  # a model that overflows has not got better
+        with np.errstate(invalid="ignore"):  # a step that overflows is no improvement
             gain, hoped = before - _squares(tried), before - _squares(linear)
             better = gain > 0.0
         self._set_damping(who, better, gain, hoped)
@@ -231,7 +231,7 @@ class _State:
         self.active = who[~ended]
 
     def _step(self, who: NDArray[np.intp], theta: Array, slopes: Array, residuals: Array) -> Array:
-        """Return the damped steps; parameters that press against a bound stay."""
+        """Return the damped steps; parameters pressed against a bound do not move."""
         normal = slopes.swapaxes(1, 2) @ slopes
         gradient = np.einsum("mnp,mn->mp", slopes, residuals)
         pressed = ((theta <= self.bounds.low) & (gradient > 0.0)) | ((theta >= self.bounds.high) & (gradient < 0.0))

@@ -1,4 +1,4 @@
-"""What tests measured beside what a pipeline predicts for them, for many parameter sets at once."""
+"""Measurements beside the predictions of a pipeline, for many parameter sets at once."""
 
 from __future__ import annotations
 
@@ -21,34 +21,34 @@ from wearlaw.units.quantities import in_unit
 from wearlaw.wear_tests.tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
-"""How measurements scatter: by a factor, by an amount, or as their stated uncertainties say."""
+"""Scatter of measurements: by a factor, by an amount, or by their stated uncertainties."""
 
 Observable: TypeAlias = Literal["wear_rate", "traction_coefficient"]
 
 FLOOR = 1e-300
-"""In place of a prediction of zero, whose logarithm no step could leave."""
+"""Replaces a prediction of zero, whose logarithm is infinite."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Observations:
-    """One kind of measurement, and how it is predicted.
+    """One kind of measurement, with the pipeline that predicts it.
 
     Attributes
     ----------
     observable : str
         "wear_rate" [kg/m/m²] or "traction_coefficient" [-].
     pipeline : Pipeline
-        What predicts it.
+        The pipeline that predicts it.
     tests : WearTests
-        Those in which it was measured, each with a label.
+        The tests with this measurement, each with a label.
     measured : ndarray, (n,)
-        In SI.
+        The measurements in SI.
     problem : Problem
-        Their contact problems, with a batch of one axis, (n,).
+        The contact problems of the tests, with batch shape (n,).
     scatter : str
-        How the measurements scatter.
+        Kind of scatter.
     unit : ndarray, (n,)
-        What the residuals are divided by; 1 for relative scatter.
+        Divisor of the residuals; 1 for relative scatter.
     """
 
     observable: Observable
@@ -60,11 +60,11 @@ class Observations:
     unit: Array
 
     def predicted(self, values: Mapping[str, Array]) -> Array:
-        """Return what is predicted for parameters in SI, each (sets,), of shape (sets, n)."""
+        """Return the predictions (sets, n) for parameters in SI, (sets,) each."""
         return predictions(self.observable, self.pipeline, self.problem, values)
 
     def residuals(self, values: Mapping[str, Array]) -> Array:
-        """Return the residuals for parameters in SI, each (sets,), of shape (sets, n)."""
+        """Return the residuals (sets, n) for parameters in SI, (sets,) each."""
         return self.compare(self.predicted(values))
 
     def compare(self, predicted: Array) -> Array:
@@ -74,7 +74,7 @@ class Observations:
         return (predicted - self.measured) / self.unit
 
     def in_shown_unit(self, predicted: Array) -> Array:
-        """Return the residuals (n,) as they are shown: those of absolute scatter in the unit of the measurement."""
+        """Return the residuals (n,) for tables: those of absolute scatter in the unit of the measurement."""
         if self.scatter == "absolute":
             return in_unit(predicted - self.measured, UNITS[self.observable])
         return self.compare(predicted)
@@ -91,7 +91,7 @@ def predictions(
         Which of the two.
     pipeline : Pipeline
     problem : Problem
-        With a batch of one axis, (n,).
+        With batch shape (n,).
     values : mapping of str to ndarray, (sets,)
         Parameters in SI.
 
@@ -114,7 +114,7 @@ def predictions(
 
 
 def wear_index_density(pipeline: Pipeline[...], problem: Problem) -> Array:
-    """Return the patch mean of Tγ/A [N/m²], of the batch shape."""
+    """Return Tγ/A [N/m²] of the whole patch, of the batch shape."""
     model = pipeline.contact_model
     power = problem.power(integrate_forces(model, problem))
     density: Array = np.abs(power) / patch_area(model, problem, pipeline.scale)
@@ -128,12 +128,12 @@ def observe(
     fits_friction: bool,
     scatter: Scatter,
 ) -> list[Observations]:
-    """Return what is fitted: wear rates, where there is a law, and tractions, where they tell the friction.
+    """Return the measurements to fit: wear rates if there is a law, and tractions if the friction is free.
 
     Raises
     ------
     FitError
-        If the tests do not hold what is needed.
+        If the tests lack a measurement or condition.
     """
     found = []
     if pipeline.laws:
@@ -161,7 +161,7 @@ def _observe(
     if scatter == "relative":
         _refuse_zeros(observable, selected, measured)
     conditions = selected.conditions(pipeline.contact_model, friction, pipeline.rig)
-    if fits_friction:  # a measured traction would take the place of the one that the friction coefficient gives
+    if fits_friction:  # else the measured traction would replace the one that follows from the friction coefficient
         conditions = {**conditions, FRICTION: friction}
         conditions.pop("traction_coefficient", None)
     problem = pipeline.posed(conditions, of_one_patch="fit")
@@ -205,7 +205,7 @@ def _refuse_rest(observable: Observable, tests: WearTests, problem: Problem) -> 
 
 
 def test_names(tests: WearTests, which: NDArray[np.bool_]) -> str:
-    """Return which tests are meant."""
+    """Return the labels of up to five tests, for messages."""
     numbers = np.flatnonzero(which)
     shown = [tests.labels[i] for i in numbers[:5]]
     more = f" and {numbers.size - 5} more" if numbers.size > 5 else ""

@@ -31,16 +31,16 @@ if TYPE_CHECKING:
     from wearlaw.pipeline.pipeline import Pipeline
 
 BETWEEN = 8
-"""Points of a curve from one test to the next."""
+"""Points of a curve between two tests."""
 
 MOST_SAMPLES = 200
-"""Replicates that make a band; more change it less than can be seen."""
+"""Most replicates for a band; more would not change it visibly."""
 
 SAME = 1e-3
-"""Relative difference up to which loads, friction and the like of tests are drawn as one curve."""
+"""Relative difference in load, friction and other conditions up to which tests share a curve."""
 
 VARIES = ("longitudinal_creepage", "traction_coefficient")
-"""What differs from test to test along one curve."""
+"""Quantities that vary along a curve."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -56,30 +56,30 @@ class Fit:
     covariance_intervals : dict of str to (Quantity, Quantity)
         Ends of the intervals by Student's t from the covariance.
     interval_method : str
-        "studentised bootstrap", or "Student's t" where there was no bootstrap.
+        "studentised bootstrap", or "Student's t" without a bootstrap.
     confidence : float
-        How often such intervals are meant to hold the true value.
+        Confidence level of the intervals.
     covariance : ndarray, (p, p)
         Of the values in SI, in the order of `parameters`, from the linearised model.
     law : WearLaw or None
-        The law with the fitted parameters; None where no law was given.
+        The law with the fitted parameters; None if no law was given.
     predict : Pipeline
         The pipeline with the fitted law.
     tests : WearTests
-        All tests that were given.
+        All given tests.
     scatter : str
-        "relative", "absolute" or "uncertainty": how residuals are formed.
+        Kind of residuals: "relative", "absolute" or "uncertainty".
     chi2 : float
-        Sum of the squared residuals; relative ones as ln(predicted/measured), absolute ones over the root mean square
-        of what was measured, others over the stated uncertainty.
+        Sum of the squared residuals: relative ones as ln(predicted/measured), absolute ones over the root mean square
+        of the measurements, others over the stated uncertainty.
     aic : float
-        Akaike's information criterion; differences between laws fitted to the same tests count.
+        Akaike's information criterion; only differences between laws fitted to the same tests matter.
     samples : dict of str to Quantity, (replicates,)
         The parameters of the bootstrap replicates.
     provenance : dict
         Versions, tests, settings and sums.
     observations : tuple of Observations
-        What was measured, and how it is predicted, with the fitted friction coefficient.
+        The measurements with their pipeline, and the fitted friction coefficient.
     """
 
     parameters: dict[str, Quantity]
@@ -118,8 +118,8 @@ class Fit:
     def rms(self) -> Quantity:
         """Root mean square of the residuals of the first kind of measurement.
 
-        A ratio for relative scatter, where 0.1 is a factor of about 1.1, or for stated uncertainties, else with the
-        unit of the measurement.
+        For relative scatter and stated uncertainties it is a ratio: 0.1 is then a factor of about 1.1. For absolute
+        scatter it has the unit of the measurement.
         """
         first = self.observations[0]
         mean = float(np.sqrt(np.mean(first.compare(self._fitted(first)) ** 2)))
@@ -129,7 +129,7 @@ class Fit:
 
     @property
     def residuals(self) -> pd.DataFrame:
-        """A row for each measurement: the test, what was measured and what is predicted, and the residual."""
+        """A row for each measurement: test, measured and predicted value, and residual."""
         rows = []
         for one in self.observations:
             predicted = self._fitted(one)
@@ -166,12 +166,12 @@ class Fit:
         return pd.DataFrame(rows)
 
     def to_toml(self, path: str | os.PathLike[str]) -> None:
-        """Write the fitted law and its provenance into a file that `read_wear_law` reads.
+        """Write the fitted law and its provenance to a file that `read_wear_law` reads.
 
         Raises
         ------
         FitError
-            If the friction coefficient alone was fitted, which is no law.
+            If only the friction coefficient was fitted, without a law.
         OutputError
             If the file cannot be written.
         """
@@ -180,7 +180,7 @@ class Fit:
         write_wear_law(path, self.law, self.provenance)
 
     def figure_data(self) -> FigureData:
-        """Return measured and fitted values, with the band that the bootstrap replicates span."""
+        """Return measured and fitted values, with the band of the bootstrap replicates."""
         return _figure_data(self)
 
     def plot(self) -> Figure:
@@ -243,7 +243,7 @@ def _panel(fit: Fit, one: Observations) -> Panel:
 
 
 def _fitted(fit: Fit, one: Observations, x: str) -> Curve:
-    """Return the fitted values: as a curve through the tests, or at each of them where their loads differ."""
+    """Return the fitted values: a curve through the tests, or points if their conditions differ."""
     together = _one_series(one.problem)
     problem = _between(one) if together else one.problem
     along = _along(fit, problem, x)
@@ -270,13 +270,13 @@ def _arrays(problem: Problem) -> dict[str, Array]:
 
 
 def _one_series(problem: Problem) -> bool:
-    """Return whether operating points differ in their longitudinal creepage alone, and in the traction measured."""
+    """Return whether operating points differ only in longitudinal creepage and measured traction."""
     others = (value for name, value in _arrays(problem).items() if name not in VARIES)
     return all(np.ptp(array) <= SAME * np.abs(array).mean() for array in others)
 
 
 def _between(one: Observations) -> Problem:
-    """Return operating points at the tests and between them, in the order of their creepage."""
+    """Return the operating points of the tests and points between them, in the order of their creepage."""
     problem = one.problem.forward()
     order = np.argsort(problem.creepage, kind="stable")
     places = np.arange(order.size, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""From the best fit and its replicates to what a user reads: the law with its calibration, intervals, provenance."""
+"""The summary of a fit for its user: the law with its calibration, intervals and provenance."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ from wearlaw.units.quantities import Quantity, in_unit
 from wearlaw.version import __version__
 
 DIGITS = 4
-"""Significant digits of the stated range of a fitted law, which is rounded outwards."""
+"""Significant digits of the stated range of a fitted law, rounded outwards."""
 
 
 def summarise(task: Task, best: Solutions, replicates: Replicates | None, confidence: float, seed: int) -> Fit:
-    """Return the fit of a task.
+    """Return the result of a fit.
 
     Raises
     ------
     FitError
-        If the fitted parameters do not make a law, or predict no wear where some was measured.
+        If the fitted parameters are not valid for the law, or predict no wear where some was measured.
     """
     free, theta = task.free, best.theta[0]
     values = free.columns(best.theta)
@@ -69,7 +69,7 @@ def summarise(task: Task, best: Solutions, replicates: Replicates | None, confid
 
 
 def _pairs(free: FreeParameters, ends: tuple[Array, Array]) -> dict[str, tuple[Quantity, Quantity]]:
-    low, high = (free.values(free.bounds.clip(end)) for end in ends)  # beyond the bounds nothing was searched
+    low, high = (free.values(free.bounds.clip(end)) for end in ends)  # the search did not go beyond the bounds
     return {
         name: (free.quantity(name, float(low[i])), free.quantity(name, float(high[i])))
         for i, name in enumerate(free.names)
@@ -101,11 +101,11 @@ def _fitted_law(
     try:
         return changed(law, of_law).fitted(_calibration(task, one))
     except ConfigurationError as error:
-        raise FitError(f"the best fit is no law, which bounds may help: {error}") from None
+        raise FitError(f"the best fit has parameters that the law does not accept; try bounds: {error}") from None
 
 
 def _calibration(task: Task, one: Observations) -> Calibration:
-    """Return what the parameters were fitted to."""
+    """Return the calibration of the fitted law."""
     predict = task.predict
     density = in_unit(wear_index_density(predict, one.problem), "N/mm^2")
     low, high = _rounded(float(density.min()), math.floor), _rounded(float(density.max()), math.ceil)
@@ -122,7 +122,7 @@ def _calibration(task: Task, one: Observations) -> Calibration:
 
 
 def _options(model: Model) -> tuple[tuple[str, str], ...]:
-    """Return the choices of a contact model, which make another theory of it."""
+    """Return the textual options of a contact model, which change its theory."""
     fields = ((name, getattr(model, name)) for name in type(model).model_fields)
     return tuple((name, value) for name, value in fields if isinstance(value, str))
 
@@ -143,7 +143,7 @@ def _rounded(value: float, rounding: Callable[[float], int]) -> float:
 
 
 def _sums(task: Task, best: Solutions) -> tuple[float, float]:
-    """Return the sum of squares and Akaike's criterion, with a scatter of its own for each kind of measurement."""
+    """Return the sum of squares and Akaike's criterion, with a separate scatter for each kind of measurement."""
     squares = (best.residuals[0] / task.weights) ** 2
     parameters = len(task.free.names)
     if task.scatter == "uncertainty" and len(task.observations) == 1:
@@ -157,7 +157,7 @@ def _sums(task: Task, best: Solutions) -> tuple[float, float]:
 def _provenance(
     task: Task, law: WearLaw | None, replicates: Replicates | None, seed: int, chi2: float, confidence: float
 ) -> dict[str, Any]:
-    """Return where a fit comes from, as a table that TOML can hold."""
+    """Return the provenance of a fit, as a TOML table."""
     model = task.predict.contact_model
     found = loader.installed()
     origin = {} if law is None else {"wear_law": found.wear_laws.distribution(law.name, type(law))}

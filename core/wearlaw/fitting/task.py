@@ -1,4 +1,4 @@
-"""A fit on its way: what is fitted to what, and the best fit of it."""
+"""The task of a fit: free parameters, measurements and weights, and solving for the best fit."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from wearlaw.units.quantities import QuantityLike, coefficient
 from wearlaw.wear_tests.tests import WearTests
 
 NEAR = 10.0
-"""How far from its first value a parameter starts at the most, up and down."""
+"""Starting points lie within this factor of the first value, up and down."""
 
 ROUNDS = 3
-"""How often the weights of two kinds of measurement are set by their scatter about the fit."""
+"""Iterations in which the scatter about the fit sets the weights of two kinds of measurement."""
 
 LEAST_GROUP = 4
-"""Measurements of a kind from which their scatter is estimated."""
+"""Least number of measurements of a kind to estimate their scatter."""
 
 
 @dataclass
 class Task:
-    """What is fitted to what, and the weights of the residuals."""
+    """The free parameters, the measurements, and the weights of the residuals."""
 
     predict: Pipeline[...]
     tests: WearTests
@@ -51,12 +51,12 @@ class Task:
         scatter: Literal["relative", "absolute"],
         bounds: Mapping[str, tuple[QuantityLike | float, QuantityLike | float]],
     ) -> Task:
-        """Return what is to be done.
+        """Return the task for the arguments of `fit`.
 
         Raises
         ------
         FitError
-            If the tests do not hold what is needed, or a parameter is not known.
+            If the tests lack a measurement or condition, or a parameter is unknown.
         """
         law, friction = None, _one_value(friction)
         if not isinstance(predict, Pipeline):
@@ -81,7 +81,7 @@ class Task:
 
     @property
     def groups(self) -> NDArray[np.intp]:
-        """The number of the kind of each measurement, (n,)."""
+        """The index of the kind of each measurement, (n,)."""
         return np.repeat(np.arange(len(self.observations)), [one.measured.size for one in self.observations])
 
     def model(self, theta: Array) -> Array:
@@ -95,7 +95,7 @@ class Task:
         Raises
         ------
         FitError
-            If it has not converged, or the tests do not determine it.
+            If the fit has not converged, or the tests do not determine it.
         """
         bounds, first = self.free.bounds, np.zeros(len(self.free.names))
         target = np.zeros(self.weights.size)
@@ -135,7 +135,7 @@ def _one_value(friction: float | None) -> float | None:
 
 
 def _first_friction(tests: WearTests, given: float | None) -> float:
-    """Return a friction coefficient to start from: the given one, that of the tests, or the greatest traction."""
+    """Return a starting value of the friction coefficient: given, from the tests, or the greatest traction."""
     traction = tests.columns.get("traction_coefficient")
     if traction is None or np.isnan(traction).all():
         raise FitError(

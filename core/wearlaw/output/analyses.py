@@ -1,4 +1,4 @@
-"""Writing the results of a fit, of a comparison, or of how uncertain the predictions of a case are."""
+"""Writing the results of a fit, a comparison or an uncertainty analysis."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def write_fit(
     fit : Fit
         What to write.
     notes : sequence of str
-        What a reader of the fit must know.
+        Remarks for the reader.
     folder : Path
         Where to.
     figure_formats : sequence of str
@@ -101,7 +101,7 @@ def _write(
     figure_formats: Sequence[FigureFormat],
     latex: bool,
 ) -> list[str]:
-    """Write tables, a figure and a record of it all."""
+    """Write tables, a figure and a JSON record."""
     try:
         names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
         names += save_figure(figure, folder, figure.name, figure_formats)
@@ -120,7 +120,7 @@ def write_uncertainty(
     figure_formats: Sequence[FigureFormat] = ("png",),
     latex: bool = False,
 ) -> list[str]:
-    """Write tables, figures and a record of it all into an empty folder, and return the names of the files.
+    """Write tables, figures and a JSON record into an empty folder, and return the names of the files.
 
     Raises
     ------

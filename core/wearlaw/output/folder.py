@@ -1,4 +1,4 @@
-"""A folder of results: there whole or not at all, with a list of its files, and never at the cost of other files."""
+"""A folder of results: written whole or not at all, with a list of its files, without harm to other files."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from wearlaw.errors import OutputError
 from wearlaw.version import __version__
 
 MANIFEST = ".wearlaw.json"
-"""The list of the files that wearlaw wrote into a folder, which are all that it replaces there."""
+"""Manifest of the files that wearlaw wrote into a folder; it replaces no others."""
 
 
 class ElsewhereError(OutputError):
-    """Results are whole, but in another folder than the one asked for."""
+    """The results are complete, but in another folder than the one asked for."""
 
 
 @dataclass(frozen=True)
 class _Earlier:
-    """Results that are to be replaced.
+    """Earlier results, to be replaced.
 
     Attributes
     ----------
     files : frozenset of str
-        What wearlaw wrote, relative to the folder.
+        The files that wearlaw wrote, relative to the folder.
     identity : tuple of int
-        Of the manifest, to tell the folder from another that took its place.
+        Inode and time of the manifest, to recognise the folder.
     """
 
     files: frozenset[str]
@@ -42,24 +42,24 @@ class _Earlier:
 
 @contextmanager
 def fresh_folder(folder: Path, overwrite: bool = False, marker: str | None = None) -> Iterator[Path]:
-    """Yield a temporary folder that takes the place of `folder` if all goes well.
+    """Yield a temporary folder that replaces `folder` on success.
 
     Parameters
     ----------
     folder : Path
-        A folder that is empty or does not exist, or whose files are to be replaced.
+        A folder that is empty, does not exist, or holds earlier results to replace.
     overwrite : bool
-        Whether to replace the files that the manifest of an earlier folder lists. Others stay.
+        Whether to replace the files listed in the manifest of earlier results. Other files stay.
     marker : str, optional
-        A file of the results, by which earlier ones of the same kind are known. Without it no manifest is written.
+        A file that all results of this kind have, to recognise earlier ones. Without it no manifest is written.
 
     Raises
     ------
     OutputError
-        At once, if `folder` cannot be written or holds something that is not to be overwritten.
+        At once, if `folder` cannot be written or holds something that must not be overwritten.
     ElsewhereError
-        At the end, if something else has taken `folder` meanwhile, or a file in it that is not wearlaw's has the name
-        of a new one. The new files are then in a folder beside it, which the message names.
+        At the end, if something else has taken `folder` meanwhile, or one of the user's files in it has the name of a
+        new one. The results are then in a folder beside it, which the message names.
     """
     with _os_errors_of(folder):
         target = folder.resolve()
@@ -68,7 +68,7 @@ def fresh_folder(folder: Path, overwrite: bool = False, marker: str | None = Non
         temporary = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=nearest))
     inside, replaced = temporary / "results", temporary / "replaced"
     try:
-        inside.mkdir()  # by itself, since only the user may enter what mkdtemp makes
+        inside.mkdir()  # a folder inside, since mkdtemp makes one that only the user may enter
         yield inside
         try:
             with _os_errors_of(folder):
@@ -85,7 +85,7 @@ def fresh_folder(folder: Path, overwrite: bool = False, marker: str | None = Non
             raise ElsewhereError(f"{error}. The results are in '{beside}'") from None
     finally:
         shutil.rmtree(inside, ignore_errors=True)
-        with suppress(OSError):  # not empty if something of others could not be put back
+        with suppress(OSError):  # not empty if other files could not be put back
             temporary.rmdir()
 
 
@@ -102,7 +102,7 @@ def _os_errors_of(folder: Path) -> Iterator[None]:
 
 
 def _earlier(folder: Path, target: Path, overwrite: bool, marker: str | None) -> _Earlier | None:
-    """Return the results that are to be replaced, or None if the place is free."""
+    """Return the earlier results to replace, or None if the place is free."""
     if not target.exists():
         return None
     if not target.is_dir():
@@ -122,7 +122,7 @@ def _earlier(folder: Path, target: Path, overwrite: bool, marker: str | None) ->
 
 
 def _listed(folder: Path) -> frozenset[str]:
-    """Return the files that wearlaw wrote into a folder, the manifest among them; none without a manifest."""
+    """Return the files in a folder's manifest and the manifest itself, or none without one."""
     try:
         found: Any = json.loads((folder / MANIFEST).read_bytes())
         return frozenset([MANIFEST, *map(str, found["files"])])
@@ -131,7 +131,7 @@ def _listed(folder: Path) -> frozenset[str]:
 
 
 def _identity(folder: Path) -> tuple[int, ...] | None:
-    """Return what tells the manifest of a folder from any other, or None without one."""
+    """Return inode and time of a folder's manifest, or None without one."""
     try:
         found = (folder / MANIFEST).stat()
     except OSError:
@@ -149,11 +149,11 @@ def _files(folder: Path) -> list[str]:
 
 
 def _taken(folder: Path) -> OutputError:
-    return OutputError(f"output: '{folder}' was taken by another run or program meanwhile, and is left as it is")
+    return OutputError(f"output: '{folder}' was meanwhile taken by another run or program, and is left unchanged")
 
 
 def _put(inside: Path, folder: Path, target: Path) -> None:
-    """Put new results in a place that was free, unless something else is there now."""
+    """Move new results to a place that was free, unless something else is there now."""
     target.parent.mkdir(parents=True, exist_ok=True)
     try:
         with suppress(FileNotFoundError):
@@ -166,7 +166,7 @@ def _put(inside: Path, folder: Path, target: Path) -> None:
 
 
 def _replace(inside: Path, folder: Path, target: Path, replaced: Path, earlier: _Earlier) -> None:
-    """Put new results in the place of earlier ones, which stay if that fails."""
+    """Replace earlier results by new ones; the earlier ones stay if that fails."""
     if _identity(target) != earlier.identity:
         raise _taken(folder)
     try:
@@ -188,7 +188,7 @@ def _replace(inside: Path, folder: Path, target: Path, replaced: Path, earlier: 
 
 
 def _others(folder: Path, ours: frozenset[str], new: frozenset[str], within: str = "") -> Iterator[str]:
-    """Yield what others have put into a folder: files, and folders with no file of wearlaw below them."""
+    """Yield the other contents of a folder: files, and whole folders without a file of wearlaw."""
     for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
         name, is_folder = f"{within}{entry.name}", entry.is_dir(follow_symlinks=False)
         if is_folder and any(one.startswith(f"{name}/") for one in ours | new):
@@ -198,7 +198,7 @@ def _others(folder: Path, ours: frozenset[str], new: frozenset[str], within: str
 
 
 def _check_names(folder: Path, others: list[str], new: frozenset[str]) -> None:
-    """Refuse to replace a file that is not wearlaw's."""
+    """Raise an error if a new file has the name of a file that wearlaw did not write."""
     for name in others:
         if name in new or any(one.startswith(f"{name}/") for one in new):
             raise OutputError(
@@ -212,12 +212,13 @@ def _restore(replaced: Path, folder: Path, target: Path) -> None:
         replaced.rename(target)
     except OSError as error:
         raise OutputError(
-            f"output: what '{folder}' held is now in '{replaced}', and cannot be moved back: {error.strerror or error}"
+            f"output: the earlier contents of '{folder}' are now in '{replaced}', and could not be moved back:"
+            f" {error.strerror or error}"
         ) from None
 
 
 def _carry_over(names: list[str], replaced: Path, folder: Path, target: Path) -> None:
-    """Move files that are not wearlaw's from the earlier folder to the new one."""
+    """Move the other files from the earlier folder to the new one."""
     try:
         for name in names:
             for parent in reversed(Path(name).parents[:-1]):
@@ -231,8 +232,8 @@ def _carry_over(names: list[str], replaced: Path, folder: Path, target: Path) ->
 
 
 def _remove(folder: Path, files: frozenset[str]) -> None:
-    """Remove a folder with some files below it; what else is there, if anything, stays."""
-    for path in (*sorted(folder.rglob("*"), reverse=True), folder):  # what a folder holds comes before it
+    """Remove some files of a folder, then the folder if it is empty."""
+    for path in (*sorted(folder.rglob("*"), reverse=True), folder):  # the contents of a folder come before it
         with suppress(OSError):
             if path.is_dir() and not path.is_symlink():
                 path.rmdir()
@@ -241,7 +242,7 @@ def _remove(folder: Path, files: frozenset[str]) -> None:
 
 
 def _put_beside(inside: Path, target: Path) -> Path | None:
-    """Put results into the first folder of that name and a number that is free; return None if that fails."""
+    """Move results to the first free folder of that name with a number; return None if that fails."""
     numbered = (target.with_name(f"{target.name}-{number}") for number in itertools.count(2))
     beside = next(path for path in numbered if not os.path.lexists(path))
     try:

@@ -28,21 +28,21 @@ FIGURES = "figures"
 REPORT = "report.html"
 TABLES = "tables"
 COPIES = 2
-"""How often a result is in memory: as it was computed, and among those of the other pairs."""
+"""Copies of a result in memory: as computed, and stacked with those of the other pairs."""
 ROW_IN_MEMORY, ROW_ON_DISK = 800, 400
-"""Bytes that a row of the table of results takes in memory, measured, and as CSV."""
+"""Bytes of a row of the table of results in memory (measured) and as CSV."""
 METADATA: dict[FigureFormat, Any] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
-"""What matplotlib would write into a figure, and must not, for the same bytes each time."""
+"""Metadata to suppress in each format, so that the same figure gives the same bytes."""
 T = TypeVar("T")
 
 
 def check_room(case: Case, folder: Path) -> None:
-    """Refuse a case whose results would not fit into memory or on the disk.
+    """Raise an error if the results of a case would not fit into memory or on the disk.
 
     Raises
     ------
     InputError
-        With the size that is needed.
+        If they would not; the message says how much they need.
     """
     count = numbers(case)
     rows = sum(grid.size for grid in case.sweeps.values()) * len(case.contact_models) * len(case.wear_laws)
@@ -70,7 +70,7 @@ def write(
     latex : bool
         Whether the tables are also written for LaTeX.
     on_stage : callable, optional
-        Called with what is written next, to show progress.
+        Called with a text for each stage, to show progress.
 
     Raises
     ------
@@ -134,7 +134,7 @@ def save_figure(figure: FigureData, folder: Path, name: str, formats: Sequence[F
 
 
 def _by_name(kind: str, named: Iterable[tuple[str, T]]) -> dict[str, T]:
-    """Return things by the names of their files."""
+    """Return things by the names of their files, which must differ and be identifiers."""
     found: dict[str, T] = {}
     for name, thing in named:
         if name in found or not name.isidentifier():
@@ -158,7 +158,7 @@ def write_netcdf(study: Study, path: Path) -> None:
 def table(study: Study) -> pd.DataFrame:
     """Return the results of all sweeps as one tidy table, a row for each pair at each operating point.
 
-    What a sweep does not have stays empty there.
+    Columns that a sweep lacks stay empty.
     """
     rows = pd.concat([_rows(name, sweep) for name, sweep in study.sweeps.items()], ignore_index=True)
     units = {**UNITS, **study.case.units}

@@ -1,6 +1,6 @@
-"""Figures to hover over and zoom into: what plotly.js draws of a `FigureData`.
+"""Interactive figures: a `FigureData` as plotly.js takes it.
 
-Colours, line styles and markers are those of the figures that matplotlib draws.
+Colours, line styles and markers match the figures drawn by matplotlib.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ ROW_HEIGHT = 380
 """Of a row of panels, in pixels."""
 
 LONG = 30
-"""Letters beyond which a legend stands below the panels."""
+"""Letters of a label beyond which the legend stands below the panels."""
 
 Json = dict[str, Any]
 Ends = tuple[float, float]
@@ -68,20 +68,20 @@ def plotly_figure(figure: FigureData) -> Json:
 
 
 def _bands(figure: FigureData) -> Json:
-    """Return the title of the legend, which says what bands are, if there are any."""
+    """Return the title of the legend, which explains the bands, if there are any."""
     return {"title": {"text": literal(f"bands: {figure.bands}")}} if has_band(figure) else {}
 
 
 def literal(text: str) -> str:
-    """Return a text that plotly.js shows as it is: no tag, no entity, no template of its own.
+    """Escape a text, so that plotly.js shows tags, entities and templates literally.
 
-    A dollar sign needs nothing, since there is no MathJax in the page.
+    Dollar signs need no escape: the page has no MathJax.
     """
     return html.escape(text, quote=False).replace("%", "&#37;")
 
 
 def _traces(curve: Curve, panel: Panel, number: str, markers: bool) -> list[Json]:
-    """Return the band of a curve, if it has one, and the curve."""
+    """Return the traces of a curve: its band, if any, and the line."""
     colour = PALETTE[curve.colour % len(PALETTE)]
     common: Json = {
         "type": "scatter",
@@ -119,7 +119,7 @@ def _marker(curve: Curve, colour: str) -> Json:
 
 
 def _sparse(curve: Curve, panel: Panel) -> Json:
-    """Show the markers of some points of a line alone: plotly.js would choose them without regard to where they are."""
+    """Show markers at some points only: plotly.js would space them by index, not along the line."""
     return {"selectedpoints": marked_points(curve, panel), "unselected": {"marker": {"opacity": 0}}}
 
 
@@ -137,7 +137,7 @@ def _bars(y: Array, low: Array, high: Array, colour: str) -> Json:
 
 
 def _band(curve: Curve, panel: Panel, colour: str) -> Json:
-    """Return the outline of a band, once around, without what its axes cannot show."""
+    """Return the closed outline of a band, without points that its axes cannot show."""
     x, low, high = (np.asarray(values, dtype=float) for values in (curve.x, curve.low, curve.high))
     seen = np.isfinite(x) & np.isfinite(low) & np.isfinite(high)
     for values, axis in ((x, panel.x), (low, panel.y), (high, panel.y)):
@@ -174,7 +174,7 @@ def _heading(panel: Panel, number: str) -> Json:
 
 
 def _places(count: int) -> list[tuple[Ends, Ends]]:
-    """Return where each panel is, across and up: in rows of two, and an odd one first over a whole row."""
+    """Return the horizontal and vertical span of each panel: rows of two, an odd first panel over a whole row."""
     rows = [1] * (count % 2) + [2] * (count // 2)
     ups = reversed(_spans(len(rows)))
     return [(across, up) for in_row, up in zip(rows, ups, strict=True) for across in _spans(in_row)]
@@ -187,5 +187,5 @@ def _spans(count: int) -> list[Ends]:
 
 
 def _numbers(values: Array) -> list[float | None]:
-    """Return numbers as JSON has them, to seven digits: no screen shows more, and the page stays half as long."""
+    """Return numbers for JSON with seven digits: no screen shows more, and the page is half as long."""
     return [float(f"{value:.7g}") if np.isfinite(value) else None for value in np.asarray(values, dtype=float)]

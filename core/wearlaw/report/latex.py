@@ -1,4 +1,4 @@
-r"""Tables for LaTeX, with the rules of booktabs: a paper takes one in by \input."""
+r"""Tables for LaTeX in the style of booktabs, for \input into a paper."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ _LOWERED = str.maketrans("₀₁₂₃₄₅₆₇₈₉ᵢᵣ", "0123456789ir")
 _RAISED_TEXT = re.compile("[⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹]+")
 _LOWERED_TEXT = re.compile("[₀₁₂₃₄₅₆₇₈₉ᵢᵣ]+")
 LONG = 40
-"""Letters beyond which a column breaks its lines."""
+"""Letters beyond which a text column wraps."""
 
 
 def latex_table(frame: pd.DataFrame) -> str:
-    """Return a tabular of a table; the units stand where they stand in it, in the heads of the columns."""
+    """Return a table as a tabular, with the units in the heads of its columns."""
     rows = [[cell(value) for value in row] for row in frame.itertuples(index=False, name=None)]
     lines = [
         r"% \usepackage{booktabs}",
@@ -56,7 +56,7 @@ def latex_table(frame: pd.DataFrame) -> str:
 
 
 def cell(value: Any) -> str:
-    """Return a value as LaTeX shows it."""
+    """Return a value as LaTeX source."""
     shown = tables.cell(value)
     if not shown.number:
         return escaped(shown.text)
@@ -65,7 +65,7 @@ def cell(value: Any) -> str:
 
 
 def escaped(text: str) -> str:
-    """Return a text that LaTeX prints as it is."""
+    """Escape a text for LaTeX."""
     text = re.sub("-(?=-)", "-{}", " ".join(text.split()).translate(_SYMBOLS))  # two hyphens would become a dash
     text = _RAISED_TEXT.sub(lambda found: rf"\textsuperscript{{{found[0].translate(_RAISED)}}}", text)
     return _LOWERED_TEXT.sub(lambda found: rf"\textsubscript{{{found[0].translate(_LOWERED)}}}", text)
@@ -73,12 +73,12 @@ def escaped(text: str) -> str:
 
 def _row(cells: list[str]) -> str:
     row = " & ".join(cells)
-    # Behind the line above, LaTeX would take a bracket for an option of the command there.
+    # After the \\ of the line above, LaTeX would read a bracket or star as an option of it.
     return (r"{}" if row.startswith(("[", "*")) else "") + row + r" \\"
 
 
 def _columns(frame: pd.DataFrame) -> str:
-    """Return the alignment of each column: numbers to the right, long texts in lines."""
+    """Return the alignment of each column: numbers right, long texts wrapped."""
     kinds = []
     for number, dtype in enumerate(frame.dtypes):
         longest = max((len(str(value)) for value in frame.iloc[:, number]), default=0)

@@ -1,6 +1,6 @@
 """The report of a study: one page that opens offline in any browser.
 
-It loads nothing: plotly.js stands in it, which is nearly all of its 5 MB, and its security policy forbids requests.
+The page contains plotly.js, nearly all of its 5 MB. It loads nothing, and its security policy forbids requests.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def report(study: Study, case_text: str) -> str:
     Parameters
     ----------
     study : Study
-        What it shows.
+        The study to show.
     case_text : str
         The case, as TOML.
     """
@@ -47,7 +47,7 @@ def report(study: Study, case_text: str) -> str:
 
 @cache
 def _template() -> Template:
-    """Return the template of the page; compiling it takes longer than filling it in."""
+    """Return the template of the page, compiled once: that takes longer than rendering."""
     environment = Environment(
         autoescape=True,
         loader=PackageLoader("wearlaw.report"),
@@ -62,7 +62,7 @@ def _template() -> Template:
 
 
 def cells(frame: pd.DataFrame) -> tuple[list[Cell], list[list[Cell]]]:
-    """Return the heads of a table and its rows; the head of a column of numbers stands to the right, as they do."""
+    """Return the heads and the rows of a table; heads of numeric columns are aligned like numbers."""
     rows = [[_printed(cell(value)) for value in row] for row in frame.itertuples(index=False, name=None)]
     heads = [
         Cell(str(head), number=any(row[number].number for row in rows)) for number, head in enumerate(frame.columns)
@@ -71,7 +71,7 @@ def cells(frame: pd.DataFrame) -> tuple[list[Cell], list[list[Cell]]]:
 
 
 def paragraphs(text: str) -> list[str]:
-    """Return the paragraphs of a text, which blank lines separate."""
+    """Split a text into paragraphs at blank lines."""
     return [part for part in re.split(r"\n\s*\n", text.strip()) if part]
 
 
@@ -81,12 +81,12 @@ def spaced(name: str) -> str:
 
 
 def _heading(figure: FigureData, study: Study) -> str:
-    """Return the title of a figure, or what its name says where the title is that of the whole study."""
+    """Return the title of a figure, or its name in words if the title is that of the study."""
     return figure.title if figure.title != study.case.title else spaced(figure.name)
 
 
 def _printed(one: Cell) -> Cell:
-    """Return a cell in which a number has the minus sign of print."""
+    """Return a cell with typographic minus signs in its number."""
     if not one.number:
         return one
     return replace(one, text=one.text.replace("-", "−"), power=one.power.replace("-", "−"))

@@ -1,6 +1,6 @@
 """The tables of a study: wear rates of its sweeps, its models and their parameters, and those of its sections.
 
-Each can be written as CSV, with every digit, and for LaTeX, as it is shown.
+Each can be written as CSV with all digits, and for LaTeX with the digits shown.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from wearlaw.study.study import Study, used
 from wearlaw.units.registry import symbol
 
 COLUMNS = 5
-"""Values of the main axis at which wear rates are shown."""
+"""Number of values on the main axis at which wear rates are shown."""
 
 
 @dataclass(frozen=True, eq=False)
 class NamedTable:
-    """A table with the name of its file, an identifier, and its title; the heads of its columns hold the units."""
+    """A table with its file name, an identifier, and its title. The heads of its columns hold the units."""
 
     name: str
     title: str
@@ -39,7 +39,7 @@ class NamedTable:
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell of a table: a text, or a number with its power of ten if it has one."""
+    """A cell of a table: a text, or a number with its power of ten, if any."""
 
     text: str
     power: str = ""
@@ -47,7 +47,7 @@ class Cell:
 
 
 def cell(value: Any) -> Cell:
-    """Return the text of a table cell: numbers with four digits, empty if the value is missing."""
+    """Format a table cell: four significant digits, empty if the value is missing."""
     if value is None or value is pd.NA or value != value:
         return Cell("")
     if isinstance(value, (bool, np.bool_)):
@@ -74,7 +74,7 @@ def summaries(study: Study) -> list[NamedTable]:
 
 
 def _fixed(sweep: xarray.Dataset, creepage: str) -> str:
-    """Return at which values of its other axes a sweep is shown."""
+    """Return the values of the other axes at which a sweep is shown, in words."""
     main = main_axis(sweep, creepage)
     line = along_main_axis(sweep, creepage)
     others = [axis for axis in axes_of(sweep) if axis != main]
@@ -83,7 +83,7 @@ def _fixed(sweep: xarray.Dataset, creepage: str) -> str:
 
 
 def summary(sweep: xarray.Dataset, creepage: str) -> pd.DataFrame:
-    """Return wear rates at a few values of a sweep's main axis: a row for each pair, and for the ends of its band."""
+    """Return wear rates at a few values of the main axis, with a row for each pair and for the ends of its band."""
     axis = main_axis(sweep, creepage)
     line = along_main_axis(sweep, creepage)
     count = line.sizes[axis]
@@ -100,7 +100,7 @@ def summary(sweep: xarray.Dataset, creepage: str) -> pd.DataFrame:
 
 
 def profiles(study: Study) -> list[NamedTable]:
-    """Return a short table for each profile across the patch: where each body loses most, by pair."""
+    """Return a short table for each profile across the patch: the greatest depth on each body, by pair."""
     found = []
     for name, profile in study.profiles.items():
         columns: dict[str, Any] = {"pair": profile.pair.values} if "y" in profile.coords else {}
@@ -116,7 +116,7 @@ def profiles(study: Study) -> list[NamedTable]:
 
 
 def _per(profile: xarray.Dataset, study: Study) -> str:
-    """Return what the depths of the bodies are lost in."""
+    """Return the reference of each body's depth, such as per metre rolled."""
     return ", ".join(f"{body} {profile[f'{body}_depth'].attrs['long_name']}" for body in study.case.rig.bodies)
 
 
@@ -133,7 +133,7 @@ def parameters(study: Study) -> NamedTable:
 
 
 def models(study: Study) -> NamedTable:
-    """Return where each model comes from: the distribution, and the literature."""
+    """Return the distribution and the literature source of each model."""
     origins = used(study.case)
     rows = [
         (label, kind, origins[kind][model.name], model.source)
@@ -145,17 +145,17 @@ def models(study: Study) -> NamedTable:
 
 
 def _contact_models(study: Study) -> list[tuple[str, Model]]:
-    """Return the contact models that are used in any pair, with their labels."""
+    """Return the contact models of all pairs, with their labels."""
     return list({pair.contact_model: pair.pipeline.contact_model for pair in study.pairs}.items())
 
 
 def _wear_laws(study: Study) -> list[tuple[str, Model]]:
-    """Return the wear laws that are used in any pair, with their labels."""
+    """Return the wear laws of all pairs, with their labels."""
     return list({pair.wear_law: pair.pipeline.wear_law for pair in study.pairs}.items())
 
 
 def _fields(record: Configuration, within: str = "") -> Iterator[tuple[str, str, str]]:
-    """Yield name, value and meaning of each field that is set, and of the fields of records inside."""
+    """Yield name, value and meaning of each field that is set, including fields of nested records."""
     for name, meaning in field_docstrings(type(record)).items():
         value = getattr(record, name)
         if isinstance(value, Model):

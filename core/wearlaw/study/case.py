@@ -1,7 +1,7 @@
-"""Case files: a study written down in TOML, with units.
+"""Case files: studies in TOML, with units.
 
-A case names a rig, contact models, wear laws, and the operating points at which every pair of them is
-evaluated. `load_case` reads one from a file, or by the name of a case that is shipped with the package.
+A case names a rig, contact models, wear laws, and the operating points at which every pair of them is evaluated.
+`load_case` reads one from a file, or by the name of a case that a plugin ships.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ from wearlaw.study.uncertain_point import UncertainPoint
 ModelT = TypeVar("ModelT", bound=Model)
 
 CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
-"""The names under which a run writes its case, and the tests that it was given as a file."""
+"""Names of the files that a run writes: its case, and its measured tests if they came from a file."""
 
 
 def _models(value: Any) -> Any:
@@ -66,7 +66,7 @@ def _models(value: Any) -> Any:
 
 
 def _require(needed: Mapping[str, str]) -> None:
-    """Refuse to go on unless distributions are installed in the versions asked for.
+    """Raise an error unless distributions are installed in the versions asked for.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def _require(needed: Mapping[str, str]) -> None:
             allowed = SpecifierSet(versions)
         except InvalidSpecifier:
             raise InputError(
-                f"plugins.{name}: '{versions}' is no version range; write one such as '>=1.2,<2'"
+                f"plugins.{name}: '{versions}' is not a version range; write one such as '>=1.2,<2'"
             ) from None
         try:
             found = version(name)
@@ -105,14 +105,14 @@ ModelList = (BeforeValidator(_models), Field(json_schema_extra={"minItems": 1}))
 
 
 class Case(Configuration):
-    """A study: a rig, contact models and wear laws, and where to evaluate every pair of them."""
+    """A study: a rig, contact models, wear laws, and operating points at which every pair of them is evaluated."""
 
     title: str
-    """What the study is called in its results."""
+    """The title of the study in its results."""
     plugins: dict[str, str] = Field(default_factory=dict)
     """The distributions that the case needs, each with a version range such as ">=1.2,<2"; "" for any version."""
     rig: RigField
-    """The rig: its `type` and fields, or a `preset` such as "suros" with what differs from it."""
+    """The rig: its `type` and fields, or a `preset` such as "suros" with the fields that differ."""
     contact_models: Annotated[tuple[ContactModelField, ...], *ModelList]
     """The contact models, each a name or a table of its name and options."""
     wear_laws: Annotated[tuple[WearLawField, ...], *ModelList]
@@ -123,18 +123,18 @@ class Case(Configuration):
     """Single operating points at which the patch is shown, each under a name: stresses and slip along that of a line,
     wear across that of an ellipse."""
     uncertainty: dict[str, UncertainPoint] = Field(default_factory=dict)
-    """Operating points that are not known exactly, each under a name; for `wearlaw uncertainty`."""
+    """Uncertain operating points, each under a name; for `wearlaw uncertainty`."""
     measured: MeasuredTests | None = None
-    """Tests of a lab, to be shown beside the predictions."""
+    """Measured tests, to show beside the predictions."""
     sections: tuple[Annotated[str, AfterValidator(_section)], ...] = ()
     """The sections that plugins add to the report, by name."""
     figures: dict[str, FigureSpec] = Field(default_factory=dict)
-    """The figures, each under the name of its file; one of each kind for each sweep and profile where not given."""
+    """The figures, each under the name of its file. Default: one of each kind for each sweep and profile."""
 
     @model_validator(mode="before")
     @classmethod
     def _has_its_plugins(cls, fields: Any) -> Any:
-        """Say that a plugin is missing before anything else fails because it is missing."""
+        """Check for missing plugins first, before something else fails for lack of them."""
         if isinstance(fields, dict):
             needed = fields.get("plugins", {})
             if isinstance(needed, dict):
@@ -144,9 +144,9 @@ class Case(Configuration):
     @field_validator("sweeps", "profiles", "uncertainty")
     @classmethod
     def _fit_the_rig(cls, grids: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
-        """Find what is wrong with conditions when they are read, not when they are used."""
+        """Check conditions when the case is read, not when it runs."""
         rig = info.data.get("rig")
-        if rig is None:  # it is wrong itself
+        if rig is None:  # the rig itself is wrong
             return grids
         checked, wrong = {}, []
         for name, grid in grids.items():
@@ -214,12 +214,12 @@ class Case(Configuration):
 
 
 def case_text(name_or_path: str) -> str:
-    """Return the text of a case file, or of the case that a plugin ships under that name.
+    """Return the text of a case file, or of a shipped case by its name.
 
     Raises
     ------
     CaseError
-        If there is neither.
+        If there is no such file and no such case.
     UnknownModelError
         If several plugins ship a case of that name.
     """
@@ -267,7 +267,7 @@ def case_schema() -> dict[str, Any]:
 
 @contextmanager
 def _left_out(shelf: Shelf[Any], name: str) -> Iterator[None]:
-    """Leave a model that fails to give its schema out of it, with a warning."""
+    """Leave a model out, with a warning, if its schema raises an error."""
     try:
         yield
     except KeyboardInterrupt:
@@ -278,7 +278,7 @@ def _left_out(shelf: Shelf[Any], name: str) -> Iterator[None]:
 
 
 def _rig_tables(name: str, rig: type[Rig], definitions: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Give the schema of a rig's table: that of its fields, and one of each preset."""
+    """Yield the schemas of a rig's table: one with its fields, and one for each preset."""
     yield _model_schema(name, rig, definitions, "type")
     for preset in rig.presets():
         table = preset_fields(rig, preset).model_json_schema(ref_template=f"#/$defs/{name}.{preset}.{{model}}")
@@ -289,7 +289,7 @@ def _rig_tables(name: str, rig: type[Rig], definitions: dict[str, Any]) -> Itera
 
 
 def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
-    """Return the schemas of what names a rig: its name, a table with its type, or one with a preset of it alone."""
+    """Return the schemas that identify a rig: its name, a table with its type, or one with a preset of its own."""
     typed = {"type": "object", "properties": {"type": {"const": name}}, "required": ["type"]}
     presets = [preset for preset, owners in known_presets().items() if owners == [rig]]
     by_preset = {"type": "object", "properties": {"preset": {"enum": presets}}, "required": ["preset"]}
@@ -297,7 +297,7 @@ def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
 
 
 def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
-    """Return the schemas of the tables of a case that hold conditions of a rig."""
+    """Return the schemas of the tables of a case that hold a rig's conditions."""
     found = {}
     kinds: dict[str, Any] = {"sweeps": Condition, "profiles": Condition, "uncertainty": UncertainCondition}
     for field, annotation in kinds.items():
@@ -321,7 +321,7 @@ def _tables(shelf: Shelf[Any], definitions: dict[str, Any]) -> list[dict[str, An
 
 
 def _model_schema(name: str, model: type[Model], definitions: dict[str, Any], key: str = "model") -> dict[str, Any]:
-    """Return the schema of the table that configures a model; a model's own definitions join the others."""
+    """Return the schema of a model's table, and add its definitions to the others."""
     table = model.model_json_schema(ref_template=f"#/$defs/{name}.{{model}}")
     definitions.update({f"{name}.{inner}": value for inner, value in table.pop("$defs", {}).items()})
     table["properties"] = {key: {"const": name}, **table.get("properties", {})}
@@ -330,7 +330,7 @@ def _model_schema(name: str, model: type[Model], definitions: dict[str, Any], ke
 
 
 def _published(model: type[Model], field: str) -> bool:
-    """Return whether a field without a default gets its value from what the model's source publishes."""
+    """Return whether a field without a default takes a value published by the model's source."""
     try:
         return hasattr(model(), field)
     except InputError:
@@ -356,7 +356,7 @@ def load_case(name_or_path: str) -> Case:
 
 
 def _beside(name_or_path: str, fields: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields of a case with the path of its tests, which starts at the case file, as it is from here."""
+    """Return the fields of a case, with the path of its tests made relative to here instead of to the case file."""
     found, measured = loader.installed(), fields.get("measured")
     if isinstance(measured, dict) and name_or_path not in found.cases.providers:
         tests = measured.get("tests")
@@ -366,9 +366,9 @@ def _beside(name_or_path: str, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def written(case: Case) -> dict[str, str]:
-    """Return the files that let a case run again in any folder, by name: the case with every default, and its tests.
+    """Return the files that rerun a case in any folder, by name: the case with all defaults, and its measured tests.
 
-    Tests that a plugin ships are none of them.
+    Tests that a plugin ships need no file.
     """
     fields = case.model_dump(mode="json", by_alias=True, exclude_none=True)
     files = {}

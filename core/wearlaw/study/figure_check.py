@@ -1,4 +1,4 @@
-"""Whether a case has what its figures ask for, found when it is read and not when it has run."""
+"""Checks that a case can fill its figures, made when the case is read, not after it has run."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from wearlaw.study.grid import Grid
 
 @dataclass(frozen=True)
 class Variables:
-    """What a figure can show of a sweep or a profile.
+    """The variables of a sweep or a profile that a figure can show.
 
     Attributes
     ----------
     x, y : tuple of str
-        Along its axes.
+        Those for each axis.
     units : mapping of str to str
-        In which unit; those of wear across a patch differ from body to body, as in "wheel_depth".
+        The unit of each; wear across a patch has an entry for each body, such as "wheel_depth".
     """
 
     x: tuple[str, ...]
@@ -38,7 +38,7 @@ class Variables:
 
 @dataclass(frozen=True)
 class Contents:
-    """What a case has for its figures.
+    """The contents of a case that its figures can show.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Contents:
     units : mapping of str to str
         The unit in which each condition is shown.
     measured : collection of str
-        The variables that its measured tests have.
+        Variables of the measured tests.
     """
 
     rig: Rig
@@ -62,7 +62,7 @@ class Contents:
     _known: dict[tuple[str, str], Variables] = field(default_factory=dict)
 
     def problems(self, figures: Mapping[str, FigureSpec]) -> Iterator[Fault]:
-        """Give what figures ask for and the case does not have."""
+        """Yield the faults of figures: what they ask for and the case does not have."""
         for name, spec in figures.items():
             if not name.isidentifier():
                 yield Fault(("figures", name), "the name must be made of letters, digits and underscores")
@@ -92,7 +92,7 @@ class Contents:
             yield "measured", f"cannot show {' and '.join(missing)} of the measured tests, which {has}"
 
     def _variables(self, kind: str, name: str, grid: Grid) -> Variables:
-        """Return what a sweep or profile has, as predictions of its first operating point tell."""
+        """Return the variables of a sweep or profile, found by predicting its first operating point."""
         if (kind, name) not in self._known:
             problem = grid.problem(self.rig)
             predictions = list(self._predictions(problem))
@@ -101,9 +101,9 @@ class Contents:
         return self._known[kind, name]
 
     def _predictions(self, problem: Any) -> Iterator[Any]:
-        """Give a prediction of every contact model that solves a problem, with the first law that goes with it.
+        """Yield a prediction for each contact model that solves the problem, with the first law that fits it.
 
-        What is wrong with others is said where they are run.
+        Running the case reports the errors of the others.
         """
         for model in self.contact_models.values():
             found = next(filter(None, (self._prediction(model, law, problem) for law in self.wear_laws.values())), None)
@@ -113,7 +113,7 @@ class Contents:
     def _prediction(self, model: ContactModel, law: WearLaw, problem: Any) -> Any:
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore", WearlawWarning)  # running the case gives them
+                warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
                 check_geometry(self.rig, model, problem.geometry)
                 return (self.rig | model | law).predict(problem)
         except WearlawError:
@@ -139,7 +139,7 @@ class Contents:
         return Variables(("x", "y"), ACROSS, units)
 
     def _of_window(self, x: str, window: Window, known: Variables, across: bool) -> Iterator[tuple[str, str]]:
-        """Give what is wrong with a panel."""
+        """Yield the faults of a panel."""
         yield from _unknown("y", window.shown, known.y)
         across = across and known.y == ACROSS
         bodies = tuple(self.rig.bodies)
@@ -162,7 +162,7 @@ class Contents:
                 yield "y_range", message
 
     def _constant(self, x: str, grid: Grid) -> Iterator[tuple[str, str]]:
-        """Refuse an x axis along which nothing changes."""
+        """Yield a fault if nothing changes along the x axis."""
         axis = axis_along(grid, x, self.rig.creepage)
         of_point = x in OF_POINT or x in grid.given
         varies = not of_point or x == axis or axis not in UNITS or (x in OF_LOAD and axis in LOADS)
@@ -192,7 +192,7 @@ class Contents:
                 yield "contact_models", f"there is no {_choice(model, models)}"
 
     def _refusal(self, model: str, law: str, spec: FigureSpec, grid: Grid) -> str:
-        """Return why a pair has no results that the figure could show; nothing if it has."""
+        """Return why a pair has no results for the figure, or "" if it has."""
         contact_model = self.contact_models[model]
         if "traction_coefficient" in grid.given and not contact_model.uses_measured_traction:
             return f"{model} is left out there, since it computes the traction itself"
@@ -200,7 +200,7 @@ class Contents:
             return f"{model} does not resolve the patch"
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore", WearlawWarning)  # running the case gives them
+                warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
                 check_geometry(self.rig, contact_model, grid.problem(self.rig).geometry)
                 _ = self.rig | contact_model | self.wear_laws[law]
         except CompositionError as error:

@@ -1,4 +1,4 @@
-"""The figures that a case file asks for: what to plot against what, for which models, in which windows."""
+"""Figures as a case file describes them: variables, models, and ranges of the axes."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from wearlaw.study.grid import Grid
 from wearlaw.units.quantities import Unit, from_si
 
 OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "creepage")
-"""What a figure can show along the patch of a line; the creepage of the operating point is a level line there."""
+"""Variables along the patch of a line contact; the creepage of the operating point is a level line."""
 
 ACROSS = ("depth", "sliding_distance")
-"""What a figure can show across the patch of an ellipse, of one of the bodies."""
+"""Variables across the patch of an elliptic contact, for one of the bodies."""
 
 OF_PAIRS = ("wear_rate", "depth")
 """The variables that differ from law to law."""
@@ -41,33 +41,33 @@ Variables = Annotated[
     Field(min_length=1),
     WithJsonSchema({"anyOf": [_VARIABLE, {"type": "array", "items": _VARIABLE, "minItems": 1}]}),
 ]
-"""One variable, or several of one unit."""
+"""One variable, or several with the same unit."""
 
 Range = tuple[float | str, float | str]
-"""Two ends of an axis, each with its unit where the variable has one."""
+"""Two ends of an axis, each with its unit if the variable has one."""
 
 
 class Window(Configuration):
-    """One panel of a figure; what it does not give is as in the figure, but for the title."""
+    """A panel of a figure. It inherits all fields but the title from the figure."""
 
     title: str = ""
-    """What stands above it."""
+    """Title above the panel."""
     y: Variables | None = None
-    """What it shows: a variable, or several of one unit."""
+    """The variable to show, or several with the same unit."""
     body: str | None = None
-    """The body whose wear across the patch it shows, such as "wheel"; the first of the rig where not given."""
+    """The body whose wear across the patch is shown, such as "wheel". Default: the first of the rig."""
     x_range: Range | None = None
-    """Where the x axis begins and ends, as in ["0 N", "70 N"]; with the curves where not given."""
+    """Ends of the x axis, such as ["0 N", "70 N"]. Default: those of the curves."""
     y_range: Range | None = None
-    """Where the y axis begins and ends; so that all is seen where not given."""
+    """Ends of the y axis. Default: all values are visible."""
     x_scale: Scale | None = None
-    """Whether the x axis is linear, which it is where this is not given, or logarithmic."""
+    """Linear or logarithmic x axis. Default: linear."""
     y_scale: Scale | None = None
-    """The same for the y axis."""
+    """Linear or logarithmic y axis. Default: linear."""
 
     @property
     def shown(self) -> tuple[str, ...]:
-        """The variables that it shows."""
+        """The variables to show."""
         return self.y or ()
 
 
@@ -75,21 +75,21 @@ class FigureSpec(Window):
     """A figure of a sweep, or of a profile of the patch."""
 
     caption: str = ""
-    """What a reader must know; the conditions where not given."""
+    """The caption. Default: the conditions."""
     sweep: str | None = None
-    """The sweep that it shows; give this or `profile`."""
+    """The sweep to show; give this or `profile`."""
     profile: str | None = None
-    """The profile that it shows."""
+    """The profile to show."""
     x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", *OF_CONTACT, *OF_POINT]})] = "x"
-    """The variable along the x axis; for a profile the position, "x" along the patch or "y" across it."""
+    """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it."""
     pairs: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
-    """The pairs whose wear rate it shows, such as "usfd on exact"; all where not given."""
+    """The pairs whose wear rates are shown, such as "usfd on exact". Default: all."""
     contact_models: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
-    """The contact models of which it shows other variables than wear rate; all where not given."""
+    """The contact models whose other variables are shown. Default: all."""
     measured: bool = False
-    """Whether it shows the measured tests."""
+    """Whether to show the measured tests."""
     panels: tuple[Window, ...] = ()
-    """Several panels, such as the whole and an enlargement of a part; one where not given."""
+    """Several panels, such as the whole and an enlarged part. Default: one."""
 
     @model_validator(mode="after")
     def _possible(self) -> FigureSpec:
@@ -99,14 +99,14 @@ class FigureSpec(Window):
         return self
 
     def windows(self) -> tuple[Window, ...]:
-        """Return the panels, each with all that it shows."""
+        """Return the panels, each with the fields that it inherits."""
         inherited = ("y", "body", "x_range", "y_range", "x_scale", "y_scale")
         common = {name: getattr(self, name) for name in inherited}
         own = [{name: value for name, value in panel if value is not None} for panel in self.panels] or [{}]
         return tuple(Window(**{**common, **window}) for window in own)
 
     def _problems(self) -> Iterator[tuple[tuple[str, ...], str]]:
-        """Give what is wrong with the fields by themselves, whatever the case holds."""
+        """Yield the faults of the fields that do not depend on the case."""
         if (self.sweep is None) == (self.profile is None):
             yield ("sweep",), "give either sweep or profile, which the figure shows"
             return
@@ -126,7 +126,7 @@ class FigureSpec(Window):
 
 
 def wrong_range(variable: str, unit: str, given: Range | None, scale: Scale | None) -> Iterator[str]:
-    """Give what is wrong with the ends of an axis whose variable is shown in a unit."""
+    """Yield the faults of the ends of an axis whose variable is shown in this unit."""
     if given is None:
         return
     try:
@@ -141,25 +141,26 @@ def wrong_range(variable: str, unit: str, given: Range | None, scale: Scale | No
 
 
 def ends(variable: str, unit: str, given: Range) -> tuple[float, float]:
-    """Return the ends of an axis in the unit in which its variable is shown.
+    """Return the ends of an axis in the unit of its variable.
 
     Raises
     ------
     UnitError
         If an end lacks a unit, or has one of another dimension.
     """
-    due = Unit(unit, positive=False)
+    expected = Unit(unit, positive=False)
     plain = [isinstance(end, float) and not unit for end in given]
     low, high = (
-        end if bare else from_si(due.si(end, variable), unit).magnitude for end, bare in zip(given, plain, strict=True)
+        end if bare else from_si(expected.si(end, variable), unit).magnitude
+        for end, bare in zip(given, plain, strict=True)
     )
     return float(low), float(high)
 
 
 def axis_along(grid: Grid, x: str, creepage: str) -> str:
-    """Return the axis of a grid that a figure runs along: what its x says, else the creepage, else the longest.
+    """Return the axis of a grid along which a figure runs: its x, else the creepage, else the longest axis.
 
-    Where only a rig of other people knows what the load is, the axes that it names itself come before the creepage.
+    For an x that depends on the load, the axis is the load, or the first condition that only the rig knows.
     """
     axes = grid.axes()
     loads = [name for name in axes if name in LOADS] or [name for name in axes if name not in UNITS]

@@ -1,7 +1,7 @@
-"""What the figures of a study show: those that its case asks for, or else one of each kind for all that it holds.
+"""The figures of a study: those of its case, or else one of each kind for each sweep and profile.
 
-The line style tells the contact model. The colour tells the wear law where a figure shows wear rates, the variable
-along the patch or where several are shown, and else the contact model too. Bands show the published range of a law's
+Line styles stand for contact models. Colours stand for wear laws in figures of wear rates, for variables along the
+patch or where several are shown, and otherwise for contact models too. Bands show the published range of a law's
 parameters.
 """
 
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
 
 
 def figures_of(results: Results) -> tuple[FigureData, ...]:
-    """Return what each figure of a study shows."""
+    """Return the data of each figure of a study."""
     asked = results.case.figures or dict(_usual(results))
     return tuple(_figure(results, name, spec) for name, spec in asked.items())
 
 
 def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
-    """Give the figures of a case that asks for none: wear and traction over each sweep, and each patch."""
+    """Yield the default figures: wear and traction over each sweep, and the fields or wear of each profile."""
     creepage = results.case.rig.creepage
     for name, sweep in results.sweeps.items():
         axis = main_axis(sweep, creepage)
@@ -77,7 +77,7 @@ def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
 
 
 def _conditions(grid: Grid, axis: str, units: Mapping[str, str]) -> dict[str, str]:
-    """Return the conditions that a figure does not run along, each with its value; other axes at their middle."""
+    """Return the fixed conditions of a figure in words; axes are at their middle value."""
     found = {}
     for name in grid.given:
         if name != axis:
@@ -88,7 +88,7 @@ def _conditions(grid: Grid, axis: str, units: Mapping[str, str]) -> dict[str, st
 
 
 def _over_sweep(results: Results, spec: FigureSpec, window: Window, axis: str) -> list[Curve]:
-    """Return the wear rate of each pair, or other variables of each contact model."""
+    """Return curves of the wear rate for each pair, or of other variables for each contact model."""
     line = along(results.sweeps[spec.sweep or ""], axis)
     shown = window.shown
     if shown == ("wear_rate",):
@@ -119,7 +119,7 @@ def _rate(results: Results, line: xarray.Dataset, x: str, pair: str) -> Curve:
 def _of_contact(
     results: Results, line: xarray.Dataset, x: str, shown: tuple[str, ...], variable: str, model: str, alike: int | None
 ) -> Curve:
-    """Return a variable of one contact model, or of all where they are alike."""
+    """Return the curve of a variable for one contact model, or for all if they agree."""
     along = _magnitude(line, x, model)
     dash = 0 if alike else _dash(results, model)
     several = name_of(variable) if alike else f"{name_of(variable)}, {model}"
@@ -133,14 +133,14 @@ def _of_contact(
 
 
 def _magnitude(line: xarray.Dataset, variable: str, model: str) -> Array:
-    """Return the magnitude of a variable; what depends on the contact is that of one contact model."""
+    """Return the magnitude of a variable, for one contact model if it depends on the model."""
     values = line[variable]
     magnitude: Array = abs(values.sel(contact_model=model) if "contact_model" in values.dims else values).values
     return magnitude
 
 
 def _measured(results: Results, x: str, y: str) -> Curve:
-    """Return measured points, as magnitudes like all that is drawn over a sweep."""
+    """Return the measured points, as magnitudes like all curves over a sweep."""
     measured = results.case.measured
     assert measured is not None
     values = measured_points(measured.data, results.case.rig)
@@ -160,7 +160,7 @@ def _measured(results: Results, x: str, y: str) -> Curve:
 
 
 def _along_the_patch(results: Results, spec: FigureSpec, window: Window) -> list[Curve]:
-    """Return variables along the patch: wear rate for each pair, others for each contact model that resolves it."""
+    """Return curves along the patch: wear rate for each pair, other variables for each contact model."""
     profile = results.profiles[spec.profile or ""]
     curves = []
     for variable in window.shown:
@@ -180,7 +180,7 @@ def _along_the_patch(results: Results, spec: FigureSpec, window: Window) -> list
 
 
 def _across_the_patch(results: Results, spec: FigureSpec, window: Window, body: str) -> list[Curve]:
-    """Return the wear of a body across the patch: the depth for each pair, the distance slid for each contact model."""
+    """Return curves across the patch for a body: depth for each pair, sliding distance for each contact model."""
     profile = results.profiles[spec.profile or ""]
     curves = []
     for variable in window.shown:
@@ -197,7 +197,7 @@ def _across_the_patch(results: Results, spec: FigureSpec, window: Window, body: 
 
 
 def _field(results: Results, profile: xarray.Dataset, variable: str, model: str) -> Curve:
-    """Return a field along the patch; the pressure is Hertz's for all contact models alike."""
+    """Return the curve of a field along the patch; all contact models have Hertz's pressure."""
     one = profile[variable].sel(contact_model=model).dropna("x")
     colour = OF_PROFILE.index(variable)
     if variable == "pressure":
@@ -220,7 +220,7 @@ def _axes(x: str, window: Window, curves: list[Curve], units: Mapping[str, str])
     x_ends = ends(x, units[x], window.x_range) if window.x_range else None
     seen = _seen(curves, x_ends)
     positive = seen[seen > 0]
-    # A logarithmic axis would hide all that is not positive, as at zero creepage.
+    # A logarithmic axis hides values that are not positive, as at zero creepage.
     x_scale: Scale = "log" if window.x_scale == "log" and any((c.x > 0).any() for c in curves) else "linear"
     y_scale: Scale = "log" if window.y_scale == "log" and positive.size else "linear"
     y_ends: tuple[float, float] | None
@@ -236,7 +236,7 @@ def _axes(x: str, window: Window, curves: list[Curve], units: Mapping[str, str])
 
 
 def _seen(curves: list[Curve], x_ends: tuple[float, float] | None) -> Array:
-    """Return all finite values of curves and bands between two ends of the x axis."""
+    """Return all finite values of curves and bands between the ends of the x axis."""
     low, high = x_ends or (-np.inf, np.inf)
     values = [
         y[(low <= curve.x) & (curve.x <= high) & np.isfinite(y)]

@@ -1,4 +1,4 @@
-"""Operating points as a case file describes them: conditions of a rig, of which some are axes of a grid."""
+"""Operating points as a case file describes them: conditions of a rig, some of which are axes of a grid."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from wearlaw.units.quantities import Q, Quantity, parse
 from wearlaw.units.registry import symbol
 
 MOST_POINTS = 10_000_000
-"""The largest grid that is taken on."""
+"""Largest grid that a case may have."""
 
 
 def _value(value: Any) -> Any:
-    """Refuse early what is no value of a condition."""
+    """Raise an error unless this may be a value of a condition."""
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise InputError(f"must be a value, a list of values, or a table with from, to and points; got {value!r}")
     if isinstance(value, float) and not np.isfinite(value):
@@ -38,16 +38,16 @@ Value = Annotated[float | str, BeforeValidator(_value)]
 
 
 class Axis(Configuration):
-    """Values of a condition from one end to the other."""
+    """Evenly spaced values of a condition."""
 
     start: Value = Field(alias="from")
-    """First value, with its unit where the condition has one."""
+    """First value, with its unit if the condition has one."""
     stop: Value = Field(alias="to")
     """Last value, with its unit."""
     points: Annotated[int, Field(ge=2, le=MOST_POINTS, strict=True)]
-    """How many values, ends included."""
+    """Number of values, ends included."""
     spacing: Literal["log", "linear"] = "linear"
-    """Whether neighbours stand in a constant ratio or at a constant distance."""
+    """Spacing of the values: "log" at a constant ratio, "linear" at a constant distance."""
 
     def values(self) -> tuple[Array, str | None]:
         """Return the values, and the unit of the first of them, None for plain numbers.
@@ -55,7 +55,7 @@ class Axis(Configuration):
         Raises
         ------
         InputError
-            If the ends do not go together.
+            If the ends have different dimensions, or a log axis touches zero.
         """
         (first, last), unit = _in_one_unit((self.start, self.stop))
         if self.spacing == "linear":
@@ -66,7 +66,7 @@ class Axis(Configuration):
 
 
 def _condition(value: Any) -> Any:
-    """Make an axis from a table, and refuse early what is neither that nor a value nor a list of values."""
+    """Make an axis from a table; raise an error unless this is an axis, a value or a list of values."""
     if isinstance(value, Axis):
         return value
     if isinstance(value, dict):
@@ -83,18 +83,18 @@ Condition = Annotated[float | str | tuple[float | str, ...] | Axis, BeforeValida
 
 
 class Grid(Configuration, extra="allow"):
-    """Conditions of operating points, by the names that the rig gives them; those with several values are axes."""
+    """Conditions of operating points, by the names that the rig gives them. Those with several values are axes."""
 
     __pydantic_extra__: dict[str, Condition]  # pyright: ignore[reportIncompatibleVariableOverride]
 
     @property
     def given(self) -> Mapping[str, Any]:
-        """The conditions as they were written."""
+        """The conditions as written in the case."""
         return self.__pydantic_extra__
 
     @model_validator(mode="after")
     def _has_axes(self) -> Grid:
-        """Find what is wrong with the axes by themselves, whatever the rig is."""
+        """Check the axes by themselves; the rig checks the conditions later."""
         wrong = []
         for name, value in self.given.items():
             try:
@@ -114,7 +114,7 @@ class Grid(Configuration, extra="allow"):
         return {name: Varying(name, *found) for name, found in read if found is not None}
 
     def axes(self) -> dict[str, int]:
-        """Return how many values each condition has that is an axis, in the order of the grid."""
+        """Return the number of values of each axis, in the order of the grid."""
         return {name: axis.values.size for name, axis in self._axes.items()}
 
     @property
@@ -128,7 +128,7 @@ class Grid(Configuration, extra="allow"):
         Raises
         ------
         ConfigurationError
-            If the rig does not take the conditions, which are tried at both ends of the axes.
+            If the rig does not take the conditions at both ends of the axes.
         """
         for end in (np.min, np.max):
             ends = {name: axis.given(float(end(axis.values))) for name, axis in self._axes.items()}
@@ -139,7 +139,7 @@ class Grid(Configuration, extra="allow"):
         return Grid(**{name: self.given[name] for name in known or self.given if name in self.given})
 
     def units(self) -> dict[str, str]:
-        """Return the units in which results show the conditions: as tables of results do, else as they were written."""
+        """Return the units of the conditions in results: the usual unit of a known variable, else as written."""
         found = {}
         for name, value in self.given.items():
             written = self._axes[name].unit if name in self._axes else _unit(value)
@@ -152,7 +152,7 @@ class Grid(Configuration, extra="allow"):
         Raises
         ------
         UnitError
-            If a condition is of another dimension there.
+            If a unit has another dimension than the condition.
         """
         varying = {
             name: Varying(name, *_converted(name, axis.values, axis.unit, units[name]))
@@ -161,7 +161,7 @@ class Grid(Configuration, extra="allow"):
         return Points({name: value for name, value in self.given.items() if name not in varying}, varying)
 
     def level(self, name: str, units: Mapping[str, str]) -> float | str:
-        """Return the value of a condition in the unit given for it, that in the middle of an axis; or its bare text."""
+        """Return the value of a condition in the given unit, or its text; for an axis, its middle value."""
         if name in self._axes:
             axis = self._axes[name]
             return float(_converted(name, axis.values[axis.values.size // 2], axis.unit, units[name])[0])
@@ -178,7 +178,7 @@ class Grid(Configuration, extra="allow"):
 
 
 def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
-    """Give what a rig finds wrong with conditions of one operating point, each under its name."""
+    """Yield the faults that a rig finds in the conditions of an operating point, each under its name."""
     known = rig.conditions()
     unknown = [name for name in given if known and name not in known]
     missing = [name for name in rig.needed() if name not in given]
@@ -198,13 +198,13 @@ def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
 
 
 def with_units(conditions: Mapping[str, Array]) -> dict[str, Any]:
-    """Return conditions of discs in SI as a rig takes them."""
+    """Return SI conditions of discs with units, as a rig takes them."""
     units = {"normal_force": "N", "normal_force_per_width": "N/m", "max_pressure": "Pa", "creepage": ""}
     return {name: Q(si, units[name]) if name in units else si for name, si in conditions.items()}
 
 
 def shown_unit(name: str, written: str | None) -> str:
-    """Return the unit in which results show a condition that was written in some unit, None for plain numbers."""
+    """Return the unit of a condition in results from the unit it was written in, None for plain numbers."""
     usual = UNITS.get(name)
     if usual is None or written is None:
         return written or ""
@@ -216,7 +216,7 @@ def shown_unit(name: str, written: str | None) -> str:
 
 
 def _values(value: Any) -> tuple[Array, str | None] | None:
-    """Return the values of an axis, or None if it is none."""
+    """Return the values of an axis, or None for a single value."""
     if isinstance(value, Axis):
         return value.values()
     if isinstance(value, tuple):
@@ -225,7 +225,7 @@ def _values(value: Any) -> tuple[Array, str | None] | None:
 
 
 def _in_one_unit(values: tuple[float | str, ...]) -> tuple[Array, str | None]:
-    """Return the numbers of values, all in the unit of the first one."""
+    """Return values as numbers in the unit of the first one."""
     if not any(isinstance(value, str) for value in values):
         return np.array(values, dtype=np.float64), None
     for value in values:
@@ -244,7 +244,7 @@ def _in_one_unit(values: tuple[float | str, ...]) -> tuple[Array, str | None]:
 
 
 def _quantity(value: Any) -> Quantity | None:
-    """Return a value with its unit, or None for a text that is no quantity, such as the name of something."""
+    """Return a value as a quantity, or None for a text that is none, such as a name."""
     try:
         return parse(value) if isinstance(value, str) else Q(value, "")
     except UnitError:
@@ -252,18 +252,18 @@ def _quantity(value: Any) -> Quantity | None:
 
 
 def _unit(value: Any) -> str | None:
-    """Return the unit that a value was written in."""
+    """Return the unit of a value as written."""
     quantity = _quantity(value) if isinstance(value, str) else None
     return None if quantity is None else _symbol(quantity)
 
 
 def _symbol(quantity: Quantity) -> str:
-    """Return the unit of a quantity in the way of `variables.UNITS`."""
+    """Return the unit of a quantity in the notation of `variables.UNITS`."""
     return symbol(quantity.units, "~C").replace("µ", "u").replace("**", "^")
 
 
 def _converted(name: str, values: Any, unit: str | None, wanted: str) -> tuple[Any, str | None]:
-    """Return numbers in the unit wanted, and that unit; plain numbers stay what they are."""
+    """Convert numbers to the unit wanted and return both; plain numbers stay as they are."""
     if unit is None or unit == wanted:
         return values, unit
     try:

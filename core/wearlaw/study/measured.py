@@ -21,25 +21,25 @@ from wearlaw.wear_tests.reader import parse_tests, text_of_tests
 from wearlaw.wear_tests.tests import WearTests
 
 OF_TESTS = ("half_width", "max_pressure", "normal_force", "normal_force_per_width", "creepage", "friction_coefficient")
-"""What is known of the conditions of tests, on a rig whose contact is a line."""
+"""Variables of the conditions of tests, on a rig with line contact."""
 
 OF_TRACTION = (
     "traction_coefficient", "tangential_force", "wear_index", "averaged_wear_index", "wear_index_density",
 )  # fmt: skip
-"""What is known of tests that have a traction."""
+"""Variables of tests with a measured traction."""
 
 
 class MeasuredTests(Configuration):
-    """Tests of a lab, to be shown beside the predictions."""
+    """Measured tests, to show beside the predictions."""
 
     label: str
-    """What the legend calls them."""
+    """Their name in the legend."""
     tests: str
-    """The name of tests that a plugin ships, or the path of a CSV file, from the folder of the case file."""
+    """The name of shipped tests, or the path of a CSV file relative to the case file."""
 
     @model_validator(mode="after")
     def _readable(self) -> MeasuredTests:
-        """Find what is wrong with the tests when the case is read, not when it has run."""
+        """Read the tests with the case, so that errors appear before it runs."""
         _ = self.data
         return self
 
@@ -55,24 +55,24 @@ class MeasuredTests(Configuration):
 
     @property
     def shipped(self) -> bool:
-        """Whether a plugin ships the tests; otherwise they are a file."""
+        """Whether a plugin ships the tests, rather than a file holding them."""
         return self.tests in loader.installed().test_sets.providers
 
 
 def known_variables(tests: WearTests) -> tuple[str, ...]:
-    """Return the variables that are known of tests."""
+    """Return the variables that tests have."""
     conditions = [name for name in OF_TESTS if name != "friction_coefficient" or name in tests.columns]
     traction = OF_TRACTION if "traction_coefficient" in tests.columns else ()
     return (*conditions, *traction, *(("wear_rate",) if "wear_rate" in tests.columns else ()))
 
 
 def check_rig(tests: WearTests, rig: Rig) -> None:
-    """Refuse tests that are not of a rig.
+    """Raise an error if tests do not belong to a rig.
 
     Raises
     ------
     InputError
-        If it does not take their conditions, or its contact is no line.
+        If the rig does not take their conditions, or does not make line contacts.
     """
     given, known = _conditions(tests), rig.conditions()
     other = [name for name in given if known and name not in known]
@@ -87,15 +87,15 @@ def check_rig(tests: WearTests, rig: Rig) -> None:
 def _conditions(tests: WearTests) -> dict[str, Any]:
     """Return the conditions of tests as a rig takes them."""
     load = next(name for name in LOADS if name in tests.columns)
-    friction = tests.columns.get("friction_coefficient", np.ones(len(tests)))  # nothing here depends on it
+    friction = tests.columns.get("friction_coefficient", np.ones(len(tests)))  # no variable here depends on it
     given = from_si(tests.columns[load], COLUMNS[load].unit)
     return {load: given, "creepage": tests.creepage, "friction_coefficient": friction}
 
 
 def measured_points(tests: WearTests, rig: Rig) -> dict[str, Array]:
-    """Return the variables of tests, each of shape (tests,), in the unit in which it is shown; NaN where unknown.
+    """Return the variables of tests, each of shape (tests,) in its usual unit, NaN where unknown.
 
-    The averaged wear index, which no test measures, is Tγ: so Tassini et al. (2010) compare them.
+    No test measures the averaged wear index. It is taken as Tγ, as Tassini et al. (2010) do.
     """
     problem = rig.checked_problem(_conditions(tests))
     force = tests.traction_coefficient.magnitude * problem.normal_force

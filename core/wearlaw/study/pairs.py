@@ -26,12 +26,12 @@ class Pair:
 
     @property
     def label(self) -> str:
-        """What the pair is called in results."""
+        """Name of the pair in results."""
         return f"{self.wear_law} on {self.contact_model}"
 
 
 def pairs_of(case: Case, notes: Notes) -> list[Pair]:
-    """Compose all pairs of a case, as `compose` does; the problem is that of its first sweep."""
+    """Compose all pairs of a case with `compose`, for the first operating point of its first sweep."""
     problem = next(iter(case.sweeps.values())).problem(case.rig)
     return compose(case.rig, labelled(case.contact_models), labelled(case.wear_laws), notes, problem)
 
@@ -43,7 +43,7 @@ def compose(
     notes: Notes,
     problem: Any = None,
 ) -> list[Pair]:
-    """Compose all pairs of models that can be; note those that cannot, and parameters that were fitted for others.
+    """Compose all possible pairs, and note impossible ones and parameters fitted for other contact models.
 
     Parameters
     ----------
@@ -51,9 +51,9 @@ def compose(
     contact_models, wear_laws : mapping of str to Model
         By their labels in results.
     notes : Notes
-        Takes what a reader must know.
+        Collects the remarks.
     problem : problem, optional
-        One that the rig has made, which tells the shape of the patch where the rig does not.
+        A problem that the rig has made; it has a geometry even if the rig declares none.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The datasets that running a case gives, and how tables and figures take them apart."""
+"""The datasets of a case that was run, and slices of them for tables and figures."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Results:
     Attributes
     ----------
     case : Case
-        What was run.
+        The case that was run.
     pairs : tuple of Pair
         The pairs that were evaluated.
     sweeps, profiles : dict of str to xarray.Dataset
@@ -49,9 +49,9 @@ def axes_of(sweep: xarray.Dataset) -> list[str]:
 
 
 def main_axis(sweep: xarray.Dataset, creepage: str) -> str:
-    """Return the axis that tables and figures run along: the creepage of the rig if it is one, else the longest.
+    """Return the axis along which tables and figures run: the creepage of the rig, or else the longest axis.
 
-    Where a sweep has no axis it is the creepage, or else another condition, of its one point.
+    Without axes, it is the creepage of the single point, or else another condition.
     """
     axes = axes_of(sweep)
     if creepage in axes or not axes:
@@ -60,12 +60,12 @@ def main_axis(sweep: xarray.Dataset, creepage: str) -> str:
 
 
 def along_main_axis(sweep: xarray.Dataset, creepage: str) -> xarray.Dataset:
-    """Return a sweep along its main axis, with the other axes at their middle value."""
+    """Return a sweep along its main axis, at the middle of the other axes."""
     return along(sweep, main_axis(sweep, creepage))
 
 
 def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
-    """Return a sweep along an axis, with the others at their middle value; one point becomes an axis of length 1."""
+    """Return a sweep along an axis, at the middle of the others; a single point becomes an axis of length 1."""
     line = sweep.isel({other: sweep.sizes[other] // 2 for other in axes_of(sweep) if other != axis})
     if axes_of(line):
         return line
@@ -74,5 +74,5 @@ def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
 
 
 def _other(point: xarray.Dataset) -> str:
-    """Return a variable of the operating point of a sweep without axes."""
+    """Return a variable of a sweep without axes."""
     return next(str(name) for name in point.data_vars if not point[name].dims)

@@ -14,18 +14,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CheckedClaim:
-    """A statement of the literature, put to the test.
+    """A claim of the literature, tested against computed numbers.
 
     Attributes
     ----------
     statement : str
-        What is claimed.
+        The claim.
     where : str
-        Where: paper and section.
+        Paper and section.
     found : str
-        What was computed, with numbers and units.
+        The computed result, with numbers and units.
     holds : bool
-        Whether the numbers bear the statement out.
+        Whether the result supports the claim.
     """
 
     statement: str
@@ -44,7 +44,7 @@ class Section:
         Plain text; blank lines separate paragraphs.
     claims : tuple of CheckedClaim
     tables : mapping of str to DataFrame
-        By the name of the file that a table gets, an identifier; units are in the heads of the columns.
+        By file name, an identifier. The heads of the columns hold the units.
     figures : tuple of FigureData
     """
 

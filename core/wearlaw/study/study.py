@@ -45,11 +45,11 @@ if TYPE_CHECKING:
     from wearlaw.study.grid import Grid
 
 RATES, BAND = ("wear_rate", "wear_rate_error"), ("wear_rate_low", "wear_rate_high")
-"""What differs from pair to pair: the wear rate, and its ends over the published range of the law's parameters."""
+"""Variables that differ from pair to pair: the wear rate, and its band over the published parameters of the law."""
 
 
 PROFILE_STRIPS = 101
-"""Strips of a profile across the patch, where the contact model can choose them."""
+"""Strips of a profile across the patch, if the contact model can choose them."""
 
 
 @dataclass(frozen=True)
@@ -59,15 +59,15 @@ class Study(Results):
     Attributes
     ----------
     case : Case
-        What was run.
+        The case that was run.
     pairs : tuple of Pair
         The pairs that were evaluated.
     sweeps, profiles : dict of str to xarray.Dataset
         The results by the names that the case gives them.
     notes : tuple of str
-        What was left out, and every warning, once each.
+        Omissions and warnings, once each.
     sections : tuple of Section
-        What plugins add to the report, as the case lists it.
+        Sections that plugins add to the report, in the order of the case.
     """
 
     notes: tuple[str, ...]
@@ -75,7 +75,7 @@ class Study(Results):
 
     @cached_property
     def figures(self) -> tuple[FigureData, ...]:
-        """What the figures of the study show."""
+        """The data of the figures of the study."""
         return figures_of(self)
 
 
@@ -92,11 +92,11 @@ def run(
     case : Case
         The study to run.
     on_block : callable, optional
-        Called with the number of evaluations done, `evaluations(case)` in all, to show progress.
+        Called with the number of evaluations just done, to show progress; `evaluations(case)` is their sum.
     workers : int
         How many processes evaluate the sweeps.
     checkpoint : Checkpoint, optional
-        Where an interrupted run leaves what is done.
+        Folder in which an interrupted run keeps finished blocks.
     """
     notes = Notes()
     evaluator = Evaluator(on_block, workers, checkpoint)
@@ -111,7 +111,7 @@ def run(
 
 
 def _section(name: str, study: Study, notes: Notes) -> Section:
-    """Return what the plugin makes of a study."""
+    """Return the section that a plugin makes from a study."""
     found = loader.installed()
     make = found.sections.find(name, found.broken)
     subject = f"section '{name}' of {found.sections.origin(name)}"
@@ -132,7 +132,7 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
 
 
 def evaluations(case: Case) -> int:
-    """Return how many evaluations of a pair at an operating point a case needs."""
+    """Return the number of evaluations that a case needs, each of a pair at an operating point."""
     pairs = pairs_of(case, Notes())
     return sum(
         grid.size * (1 + len(_band_ends(pair.pipeline)))
@@ -142,13 +142,13 @@ def evaluations(case: Case) -> int:
 
 
 def provenance(case: Case) -> dict[str, Any]:
-    """Return what a result came from: the version of wearlaw, all that plugins provided, and the case."""
+    """Return the origin of a result: the version of wearlaw, the models that plugins provided, and the case."""
     provided = {f"{kind.replace(' ', '_')}s": names for kind, names in used(case).items()}
     return {"wearlaw": __version__, **provided, "case": case.model_dump(mode="json", by_alias=True, exclude_none=True)}
 
 
 def used(case: Case) -> dict[str, dict[str, str]]:
-    """Return the models of a case and what else it names, by kind and name, each with distribution and version."""
+    """Return the models and other named items of a case, by kind and name, with distribution and version."""
     found = loader.installed()
     named: dict[type, Shelf[Any]] = {WearLaw: found.parameter_sets, Material: found.materials, Case: found.cases}
     origins: dict[str, dict[str, str]] = {shelf.kind: {} for shelf in found.shelves()}
@@ -204,16 +204,16 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
 
 @dataclass(frozen=True)
 class _Variables:
-    """What a sweep has besides the rates of its pairs.
+    """Variables of a sweep besides the rates of its pairs.
 
     Attributes
     ----------
     of_contact : dict of str to list of str
         For each contact model, the variables that its predictions have.
     of_point : list of str
-        Those of the operating points.
+        Variables of the operating points.
     conditions : dict of str to float
-        The other conditions, which are the same at all points.
+        Conditions that are the same at all points.
     """
 
     of_contact: dict[str, list[str]]
@@ -222,16 +222,16 @@ class _Variables:
 
 
 def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
-    """Return what a sweep has, as predictions of its first operating point tell."""
+    """Return the variables of a sweep, found by predicting its first operating point."""
     problem, axes = grid.problem(case.rig), grid.axes()
     of_contact: dict[str, list[str]] = {}
     of_point: dict[str, None] = {}
     for pair in {pair.contact_model: pair for pair in pairs}.values():
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", WearlawWarning)  # the sweep gives them
+            warnings.simplefilter("ignore", WearlawWarning)  # the sweep repeats them
             prediction = pair.pipeline.without_law().predict(problem)
         of_contact[pair.contact_model] = [v for v in offered(prediction, OF_CONTACT) if v not in axes]
-        # A rig may give the name of a variable to something else.
+        # A rig may use the name of a variable for something else.
         same = (v for v in offered(prediction, OF_POINT) if case.units.get(v, UNITS[v]) == UNITS[v])
         of_point |= dict.fromkeys(v for v in same if v not in axes)
     known = {*axes, *of_point, *(v for variables in of_contact.values() for v in variables)}
@@ -241,7 +241,7 @@ def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
 
 
 def numbers(case: Case) -> int:
-    """Return how many numbers the results of the sweeps of a case hold."""
+    """Return the number of values in the results of all sweeps of a case."""
     pairs, total = pairs_of(case, Notes()), 0
     for name, grid in case.sweeps.items():
         usable = _usable(f"sweep '{name}'", grid, pairs, Notes())
@@ -254,7 +254,7 @@ def numbers(case: Case) -> int:
 
 
 def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[Pair]:
-    """Leave out the pairs that have no use for a measured traction coefficient."""
+    """Leave out pairs that cannot use a traction coefficient, if the grid gives one."""
     if "traction_coefficient" not in grid.given:
         return pairs
     usable = [pair for pair in pairs if pair.pipeline.contact_model.uses_measured_traction]
@@ -269,23 +269,23 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
 def _with_band(
     key: str, pipeline: Pipeline[...], points: Points, found: dict[str, Array], evaluator: Evaluator
 ) -> dict[str, Array]:
-    """Return results with the ends of the wear rate over the published range of the law's parameters."""
+    """Add the ends of the wear rate over the published range of the law's parameters to results."""
     ends = []
     for end, one in zip(BAND, _band_ends(pipeline), strict=False):
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band has given them already
+            warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band gave them already
             ends.append(evaluator(f"{key}-{end}", one, points, ["wear_rate"])["wear_rate"])
     return {**found, **dict(zip(BAND, ends or [found["wear_rate"]] * 2, strict=True))}
 
 
 def _band_ends(pipeline: Pipeline[...]) -> list[Pipeline[...]]:
-    """Return the pipeline with the low and the high end of its law's published range, if there is one."""
+    """Return the pipelines with the low and the high end of the law's published range, if there is one."""
     band = pipeline.wear_law.band()
     return [] if band is None else [pipeline.with_law(law) for law in (band[0], band[2])]
 
 
 def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes) -> xarray.Dataset:
-    """Return what is seen in the patch: fields of each contact model, and the wear of each pair."""
+    """Return the profile of the patch: fields of each contact model, and the wear of each pair."""
     problem = grid.problem(case.rig)
     contacts: dict[str, xarray.Dataset] = {}
     wear: list[xarray.Dataset] = []
@@ -302,7 +302,7 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
             return xarray.Dataset()
         contacts[pair.contact_model] = whole.drop_vars(of_pair)
         wear.append(whole[of_pair])
-    # Models with nodes of their own have no value where only others have a node.
+    # A model with nodes of its own has NaN at the nodes of others.
     dataset = xarray.concat(list(contacts.values()), xarray.Variable("contact_model", list(contacts)), join="outer")
     return dataset.assign(xarray.concat(wear, "pair", join="outer").data_vars).assign_coords(
         pair=[pair.label for pair in resolved]
@@ -310,10 +310,10 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
 
 
 def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
-    """Return the profile of a prediction, and which of its variables differ from law to law.
+    """Return the variables of a profile that differ from law to law, and the profile of a prediction.
 
-    It runs along the patch of a line, over x. That of an ellipse runs across the patch, over y, with the wear of each
-    body.
+    The profile of a line runs along the patch, over x. That of an ellipse runs across it, over y, with the wear of
+    each body.
     """
     if prediction.problem.geometry == "line":
         return ["wear_rate"], prediction.profile

@@ -1,4 +1,4 @@
-"""What is not known exactly, as a case file describes it."""
+"""Uncertain operating points and parameters, as a case file describes them."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from wearlaw.uncertainties.inputs import parameter
 
 
 class Spread(Configuration):
-    """A distribution; exactly one of its fields is given."""
+    """A distribution, given by exactly one of these fields."""
 
     uniform: tuple[Value, Value] | None = None
-    """Two ends, between which all values are equally likely."""
+    """Lower and upper end; all values between them are equally likely."""
     normal: tuple[Value, Value] | None = None
     """Mean and standard deviation."""
     lognormal: tuple[Value, float] | None = None
-    """Median, and the factor to which two thirds of the values stay close to it."""
+    """Median, and geometric standard deviation: two thirds of the values lie within this factor of the median."""
 
     @model_validator(mode="after")
     def _one(self) -> Spread:
@@ -68,17 +68,17 @@ Parameter = Annotated[Literal["published_range"] | Spread, BeforeValidator(_unce
 class UncertainPoint(Configuration, extra="allow"):
     """Conditions of an operating point, by the names that the rig gives them, and parameters of the laws.
 
-    Some of them are distributed.
+    Each may be a distribution.
     """
 
     __pydantic_extra__: dict[str, Condition]  # pyright: ignore[reportIncompatibleVariableOverride]
 
     laws: dict[str, dict[str, Parameter]] = Field(default_factory=dict)
-    """For each wear law, by its name in the results, its parameters that are distributed."""
+    """The distributed parameters of each wear law, by its name in the results."""
 
     @property
     def given(self) -> Mapping[str, Any]:
-        """The conditions as they were written."""
+        """The conditions as written in the case."""
         return self.__pydantic_extra__
 
     def checked(self, rig: Rig) -> UncertainPoint:
@@ -87,8 +87,8 @@ class UncertainPoint(Configuration, extra="allow"):
         Raises
         ------
         ConfigurationError
-            If the rig does not take the conditions, which are tried at the first number of each distribution, or a
-            distribution is none.
+            If a distribution is impossible, or the rig does not take the conditions, tried at the first number of each
+            distribution.
         """
         conditions = self.conditions()
         spread = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
@@ -103,24 +103,24 @@ class UncertainPoint(Configuration, extra="allow"):
         return UncertainPoint(laws=self.laws, **ordered)
 
     def conditions(self) -> dict[str, Any]:
-        """Return the conditions as `uncertainty` takes them."""
+        """Return the conditions as arguments of `uncertainty`."""
         return {name: _distribution(value) for name, value in self.given.items()}
 
     def varies(self, law: str) -> bool:
-        """Return whether anything is distributed that a prediction with this law depends on."""
+        """Return whether a condition, or a parameter of this law, is distributed."""
         return bool(any(isinstance(value, Spread) for value in self.given.values()) or self.laws.get(law))
 
     def parameters(self, law: str) -> dict[str, Distribution | PublishedRange]:
-        """Return the parameters of a law that are distributed."""
+        """Return the distributed parameters of a law."""
         return {name: _parameter(value) for name, value in self.laws.get(law, {}).items()}
 
     def check_laws(self, known: Mapping[str, WearLaw]) -> None:
-        """Refuse laws that the case does not have, and parameters that they do not have.
+        """Raise an error for unknown laws, and for unknown or impossible parameters.
 
         Raises
         ------
         InputError
-            If there are any.
+            If the case has no such law, the law has no such parameter, or it cannot be distributed so.
         """
         for law in self.laws:
             if law not in known:

@@ -18,7 +18,7 @@ from wearlaw.units.quantities import WEAR_RATE
 
 @dataclass(frozen=True)
 class UncertainPair:
-    """A pair at an operating point that is not known exactly."""
+    """The uncertainty of a pair at an operating point."""
 
     point: str
     pair: Pair
@@ -27,7 +27,7 @@ class UncertainPair:
 
 @dataclass(frozen=True, eq=False)
 class CaseUncertainty:
-    """How uncertain the predictions of a case are.
+    """The uncertainty of the predictions of a case.
 
     Attributes
     ----------
@@ -35,11 +35,11 @@ class CaseUncertainty:
     wear_rates : pandas.DataFrame
         Median and interval for each operating point and pair.
     indices : pandas.DataFrame
-        Sobol indices, with an input a row.
+        Sobol indices, with a row for each input.
     samples : int
-        How many samples were taken of each.
+        Samples for each pair and operating point.
     notes : tuple of str
-        What a reader must know.
+        Remarks for the reader.
     """
 
     pairs: tuple[UncertainPair, ...]
@@ -52,14 +52,14 @@ class CaseUncertainty:
 def uncertainty_of(
     case: Case, samples: int, seed: int, on_pair: Callable[[int], None] = lambda _: None
 ) -> CaseUncertainty:
-    """Return how uncertain the predictions of a case are.
+    """Compute the uncertainty of the predictions of a case.
 
     Parameters
     ----------
     case : Case
         With at least one operating point under `uncertainty`.
     samples : int
-        How many samples to take, rounded up to a power of two.
+        Number of samples, rounded up to a power of two.
     seed : int
         The same seed gives the same samples.
     on_pair : callable, optional
@@ -74,15 +74,15 @@ def uncertainty_of(
     pairs = pairs_of(case, notes)
     if not any(point.varies(pair.wear_law) for point in case.uncertainty.values() for pair in pairs):
         raise InputError(
-            "nothing in the case is uncertain; add a table such as [uncertainty.scatter] with conditions of which some"
-            ' are distributions, as in creepage = {uniform = ["0.5 %", "1.5 %"]}'
+            "nothing in the case is uncertain; add a table such as [uncertainty.scatter] in which some conditions are"
+            ' distributions, as in creepage = {uniform = ["0.5 %", "1.5 %"]}'
         )
     found: list[UncertainPair] = []
     rates, indices = [], []
     for name, point, pair in ((name, point, pair) for name, point in case.uncertainty.items() for pair in pairs):
         subject = f"{name}: {pair.label}"
         if not point.varies(pair.wear_law):
-            notes.add(f"{subject} is left out, since nothing of it is uncertain")
+            notes.add(f"{subject} is left out, since none of its inputs is uncertain")
             on_pair(1)
             continue
         with notes.of(subject):

@@ -1,4 +1,4 @@
-"""Evaluating the sweeps of a case, with a folder that keeps what is done until the run is finished."""
+"""Evaluating the sweeps of a case, with a folder of finished blocks until the run is complete."""
 
 from __future__ import annotations
 
@@ -26,28 +26,28 @@ RUN = "run.json"
 
 
 class Checkpoint:
-    """A folder of finished blocks, made once a sweep has more than one.
+    """Folder of finished blocks, created once a sweep needs more than one.
 
     Parameters
     ----------
     folder : Path
-        Where it is.
+        Path of the folder.
     run : dict
-        What is run, as JSON holds it.
+        Description of the run, as JSON.
     resume : bool
-        Whether to go on with what the folder holds, if there is one.
+        Whether to go on from the blocks in an existing folder.
 
     Raises
     ------
     OutputError
-        If there is one that is not to be resumed, or that is of another run or spoilt.
+        If the folder exists and is not to be resumed, belongs to another run, or is damaged.
 
     Attributes
     ----------
     exists : bool
-        Whether there is a folder of this run.
+        Whether the folder exists.
     listed, damaged : int
-        How many blocks an interrupted run has left, and how many of them are damaged and computed again.
+        Number of blocks that an interrupted run left, and of those among them that are damaged and computed again.
     """
 
     def __init__(self, folder: Path, run: Run, resume: bool) -> None:
@@ -61,13 +61,13 @@ class Checkpoint:
             raise OutputError(f"output: '{folder}' is in the way, and holds no unfinished run; remove or rename it")
         if not resume:
             raise OutputError(
-                f"output: '{folder}' holds what an interrupted run has done, or one that is still at work;"
-                " go on with it by --resume, remove it, or choose another folder with -o"
+                f"output: '{folder}' holds the finished blocks of an interrupted run, or of one that is still running;"
+                " add --resume to go on with it, remove it, or choose another folder with -o"
             )
         check_same(folder, self._before(), self._run)
 
     def target(self, key: str, job: Job, points: Points) -> Arrays:
-        """Return where the results go of what has the name `key` in the run."""
+        """Return the target for the results of the sweep named `key` in the run."""
         if len(points.blocks()) == 1:
             return Memory(job, points)
         if not self.exists:
@@ -78,7 +78,7 @@ class Checkpoint:
         return files
 
     def _make(self) -> None:
-        """Make the folder, which no other run may have made meanwhile."""
+        """Create the folder; raise an error if another run has created it meanwhile."""
         try:
             self.folder.parent.mkdir(parents=True, exist_ok=True)
             self.folder.mkdir()
@@ -86,7 +86,7 @@ class Checkpoint:
             write_whole(self.folder / RUN, json.dumps(self._run))
         except FileExistsError:
             raise OutputError(
-                f"output: '{self.folder}' was made by another run meanwhile; choose another folder with -o"
+                f"output: '{self.folder}' was meanwhile created by another run; choose another folder with -o"
             ) from None
         except OSError as error:
             raise OutputError(
@@ -94,22 +94,22 @@ class Checkpoint:
             ) from None
 
     def notes(self) -> list[str]:
-        """Return what is to be said of damage to what was done."""
+        """Return a remark about damaged blocks, if there were any."""
         return [damage(self.damaged, self.listed, self.folder)] if self.damaged else []
 
     def _before(self) -> Run:
-        """Return what the folder holds a part of."""
+        """Return the description of the run in the folder."""
         try:
             run = TypeAdapter(Run).validate_json((self.folder / RUN).read_bytes())
         except (OSError, ValueError):
             path = self.folder / RUN
             raise OutputError(
-                f"output: '{path}' is no record of a run; remove '{self.folder}' and begin anew"
+                f"output: '{path}' is not the record of a run; remove '{self.folder}' to start again"
             ) from None
         return run
 
     def remove(self) -> None:
-        """Remove the folder, since the results are elsewhere."""
+        """Remove the folder once the results are elsewhere."""
         if self.exists:
             shutil.rmtree(self.folder, ignore_errors=True)
 
@@ -120,11 +120,11 @@ class Evaluator:
     Parameters
     ----------
     on_block : callable
-        Called with the number of evaluations done.
+        Called with the number of evaluations just done.
     workers : int
-        How many processes take part.
+        Number of processes.
     checkpoint : Checkpoint, optional
-        Where an interrupted run leaves what is done.
+        Folder in which an interrupted run keeps finished blocks.
     """
 
     def __init__(self, on_block: Callable[[int], None], workers: int, checkpoint: Checkpoint | None) -> None:
@@ -133,7 +133,7 @@ class Evaluator:
         self._checkpoint = checkpoint
 
     def __call__(self, key: str, pipeline: Pipeline[...], points: Points, outputs: Sequence[str]) -> dict[str, Array]:
-        """Return outputs in the units of `variables.UNITS`, of the shape of the points; `key` names them in the run."""
+        """Return outputs in the units of `variables.UNITS` and the shape of the points; `key` names the sweep."""
         job = Job(pipeline, {name: UNITS[name] for name in outputs})
         workers = min(self._workers, len(points.blocks()))
         if workers > 1:

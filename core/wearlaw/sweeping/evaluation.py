@@ -1,4 +1,4 @@
-"""Evaluating a block of a sweep, in whichever process that happens."""
+"""Evaluating a block of a sweep, in any process."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ from wearlaw.units.quantities import Quantity
 from wearlaw.units.registry import symbol
 
 Outputs = dict[str, Array]
-"""Results of a block by name, (points,) each, in the units of its job."""
+"""Results of a block by name, (points,) each, in the units of the job."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """What is done with every block.
+    """The evaluation of every block.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Job:
     units : mapping of str to str
         The unit of each output, by its name.
     accelerate : bool or None
-        As in `wearlaw.accelerate`, which is set in one process only.
+        The setting of `wearlaw.accelerate`, to apply in every process.
     """
 
     pipeline: Pipeline[...]
@@ -50,19 +50,19 @@ class Job:
 
 @dataclass(frozen=True)
 class BlockRecord:
-    """What is kept of a block besides its outputs: for warnings, and to find damage on disk.
+    """Record of an evaluated block besides its outputs: for warnings, and to detect damage on disk.
 
     Attributes
     ----------
     points : int
-        How many operating points it has.
+        Number of operating points.
     max_pressure : float
-        The highest of their maximum pressures [Pa].
+        Highest maximum pressure [Pa].
     ranges : mapping of str to tuple
-        For each variable with a range in the law: lowest and highest mean over the patch in SI, and how many points lie
-        outside.
+        For each variable with a range in the law: lowest and highest mean over the patch in SI, and the number of
+        points outside.
     checksum : int
-        That of the outputs and of the above.
+        Checksum of the outputs and of the values above.
     """
 
     points: int
@@ -72,9 +72,9 @@ class BlockRecord:
 
 
 def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, BlockRecord]:
-    """Return the outputs of a block of operating points, and what else is kept of it.
+    """Return the outputs of a block of operating points, and its record.
 
-    `on_block` is called with the number of points done, several times where that takes long.
+    `on_block` is called with the number of points just done, several times for a long block.
     """
     kernels.accelerate(job.accelerate)
     problem = job.pipeline.posed(part.conditions())
@@ -89,7 +89,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
 def evaluated(
     job: Job, block: Block, part: Points, store: str | None, on_block: Callable[[int], None] | None = None
 ) -> tuple[Outputs, BlockRecord]:
-    """Evaluate a block and return its outputs, or write them into a store and return none."""
+    """Evaluate a block and return its outputs and record; with a store, write the outputs there and return none."""
     outputs, seen = evaluate(job, part, on_block)
     if store is None:
         return outputs, seen
@@ -98,7 +98,7 @@ def evaluated(
 
 
 def write_block(store: str, block: Block, outputs: Mapping[str, Array]) -> None:
-    """Write the outputs of a block."""
+    """Write the outputs of a block to a zarr store."""
     group = zarr_group(store)
     for name, values in outputs.items():
         group[name][block.slices] = values
@@ -120,7 +120,7 @@ def load_zarr() -> Any:
 
 
 def checksum(seen: BlockRecord, outputs: Iterable[Array]) -> int:
-    """Return the CRC-32 of the outputs of a block in their order, and of what was seen of it.
+    """Return the CRC-32 of a block's record and of its outputs in their order.
 
     CRC-32 is the fastest checksum of the standard library, above 1 GB/s, and misses one in 2³² cases of accidental
     damage. It does not protect against forgery.
@@ -132,7 +132,7 @@ def checksum(seen: BlockRecord, outputs: Iterable[Array]) -> int:
 
 
 def notes(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> list[str]:
-    """Return what a prediction of all blocks together would warn of."""
+    """Return the warnings of a prediction at the points of all blocks together."""
     every = list(blocks)
     watch = pipeline.range_watch()
     watch.points = sum(one.points for one in every)
@@ -148,7 +148,7 @@ def notes(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> list[str]:
 
 
 def output_units(pipeline: Pipeline[...], problem: Problem, points: Points, outputs: list[str]) -> dict[str, str]:
-    """Return the unit in which each output is written; `problem` is that of the first operating point, (1,).
+    """Return the unit of each output; `problem` is that of the first operating point, of shape (1,).
 
     Raises
     ------
@@ -175,7 +175,7 @@ def output_units(pipeline: Pipeline[...], problem: Problem, points: Points, outp
 
 
 def _output(prediction: object, name: str) -> Quantity | None:
-    """Return a property of a prediction of one point that can be an output, or None if it is none."""
+    """Return a property of a prediction at one point, or None if it cannot be an output."""
     there = not name.startswith("_") and hasattr(type(prediction), name)
     value = getattr(prediction, name) if there else None
     return value if isinstance(value, pint.Quantity) and np.shape(value.magnitude) == (1,) else None
@@ -184,12 +184,12 @@ def _output(prediction: object, name: str) -> Quantity | None:
 def _is_output(prediction: object, name: str) -> bool:
     try:
         return _output(prediction, name) is not None
-    except CompositionError:  # there is no wear without a law
+    except CompositionError:  # without a law there is no wear
         return False
 
 
 def _written(quantity: Quantity) -> str:
-    """Return the unit of a quantity in the way of `UNITS`."""
+    """Return the unit of a quantity in the notation of `UNITS`."""
     return symbol(quantity.units, "~C").replace("µ", "u").replace("**", "^")
 
 

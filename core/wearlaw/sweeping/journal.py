@@ -1,4 +1,4 @@
-"""What a sweep on disk has done so far: a file with a line for each block, headed by what the sweep is."""
+"""The journal of a sweep on disk: a file with a description of the sweep, and a line for each finished block."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 
 Run = dict[str, Any]
-"""What a sweep is, as JSON holds it: two of the same `Run` give the same bytes."""
+"""Description of a sweep as JSON; sweeps with equal descriptions give the same bytes."""
 
 SYNC_S = 1.0
-"""Seconds between two times that results are forced to disk; a crash loses the blocks since the last."""
+"""Seconds between two syncs to disk; a crash loses the blocks since the last one."""
 
 
 def run_of(job: Job, points: Points) -> Run:
-    """Return what decides about the results of a sweep: versions, pipeline, conditions, outputs and blocks."""
+    """Return the description of a sweep: all that determines its results, including versions and blocks."""
     found = loader.installed()
     provided = {}
     for part in parts(job.pipeline):
@@ -65,17 +65,17 @@ def _summary(one: Varying) -> str:
 
 
 def check_same(where: Path, before: Run, now: Run) -> None:
-    """Refuse to go on with a sweep that is another one.
+    """Raise an error unless an interrupted sweep is the same as this one.
 
     Raises
     ------
     OutputError
-        With all that has changed.
+        If they differ; the message lists the changes.
     """
     changes = list(_changes("", before, now))
     if changes:
         raise OutputError(
-            f"'{where}' holds another run, which cannot be resumed, since these have changed:"
+            f"'{where}' holds another run and cannot be resumed, since these have changed:"
             + "".join(f"\n  {change}" for change in changes)
             + "\nChange them back, or choose another place"
         )
@@ -92,7 +92,7 @@ def _changes(path: str, before: Any, now: Any) -> Iterator[str]:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a file that is there whole or not at all, even after a crash of the machine."""
+    """Write a file whole or not at all, even if the machine crashes."""
     beside = path.with_name(f"{path.name}.partial")
     beside.write_text(text, encoding="utf-8")
     sync_file(beside)
@@ -106,17 +106,17 @@ def sync_file(path: Path) -> None:
 
 
 class Journal:
-    """The record of the blocks that are done, on disk.
+    """The list of finished blocks, on disk.
 
-    A line follows the results of its block to disk, in a thread that does not hold up the sweep.
+    The line of a block is written after its results, in a thread of its own.
 
     Parameters
     ----------
     path : Path
     done : dict of int to BlockRecord
-        The blocks that it lists.
+        The blocks listed so far.
     sync : callable
-        Called with the numbers of some blocks; waits until their results are on disk.
+        Called with the numbers of some blocks, to wait until their results are on disk.
     """
 
     def __init__(self, path: Path, done: Mapping[int, BlockRecord], sync: Callable[[list[int]], None]) -> None:
@@ -130,18 +130,18 @@ class Journal:
 
     @classmethod
     def begin(cls, path: Path, run: Run, sync: Callable[[list[int]], None]) -> Self:
-        """Return a journal in which nothing is done yet."""
+        """Return a new journal without blocks."""
         write_whole(path, json.dumps(run) + "\n")
         return cls(path, {}, sync)
 
     @classmethod
     def resume(cls, path: Path, run: Run, where: Path, sync: Callable[[list[int]], None]) -> Self:
-        """Return the journal of the sweep in `where`, with the last line left out if it was cut off.
+        """Return the journal of the sweep in `where`, without a last line that was cut off.
 
         Raises
         ------
         OutputError
-            If it is damaged, or that of another run.
+            If the journal is damaged or belongs to another run.
         """
         text = path.read_bytes()
         whole = text[: text.rfind(b"\n") + 1]
@@ -152,7 +152,7 @@ class Journal:
             done = dict(line_type.validate_json(line, strict=True) for line in lines)
         except ValueError:
             raise OutputError(
-                f"'{path}' is no record of a sweep that can be resumed; remove it and '{where}' to begin anew"
+                f"'{path}' is not the journal of a sweep that can be resumed; remove it and '{where}' to start again"
             ) from None
         check_same(where, before, run)
         if len(whole) < len(text):
@@ -160,7 +160,7 @@ class Journal:
         return cls(path, done, sync)
 
     def add(self, number: int, seen: BlockRecord) -> None:
-        """Take note that a block is done; its line is written a little later."""
+        """Add a finished block; its line is written a little later."""
         self._waiting[number] = seen
         if time.monotonic() >= self._due and (self._writing is None or self._writing.done()):
             self._wait()
@@ -168,17 +168,17 @@ class Journal:
             self._waiting, self._due = {}, time.monotonic() + SYNC_S
 
     def _wait(self) -> None:
-        """Wait for the lines that are being written, and raise what went wrong."""
+        """Wait for the lines that are being written; raise their error, if any."""
         if self._writing is not None:
             self._writing.result()
 
     def _write(self, blocks: Mapping[int, BlockRecord]) -> None:
-        """Write the lines of blocks once their results are on disk.
+        """Write the lines of blocks after their results are on disk.
 
         Raises
         ------
         OutputError
-            If either cannot be written.
+            If lines or results cannot be written.
         """
         try:
             self._sync(list(blocks))
@@ -187,10 +187,10 @@ class Journal:
                 file.flush()
                 os.fsync(file.fileno())
         except OSError as error:
-            raise OutputError(f"'{self.path}': what is done cannot be kept: {error.strerror or error}") from None
+            raise OutputError(f"'{self.path}': finished blocks cannot be kept: {error.strerror or error}") from None
 
     def close(self) -> None:
-        """Write the lines that are left; the file stays."""
+        """Write the remaining lines; the file stays."""
         try:
             self._wait()
             if self._waiting:
@@ -199,7 +199,7 @@ class Journal:
             self._thread.shutdown()
 
     def remove(self) -> None:
-        """Remove the file when all is done."""
+        """Remove the file of a finished sweep."""
         self._thread.shutdown()
         self._waiting = {}
         self.path.unlink()

@@ -1,7 +1,7 @@
 """The operating points of a sweep: axes whose values are all combined, or the rows of a table.
 
-They are never laid out whole. A block of them knows the few values that its conditions take, and lays them out where
-it is evaluated.
+They are never expanded as a whole: a block holds only the values along each dimension, and is expanded where it is
+evaluated.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from wearlaw.units.quantities import HEAD, Q, real_array
 from wearlaw.units.registry import symbol
 
 BLOCK = 100_000
-"""The most operating points of a block; most blocks have more than half of it."""
+"""Most operating points in a block; most blocks have more than half as many."""
 
 ROW = "row"
-"""The dimension of the rows of a table that has no name for them."""
+"""Default name for the dimension of a table's rows."""
 
 Column: TypeAlias = tuple[str, str | None, Any, str | None]
-"""Head, dimension, values and unit of a column."""
+"""A column: head, dimension, values and unit."""
 
 
 @dataclass(frozen=True, eq=False)
 class Varying:
-    """A condition that differs from operating point to operating point, along one dimension.
+    """A condition that varies along one dimension of the operating points.
 
     Attributes
     ----------
@@ -55,22 +55,22 @@ class Varying:
         return Varying(self.dim, self.values[part], self.unit)
 
     def given(self, values: Array | float) -> Any:
-        """Return values as a prediction takes them."""
+        """Return values as an argument of a prediction."""
         return values if self.unit is None else Q(values, self.unit)
 
 
 @dataclass(frozen=True)
 class Block:
-    """A rectangle of operating points that lie next to each other in the order of the results.
+    """A rectangle of operating points that are contiguous in the results.
 
     Attributes
     ----------
     number : int
-        Which it is.
+        Index of the block.
     slices : tuple of slice
-        Where it lies along each dimension.
+        Range along each dimension.
     flat : slice
-        Where it lies among all points, the last dimension running fastest.
+        Range among all points, with the last dimension fastest.
     """
 
     number: int
@@ -85,11 +85,11 @@ class Points:
     Attributes
     ----------
     fixed : mapping of str to object
-        The conditions that are the same everywhere, as they were given.
+        Conditions that are the same at all points, as given.
     varying : mapping of str to Varying
-        The others. Those along one dimension vary together, those along different ones are combined.
+        Other conditions. Those along one dimension vary together; different dimensions are combined.
     rows : mapping of str to object
-        What a table calls its rows, by their dimension.
+        Labels of a table's rows, by their dimension.
     """
 
     fixed: Mapping[str, Any]
@@ -98,7 +98,7 @@ class Points:
 
     @cached_property
     def sizes(self) -> dict[str, int]:
-        """How many values there are along each dimension."""
+        """Number of values along each dimension."""
         return {one.dim: one.values.size for one in self.varying.values()}
 
     @property
@@ -113,12 +113,12 @@ class Points:
 
     @property
     def size(self) -> int:
-        """How many there are."""
+        """Number of operating points."""
         return math.prod(self.shape)
 
     @cached_property
     def block_shape(self) -> tuple[int, ...]:
-        """The shape of a block: the last dimensions whole, one of them in even parts, one value of those before."""
+        """The shape of a block: last dimensions in full, the one before in even parts, single values of the others."""
         shape, room = [], BLOCK
         for size in reversed(self.shape):
             parts = math.ceil(size / max(room, 1))
@@ -146,7 +146,7 @@ class Points:
         return Points(self.fixed, {name: one[by_dim[one.dim]] for name, one in self.varying.items()})
 
     def conditions(self) -> dict[str, Any]:
-        """Return the conditions as a prediction takes them, one entry an operating point."""
+        """Return the conditions as arguments of a prediction, with an entry for each operating point."""
         laid_out = {name: one.given(self._laid_out(one)) for name, one in self.varying.items()}
         return {**self.fixed, **laid_out}
 
@@ -156,12 +156,12 @@ class Points:
 
 
 def outer_product(conditions: Mapping[str, Any]) -> Points:
-    """Return the points of all combinations of the conditions that are arrays, in the order in which they are given.
+    """Return all combinations of the conditions that are arrays, in the order given.
 
     Raises
     ------
     ConditionsError
-        If a condition has more than one axis, or an empty one, or none is an array.
+        If a condition has more than one axis or an empty one, or none is an array.
     """
     fixed, varying = split(conditions)
     if not varying:
@@ -170,12 +170,12 @@ def outer_product(conditions: Mapping[str, Any]) -> Points:
 
 
 def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Varying]]:
-    """Return the conditions that are one value, as they were given, and those that are axes; None is not given.
+    """Separate conditions of one value, as given, from axes; a condition of None counts as not given.
 
     Raises
     ------
     ConditionsError
-        If a condition has more than one axis, or an empty one.
+        If a condition has more than one axis or an empty one.
     """
     fixed: dict[str, Any] = {}
     varying: dict[str, Varying] = {}
@@ -196,7 +196,7 @@ def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Vary
 
 
 def _plain(name: str, value: Any) -> tuple[Any, str | None]:
-    """Return the number or numbers of a condition, and their unit if they have one."""
+    """Return the numbers of a condition, and their unit if they have one."""
     if isinstance(value, pint.Quantity):
         return value.magnitude, symbol(value.units, "~C")
     if isinstance(value, (str, int, float)) or is_friction_law(value):  # text with a unit, or a law of friction
@@ -222,7 +222,7 @@ def axis(name: str, dim: str, values: object, unit: str | None) -> Varying:
 
 
 def from_table(table: Any, conditions: Mapping[str, Any]) -> Points:
-    """Return the points of a table, a row each, with conditions that are the same in all of them.
+    """Return the operating points in the rows of a table, with further conditions that all rows share.
 
     Parameters
     ----------
@@ -230,12 +230,12 @@ def from_table(table: Any, conditions: Mapping[str, Any]) -> Points:
         Its columns are conditions. The unit of a column comes from its type (pint), from its `attrs["units"]`, or from
         its head, as in "creepage [%]".
     conditions : mapping of str to object
-        What is the same in all rows.
+        Conditions that are the same in all rows.
 
     Raises
     ------
     DataError
-        If it is no such table, or a column is wrong.
+        If this is not a table, or a column is wrong.
     """
     fixed, arrays = split(conditions)
     for name in arrays:
@@ -256,8 +256,11 @@ def from_table(table: Any, conditions: Mapping[str, Any]) -> Points:
 
 
 def _columns(table: Any) -> tuple[list[Column], dict[str, Any]]:
-    """Return the columns, and what the rows are called."""
-    pandas, xarray = sys.modules.get("pandas"), sys.modules.get("xarray")  # loaded if the table is one of theirs
+    """Return the columns, and the labels of the rows."""
+    pandas, xarray = (
+        sys.modules.get("pandas"),
+        sys.modules.get("xarray"),
+    )  # loaded already if the table is one of theirs
     if pandas is not None and isinstance(table, pandas.DataFrame):
         return _of_pandas(table)
     if xarray is not None and isinstance(table, xarray.Dataset):
@@ -277,7 +280,7 @@ def _of_pandas(table: Any) -> tuple[list[Column], dict[str, Any]]:
 
 
 def _typed(column: Any) -> tuple[Any, str | None]:
-    """Return the values of a column, and their unit if its type or its attributes say one."""
+    """Return the values of a column, and their unit from its type or attributes, if any."""
     units = getattr(column.dtype, "units", None)  # a PintType
     if units is not None:
         return np.asarray(column.pint.magnitude), symbol(units, "~C")
@@ -301,7 +304,7 @@ def _variable(variable: Any) -> tuple[str | None, Any, str | None]:
 
 
 def _named(head: str, unit: str | None) -> tuple[str, str | None]:
-    """Return the name of a column, and its unit, which its head may give."""
+    """Return the name of a column and its unit, which may stand in its head."""
     match = HEAD.fullmatch(head)
     if match is None or match["unit"] is None:
         return head, unit
@@ -316,4 +319,4 @@ def _column(head: str, name: str, dim: str, values: Any, unit: str | None) -> Va
     except ConditionsError:
         raise DataError("table: has no rows") from None
     except UnitError as error:
-        raise DataError(f"table: column '{head}': {error}; leave out columns that are no conditions") from None
+        raise DataError(f"table: column '{head}': {error}; leave out columns that are not conditions") from None

@@ -8,7 +8,7 @@ from rich.text import Text
 
 
 class _Rate(ProgressColumn):
-    """How many points are done in a second."""
+    """Points per second."""
 
     def render(self, task: Task) -> Text:
         speed = task.finished_speed or task.speed
@@ -18,14 +18,14 @@ class _Rate(ProgressColumn):
 class Bar:
     """A progress bar, shown on a terminal or in a notebook while the context lasts.
 
-    What it is advanced by first does not count for the rate, since that may have been done before.
+    The first advance does not count for the rate, since it may stand for earlier work.
 
     Parameters
     ----------
     total : int
-        How many points there are.
+        Number of points.
     shown : bool
-        Whether it is shown at all.
+        Whether to show the bar.
     """
 
     def __init__(self, total: int, shown: bool = True) -> None:
@@ -50,7 +50,7 @@ class Bar:
         self._bar.advance(self._task, points)
 
     def stage(self, text: str) -> None:
-        """Say what is done now."""
+        """Show the current stage."""
         self._bar.update(self._task, description=text)
 
     def __exit__(self, *_: object) -> None:

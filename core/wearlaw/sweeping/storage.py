@@ -1,4 +1,4 @@
-"""Where the results of a sweep go: into memory, into files, or into a zarr store; and whether there is room."""
+"""Storage of the results of a sweep: in memory, in files, or in a zarr store; and checks that there is room."""
 
 from __future__ import annotations
 
@@ -29,26 +29,26 @@ ITEM = np.dtype(np.float64).itemsize
 GIB = 2.0**30
 
 JOURNAL = "journal"
-"""The file in a folder of results that lists what is done."""
+"""Name of the journal in a folder of results."""
 
 METADATA = "zarr.json"
-"""The file of a group or an array in a zarr store that says what it is."""
+"""Name of the file that describes a group or an array in a zarr store."""
 
 COMPLETE, INCOMPLETE = "complete", "incomplete"
-"""The attribute "status" of results."""
+"""Values of the attribute "status" of results."""
 
 
 class Target(ABC):
-    """What takes the results of the blocks of a sweep.
+    """Target of the results of a sweep's blocks.
 
     Attributes
     ----------
     store : str or None
-        Where those who evaluate blocks write the outputs themselves; None if they hand them back.
+        Path to which the evaluating processes write outputs themselves; None if they return them.
     done : dict of int to BlockRecord
-        What was seen of each block that is done, by its number.
+        Records of the finished blocks, by number.
     listed, damaged : int
-        How many blocks an interrupted sweep has left, and how many of them are damaged, so that they are not done.
+        Number of blocks that an interrupted sweep left, and of those among them that are damaged.
     """
 
     store: str | None = None
@@ -62,21 +62,21 @@ class Target(ABC):
 
     @abstractmethod
     def places(self, block: Block) -> list[Array]:
-        """Return where the outputs of a block go that are handed back, (points,) each, in the order of the job."""
+        """Return arrays for the returned outputs of a block, (points,) each, in the order of the job."""
 
     def add(self, number: int, seen: BlockRecord) -> None:
-        """Take note that a block is done, also in the journal if there is one."""
+        """Record a finished block, also in the journal if there is one."""
         self.done[number] = seen
         if self._journal is not None:
             self._journal.add(number, seen)
 
     def close(self) -> None:
-        """Leave what there is as it is."""
+        """Close the journal, if there is one; results stay."""
         if self._journal is not None:
             self._journal.close()
 
     def _take_over(self, journal: Journal) -> None:
-        """Keep a journal, and count the blocks it lists as done where their results are still those computed."""
+        """Use a journal, and accept its blocks whose results on disk are undamaged."""
         self._journal = journal
         blocks = {block.number: block for block in self.points.blocks()}
         for number, seen in journal.done.items():
@@ -87,11 +87,11 @@ class Target(ABC):
 
     @abstractmethod
     def _kept(self, block: Block) -> list[Array]:
-        """Return the outputs of a block as they are on disk, or nothing where they cannot be read."""
+        """Return the outputs of a block from disk, or nothing if they cannot be read."""
 
     @property
     def size(self) -> int:
-        """How many bytes the outputs take."""
+        """Bytes of the outputs."""
         return self.points.size * len(self.job.units) * ITEM
 
 
@@ -107,7 +107,7 @@ class Arrays(Target):
     arrays: dict[str, Array]
 
     def places(self, block: Block) -> list[Array]:
-        """Return where the outputs of a block go."""
+        """Return views of the arrays for the outputs of a block."""
         return [array[block.flat] for array in self.arrays.values()]
 
     _kept = places
@@ -122,20 +122,20 @@ class Memory(Arrays):
         self.arrays = {name: np.empty(points.size) for name in job.units}
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
-        """Return the results with their labels."""
+        """Return the results as a labelled dataset."""
         found = dataset(self.points, self.arrays, self.job.units)
         return found.assign_attrs(attributes(run_of(self.job, self.points), notes))
 
 
 class Files(Arrays):
-    """Results in files that memory maps show, and a journal of what is done.
+    """Results in memory-mapped files, with a journal.
 
-    A file holds the numbers of one output and nothing else, so that damage to a part of it leaves the rest of use.
+    A file holds nothing but the numbers of one output, so that damage to a part leaves the rest usable.
 
     Raises
     ------
     OutputError
-        If the files cannot be written, or the journal is damaged or that of another run.
+        If the files cannot be written, or the journal is damaged or belongs to another run.
     """
 
     def __init__(self, job: Job, points: Points, folder: Path) -> None:
@@ -151,14 +151,14 @@ class Files(Arrays):
         except OSError as error:
             where = error.filename or folder
             raise OutputError(
-                f"output: what is done cannot be kept in '{where}': {error.strerror or error};"
-                f" remove '{folder}' to begin it anew"
+                f"output: finished blocks cannot be kept in '{where}': {error.strerror or error};"
+                f" remove '{folder}' to start again"
             ) from None
         self.arrays = dict(self._maps)
         self._take_over(journal)
 
     def _mapped(self, path: Path) -> np.memmap[Any, Any]:
-        """Return the map of a file, which is made or brought to its length if need be."""
+        """Return the memory map of a file; create or resize the file if needed."""
         path.touch()
         os.truncate(path, self.points.size * ITEM)
         return np.memmap(path, dtype=np.float64, mode="r+", shape=(self.points.size,))
@@ -171,7 +171,7 @@ class Files(Arrays):
 class Store(Target):
     """Results in a zarr store.
 
-    Beside it, in a file of the same name and ".journal", stands what is done, until all is.
+    Until the sweep is finished, its journal stands beside the store under the same name with ".journal".
     """
 
     def __init__(self, job: Job, points: Points, path: Path, resume: bool) -> None:
@@ -189,7 +189,7 @@ class Store(Target):
         self._take_over(journal)
 
     def _lay_out(self) -> None:
-        """Write all of the store but the results, also where it is there already and may be damaged."""
+        """Write the layout of the store anew, without results: an existing layout may be damaged."""
         empty = dataset(self.points, {}, {}).assign_attrs(status=INCOMPLETE)
         for name in map(str, empty.coords):
             shutil.rmtree(self.path / name, ignore_errors=True)
@@ -210,11 +210,11 @@ class Store(Target):
         empty.to_zarr(self.store, mode="a", consolidated=False, zarr_format=3)
 
     def places(self, block: Block) -> list[Array]:  # noqa: ARG002
-        """Return nothing, since nothing is handed back."""
+        """Return nothing: the evaluating processes write to the store."""
         return []
 
     def _kept(self, block: Block) -> list[Array]:
-        """Return the outputs of a block as they are on disk, or nothing where they cannot be read."""
+        """Return the outputs of a block from disk, or nothing if they cannot be read."""
         try:
             return [zarr_group(self.store)[name][block.slices] for name in self.job.units]
         except (OSError, ValueError):
@@ -226,12 +226,12 @@ class Store(Target):
             array = zarr_group(self.store)[name]
             for number in numbers:
                 which = (one.start // size for one, size in zip(blocks[number].slices, array.chunks, strict=True))
-                with suppress(FileNotFoundError):  # zarr writes none where all values are NaN
+                with suppress(FileNotFoundError):  # zarr writes no file if all values are NaN
                     sync_file(self.path / name / array.metadata.encode_chunk_key(tuple(which)))
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
-        """Mark the store as complete, and return what is in it; values are read when they are used."""
-        for cut_off in self.path.rglob("*.partial"):  # of a worker that died as it wrote
+        """Mark the store as complete and open it; values are read when used."""
+        for cut_off in self.path.rglob("*.partial"):  # of a worker that died while writing
             cut_off.unlink()
         load_zarr().open_group(self.store, mode="r+").attrs.update(attributes(self._run, notes))
         assert self._journal is not None
@@ -240,12 +240,12 @@ class Store(Target):
 
 
 def finished(job: Job, points: Points, path: Path, resume: bool) -> xarray.Dataset | None:
-    """Return the results that a place holds if they may be resumed, or None if nothing or a part is there.
+    """Return the finished results in a folder, or None if it is empty or holds an unfinished part to resume.
 
     Raises
     ------
     OutputError
-        If something else is there, or what is there is not to be resumed.
+        If the folder holds something else, or results without `resume`.
     """
     load_zarr()
     if path.exists() and not path.is_dir():
@@ -283,7 +283,7 @@ def _opened(path: Path) -> xarray.Dataset:
 
 
 def dataset(points: Points, variables: Mapping[str, Array], units: Mapping[str, str]) -> xarray.Dataset:
-    """Return results, (points,) each, under their names, with the conditions as coordinates."""
+    """Return results, (points,) each, as a dataset with the conditions as coordinates."""
     coordinates: dict[str, Any] = dict(points.rows)
     for name, one in points.varying.items():
         coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
@@ -297,7 +297,7 @@ def dataset(points: Points, variables: Mapping[str, Array], units: Mapping[str, 
 
 
 def _number(value: Any) -> Any:
-    """Return a condition as a coordinate without axes, or None if it is a law of friction."""
+    """Return a condition as a scalar coordinate, or None for a law of friction."""
     if is_friction_law(value):
         return None
     quantity = parse(value) if isinstance(value, str) else value
@@ -307,22 +307,22 @@ def _number(value: Any) -> Any:
 
 
 def damage(damaged: int, listed: int, where: Path) -> str:
-    """Return what is said of blocks that are damaged on disk."""
+    """Return the message about damaged blocks on disk."""
     return f"{damaged} of the {listed} blocks kept in '{where}' were damaged, and are computed again"
 
 
 def attributes(run: Run, notes: Sequence[str]) -> dict[str, str]:
-    """Return the attributes of finished results: where they come from, and what a reader must know."""
+    """Return the attributes of finished results: status, provenance, and remarks for the reader."""
     return {"status": COMPLETE, "provenance": json.dumps(run), "notes": "\n".join(notes)}
 
 
 def check_memory(size: int, advice: str) -> None:
-    """Refuse what does not fit into memory, where it is known how much there is.
+    """Raise an error if results do not fit into memory, if its size is known.
 
     Raises
     ------
     InputError
-        With the size that is needed.
+        If they do not; the message says how much they need.
     """
     there = available_memory()
     if there is not None and size > there:
@@ -337,7 +337,7 @@ def check_disk(size: int, path: Path) -> None:
     Raises
     ------
     InputError
-        With the size that is needed.
+        If they do not; the message says how much they need.
     """
     nearest = next(parent for parent in (path.absolute(), *path.absolute().parents) if parent.exists())
     there = shutil.disk_usage(nearest).free
@@ -349,7 +349,7 @@ def check_disk(size: int, path: Path) -> None:
 
 
 def available_memory() -> int | None:
-    """Return the memory that can still be used, in bytes, or None where the system does not say."""
+    """Return the available memory in bytes, or None if the system does not say."""
     try:
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
         return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:"))

@@ -1,4 +1,4 @@
-"""Sweeps: a prediction at very many operating points, block by block."""
+"""Sweeps: predictions at very many operating points, block by block."""
 
 from __future__ import annotations
 
@@ -48,37 +48,37 @@ def sweep(
     predict : Pipeline
         A rig, a contact model and a wear law; without a law, other `outputs` than the wear are possible.
     table : pandas.DataFrame or xarray.Dataset, optional
-        Operating points row by row, a condition a column, with units by type (pint), `attrs["units"]` or heads such as
-        "creepage [%]"; the conditions that are given besides are the same in all rows.
+        Operating points in rows, conditions in columns, with units by type (pint), `attrs["units"]` or heads such as
+        "creepage [%]". Further conditions are the same in all rows.
     outputs : sequence of str
-        What is kept: names of properties of a prediction, such as "wear_rate" or "tangential_force".
+        Names of properties of a prediction to keep, such as "wear_rate" or "tangential_force".
     workers : int
-        How many processes of this machine take part; they are kept for later sweeps.
+        Number of processes on this machine; they are kept for later sweeps.
     client : distributed.Client, optional
-        A cluster of dask.distributed, in place of `workers`.
+        A cluster of dask.distributed, instead of `workers`.
     store : path, optional
-        A folder for the results, in zarr format, where they are written block by block. An interrupted sweep leaves
-        there what is done. Without it the results are in memory.
+        A folder for the results in zarr format, written block by block. An interrupted sweep keeps its finished blocks
+        there. Default: results in memory.
     resume : bool
-        Whether to go on with the sweep that `store` holds a part of, if it does. Blocks that are damaged there are
-        computed again, with a `ResumeWarning`.
+        Whether to go on with an unfinished sweep in `store`, if there is one. Damaged blocks are computed again, with a
+        `ResumeWarning`.
     progress : bool
         Whether to show a progress bar with rate and time left.
     **conditions
-        Those of a prediction; each array is an axis, with one value for each of its coordinates.
+        The conditions of a prediction; each array is an axis.
 
     Returns
     -------
     xarray.Dataset
-        The outputs along the conditions, which are its coordinates; units are in `attrs["units"]`. With `store`
-        values are read from there when they are used.
+        The outputs, with the conditions as coordinates and units in `attrs["units"]`. With `store`, values are read
+        from there when used.
 
     Raises
     ------
     InputError
-        If conditions or outputs are not possible, or the results would not fit into memory or on the disk.
+        If conditions or outputs are invalid, or the results would not fit into memory or on the disk.
     OutputError
-        If `store` holds anything else than an unfinished part of the same sweep.
+        If `store` holds anything but an unfinished part of the same sweep.
     SweepError
         If workers die again and again.
     """
@@ -112,12 +112,12 @@ def sweep(
 def _checked_job(
     pipeline: Pipeline[...], first: Problem, points: Points, outputs: Sequence[str], elsewhere: bool
 ) -> Job:
-    """Return what is done at every point, once the outputs are found to be possible.
+    """Return the job of a sweep, after checks of its outputs and models.
 
     Raises
     ------
     InputError
-        If they are not, or if other processes could not find a model.
+        If an output is impossible, or other processes could not import a model.
     """
     names = list(outputs) if isinstance(outputs, Iterable) and not isinstance(outputs, str) else []
     if not names or not all(isinstance(name, str) for name in names):
@@ -128,25 +128,25 @@ def _checked_job(
 
 
 def check_importable(pipeline: Pipeline[...]) -> None:
-    """Refuse models that other processes could not find.
+    """Raise an error if other processes could not import a model.
 
     Raises
     ------
     InputError
-        If a model is defined in the script that runs.
+        If a model is defined in the running script.
     """
     for part in parts(pipeline):
         if type(part).__module__ == "__main__":
             raise InputError(
-                f"{part.subject()}: is defined in the script or notebook that runs, where other processes do not find"
-                " it; define it in a module and import it from there, or use one process"
+                f"{part.subject()}: is defined in the running script or notebook, from which other processes cannot"
+                " import it; define it in a module and import it from there, or use one process"
             )
 
 
 def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapping[str, None]) -> Problem:
-    """Return the problem of the first operating point, once no condition is found to be invalid.
+    """Return the problem of the first operating point, after checks of the conditions.
 
-    They are looked at along each dimension, at the first values of the others.
+    They are checked along each dimension, at the first values of the others.
     """
     for dim in points.dims:
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
@@ -159,14 +159,14 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
 
 
 def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:
-    """Evaluate the remaining blocks, and return the remarks that belong to the results.
+    """Evaluate the remaining blocks and return the remarks for the results.
 
     Parameters
     ----------
     target : Target
-        Where the results go. An interrupt leaves there what is done.
+        Target of the results. It keeps the finished blocks after an interrupt.
     on_block : callable
-        Called with the number of points done, for each block; first of all for those that were done before.
+        Called with the number of points in each finished block, and first with those finished earlier.
     workers, client
         As in `sweep`.
     """

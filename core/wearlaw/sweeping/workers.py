@@ -1,8 +1,7 @@
-"""Blocks in other processes: on this machine, and on a cluster of dask.distributed.
+"""Evaluating blocks in other processes: on this machine, and on a cluster of dask.distributed.
 
-The worker processes of this machine are kept from one sweep to the next. They are started as programs of their own and
-not by `multiprocessing`, which would run the user's script again in each of them. One that dies takes nothing with it
-but the block that it was at.
+Worker processes on this machine are kept for later sweeps. They are separate programs: `multiprocessing` would run the
+user's script again in each of them. If one dies, only the block that it was evaluating is lost.
 """
 
 from __future__ import annotations
@@ -26,29 +25,29 @@ from wearlaw.sweeping.evaluation import BlockRecord, Job, evaluated
 from wearlaw.sweeping.points import Block, Points
 
 ATTEMPTS = 3
-"""How often a block is tried whose worker dies."""
+"""Attempts to evaluate a block whose worker dies."""
 
 START = "import pickle, sys; sys.path[:] = pickle.load(sys.stdin.buffer);"
 START += " from wearlaw.sweeping.workers import serve; serve()"
 
 PIPE = 2**20
-"""Bytes on their way between two processes, on Linux; with fewer they wait for each other more often."""
+"""Size of the pipes on Linux, in bytes; in smaller ones the processes wait for each other more often."""
 
 Into: TypeAlias = Callable[[Block], list[Array]]
-"""Gives the places for the outputs of a block."""
+"""Returns the arrays for the outputs of a block."""
 
 Done: TypeAlias = tuple[Block, BlockRecord, list[str]]
-"""A block that was evaluated, what was seen of it, and the deaths of workers that it took."""
+"""An evaluated block, its record, and messages about workers that died on it."""
 
 AHEAD = 4
-"""Blocks that are handed out for each thread of the cluster, so that none waits for work."""
+"""Blocks submitted for each thread of the cluster, so that none waits for work."""
 
 CHECKED_S = 1.0
-"""Time from one count of the workers to the next."""
+"""Seconds between two counts of the workers."""
 
 
 class _DeathError(Exception):
-    """The worker process ended where an answer was due."""
+    """The worker process ended instead of answering."""
 
 
 class _Worker:
@@ -58,12 +57,12 @@ class _Worker:
         command = [sys.executable, "-c", START]
         try:
             self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, pipesize=PIPE)
-        except PermissionError:  # this user has no more room in pipes
+        except PermissionError:  # the user's limit for pipes is used up
             self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         self._send(sys.path)
 
     def evaluate(self, task: bytes, into: list[Array]) -> BlockRecord | Exception:
-        """Return what was seen of a block, once its outputs are in their places, or what it raised."""
+        """Return the record of a block, with its outputs in their places, or the exception that it raised."""
         try:
             self._send(task)
             answer: BlockRecord | Exception = pickle.load(_given(self._process.stdout))
@@ -101,13 +100,13 @@ def _given(pipe: IO[bytes] | None) -> IO[bytes]:
 
 
 _idle: queue.SimpleQueue[_Worker] = queue.SimpleQueue()
-"""The worker processes that wait for work."""
+"""Idle worker processes."""
 
 
 def in_processes(
     workers: int, job: bytes, store: str | None, points: Points, blocks: Iterable[Block], into: Into
 ) -> Generator[Done, None, None]:
-    """Evaluate blocks in worker processes and give each one that is done, in any order."""
+    """Evaluate blocks in worker processes and yield them as they finish, in any order."""
 
     def evaluate(block: Block) -> Done:
         task = pickle.dumps((job, block, points.part(block.slices), store))
@@ -160,9 +159,9 @@ def _close() -> None:
 
 def serve() -> None:
     """Take blocks from standard input and answer on standard output until there are no more: the worker process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that asks decides what Ctrl-C ends
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
     tasks, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what a model prints must not come among the answers
+    os.dup2(2, 1)  # output of a model must not mix with the answers
     while True:
         try:
             task: bytes = pickle.load(tasks)
@@ -175,7 +174,7 @@ def _answer(task: bytes, answers: BinaryIO) -> None:
     try:
         job, block, part, store = pickle.loads(task)
         outputs, seen = evaluated(_job_of(job), block, part, store)
-    except BaseException as error:  # a model's SystemExit would end the worker, and Ctrl-C is not for it
+    except BaseException as error:  # a model's SystemExit must not end the worker
         pickle.dump(_portable(error), answers)
     else:
         pickle.dump(seen, answers)
@@ -186,13 +185,13 @@ def _answer(task: bytes, answers: BinaryIO) -> None:
 
 @functools.lru_cache(maxsize=8)
 def _job_of(pickled: bytes) -> Job:
-    """Return the job that was pickled, the same one for all blocks of a sweep."""
+    """Unpickle the job of a sweep, once for all of its blocks."""
     job: Job = pickle.loads(pickled)
     return job
 
 
 def _portable(error: BaseException) -> Exception:
-    """Return the exception, or a `ModelError` if it would end a process or cannot be sent to one."""
+    """Return the exception, or a `ModelError` if it would end the parent process or cannot be pickled."""
     try:
         pickle.loads(pickle.dumps(error))
         return error if isinstance(error, Exception) else ModelError(described(error))
@@ -203,11 +202,11 @@ def _portable(error: BaseException) -> Exception:
 def on_cluster(
     client: Any, job: bytes, store: str | None, points: Points, blocks: Iterable[Block], into: Into
 ) -> Generator[Done, None, None]:
-    """Evaluate blocks on a cluster and give each one that is done, in any order.
+    """Evaluate blocks on a cluster and yield them as they finish, in any order.
 
-    A task of the cluster is a block with the few values that its conditions take; the operating points are laid out by
-    the worker. The cluster itself tries a block again whose worker died, as often as its setting
-    `distributed.scheduler.allowed-failures` says.
+    A task of the cluster is a block with the values along its dimensions; the worker expands them to operating points.
+    If a worker dies, the cluster tries its block again, as often as the setting
+    `distributed.scheduler.allowed-failures` allows.
     """
     distributed = sys.modules["distributed"]  # the client comes from there
     members = _Members(client)
@@ -239,7 +238,7 @@ def _evaluate(job: bytes, block: Block, part: Points, store: str | None) -> tupl
         outputs, seen = evaluated(_job_of(job), block, part, store)
     except Exception:
         raise
-    except BaseException as error:  # a model's SystemExit would end the worker
+    except BaseException as error:  # a model's SystemExit must not end the worker
         raise ModelError(described(error)) from None
     return list(outputs.values()), seen
 
@@ -262,11 +261,11 @@ class _Members:
 
     @property
     def threads(self) -> int:
-        """How many threads they have, or 1 where there are no workers yet."""
+        """Total number of threads, or 1 if there are no workers yet."""
         return max(1, sum(self._known.values()))
 
     def left(self, at_once: bool) -> list[str]:
-        """Return a warning about lost workers, or nothing if they were counted a moment ago."""
+        """Return warnings about lost workers, checked at most once per `CHECKED_S` unless `at_once`."""
         if not at_once and time.monotonic() < self._checked + CHECKED_S:
             return []
         before, self._known, self._checked = self._known, self._client.nthreads(), time.monotonic()

@@ -1,4 +1,4 @@
-"""The check that compiled kernels, NumPy and one operating point at a time give the same."""
+"""The check that compiled kernels, NumPy and single operating points give the same results."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from wearlaw.units.quantities import Q
 
 
 class Ramps(WearLaw):
-    """A law of two ramps, which takes whatever closed form a contact model has."""
+    """A law of ramps, which uses the closed form of a contact model if it has one."""
 
     name: ClassVar[str] = "ramps"
     source: ClassVar[str] = "the conformance kit"
@@ -44,7 +44,7 @@ POINTS = 12
 
 
 def acceleration_does_not_matter(model: Model) -> None:
-    """Compiled kernels, NumPy and one operating point at a time give the same to rounding."""
+    """Compiled kernels, NumPy and single operating points give the same results to rounding."""
     try:
         accelerate(False)
         due, allowed = _results(model, slice(None))
@@ -61,7 +61,7 @@ def acceleration_does_not_matter(model: Model) -> None:
 
 
 def _results(model: Model, part: slice | int) -> tuple[Array, Array]:
-    """Return what a model computes at some of `POINTS` operating points, the last axis, or at one, and its rounding."""
+    """Return the results of a model at some of `POINTS` operating points (last axis) or at one, and their rounding."""
     if isinstance(model, WearLaw):
         contact = random_contacts(POINTS)
         rate = (
@@ -119,6 +119,6 @@ def _of_ellipse(model: ContactModel, part: slice | int) -> tuple[Array, Array]:
 
 
 STEEPEST = sum(abs(slope) for _, slope in Ramps().ramps({}))
-"""Slopes of the ramps, of which each is rounded as the whole dissipation is [kg/m/N]."""
+"""Sum of the slopes of the ramps [kg/m/N]; each ramp has the rounding error of the whole dissipation."""
 
 CHECKS = (acceleration_does_not_matter,)

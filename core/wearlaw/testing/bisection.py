@@ -1,7 +1,7 @@
 """Jumps, kinks and lost digits of a function of one number, for many such functions at once.
 
-A continuous function changes less and less over an interval that is halved again and again, and so does the slope of
-a smooth one; a jump stays, and so does the change of slope in a kink.
+When an interval is halved repeatedly, the change of a continuous function over it vanishes, and so does the change of
+slope of a smooth one. A jump remains, and so does the change of slope at a kink.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ HALVINGS = 46
 """From 1/32 to 4e-16, the rounding of a number near 1."""
 
 JUMP = 1e-6
-"""Share of the function's value that counts as a jump. What grows as steeply as a square root, the steepest onset of
-the theories of contact, changes by √(2^-46) = 1.2e-7 over the last interval."""
+"""Share of the function's value that counts as a jump. A square root, the steepest onset in theories of contact,
+changes by √(2^-46) = 1.2e-7 over the last interval."""
 
 FIRST_HALVINGS = 8
-"""Halvings after which an interval over which the function hardly changes is given up: in what is left, 1/256 of it,
-the function would have to undo its own jump."""
+"""Halvings after which an interval without a visible change is given up: within the remaining 1/256 of it, the function
+would have to undo its own jump."""
 
 HALVINGS_OF_KINKS = 24
 """From 1/128 to h = 4.7e-10. There the slope of a smooth function whose logarithm has the slope n changes by the share
@@ -45,10 +45,10 @@ Function: TypeAlias = Callable[[Indices, Array], Array]
 
 
 def find_jumps(function: Function, count: int, intervals: int = 32) -> list[tuple[int, float, float, float]]:
-    """Return the jumps of functions of one number: index, argument, and the values before and behind it.
+    """Return the jumps of functions of one number: index, argument, and the values on both sides.
 
-    In each of `intervals` equal parts of [0, 1] the half over which the function changes more, relative to its size,
-    is kept again and again. A jump is found if it exceeds what the curvature does in an interval.
+    Each of `intervals` equal parts of [0, 1] is halved repeatedly, keeping the half with the larger relative change. A
+    jump is found if it exceeds the change by curvature in an interval.
     """
     edges = np.linspace(0.0, 1.0, intervals + 1)
     index = np.repeat(np.arange(count), intervals)
@@ -77,19 +77,19 @@ def _change(before: Array, behind: Array) -> Array:
 
 
 def find_kinks(function: Function, threshold: Array, intervals: int = 128) -> list[tuple[int, float, float, float]]:
-    """Return the kinks of functions of one number: index, the arguments between which it lies, and its size.
+    """Return the kinks of functions of one number: index, arguments on both sides, and size.
 
-    [0, 1] is covered twice by parts of length 1/`intervals`, so that each kink lies well inside of one. In each, that
-    half is kept again and again, of the first, the middle and the last one, in which the slope changes most. A kink
-    then lies between a quarter and three quarters of what is left, where half of its change of slope or more shows.
+    [0, 1] is covered twice by parts of length 1/`intervals`, so that each kink lies well inside one. Each part is
+    shrunk repeatedly to its first, middle or last half, whichever has the largest change of slope. A kink then lies
+    between a quarter and three quarters of the remaining part, where at least half of its change of slope shows.
 
     Parameters
     ----------
     function : callable
         The functions.
     threshold : ndarray, (count,)
-        For each function, which change of slope, over the largest value in the part, counts as a kink. It must also
-        be `STEEP` of the slope itself, which may be steep where the value is small.
+        For each function, the change of slope, over the largest value in the part, that counts as a kink. It must also
+        exceed `STEEP` times the slope itself, which may be large for small values.
     """
     starts, width = np.arange(2 * intervals - 1) / (2.0 * intervals), 1.0 / intervals
     index, low = np.repeat(np.arange(threshold.size), starts.size), np.tile(starts, threshold.size)

@@ -1,8 +1,8 @@
 """Checks of a contact model that hold for every theory.
 
-Tolerances: a position is exact to the rounding of the half-width a, so what is integrated over a slip zone is exact to
-rounding over the zone's share of the patch. `ContactModel` subclasses with nodes of their own, whose sums are only as
-exact as their cells, declare that as `accuracy`.
+Tolerances: a position is exact to the rounding of the half-width a, so an integral over a slip zone is exact to
+rounding over the zone's share of the patch. Models with nodes of their own, whose sums are only as exact as their
+cells, declare that as `accuracy`.
 """
 
 from __future__ import annotations
@@ -48,15 +48,15 @@ def saturation(problem: Problem) -> Array:
 
 
 def error_of_force(model: ContactModel) -> float:
-    """Return the relative error that a force may have.
+    """Return the permitted relative error of a force.
 
-    It is rounding; but where a model declares an accuracy of its own, its force is a sum over its nodes as well.
+    This is rounding, or the accuracy that a model declares: its force is then a sum over its nodes.
     """
     return SAME if model.accuracy == QUADRATURE else model.accuracy
 
 
 def error_of_traction(model: ContactModel) -> float:
-    """Return the relative error of a traction in full slip: rounding, but that of the force where it is its mean."""
+    """Return the permitted relative error of a traction in full slip: rounding, or that of the force as its mean."""
     return error_of_force(model) if model.scale == "patch" else SAME
 
 
@@ -173,7 +173,7 @@ def random_problems(points: int) -> Problem:
 
 
 def batch_equals_loop(model: ContactModel) -> None:
-    """All operating points at once give what one at a time gives."""
+    """All operating points at once give the same as one at a time."""
 
     def examine(problem: Problem) -> None:
         # Stick, full slip and none in one batch: the points that a batch must keep apart.

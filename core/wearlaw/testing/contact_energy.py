@@ -1,4 +1,4 @@
-"""Checks of the energy that slip dissipates, and how its sum gets better with finer nodes."""
+"""Checks of the energy that slip dissipates, and of its convergence with finer nodes."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from wearlaw.testing.shared_checks import Claims, friction_limit
 from wearlaw.testing.strategies import LINE_PROBLEMS
 
 MANY = 512
-"""Problems over which an error is averaged, since where a zone begins within a cell is as good as random."""
+"""Number of problems to average an error over, since the place within a cell where a zone begins is random."""
 
 CHANCE = 1.3
-"""What chance adds to a mean of `MANY` errors: they scatter by 0.58 of their mean where one step falls anywhere in a
+"""Scatter of a mean of `MANY` errors: they scatter by 0.58 of their mean where one step falls anywhere in a
 cell, and those in short slip zones weigh more, as if there were 128. The ratio of two such means scatters by
 0.58 √(2/128) = 0.07; four times that is allowed."""
 
 REFINEMENTS = 3
-"""How often nodes are halved; a first-order error falls to an eighth."""
+"""Number of refinements by a factor of two; they reduce a first-order error to an eighth."""
 
 
 def slip_dissipates_the_energy_fed_in(model: ContactModel) -> None:
@@ -85,7 +85,7 @@ def refined_nodes_improve_the_sums(model: ContactModel) -> None:
 
 
 def refinements(model: ContactModel) -> list[ContactModel]:
-    """Return the model, and the same on nodes refined once, twice and so on, `REFINEMENTS` times."""
+    """Return the model on its own nodes, and refined once up to `REFINEMENTS` times."""
     models = [model]
     for _ in range(REFINEMENTS):
         finer = models[-1].refined()
@@ -95,7 +95,7 @@ def refinements(model: ContactModel) -> list[ContactModel]:
 
 
 def assert_improved(name: str, before: float, behind: float) -> None:
-    """Assert that the error of a sum over nodes has fallen as one of first order does, or to that of quadrature."""
+    """Assert that the error of a sum over nodes has fallen at first order, or to that of quadrature."""
     assert behind <= max(CHANCE * before / 2**REFINEMENTS, QUADRATURE), (
         f"the sum of {name} is off by {before:.2g}, and still by {behind:.2g} on {2**REFINEMENTS} times finer nodes"
     )
@@ -108,9 +108,9 @@ CLAIMS: Claims = {
 CLAIMS_OF_FIELDS: Claims = {
     "energy_balance": (energy_balance_improves_with_refinement,),
 }
-"""The checks of each claim that need a model which knows its fields at any position."""
+"""Checks of claims for models with fields at any position."""
 
 CLAIMS_OF_REFINED: Claims = {
     "energy_balance": (refined_nodes_improve_the_sums,),
 }
-"""The checks of each claim that need a model which can refine its nodes."""
+"""Checks of claims for models that can refine their nodes."""

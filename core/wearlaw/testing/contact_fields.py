@@ -1,4 +1,4 @@
-"""Checks of what a contact model says of its slip zone: where it begins, where variables cross values, its energy."""
+"""Checks of a contact model's slip zone: its length, crossings of variables, and energy."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ POINTS = 64
 """Operating points, from almost all stick to full slip."""
 
 SAMPLES = 400
-"""Positions in a slip zone between which no crossing may be missed."""
+"""Sampled positions in a slip zone; no crossing between them may be missed."""
 
 BISECTIONS = 60
-"""From a distance between samples to rounding."""
+"""Bisections from the distance between samples to rounding."""
 
 PANEL_NODES = 16
-"""Gauss-Legendre nodes of a panel. What is singular lies no nearer to a panel than its own length, so that the error
-falls as (3 + √8)^-2 for each node, to 3e-25."""
+"""Gauss-Legendre nodes of a panel. Singularities lie no nearer to a panel than its own length, so that the
+error falls as (3 + √8)^-2 for each node, to 3e-25."""
 
 
 def slip_lies_in_the_slip_zone(model: LineContactModel) -> None:
@@ -92,7 +92,7 @@ def crossings_are_where_the_fields_cross(model: LineContactModel) -> None:
 
 
 def _compare_crossings(zone: _SlipZone, distance: Array, value: Array, found: Array) -> None:
-    """Compare the crossings that were found with those between sampled distances."""
+    """Compare the returned crossings with those between sampled distances."""
     error = SAME * zone.length
     inside = (found > error) & (found < zone.length - error)
     found = np.where(inside, found, np.nan)
@@ -170,10 +170,10 @@ def _integral(zone: _SlipZone, threshold: Array, edges: Array) -> Array:
 
 
 CHECKS = (slip_lies_in_the_slip_zone,)
-"""Checks of every model that knows its fields at any position."""
+"""Checks of models with fields at any position."""
 
 OF_CROSSINGS = (crossings_are_where_the_fields_cross,)
-"""Checks of a model that gives `crossings`."""
+"""Checks of models that implement `crossings`."""
 
 OF_EXCESS = (excess_dissipation_is_that_of_the_fields,)
-"""Checks of a model that gives `excess_dissipation`."""
+"""Checks of models that implement `excess_dissipation`."""

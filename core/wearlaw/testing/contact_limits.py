@@ -61,8 +61,8 @@ def full_slip_is_reached(model: ContactModel) -> None:
 def full_slip_is_met_from_both_sides(model: ContactModel) -> None:
     """Where full slip begins, force and mean slip over creepage have the same limit from both sides.
 
-    What separates the two sides falls with the distance from full slip, at the least as its square root, the steepest
-    onset of the theories of contact: from 1e-4 to 1e-8 of it, to a hundredth.
+    The difference between the sides falls with the distance from full slip at least as its square root, the steepest
+    onset in theories of contact: from 1e-4 to 1e-8 of it, to a hundredth.
     """
 
     def examine(problem: Problem) -> None:

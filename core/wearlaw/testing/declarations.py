@@ -76,7 +76,7 @@ def band_is_ordered(law: WearLaw) -> None:
 def exemptions_are_claims(model: ContactModel) -> None:
     """`exemptions` names claims that there are, each with a reason."""
     for claim, reason in model.exemptions.items():
-        assert claim in get_args(Claim), f"'{claim}' is no claim; there are: {', '.join(get_args(Claim))}"
+        assert claim in get_args(Claim), f"'{claim}' is not a claim; there are: {', '.join(get_args(Claim))}"
         assert reason.strip(), f"the exemption from '{claim}' has no reason"
 
 

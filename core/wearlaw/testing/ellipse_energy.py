@@ -1,4 +1,4 @@
-"""Checks of sums over an ellipse: the energy that slip dissipates, and how sums get better with finer nodes."""
+"""Checks of sums over an ellipse: the energy that slip dissipates, and convergence with finer nodes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from wearlaw.testing.shared_checks import Claims, friction_limit
 from wearlaw.testing.strategies import ELLIPTIC_PROBLEMS
 
 PATCHES = 8
-"""Patches over which an error is averaged, and with it over their strips."""
+"""Number of patches to average an error over."""
 
 STRIPS = 200
 """Strips of equal width, whose sums of what is a parabola across the patch are off by 1/(2 `STRIPS`²) of it."""
@@ -94,7 +94,7 @@ def _forces(problem: Problem, contact: Contact) -> Array:
 
 
 def other_strips_have_the_same_sums(model: ContactModel) -> None:
-    """On the strips that are asked for, traction and energy sum to the same over y as on the model's own."""
+    """On given strips, traction and energy sum to the same over y as on the model's own."""
     shares = (2.0 * np.arange(STRIPS) + 1.0) / STRIPS - 1.0
     problem = random_ellipses(PATCHES)
     contact, own = model.on_strips(problem, shares), model.solve_ellipse(problem)
@@ -123,10 +123,10 @@ CLAIMS: Claims = {
 CLAIMS_OF_REFINED: Claims = {
     "energy_balance": (refined_strips_improve_the_sums,),
 }
-"""The checks of each claim that need a model which can refine its nodes."""
+"""Checks of claims for models that can refine their nodes."""
 
 OF_REFINED = (refined_strips_improve_the_forces,)
-"""Checks of a model which can refine its nodes."""
+"""Checks of models that can refine their nodes."""
 
 OF_STRIPS = (other_strips_have_the_same_sums,)
-"""Checks of a model that solves on strips which are asked for."""
+"""Checks of models that solve on given strips."""

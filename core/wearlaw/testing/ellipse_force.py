@@ -46,7 +46,7 @@ def forces_are_mirrored_with_the_creepages(model: ContactModel) -> None:
 
 
 def _compare_turned(model: ContactModel, problem: Problem, signs: tuple[float, float, float], message: str) -> None:
-    """Compare forces and wear index with those where creepages, and with them the forces, have other signs."""
+    """Compare forces and wear index with those for creepages, and hence forces, of other signs."""
     contact, other = (
         model.solve_ellipse(problem),
         model.solve_ellipse(problem.with_creepages(*Creepages.of(problem).times(*signs))),
@@ -62,7 +62,7 @@ def _compare_turned(model: ContactModel, problem: Problem, signs: tuple[float, f
 
 
 def _parts_of_power(problem: Problem, contact: Contact) -> Array:
-    """Return |ξFx| + |ηFy| + |φMz|, which the rounding of their sum is a share of."""
+    """Return |ξFx| + |ηFy| + |φMz|, the scale of the rounding error of their sum."""
     return (
         np.abs(problem.longitudinal_creepage * contact.force_x)
         + np.abs(problem.lateral_creepage * contact.force_y)

@@ -24,10 +24,10 @@ from wearlaw.testing.shared_checks import Claims, friction_limit, full_slip, ste
 from wearlaw.testing.strategies import ELLIPTIC_PROBLEMS, log_uniform
 
 POINTS = 32
-"""Patches that are checked at once."""
+"""Number of patches checked at once."""
 
 FAR = 100.0
-"""Reduced creepage far beyond where any theory saturates that does."""
+"""Reduced creepage far beyond the saturation of any theory that saturates."""
 
 SLOPE = 1e-3
 """Error of initial slopes: half of the last digit of Kalker's coefficients."""
@@ -60,8 +60,8 @@ def forces_stay_below_friction(model: ContactModel) -> None:
 def nothing_slips_below_the_bound(model: ContactModel) -> None:
     """Where the traction on an ellipse is below its bound, there is no slip.
 
-    A cell may slip on one side and stick on the other, and the traction turn within it; so what is zero is the slip
-    times what the traction lacks to its bound, summed, as a share of the power in full slip.
+    A cell may slip on one side and stick on the other, and the traction may turn within it. So the check sums slip
+    times the distance of the traction from its bound, as a share of the power in full slip.
     """
     problem = random_ellipses(POINTS)
     contact = model.solve_ellipse(problem)
@@ -104,8 +104,8 @@ def _cross(first: Array, second: Array) -> Array:
 def full_slip_on_the_ellipse_is_met_from_both_sides(model: ContactModel) -> None:
     """Where full slip of a translation begins, force and mean slip over creepage have the same limit from both sides.
 
-    What separates the two sides falls with the distance from full slip, at the least as its square root, the steepest
-    onset of the theories of contact: from 1e-4 to 1e-8 of it, to a hundredth and hardly more.
+    The difference between the sides falls with the distance from full slip at least as its square root, the steepest
+    onset in theories of contact: from 1e-4 to 1e-8 of it, to a hundredth and hardly more.
     """
     problem = random_ellipses(POINTS)
 
@@ -128,8 +128,8 @@ def initial_slopes_are_kalkers(model: ContactModel) -> None:
     """For small creepages Fx is G ab C11 ξ, and Fy is G ab C22 η and G ab √(ab) C23 φ.
 
     The creepage is a millionth of what saturates, and the force as much nearer to linear than `SLOPE`. A march over
-    coarse cells lets go of the traction up to a cell too soon; what that takes off is within its accuracy and at least
-    1.5 times less on nodes twice as fine, as it is of first order.
+    coarse cells ends the traction up to a cell too soon. That error is within its accuracy, and of first order: at
+    least 1.5 times less on nodes twice as fine.
     """
     error = _slope_error(model)
     if error <= SLOPE:
@@ -141,7 +141,7 @@ def initial_slopes_are_kalkers(model: ContactModel) -> None:
 
 
 def _slope_error(model: ContactModel) -> float:
-    """Return the largest error of the initial slopes, over the slope that Kalker has for the cause."""
+    """Return the largest error of the initial slopes, relative to Kalker's slope for the same creepage."""
     small, errors = 1e-6, []
     for cause in range(3):
         reduced = [0.0, 0.0, 0.0]

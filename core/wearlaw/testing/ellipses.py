@@ -40,7 +40,7 @@ class Creepages(NamedTuple):
         return cls(problem.longitudinal_creepage, problem.lateral_creepage, problem.spin)
 
     def times(self, *factors: Array | float) -> Creepages:
-        """Return each multiplied by its factor, or all by the one that is given."""
+        """Return creepages multiplied by a factor each, or by a single one."""
         return Creepages(
             *(creepage * factor for creepage, factor in zip(self, factors * (3 // len(factors)), strict=True))
         )
@@ -72,7 +72,7 @@ def at_magnitude(problem: Problem, reduced: Array | float, spin: Array | float =
 
 
 def random_ellipses(points: int) -> Problem:
-    """Return patches of many shapes, loads and frictions; always the same ones.
+    """Return patches of many shapes, loads and frictions, the same at every call.
 
     Reduced creepages go from 0.3, where the slip zone is a tenth of the patch, to 3.5, and have random directions.
     Every other patch spins.
@@ -109,13 +109,13 @@ def translation(problem: Problem) -> Array:
 
 
 def lever(problem: Problem) -> Array:
-    """Return √((a²+b²)/5) [m], the rms distance from the centre that Hertz's pressure has."""
+    """Return √((a²+b²)/5) [m], the rms distance of Hertz's pressure from the centre."""
     arm: Array = np.hypot(problem.a, problem.b) / np.sqrt(5.0)
     return arm
 
 
 def sliding_power(problem: Problem) -> Array:
-    """Return what full slip dissipates per metre rolled, but for spin that lessens the slip [N]."""
+    """Return the dissipation of full slip per metre rolled [N], without the reduction of slip by spin."""
     return friction_limit(problem) * (translation(problem) + np.abs(problem.spin) * lever(problem))
 
 

@@ -1,4 +1,4 @@
-"""How the checks search for a counter-example, and the tolerances that they share."""
+"""The search of the checks for counter-examples, and their shared tolerances."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from wearlaw.testing.sampling import EPS
 T = TypeVar("T")
 
 EXAMPLES = 25
-"""Examples a check draws."""
+"""Number of examples that a check draws."""
 
 SAME = 16.0 * EPS
 """Relative difference of two orders of the same few operations: vector and scalar code may round differently."""
 
 SUM = 64.0 * EPS
-"""Error of a sum over nodes, as a share of what it is without cancellation."""
+"""Error of a sum over nodes, relative to the sum of magnitudes."""
 
 _SETTINGS = settings(
     max_examples=EXAMPLES,
@@ -33,11 +33,11 @@ _SETTINGS = settings(
     phases=(Phase.generate, Phase.shrink),
     suppress_health_check=(HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example),
 )
-"""Without chance and without files, so that a check gives the same answer wherever it runs."""
+"""Deterministic and without files, so that a check gives the same answer everywhere."""
 
 
 def for_each(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> None:
-    """Run a function on examples; a counter-example is shrunk and named in a note of the error."""
+    """Run a function on examples; shrink a counter-example and name it in a note of the error."""
     for example in _examples(strategy):
         try:
             examine(copy.deepcopy(example))
@@ -47,11 +47,11 @@ def for_each(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> No
     else:
         return
     _search(strategy, examine)
-    raise failure  # which the search did not meet again: the model does not do the same twice
+    raise failure  # the search did not find it again: the model is not deterministic
 
 
 def _examples(strategy: st.SearchStrategy[T]) -> list[T]:
-    """Return the examples of a strategy; once, since hypothesis takes longer to draw them than most checks do."""
+    """Return the examples of a strategy, drawn once since drawing takes longer than most checks."""
     if strategy not in _drawn:
         examples: list[T] = []
         _search(strategy, examples.append)
@@ -63,7 +63,7 @@ _drawn: dict[st.SearchStrategy[Any], list[Any]] = {}
 
 
 def _search(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> None:
-    """Run a function on the examples of a strategy, which are the same for every function until one fails."""
+    """Run a function on the examples of a strategy, the same for every function until one fails."""
 
     @_SETTINGS
     @given(strategy)

@@ -1,7 +1,7 @@
-"""Run in a fresh process: make models again from their TOML, JSON and pickles, and say what they compute.
+"""Program of a fresh process: restore models from TOML, JSON and pickles, and return their results.
 
-Reads a pickled request from standard input and writes a pickled answer to standard output; it imports nothing of the
-kit, which would cost more time than all of that.
+Reads a pickled request from standard input and writes a pickled answer to standard output; it does not import the
+kit, which would take longer than all of that.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from wearlaw.errors import described
 
 
 def computed(model: Any, arguments: list[Any]) -> list[Any]:
-    """Return what a wear law computes for contacts, a contact model for problems, or a rig for conditions."""
+    """Return the results of a wear law for contacts, of a contact model for problems, or of a rig for conditions."""
     if hasattr(model, "problem"):
         problems = [model.problem(**conditions) for conditions in arguments]
         values = [getattr(problem, field.name) for problem in problems for field in dataclasses.fields(problem)]
@@ -30,7 +30,7 @@ def computed(model: Any, arguments: list[Any]) -> list[Any]:
 
 
 def made_again(way: Callable[[], Any], arguments: list[Any]) -> tuple[str, Any]:
-    """Return what a model computes, or why it could not be made."""
+    """Return the results of a restored model, or the error of restoring it."""
     try:
         return "", computed(way(), arguments)
     except KeyboardInterrupt:
@@ -40,7 +40,7 @@ def made_again(way: Callable[[], Any], arguments: list[Any]) -> tuple[str, Any]:
 
 
 def answer(contents: dict[str, Any]) -> dict[str, tuple[str, Any]]:
-    """Return what a model computes after each way, or why it could not be made."""
+    """Return the results of a model restored each way, or the error of restoring it."""
     cls: Any = importlib.import_module(contents["module"])
     for part in contents["qualname"].split("."):
         cls = getattr(cls, part)

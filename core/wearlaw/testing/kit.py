@@ -50,7 +50,7 @@ class Check:
     name : str
         Such as "no_slip_no_wear".
     doc : str
-        What must hold.
+        The property that must hold.
     """
 
     name: str
@@ -63,7 +63,7 @@ class Check:
         Raises
         ------
         AssertionError
-            If the model does not pass; also if it raises an error of its own.
+            If the model does not pass, or raises an error of its own.
         """
         try:
             self._run()
@@ -84,19 +84,18 @@ class Check:
 def checks(model: Model) -> Iterator[Check]:
     """Yield the checks of a rig, a contact model or a wear law.
 
-    A check of what the model does not claim is left out: of a claim in `ContactModel.exemptions`, of the nodes of
-    a law that is stated for the whole patch, of a shape of patch that a contact model does not solve, of what is
-    optional and not given.
+    Checks that do not apply to the model are left out: those of claims in `ContactModel.exemptions`, of nodes for a law
+    of the whole patch, of geometries that a contact model does not solve, and of optional methods that are missing.
 
     Parameters
     ----------
     model : Rig, ContactModel or WearLaw
-        With the options that are to be checked.
+        The model, with the options to check.
 
     Raises
     ------
     InputError
-        If it is none of them, or a rig without an `example`.
+        If this is not a model, or is a rig without an `example`.
     """
     if isinstance(model, Rig):
         found = _of_rig(model)
@@ -123,14 +122,14 @@ def conformance(
     Parameters
     ----------
     model : Rig, ContactModel or WearLaw
-        With the options that are to be checked.
+        The model, with the options to check.
     expected_failures : mapping of str to str, optional
-        Names of checks that are known to fail, each with the reason; the test fails once one of them passes.
+        Checks that are known to fail, each with the reason. The test fails once one of them passes.
 
     Raises
     ------
     InputError
-        If an expected failure is no check of this model.
+        If an expected failure is not a check of this model.
     """
     import pytest
 

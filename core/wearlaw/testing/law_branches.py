@@ -1,4 +1,4 @@
-"""Checks of where a wear law branches, and of the digits it keeps."""
+"""Checks of the branches of a wear law, and of its precision."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from wearlaw.testing.examples import SAME, assert_close
 from wearlaw.testing.sampling import aimed, at_nodes, between, e_folds, forward, random_contacts, retotalled, rows
 
 PATHS = 64
-"""Paths between random contacts along which jumps and kinks are looked for."""
+"""Number of paths between random contacts to search for jumps and kinks."""
 
 KINK = 1e-4
 """Change of slope that counts as a kink: of the rate, per e-fold of all values of the contact together."""
 
 AT_JUMP = 1e-10
-"""Relative distance from a declared jump at which it is taken to lie there: a position on a path that spans ten
+"""Relative distance up to which a jump counts as declared: a position on a path that spans ten
 decades is known to 23 times rounding."""
 
 STEP = 1e-12
@@ -154,7 +154,7 @@ CHECKS = (
 )
 
 OF_BREAKPOINTS = (rate_has_kinks_only_where_declared,)
-"""Checks that mean nothing for a law that does not say where it branches."""
+"""Checks of laws that declare their breakpoints."""
 
 OF_RAMPS = (ramps_sum_to_the_rate,)
-"""Checks of a law that gives `ramps`."""
+"""Checks of laws that declare `ramps`."""

@@ -1,4 +1,4 @@
-"""Checks that a wear law depends on what it may depend on, and keeps what it declares."""
+"""Checks that a wear law depends only on permitted variables, and keeps its declarations."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ STEPS = (1.0, 1.001, 0.999)
 
 
 def order_of_nodes_does_not_matter(law: WearLaw) -> None:
-    """The rate goes with its node when the nodes are listed in another order."""
+    """Each node keeps its rate when the nodes are listed in another order."""
 
     def examine(contact: Contact) -> None:
         turned = _nodes(contact, lambda array: array[..., ::-1])
@@ -38,7 +38,7 @@ def order_of_nodes_does_not_matter(law: WearLaw) -> None:
 
 
 def batching_does_not_matter(law: WearLaw) -> None:
-    """One operating point at a time gives what all at once give."""
+    """One operating point at a time gives the same as all at once."""
 
     def examine(contact: Contact) -> None:
         together = law.rate(contact, law.numbers)
@@ -120,7 +120,7 @@ def is_monotone_as_declared(law: WearLaw) -> None:
 
 
 GROWN_BY = {"wear_index_density": ("traction", "slip")}
-"""By which values of a contact a variable is made to grow; else by itself."""
+"""Fields of a contact that are raised to raise a variable; others are raised directly."""
 
 
 def _many(law: WearLaw, points: int = 512) -> Contact:
@@ -135,7 +135,7 @@ def _many(law: WearLaw, points: int = 512) -> Contact:
 
 
 def _grown(contact: Contact, name: str, factor: float) -> Contact:
-    """Return the contact with a variable grown, and the wear index with it where it is made of that variable."""
+    """Return the contact with a variable raised, and with it the wear index if that depends on the variable."""
     if name == "slip_speed":
         return retotalled(contact, rolling_speed=contact.rolling_speed * factor)
     if name == "wear_index":
@@ -161,10 +161,7 @@ def _nodes(contact: Contact, change: Callable[[Array], Array]) -> Contact:
 
 
 def parameters_may_vary(law: WearLaw) -> None:
-    """With one value of a number for each operating point, a law gives what one law after the other gives.
-
-    That goes for its rate, its breakpoints and its ramps.
-    """
+    """A number that varies from point to point gives the same rate, breakpoints and ramps as a law for each value."""
     law = law.explicit()
 
     def examine(contact: Contact) -> None:
@@ -208,9 +205,9 @@ OF_SEVERAL_NODES = (
     nodes_without_area_do_not_matter,
     each_node_wears_by_itself,
 )
-"""Checks that mean nothing for a law of the whole patch."""
+"""Checks of laws that are not of the whole patch."""
 
 OF_THE_PATCH = (scale_is_respected,)
-"""Checks that mean nothing for any other law."""
+"""Checks of laws of the whole patch."""
 
 CHECKS = (parameters_may_vary, batching_does_not_matter, *OF_SEVERAL_NODES, *OF_THE_PATCH, is_monotone_as_declared)

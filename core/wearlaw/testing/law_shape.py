@@ -1,4 +1,4 @@
-"""Checks of what a wear law returns at any contact."""
+"""Checks of the rates that a wear law returns for any contact."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _contacts(most_nodes: int, crowded: tuple[tuple[str, tuple[float, ...]], ...
 
 
 def rate_has_the_shape_of_the_nodes(law: WearLaw) -> None:
-    """One rate a node, also for one operating point without a batch axis and for a batch of two axes."""
+    """There is a rate for each node, also for one operating point without a batch axis and for two batch axes."""
 
     def examine(contact: Contact) -> None:
         for shape in ((), (1,), (2, 1)):
@@ -46,7 +46,7 @@ def _repeated(shape: tuple[int, ...], array: Array) -> Array:
 
 
 def rate_is_finite(law: WearLaw) -> None:
-    """The rate is a finite number at every node, also where pressure, traction or slip is zero."""
+    """The rate is a finite number at every node, even if pressure, traction or slip is zero."""
 
     def examine(contact: Contact) -> None:
         rate = law.rate(contact, law.numbers)
@@ -66,7 +66,7 @@ def rate_is_never_negative(law: WearLaw) -> None:
 
 
 def no_slip_no_wear(law: WearLaw) -> None:
-    """Where nothing slips, and hence no energy is dissipated, the rate is exactly zero."""
+    """Without slip, and hence without dissipation, the rate is exactly zero."""
 
     def examine(contact: Contact) -> None:
         rate = law.rate(retotalled(contact, slip=np.zeros_like(contact.slip)), law.numbers)
@@ -76,7 +76,7 @@ def no_slip_no_wear(law: WearLaw) -> None:
 
 
 def sign_of_creepage_does_not_matter(law: WearLaw) -> None:
-    """The rate is the same when traction and slip both change their sign."""
+    """The rate is the same if traction and slip both change sign."""
 
     def examine(contact: Contact) -> None:
         # Not summed anew, so that a wear index at a border of the law stays there.

@@ -1,4 +1,4 @@
-"""Checks of a rig: the problems that it makes of the conditions of its example, and of others near them.
+"""Checks of a rig: the problems that it makes from the conditions of its example, and from others near them.
 
 A problem follows from its conditions by a short formula. So two ways to the same problem differ by `SAME` at most.
 """
@@ -24,7 +24,7 @@ from wearlaw.units.quantities import Q, Quantity, parse, scalar_si
 Conditions: TypeAlias = dict[str, Any]
 
 FACTORS = np.array([1.0, 0.9375, 0.875])
-"""Conditions of the example are varied by these factors, so little that the rig still takes them."""
+"""Factors that vary the conditions of the example, close enough to one that the rig still takes them."""
 
 POSITIVE = ("normal_force", "max_pressure", "patch_area", "friction_coefficient", "rolling_speed", "density")
 """Attributes of a problem that must be greater than zero."""
@@ -123,7 +123,7 @@ def problem_has_the_shape_of_the_conditions(rig: Rig) -> None:
 
 
 def arrays_equal_single_calls(rig: Rig) -> None:
-    """An array of one condition gives the same as one call for each of its values."""
+    """An array for one condition gives the same as a call for each of its values."""
     for name, value in varied(rig).items():
         singles = [values_of(_problem(rig, **{name: times(value, factor)})) for factor in FACTORS]
         expected = {field: np.stack([np.asarray(single[field]) for single in singles]) for field in singles[0]}

@@ -1,4 +1,4 @@
-"""Whether models are the same after they were written and read again in another process."""
+"""Checks that models stay the same when written, and read in another process."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ START += " runpy.run_path(sys.argv[1], run_name='__main__')"
 
 
 class RoundTrip:
-    """Three ways to write models, read again by one fresh process."""
+    """Three ways to write models, all read by one fresh process."""
 
     def __init__(self, *models: Model) -> None:
         self.models = models
@@ -49,7 +49,7 @@ class RoundTrip:
     def _same(self, way: str) -> None:
         for model, answer in zip(self.models, self._answers, strict=True):
             error, computed = answer[way]
-            assert not error, f"{type(model).__name__} cannot be made again from {way}: {error}"
+            assert not error, f"{type(model).__name__} cannot be restored from {way}: {error}"
             for found, due in zip(computed, fresh.computed(model, _arguments(model)), strict=True):
                 assert_close(found, due, f"what {type(model).__name__} computes after {way}")
 
@@ -66,7 +66,7 @@ class RoundTrip:
 
 
 def _written(model: Model) -> dict[str, Any]:
-    """Return what a fresh process makes the model again from, and for what it computes something."""
+    """Return the written forms of a model, and the arguments for which a fresh process computes results."""
     cls, fields = type(model), model.model_dump(mode="json", exclude_none=True, by_alias=True)
     return {
         "module": cls.__module__,
@@ -81,12 +81,12 @@ def _written(model: Model) -> dict[str, Any]:
 def _pickled(model: Model) -> bytes:
     try:
         return pickle.dumps(model)
-    except Exception:  # `through_pickle` raises it again; the other two ways do not need it
+    except Exception:  # `through_pickle` raises it again; the other two ways do not need the pickle
         return b""
 
 
 def _arguments(model: Model) -> list[Any]:
-    """Return the contacts, problems or conditions for which the model computes something."""
+    """Return the contacts, problems or conditions for which to compute results."""
     if isinstance(model, Rig):
         return [dict(model.example)]
     if isinstance(model, WearLaw):

@@ -1,4 +1,4 @@
-"""Contacts from numbers between 0 and 1, and how to move one variable of a contact."""
+"""Contacts from numbers between 0 and 1, and contacts with one variable changed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from wearlaw.contact.contact import Contact
 EPS = float(np.finfo(np.float64).eps)
 
 _VALUES = ("pressure", "traction", "slip", "traction_bound", "area", "rolling_speed", "density")
-"""What a contact of the kit is made of; its totals follow."""
+"""Fields of a contact of the kit; its totals follow from them."""
 
 _PRESSURE = (1e5, 1e10)
 _TRACTION = (1e-6, 1.0)
@@ -30,7 +30,7 @@ def _log_range(share: Array, low: float, high: float) -> Array:
 
 
 def contact_from_shares(nodes: Array, conditions: Array) -> Contact:
-    """Return the contact that numbers from 0 to 1 stand for.
+    """Map numbers from 0 to 1 to a contact.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def with_totals(
 
 
 def random_contacts(points: int, nodes: int = 1, seed: int = 0, loaded: bool = False) -> Contact:
-    """Return contacts at many random operating points; the same ones for the same seed.
+    """Return contacts at many random operating points, reproducible by seed.
 
     With `loaded`, every other one has node values in the upper half of their ranges, those of discs at work: from
     30 MPa, 1e-4 of slip and 0.1 mm².
@@ -93,13 +93,13 @@ def random_contacts(points: int, nodes: int = 1, seed: int = 0, loaded: bool = F
 
 
 def retotalled(contact: Contact, **changed: Array) -> Contact:
-    """Return the contact with some of its node values changed and its sums computed anew."""
+    """Return the contact with some node values changed, and its sums recomputed."""
     values: dict[str, Array] = {name: getattr(contact, name) for name in _VALUES}
     return with_totals(**(values | changed))
 
 
 def aimed(contact: Contact, variable: str, value: Array | float) -> Contact:
-    """Return the contact with a variable set to a value at all nodes; where it cannot be reached, as it was.
+    """Return the contact with a variable set to a value at all nodes, or unchanged if that is impossible.
 
     A wear-index density is reached by traction, a slip speed by slip, the wear index by area.
     """
@@ -125,7 +125,7 @@ def aimed(contact: Contact, variable: str, value: Array | float) -> Contact:
 
 
 def between(first: Contact, second: Contact, share: Array) -> Contact:
-    """Return the contacts on the way from one batch to another, straight in the logarithm of every value.
+    """Return contacts between two batches, on a straight line in the logarithm of every value.
 
     Both hold positive values only; `share` has the batch shape.
     """
@@ -140,7 +140,7 @@ def between(first: Contact, second: Contact, share: Array) -> Contact:
 
 
 def e_folds(first: Contact, second: Contact) -> Array:
-    """Return by how many e-folds the values of contacts of one node differ, all together, of the batch shape."""
+    """Return the total difference between contacts of one node in e-folds of all values, of the batch shape."""
     total = np.zeros(first.rolling_speed.shape)
     for name in _VALUES:
         if name != "traction_bound":  # which a law has no part in

@@ -1,4 +1,4 @@
-"""What the checks of contacts on a line and of those on an ellipse have in common."""
+"""Shared parts of the checks for line contacts and elliptic contacts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from wearlaw.models.contact_model import Claim, ContactModel
 from wearlaw.testing.examples import SAME, SUM, assert_close
 
 Claims: TypeAlias = Mapping[Claim, tuple[Callable[..., None], ...]]
-"""The checks of each claim that a contact model may be exempt from."""
+"""Checks by the claim from which a contact model may be exempt."""
 
 
 Solved: TypeAlias = Callable[[Array], Contact]
@@ -77,7 +77,7 @@ def assert_solved_alike(model: ContactModel, problem: Problem, other: Problem) -
 
 
 def full_slip(solved: Solved, high: Array) -> Array:
-    """Return the least creepages at which the force is what it is at `high` and nothing sticks, to rounding."""
+    """Return the least creepages, to rounding, with the same force as at `high` and no stick."""
     low = np.zeros_like(high)
     limit = solved(high).tangential_force * (1.0 - SAME)
     for _ in range(60):
@@ -89,7 +89,7 @@ def full_slip(solved: Solved, high: Array) -> Array:
 
 
 def steps_into_full_slip(solved: Solved, full: Array, gap: float) -> dict[str, Array]:
-    """Return by which share the force, and the mean slip over creepage, differ a `gap` below and above full slip."""
+    """Return the relative differences of force and of mean slip over creepage a `gap` below and above full slip."""
     below, above = (solved(full * (1.0 + side * gap)) for side in (-1.0, 1.0))
     slip = below.mean_slip / above.mean_slip * (1.0 + gap) / (1.0 - gap)
     return {

@@ -1,7 +1,7 @@
 """Hypothesis strategies for materials, rigs, conditions, contact problems and contacts.
 
-The ranges go from a light touch to where a patch is no longer small against the discs, wider than any test, so
-that a model meets its corners. Values are uniform in their logarithm.
+The ranges are wider than those of any test, from a light touch to patches that are no longer small against the discs,
+to reach the corners of a model. Values are uniform in their logarithm.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ def _line_problem(
 
 
 LINE_PROBLEMS = line_problems()
-"""The problems that the checks share, to draw them once."""
+"""Shared by the checks, to draw the problems only once."""
 TWO_LINE_PROBLEMS = st.tuples(LINE_PROBLEMS, LINE_PROBLEMS)
 
 _SIGNS = st.sampled_from([1.0, -1.0])
@@ -172,7 +172,7 @@ def elliptic_problems(draw: st.DrawFn, crowded: tuple[float, ...] = SATURATION) 
 
 @cache
 def _parts_of_ellipse(crowded: tuple[float, ...]) -> st.SearchStrategy[dict[str, Any]]:
-    """Return the arguments of `_elliptic_problem`; once, since hypothesis takes as long to set them up as to draw."""
+    """Return the arguments of `_elliptic_problem`, cached since setting them up takes as long as drawing."""
     directions = st.floats(-np.pi, np.pi).map(lambda angle: (np.cos(angle), np.sin(angle)))
     parts: dict[str, st.SearchStrategy[Any]] = {
         "size": log_uniform(1e-5, 2e-2),
@@ -226,7 +226,7 @@ def problems() -> st.SearchStrategy[Problem]:
 
 
 ELLIPTIC_PROBLEMS = elliptic_problems()
-"""The problems that the checks share, to draw them once."""
+"""Shared by the checks, to draw the problems only once."""
 TWO_ELLIPTIC_PROBLEMS = st.tuples(ELLIPTIC_PROBLEMS, ELLIPTIC_PROBLEMS)
 
 

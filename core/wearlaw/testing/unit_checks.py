@@ -1,7 +1,7 @@
-"""Checks that a result does not depend on the units in which parameters and conditions were given.
+"""Checks that results do not depend on the units of parameters and conditions.
 
-A value that is converted to another unit and back is off by four roundings to half of EPS, of two factors and two
-products. What that may do to a result is found by a step of `STEP` in each value: the condition number.
+A value converted to another unit and back has four rounding errors of half of EPS, from two factors and two products.
+A step of `STEP` in each value gives the condition number, and with it the effect on the result.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ Values = Mapping[str, Array]
 
 
 def units_of_parameters_do_not_matter(model: Model) -> None:
-    """The result is the same when each parameter is given in base units, not in the unit that it was given in."""
+    """The result is the same if each parameter is given in base units instead of its own unit."""
     registry = application_registry()
     given = {name: value for name, value in model if isinstance(value, pint.Quantity)}
     converted = {
@@ -60,7 +60,7 @@ def units_of_parameters_do_not_matter(model: Model) -> None:
 
 
 def _near(model: Model, name: str, value: Any) -> Iterator[Model]:
-    """Yield the model with a parameter a step up and a step down, where it may have those values."""
+    """Yield the model with a parameter one step up and one step down, if those values are valid."""
     for factor in (1.0 - STEP, 1.0 + STEP):
         try:
             yield model.model_copy(update={name: value * factor})

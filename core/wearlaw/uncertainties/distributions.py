@@ -1,4 +1,4 @@
-"""Distributions of conditions and parameters that are not known exactly."""
+"""Distributions of uncertain conditions and parameters."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from wearlaw.errors import InputError, UnitError
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, coefficient, parse, real_array, shortened, shown
 
 Value = Quantity | float
-"""A value with its unit, or a plain number where the thing has none."""
+"""A quantity, or a plain number if it has no unit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,8 +25,8 @@ class Distribution:
     ----------
     kind : str
     first, second : Quantity or float
-        The ends of the uniform one, mean and standard deviation of the normal one, median and geometric standard
-        deviation of the lognormal one.
+        "uniform": lower and upper end. "normal": mean and standard deviation. "lognormal": median and geometric
+        standard deviation.
     """
 
     kind: Literal["uniform", "normal", "lognormal"]
@@ -34,7 +34,7 @@ class Distribution:
     second: Value
 
     def quantiles(self, probability: Array, first: float, second: float) -> Array:
-        """Return the values below which it lies with the given probabilities, for its two numbers in one unit."""
+        """Return the quantiles at the given probabilities, with the two numbers of the distribution in one unit."""
         if self.kind == "uniform":
             return first + (second - first) * probability
         deviates: Array = scipy.special.ndtri(probability)
@@ -44,7 +44,7 @@ class Distribution:
         return values
 
     def fault(self) -> str:
-        """Return what is wrong with its two numbers, whatever they are of; nothing if they may be right."""
+        """Return what is wrong with the two numbers, or "" if they are possible for some quantity."""
         first, second = (one.magnitude if isinstance(one, pint.Quantity) else one for one in (self.first, self.second))
         if self.kind == "lognormal":
             return "" if first > 0.0 else f"the median of {self} must be positive"
@@ -62,11 +62,11 @@ class Distribution:
 
 @dataclass(frozen=True)
 class PublishedRange:
-    """The range that the source of a law publishes for its parameters, as in `WearLaw.band`; see `published_range`."""
+    """The published range of a law's parameters, as in `WearLaw.band`; see `published_range`."""
 
 
 def uniform(low: QuantityLike | float, high: QuantityLike | float) -> Distribution:
-    """Return the distribution in which all values from `low` to `high` are equally likely."""
+    """Return the uniform distribution: all values from `low` to `high` are equally likely."""
     return Distribution("uniform", _value(low, "low"), _value(high, "high"))
 
 
@@ -76,14 +76,14 @@ def normal(mean: QuantityLike | float, standard_deviation: QuantityLike | float)
 
 
 def lognormal(median: QuantityLike | float, geometric_standard_deviation: float) -> Distribution:
-    """Return the distribution of a positive value that scatters by a factor.
+    """Return the lognormal distribution, for a positive value that scatters by a factor.
 
     Parameters
     ----------
     median : Quantity, str or float
-        Half of the values lie below.
+        Half of the values lie below it.
     geometric_standard_deviation : float
-        The factor, above 1, to which two thirds of the values stay close to the median.
+        A factor above 1. Two thirds of the values lie within it of the median.
     """
     name = "geometric_standard_deviation"
     try:
@@ -99,7 +99,7 @@ def lognormal(median: QuantityLike | float, geometric_standard_deviation: float)
 def published_range() -> PublishedRange:
     """Return the range that the source of a law publishes for its parameters, all values in it equally likely.
 
-    Parameters that the source gives as ranges together, such as the coefficients of KTH, move through them together.
+    Parameters whose ranges the source gives together, such as the coefficients of KTH, move through them together.
     """
     return PublishedRange()
 

@@ -1,4 +1,4 @@
-"""The inputs of a prediction that are not known exactly: each a distribution, with what moves with it."""
+"""The uncertain inputs of a prediction: distributions of conditions and of parameters of the law."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ from wearlaw.units.registry import symbol
 
 @dataclass(frozen=True)
 class Uncertain:
-    """One input with its distribution.
+    """An uncertain input with its distribution.
 
     Attributes
     ----------
     name : str
     distribution : Distribution
     ends : dict of str to tuple of float
-        For each number that moves with it, the two numbers of the distribution in SI.
+        For each number that the input moves, the two numbers of its distribution in SI.
     of_law : bool
-        Whether it belongs to the law and not to the conditions of the test.
+        Whether it is a parameter of the law rather than a condition.
     shown : str
-        The distribution as it was given.
+        The distribution as given.
     unit : str or None
-        The unit of a condition as it was given; None for plain numbers.
+        The unit of a condition as given; None for plain numbers.
     """
 
     name: str
@@ -50,21 +50,21 @@ class Uncertain:
         return {name: self.distribution.quantiles(probability, *ends) for name, ends in self.ends.items()}
 
     def given(self, probability: Array) -> Any:
-        """Return the values of a condition at probabilities, as a rig takes them."""
+        """Return the values of a condition at probabilities, as an argument for a rig."""
         values = self.values(probability)[self.name]
         return values if self.unit is None else from_si(values, self.unit)
 
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """A condition whose value is known: one number or several, and their unit, None for plain numbers."""
+    """A known condition: one number or several, and their unit, None for plain numbers."""
 
     values: Array
     unit: str | None
 
     @classmethod
     def of(cls, value: object) -> Known | None:
-        """Return a condition as it was given, or None if it is not made of numbers, as a law of friction."""
+        """Return a given condition, or None if it is not numeric, such as a law of friction."""
         try:
             quantity = parse(value) if isinstance(value, str) else value
             if isinstance(quantity, pint.Quantity):
@@ -74,7 +74,7 @@ class Known:
             return None
 
     def at_samples(self) -> Any:
-        """Return the condition as a rig takes it, with a last axis for the samples."""
+        """Return the condition as an argument for a rig, with a last axis for the samples."""
         values = np.asarray(self.values)[..., None]
         return values if self.unit is None else Q(values, self.unit)
 
@@ -86,9 +86,10 @@ OTHERS = (
 
 
 def check_samples(law: WearLaw, samples: Mapping[str, Array]) -> None:
-    """Refuse samples of parameters, in SI by name, that the law does not take together.
+    """Raise an error if the law does not accept some samples of parameters, in SI by name.
 
-    Where it takes their extremes in every combination, these tell; else each sample is tried, the extreme ones first.
+    If the law accepts all combinations of their extremes, it accepts the samples. If not, each sample is tried, the
+    extreme ones first.
     """
     units = numbers(law)
 
@@ -109,7 +110,7 @@ def check_samples(law: WearLaw, samples: Mapping[str, Array]) -> None:
 
 
 def condition(name: str, given: Distribution) -> Uncertain:
-    """Return a condition of the test that is not known exactly, in the unit of the distribution's first number.
+    """Return an uncertain condition, in the unit of the distribution's first number.
 
     Raises
     ------
@@ -126,12 +127,12 @@ def condition(name: str, given: Distribution) -> Uncertain:
 
 
 def parameter(name: str, given: object, law: WearLaw) -> Uncertain:
-    """Return a parameter of a law that is not known exactly.
+    """Return an uncertain parameter of a law.
 
     Raises
     ------
     InputError
-        If the law has no such number or publishes no range for it, or the distribution is none.
+        If the law has no such number or no published range for it, or the distribution is impossible.
     UnitError
         If the distribution has the wrong unit.
     """
@@ -152,10 +153,10 @@ def parameter(name: str, given: object, law: WearLaw) -> Uncertain:
 
 
 def _uncertain(name: str, given: Distribution, unit: Unit | None, of_law: bool) -> Uncertain:
-    """Return an input of one number; without a unit, it is a coefficient."""
+    """Return an uncertain input of one number; without a unit it is a coefficient."""
     if unit is None:
         first = float(coefficient(given.first, name))
-        plain = isinstance(given.second, float)  # `_check` says which of the two numbers is wrong
+        plain = isinstance(given.second, float)  # `_check` names the wrong one of the two numbers
         second = float(given.second if plain else coefficient(given.second, name))
     else:
         first = float(unit.si(given.first, name))
@@ -166,7 +167,7 @@ def _uncertain(name: str, given: Distribution, unit: Unit | None, of_law: bool) 
 
 
 def _published(name: str, law: WearLaw) -> Uncertain:
-    """Return the numbers of a field that a law's source gives as ranges; they move through them together."""
+    """Return the input that moves a field's numbers through their published ranges together."""
     band = law.band()
     if band is None:
         raise InputError(f"{name}: the source of wear law '{law.name}' publishes no ranges; give a distribution")
@@ -194,7 +195,7 @@ def _check(name: str, given: Distribution, first: float, second: float) -> None:
 
 
 def split(conditions: Mapping[str, Any], rig: Rig | None = None) -> tuple[dict[str, Any], list[Uncertain]]:
-    """Return the conditions that are known, and those that are distributed; None is not given.
+    """Separate known conditions from distributed ones; a condition of None counts as not given.
 
     Parameters
     ----------

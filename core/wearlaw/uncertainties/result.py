@@ -1,4 +1,4 @@
-"""How uncertain a prediction is where conditions and parameters are: quasi-random samples and Sobol indices."""
+"""The uncertainty of a prediction with uncertain conditions and parameters: quasi-random samples and Sobol indices."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ if TYPE_CHECKING:
     from wearlaw.pipeline.pipeline import Pipeline
 
 CONFIDENCE = 0.95
-"""The share of the samples in an interval, where none is given."""
+"""Default share of the samples in an interval."""
 
 STEPS = 512
 """Points of the cumulative distribution in a figure."""
 
 MOST_SAMPLES = 2**22
-"""The most samples that are taken on."""
+"""Largest number of samples."""
 
 SEQUENCES = 8
-"""Randomised sequences whose spread gives the error of the Sobol indices."""
+"""Number of randomised sequences; their spread gives the error of the Sobol indices."""
 
 INSIDE = 2.0**-54
-"""The least distance of a probability from 0 and 1, where a normal distribution is infinite."""
+"""Least distance of a probability from 0 and 1, where quantiles of the normal distribution are infinite."""
 
 
 def uncertainty(
@@ -59,41 +59,41 @@ def uncertainty(
     seed: int = 0,
     **conditions: QuantityLike | ArrayLike | Distribution | FrictionLaw | None,
 ) -> Uncertainty:
-    """Return how uncertain the wear rate is where conditions and parameters are.
+    """Return the uncertainty of the wear rate that follows from uncertain conditions and parameters.
 
     Parameters
     ----------
     predict : Pipeline
         A rig, a contact model and a wear law.
     law : mapping of str to distribution, optional
-        Parameters of the wear law by name, such as {"q_s": wl.normal("55 ug/m/mm^2", "5 ug/m/mm^2")} or
+        Distributions of parameters of the law by name, such as {"q_s": wl.normal("55 ug/m/mm^2", "5 ug/m/mm^2")} or
         {"coefficient": wl.published_range()}.
     samples : int
-        How many samples to take, rounded up to a power of two.
+        Number of samples, rounded up to a power of two.
     seed : int
         The same seed gives the same samples.
     **conditions
-        Those of a prediction, of which any that is a number may be a distribution: `uniform`, `normal` or `lognormal`.
+        The conditions of a prediction. Any number may be a distribution: `uniform`, `normal` or `lognormal`.
 
     Raises
     ------
     InputError
-        If nothing is distributed, or a distribution is not possible there.
+        If nothing is distributed, or a distribution is impossible for its condition or parameter.
     """
     return Uncertainty(predict, conditions, law or {}, samples, seed)
 
 
 class Uncertainty:
-    """The wear rate where some conditions and parameters are distributed; made by `uncertainty`.
+    """The wear rate with distributed conditions and parameters, made by `uncertainty`.
 
-    What it returns has the shape of the conditions that are not distributed.
+    Results have the shape of the conditions that are not distributed.
 
     Attributes
     ----------
     samples : int
-        How many there are: a power of two, as Sobol sequences need it.
+        Number of samples, a power of two as Sobol sequences need.
     inputs : tuple of Uncertain
-        What is distributed.
+        The distributed conditions and parameters.
     """
 
     def __init__(
@@ -123,33 +123,33 @@ class Uncertainty:
 
     @cached_property
     def wear_rate(self) -> Quantity:
-        """The samples of the wear rate [kg/m/m²]; they are the last axis."""
+        """Samples of the wear rate [kg/m/m²], along the last axis."""
         sequence = scipy.stats.qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
         probability = sequence.random_base2(self.samples.bit_length() - 1).T
         return from_si(self._rates(probability, stacklevel=4), WEAR_RATE)
 
     @property
     def median(self) -> Quantity:
-        """The wear rate that half of the samples exceed [kg/m/m²]."""
+        """The median of the wear rate [kg/m/m²]."""
         return self._quantile(0.5)
 
     def interval(self, confidence: float = CONFIDENCE) -> tuple[Quantity, Quantity]:
-        """Return the ends of the interval that leaves out as many samples below as above [kg/m/m²].
+        """Return the ends of the interval with equally many samples below and above it [kg/m/m²].
 
         Parameters
         ----------
         confidence : float
-            The share of the samples inside, between 0 and 1.
+            Share of the samples inside, between 0 and 1.
         """
         if not 0.0 < confidence < 1.0:
             raise InputError(f"confidence: must lie between 0 and 1, such as 0.95; got {confidence!r}")
         return self._quantile(0.5 - 0.5 * confidence), self._quantile(0.5 + 0.5 * confidence)
 
     def sobol(self) -> pd.DataFrame:
-        """Return which share of the variance of the wear rate each input explains.
+        """Return the share of the variance of the wear rate that each input explains.
 
-        First order: by itself; total: also together with others. Each is the mean over several randomised sequences,
-        which also give its standard error. It predicts (inputs + 2) × `samples` times.
+        First order: alone. Total order: including interactions with other inputs. Each index is the mean over several
+        randomised sequences, whose spread gives its standard error. This takes (inputs + 2) × `samples` predictions.
 
         Notes
         -----
@@ -158,12 +158,12 @@ class Uncertainty:
         Raises
         ------
         InputError
-            If the conditions that are not distributed hold more than one operating point, or the rate does not vary.
+            If the known conditions are more than one operating point, or the rate does not vary.
         """
         if self.shape:
             raise InputError("sobol: needs one operating point; give each condition that is not distributed one value")
         if np.ptp(self.wear_rate.magnitude) == 0.0:
-            raise InputError("sobol: the wear rate is the same in all samples, so that there is no variance to explain")
+            raise InputError("sobol: the wear rate is the same in all samples, so there is no variance to explain")
         index = pd.Index([one.name for one in self.inputs], name="input")
         if len(self.inputs) == 1:  # scipy takes no fewer than two
             alone = {"first_order": 1.0, "first_order_error": 0.0, "total_order": 1.0, "total_order_error": 0.0}
@@ -181,7 +181,7 @@ class Uncertainty:
         return pd.DataFrame(table, index=index)
 
     def figure_data(self) -> FigureData:
-        """Return what `plot` draws.
+        """Return the data of `plot`.
 
         Raises
         ------
@@ -191,7 +191,7 @@ class Uncertainty:
         return _figure_data(self)
 
     def plot(self) -> Figure:
-        """Return a figure: the cumulative distribution, or the band of 95 % along the one axis of the conditions."""
+        """Draw the cumulative distribution, or the 95 % band along the one axis of the conditions."""
         return plot(self.figure_data())
 
     def _quantile(self, probability: float) -> Quantity:
@@ -200,26 +200,26 @@ class Uncertainty:
 
     @property
     def title(self) -> str:
-        """What is predicted, in words."""
+        """Title of the prediction."""
         return f"Wear rate by {self._law.name} on {self._predict.contact_model.name}"
 
     @cached_property
     def known(self) -> dict[str, Known]:
-        """The conditions that are not distributed and made of numbers."""
+        """The numeric conditions that are not distributed."""
         found = {name: Known.of(value) for name, value in self._given.items()}
         return {name: one for name, one in found.items() if one is not None}
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
         """The shape of the conditions that are not distributed."""
-        broadcast({name: one.values for name, one in self.known.items()})  # names the shapes if they do not fit
+        broadcast({name: one.values for name, one in self.known.items()})  # an error names shapes that do not fit
         firsts = {one.name: one.distribution.first for one in self.inputs if not one.of_law}
-        # What is wrong here is wrong with the conditions, and not with single samples.
+        # An error here is one of the conditions, not of single samples.
         shape: tuple[int, ...] = self._predict.posed({**self._given, **firsts}, of_one_patch="uncertainty").batch_shape
         return shape
 
     def _problem(self, sampled: Mapping[str, Any]) -> Problem:
-        """Return the contact problem at all operating points and samples, the latter along the last axis."""
+        """Return the contact problems of all operating points and samples, samples along the last axis."""
         known = {name: one.at_samples() for name, one in self.known.items()}
         try:
             return self._predict.posed({**self._given, **known, **sampled})
@@ -227,7 +227,7 @@ class Uncertainty:
             raise InputError(f"{error}{OTHERS}") from None
 
     def _rates(self, probability: Array, stacklevel: int | None = None) -> Array:
-        """Return the wear rates [kg/m/m²] at probabilities (inputs, samples) of the inputs, of the shape of all.
+        """Return the wear rates [kg/m/m²] at probabilities (inputs, samples), samples along the last axis.
 
         With a `stacklevel`, warn of samples outside the range of the law or of elastic contact.
         """

@@ -1,4 +1,4 @@
-"""The columns of a table of wear tests: their units, which of them go together, and what each may hold."""
+"""The columns of a table of wear tests: units, permitted values, and permitted combinations."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 
 class Column(NamedTuple):
-    """What a column holds: the unit in which it is shown, the sign of its values, and the most in magnitude in SI."""
+    """A column: the unit in which it is shown, the sign of its values, and their largest magnitude in SI."""
 
     unit: str
     sign: Literal["positive", "not negative", "any"] = "positive"
     limit: float = np.inf
 
     def wrong(self, si: Array) -> Iterator[tuple[NDArray[np.bool_], str]]:
-        """Give where each rule is broken, and the rule; missing values break none."""
+        """Yield a mask of the values that break a rule, and the rule, for each rule; missing values break none."""
         yield np.isinf(si), "must be finite"
         if self.sign == "positive":
             yield si <= 0, "must be greater than zero"
@@ -47,19 +47,19 @@ COLUMNS = {
     "wear_rate": Column(WEAR_RATE, "not negative"),
     "wear_rate_uncertainty": Column(WEAR_RATE),
 }
-"""All columns of numbers."""
+"""All numeric columns."""
 
 OTHER = Column("", "any")
-"""A condition that `COLUMNS` does not know."""
+"""A condition that is not in `COLUMNS`."""
 
 DERIVED = ("tangential_force", "frictional_heat")
-"""The columns from which a traction coefficient follows."""
+"""Columns from which a traction coefficient follows."""
 
 TRACTIONS = ("traction_coefficient", *DERIVED)
-"""The columns that give the measured traction."""
+"""Columns of measured traction."""
 
 COMPLETE = ("creepage", *LOADS, "friction_coefficient")
-"""The columns that need a value for every test."""
+"""Columns that need a value for every test."""
 
 
 def head(name: str) -> str:
@@ -74,22 +74,22 @@ def factor(name: str, unit: str) -> float:
     Raises
     ------
     UnitError
-        If the unit is not known, or not of the column's dimension.
+        If the unit is unknown, or of another dimension than the column.
     """
-    due = COLUMNS[name].unit
-    advice = f"give it in {due} or another unit of that dimension" if due else "give it as a plain number"
+    expected = COLUMNS[name].unit
+    advice = f"give it in {expected} or another unit of that dimension" if expected else "give it as a plain number"
     try:
-        return si_factor(Q(1.0, unit), due)
+        return si_factor(Q(1.0, unit), expected)
     except UnitError as error:
         reason = str(error) if str(error).startswith("'") else f"got '{unit}', {error}"
         raise UnitError(f"{reason}; {advice}") from None
 
 
 def faulty_columns(names: Sequence[str] | Mapping[str, object]) -> list[str]:
-    """Return what is wrong with a choice of columns, whatever they hold.
+    """Return the faults of a combination of columns, regardless of their values.
 
-    Names that are not in `COLUMNS` are other conditions of a rig, which then says itself whether creepage or load are
-    missing.
+    Names that are not in `COLUMNS` are other conditions of a rig. The rig then checks itself whether creepage or load
+    are missing.
     """
     others = any(name not in COLUMNS for name in names)
     loads, tractions = ([name for name in kind if name in names] for kind in (LOADS, TRACTIONS))
@@ -115,9 +115,9 @@ def faulty_columns(names: Sequence[str] | Mapping[str, object]) -> list[str]:
             f"frictional_heat: is T × creepage × rolling speed; add a column '{head('rolling_speed')}' beside it"
         )
     if "rolling_speed" in names and "frictional_heat" not in names:
-        faults.append("rolling_speed: is that of the rig; it is only due here beside frictional_heat, so leave it out")
+        faults.append("rolling_speed: belongs to the rig; it is only needed beside frictional_heat; leave it out")
     if "wear_rate_uncertainty" in names and "wear_rate" not in names:
-        faults.append("wear_rate_uncertainty: has no wear_rate that it belongs to")
+        faults.append("wear_rate_uncertainty: there is no wear_rate beside it")
     if "wear_rate" not in names and not tractions:
         faults.append(f"nothing is measured; add a column '{head('wear_rate')}' or 'traction_coefficient'")
     return faults
@@ -126,7 +126,7 @@ def faulty_columns(names: Sequence[str] | Mapping[str, object]) -> list[str]:
 def faulty(columns: Mapping[str, Array]) -> list[tuple[int, str, str]]:
     """Return the test, the column and the broken rule of each impossible value.
 
-    Columns that are not in `COLUMNS` are other conditions, in any unit.
+    Columns that are not in `COLUMNS` are other conditions in any unit.
     """
     faults = []
     for name, values in columns.items():
@@ -142,7 +142,7 @@ def faulty(columns: Mapping[str, Array]) -> list[tuple[int, str, str]]:
 
 
 def _faulty_traction(columns: Mapping[str, Array]) -> list[tuple[int, str, str]]:
-    """Return where no traction coefficient follows from what was measured, as at zero creepage."""
+    """Return the measurements from which no traction coefficient follows, such as at zero creepage."""
     derived = [name for name in DERIVED if name in columns]
     needed = {"creepage", "normal_force", *(["rolling_speed"] if "frictional_heat" in derived else [])}
     if len(derived) != 1 or not columns.keys() >= needed:
@@ -154,9 +154,9 @@ def _faulty_traction(columns: Mapping[str, Array]) -> list[tuple[int, str, str]]
 
 
 def with_traction(columns: Mapping[str, Array]) -> dict[str, Array]:
-    """Return columns with the traction coefficient in the place of what it follows from."""
+    """Replace the columns from which the traction coefficient follows by the traction coefficient."""
     kept = {name: values for name, values in columns.items() if name not in (*DERIVED, "rolling_speed")}
-    with np.errstate(divide="ignore", over="ignore", under="ignore"):  # `faulty` refuses the result
+    with np.errstate(divide="ignore", over="ignore", under="ignore"):  # `faulty` reports the result
         force = columns.get("tangential_force")
         if "frictional_heat" in columns:
             force = columns["frictional_heat"] / (abs(columns["creepage"]) * columns["rolling_speed"])

@@ -1,4 +1,4 @@
-"""Taking a CSV file apart as spreadsheets write it: header, separator and rows, with the lines they stand in."""
+"""Parsing CSV files as spreadsheets write them: header, separator and rows with their line numbers."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from wearlaw.units.registry import symbol
 from wearlaw.wear_tests.columns import COLUMNS, factor, faulty_columns, head
 
 TEXTS = ("label", "comment")
-"""The columns of text."""
+"""Columns of text."""
 
 
 class Row(NamedTuple):
-    """The cells of a row, and the line in which it begins."""
+    """The cells of a row, and the number of its first line."""
 
     line: int
     cells: list[str]
@@ -34,14 +34,14 @@ class Head(NamedTuple):
     Attributes
     ----------
     text : str
-        Its head.
+        The head as written.
     place : int
-        Its place from the left.
+        Index from the left.
     name : str
-        Its name, "" if it is not known.
+        The name of the column, "" if unknown.
     factor : float
-        The factor from its unit to SI, NaN if the unit is wrong or there is none. 1 for other conditions of a rig,
-        which keep their unit.
+        The factor from its unit to SI, NaN if the unit is wrong or missing. 1 for other conditions of a rig, which keep
+        their unit.
     unit : str or None
         The unit of such a condition; None for plain numbers.
     """
@@ -54,17 +54,17 @@ class Head(NamedTuple):
 
     @property
     def is_other(self) -> bool:
-        """Whether it is a condition that the table of columns does not know."""
+        """Whether it is a condition that is not in the table of columns."""
         return self.name not in ("", *COLUMNS, *TEXTS)
 
     @property
     def is_numbers(self) -> bool:
-        """Whether it is known, and no text."""
+        """Whether it is a known column of numbers."""
         return self.name not in ("", *TEXTS)
 
 
 class Table(NamedTuple):
-    """What a file holds."""
+    """The contents of a file."""
 
     source: str
     separator: str
@@ -74,26 +74,26 @@ class Table(NamedTuple):
 
 @dataclass
 class Problems:
-    """Collects what is wrong in a file, each with its line."""
+    """Collects the faults of a file, each with its line."""
 
     found: list[tuple[int, str]] = field(default_factory=list)
     cells: set[tuple[int, str]] = field(default_factory=set)
-    """Line and column of the cells that something is said about."""
+    """Line and column of the cells that already have a fault."""
 
     def add(self, line: int, column: str, message: str) -> None:
-        """Add a problem, but no second one about the same cell."""
+        """Add a fault, unless its cell already has one."""
         if not column or (line, column) not in self.cells:
             self.cells.add((line, column))
             where = f"line {line}, column '{column}'" if column else f"line {line}"
             self.found.append((line, f"{where}: {message}"))
 
     def texts(self) -> list[str]:
-        """Return all problems in the order of the file."""
+        """Return all faults in the order of the file."""
         return [text for _, text in sorted(self.found, key=lambda one: one[0])]
 
 
 def table_of(text: str, name: str, wrong: Problems, conditions: Collection[str] = ()) -> Table:
-    """Return the header and the rows that have a cell for each column of it; note what is wrong with the others.
+    """Return the header and the rows with a cell for each column, and note the faults of others.
 
     `conditions` are those of the installed rigs.
     """
@@ -108,7 +108,7 @@ def table_of(text: str, name: str, wrong: Problems, conditions: Collection[str] 
     if not any(one.name for one in heads):
         known = ", ".join([*map(head, COLUMNS), *TEXTS])
         raise DataError(
-            f"the tests '{name}' are wrong in:", [f"line {rows[0].line}: is no header; the columns are: {known}"]
+            f"the tests '{name}' are wrong in:", [f"line {rows[0].line}: is not a header; the columns are: {known}"]
         )
     table = Table(source, separator, heads, [])
     table.rows.extend(row for row in rows[1:] if any(map(str.strip, row.cells)) and _fits(row, table, wrong))
@@ -118,7 +118,7 @@ def table_of(text: str, name: str, wrong: Problems, conditions: Collection[str] 
 
 
 def _preamble(text: str) -> tuple[str, str, list[str], int]:
-    """Return the source that the comments state, the separator of cells, all lines, and which is the header."""
+    """Return the source stated in comments, the separator, all lines, and the index of the header."""
     lines = io.StringIO(text, newline=None).readlines()
     source = separator = ""
     for number, line in enumerate(lines):
@@ -150,7 +150,7 @@ def _rows(lines: list[str], start: int, separator: str) -> Iterator[Row]:
 
 
 def _heads(header: Row, wrong: Problems, conditions: Collection[str]) -> list[Head]:
-    """Return the columns, and note what is wrong with them, or with which of them there are."""
+    """Return the columns, and note faults of single ones and of their combination."""
     texts = [cell.strip() for cell in header.cells]
     while texts and not texts[-1]:
         texts.pop()
@@ -173,9 +173,9 @@ def _heads(header: Row, wrong: Problems, conditions: Collection[str]) -> list[He
 def _other(
     line: int, text: str, place: int, present: Collection[str], conditions: Collection[str], wrong: Problems
 ) -> Head | None:
-    """Return the column of a condition that the table of columns does not know; None if it is no such column.
+    """Return a column of a condition that is not in the table of columns, or None if it is not one.
 
-    It is one of an installed rig, or has a unit and no name that looks like a column which is missing.
+    Such a condition belongs to an installed rig, or has a unit and a name unlike those of missing columns.
     """
     match = HEAD.fullmatch(text)
     name, unit = (match["name"], match["unit"]) if match else ("", None)
@@ -194,12 +194,12 @@ def _other(
 
 
 def _bare(text: str) -> str:
-    """Return the head of a column without its unit, however that is written."""
+    """Return the head of a column without its unit, in any brackets."""
     return re.split(r"[\[(]", text)[0].strip()
 
 
 def _meaning(line: int, text: str, place: int, wrong: Problems) -> tuple[str, float]:
-    """Return the name of a column, "" if it is none, and the factor from its unit to SI, NaN if that is wrong."""
+    """Return the name of a column, "" if unknown, and the factor from its unit to SI, NaN if wrong."""
     match = HEAD.fullmatch(text)
     name, unit = (match["name"], match["unit"]) if match else (text, None)
     if not text:
@@ -227,10 +227,10 @@ def _meaning(line: int, text: str, place: int, wrong: Problems) -> tuple[str, fl
 
 
 def _fits(row: Row, table: Table, wrong: Problems) -> bool:
-    """Return whether a row has a cell for each column, and none but empty ones beyond."""
-    due, cells = len(table.heads), row.cells
-    beyond = len("".join(cells[due:]).strip()) > 0
-    if len(cells) >= due and not beyond:
+    """Return whether a row has a cell for each column, and only empty ones beyond."""
+    expected, cells = len(table.heads), row.cells
+    beyond = len("".join(cells[expected:]).strip()) > 0
+    if len(cells) >= expected and not beyond:
         return True
     hint = ""
     if cells[0].startswith("#"):
@@ -239,5 +239,5 @@ def _fits(row: Row, table: Table, wrong: Problems) -> bool:
         hint = "; a quotation mark in it may have no partner"
     elif beyond and table.separator == ",":
         hint = "; with decimal commas, separate cells by ';'"
-    wrong.add(row.line, "", f"has {len(cells)} cells, but the header has {due}{hint}")
+    wrong.add(row.line, "", f"has {len(cells)} cells, but the header has {expected}{hint}")
     return False

@@ -1,4 +1,4 @@
-"""Reading wear tests from CSV as spreadsheets write it, and saying where a file is wrong."""
+"""Reading wear tests from CSV as spreadsheets write it, with errors by line and column."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from wearlaw.wear_tests.csv_table import TEXTS, Head, Problems, Table, table_of
 from wearlaw.wear_tests.tests import WearTests
 
 MISSING = ("", "na", "n/a", "nan", "-")
-"""What a cell without a value may hold, in any case."""
+"""Contents of a cell without a value, in upper or lower case."""
 
 _NUMBER = re.compile(r"[+\-\u2212]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
 _NOT_TEXT = {b"PK\x03\x04": "a workbook (.xlsx, .ods)", b"\xd0\xcf\x11\xe0": "an old workbook (.xls)"}
 
 
 def read_tests(path_or_name: str | Path) -> WearTests:
-    """Return the tests of a CSV file, or those that a plugin ships under a name.
+    """Read tests from a CSV file, or return shipped tests by their name.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def read_tests(path_or_name: str | Path) -> WearTests:
     Raises
     ------
     DataError
-        If there is no such file, or something in it is wrong, all of which the message names by line and column.
+        If there is no such file, or its contents are wrong. The message names all faults by line and column.
     UnknownModelError
         If several plugins ship tests of that name.
     """
@@ -46,12 +46,12 @@ def read_tests(path_or_name: str | Path) -> WearTests:
 
 
 def text_of_tests(path_or_name: str | Path) -> str:
-    """Return the text of a CSV file, or of the tests that a plugin ships under that name.
+    """Return the text of a CSV file, or of shipped tests by their name.
 
     Raises
     ------
     DataError
-        If there is neither, or the file is no text.
+        If there is no such file and no such tests, or the file is not text.
     """
     found = loader.installed()
     if path_or_name in found.test_sets.providers:
@@ -74,7 +74,7 @@ def _refuse_missing(path: Path, shipped: list[str]) -> NoReturn:
 
 
 def _decoded(content: bytes, path: Path) -> str:
-    """Return the text of UTF-8 or UTF-16 with its mark, or else of the code page of old spreadsheets."""
+    """Decode UTF-8, UTF-16 with its mark, or else the code page of old spreadsheets."""
     kind = next((kind for start, kind in _NOT_TEXT.items() if content.startswith(start)), None)
     if kind is None and b"\0" in content and not content.startswith(UTF_16):
         kind = "no text"
@@ -83,23 +83,23 @@ def _decoded(content: bytes, path: Path) -> str:
     try:
         return decoded(content, otherwise="cp1252")
     except UnicodeDecodeError:
-        raise DataError(f"cannot read the tests '{path}': it is no text in UTF-8; save it as CSV in UTF-8") from None
+        raise DataError(f"cannot read the tests '{path}': it is not text in UTF-8; save it as CSV in UTF-8") from None
 
 
 def parse_tests(text: str, name: str) -> WearTests:
-    """Return the tests of a CSV text.
+    """Parse tests from a CSV text.
 
     Parameters
     ----------
     text : str
         The content of the file.
     name : str
-        Its path or the name under which it is shipped; also the source of tests that state none.
+        Its path, or its name if shipped; also the source of tests that state none.
 
     Raises
     ------
     DataError
-        If something is wrong, all of which the message names.
+        If the contents are wrong. The message names all faults.
     """
     wrong = Problems()
     table = table_of(text, name, wrong, _conditions())
@@ -126,9 +126,9 @@ def _conditions() -> set[str]:
 
 
 def _values(one: Head, table: Table, wrong: Problems) -> Array:
-    """Return a column in SI, NaN where a cell is missing or wrong."""
+    """Return a column in SI, with NaN for missing or wrong cells."""
     numbers = [_number(row.line, row.cells[one.place].strip(), one, table.separator, wrong) for row in table.rows]
-    with np.errstate(over="ignore"):  # what overflows is refused as not finite
+    with np.errstate(over="ignore"):  # an overflow is reported as not finite
         return np.array(numbers, dtype=np.float64) * one.factor
 
 
@@ -146,7 +146,7 @@ def _number(line: int, text: str, one: Head, separator: str, wrong: Problems) ->
 
 
 def _check_values(columns: dict[str, Array], table: Table, wrong: Problems) -> None:
-    """Note values that are missing, or out of bounds, in the columns whose unit is right."""
+    """Note missing and impossible values in the columns with a valid unit."""
     heads = {one.name: one for one in table.heads if not np.isnan(one.factor)}
     for i, name, rule in faulty({name: values for name, values in columns.items() if name in heads}):
         row = table.rows[i]
@@ -156,7 +156,7 @@ def _check_values(columns: dict[str, Array], table: Table, wrong: Problems) -> N
 
 
 def _check_decimal_marks(table: Table, wrong: Problems) -> None:
-    """Refuse a file in which some numbers have a decimal comma and others a point: one of them may be a thousand."""
+    """Note a mix of decimal commas and points: one of them may separate thousands."""
     first: dict[str, int] = {}
     for row in table.rows:
         for one in table.heads:
@@ -173,7 +173,7 @@ def _check_decimal_marks(table: Table, wrong: Problems) -> None:
 
 
 def _check_duplicates(columns: Sequence[Iterable[object]], table: Table, wrong: Problems) -> None:
-    """Refuse rows that are equal in every column: a row that was pasted twice would count twice."""
+    """Note rows that are equal in every column: a row pasted twice would count twice."""
     first: dict[tuple[str, ...], int] = {}
     for row, values in zip(table.rows, zip(*columns, strict=True), strict=True):
         line = first.setdefault(tuple(map(str, values)), row.line)

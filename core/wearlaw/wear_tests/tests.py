@@ -1,7 +1,7 @@
-"""Wear tests of a lab: what was set, what was measured, one test an entry, missing measurements marked.
+"""Wear tests of a lab: conditions and measurements, with an entry for each test and NaN for missing measurements.
 
-`read_tests` reads them from a CSV file, `WearTests.from_arrays` takes arrays. Nothing here knows a rig: the tests
-give the conditions of its contact problems.
+`read_tests` reads them from a CSV file, and `WearTests.from_arrays` takes arrays. They are independent of rigs: tests
+only provide the conditions of contact problems.
 """
 
 from __future__ import annotations
@@ -31,20 +31,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class WearTests:
-    """Tests on one rig, made by `read_tests` or `WearTests.from_arrays`; nothing in it can change.
+    """Immutable set of tests on one rig, made by `read_tests` or `WearTests.from_arrays`.
 
     Attributes
     ----------
     columns : mapping of str to ndarray, (tests,)
-        The values in SI by name: `creepage`, one of the loads, and of `friction_coefficient`,
-        `traction_coefficient`, `wear_rate` and `wear_rate_uncertainty` those that there are. NaN where a measurement
-        is missing.
+        Values in SI by name: `creepage`, one of the loads, and any of `friction_coefficient`, `traction_coefficient`,
+        `wear_rate` and `wear_rate_uncertainty`. NaN for a missing measurement.
     labels : tuple of str
-        What each test is called; "" where it has no name.
+        The name of each test, "" if it has none.
     source : str
-        Where the numbers come from.
+        The source of the numbers.
     other_conditions : mapping of str to Quantity or ndarray, (tests,)
-        Conditions of the rig that `columns` does not know, as they were given: with their unit, or plain numbers.
+        Conditions of the rig that are not in `columns`, as given: with their unit, or plain numbers.
     """
 
     columns: Mapping[str, Array]
@@ -77,7 +76,7 @@ class WearTests:
         labels: Sequence[str] | None = None,
         source: str = "",
     ) -> Self:
-        """Return tests from arrays; one value stands for all tests, NaN for a measurement that is missing.
+        """Make tests from arrays. A single value stands for all tests, NaN for a missing measurement.
 
         Parameters
         ----------
@@ -96,11 +95,11 @@ class WearTests:
             Mass lost per distance rolled and area [kg/m³], and its standard uncertainty.
         other_conditions : mapping of str to Quantity, str or array_like, (tests,), optional
             Further conditions of the rig by name, such as {"mass": Q([20, 40], "kg")}. With these, creepage and load
-            may be missing, and the rig says whether it needs them.
+            may be missing, and the rig checks whether it needs them.
         labels : sequence of str, optional
-            What each test is called.
+            The name of each test.
         source : str, optional
-            Where the numbers come from.
+            The source of the numbers.
 
         Raises
         ------
@@ -134,47 +133,47 @@ class WearTests:
 
     @property
     def creepage(self) -> Quantity:
-        """ξ, of shape (tests,); NaN where other conditions take its place."""
+        """ξ, of shape (tests,); NaN if other conditions take its place."""
         return self._quantity("creepage")
 
     @property
     def friction_coefficient(self) -> Array | None:
-        """μ as plain numbers, of shape (tests,); None if the tests do not hold it."""
+        """μ as plain numbers, of shape (tests,); None if the tests have none."""
         return self.columns.get("friction_coefficient")
 
     @property
     def traction_coefficient(self) -> Quantity:
-        """Measured T/N, of shape (tests,); NaN where it was not measured."""
+        """Measured T/N, of shape (tests,); NaN if it was not measured."""
         return self._quantity("traction_coefficient")
 
     @property
     def wear_rate(self) -> Quantity:
-        """Measured mass lost per distance rolled and area, of shape (tests,); NaN where it was not measured."""
+        """Measured mass lost per distance rolled and area, of shape (tests,); NaN if it was not measured."""
         return self._quantity("wear_rate")
 
     @property
     def wear_rate_uncertainty(self) -> Quantity | None:
-        """Standard uncertainty of the wear rate, of shape (tests,); None if the tests do not hold it."""
+        """Standard uncertainty of the wear rate, of shape (tests,); None if the tests have none."""
         return self._quantity("wear_rate_uncertainty") if "wear_rate_uncertainty" in self.columns else None
 
     def conditions(
         self, model: ContactModel, friction_coefficient: ArrayLike | None = None, rig: Rig | None = None
     ) -> dict[str, Any]:
-        """Return the conditions of the tests as ``rig.problem(**conditions)`` takes them.
+        """Return the conditions of the tests as arguments of ``rig.problem(**conditions)``.
 
         Parameters
         ----------
         model : ContactModel
-            What solves the contact. If it can use a measured traction, and all tests have one, the conditions hold it.
+            The contact model. If it can use a measured traction and all tests have one, the conditions include it.
         friction_coefficient : array_like of float, optional
-            μ [-] for tests that do not hold it.
+            μ [-] for tests without a friction coefficient.
         rig : Rig, optional
-            What takes the conditions. If it has no `traction_coefficient`, they do not hold the measured traction.
+            The rig for the conditions. If it takes no `traction_coefficient`, they leave the measured traction out.
 
         Raises
         ------
         ConditionsError
-            If the friction coefficient is not known, and all conditions are those of discs.
+            If the friction coefficient is unknown, and there are only conditions of discs.
         """
         taken = () if rig is None else rig.conditions()
         friction = friction_coefficient if self.friction_coefficient is None else self.friction_coefficient
@@ -196,7 +195,7 @@ class WearTests:
         return conditions
 
     def to_dataframe(self) -> pd.DataFrame:
-        """Return the tests as a table with units in its header; written as CSV, `read_tests` reads it."""
+        """Return the tests as a table with units in its header. `read_tests` can read it as CSV."""
         import pandas as pd
 
         named = {"label": self.labels} if any(self.labels) else {}
@@ -208,7 +207,7 @@ class WearTests:
         return len(self.labels)
 
     def __getitem__(self, key: Any) -> Self:
-        """Return the tests that an index, a slice or a mask selects."""
+        """Return the tests selected by an index, a slice or a mask."""
         index = np.atleast_1d(np.arange(len(self))[key])
         if not index.size:
             raise DataError(f"none of the {len(self)} tests is selected")
@@ -228,7 +227,7 @@ class WearTests:
         )
 
     def _arrays(self) -> dict[tuple[str, str], Array]:
-        """Return all numbers by name and unit, "" in SI."""
+        """Return all numbers by name and unit, "" for SI."""
         others = {(name, _unit(value)): _magnitude(value) for name, value in self.other_conditions.items()}
         return {(name, ""): values for name, values in self.columns.items()} | others
 
@@ -245,7 +244,7 @@ class WearTests:
         return "\n  ".join(lines) + (f"\nfrom {self.source}" if self.source else "")
 
     def _summary(self, name: str, column: Quantity | Array) -> str:
-        """Return the range of a column, and in how many tests it has a value if not in all."""
+        """Return the range of a column, and the number of tests with a value unless all have one."""
         values = _magnitude(column)
         there = values[~np.isnan(values)]
         if not there.size:
@@ -265,7 +264,7 @@ def _si(name: str, value: object) -> Array:
     try:
         quantity = parse(value) if isinstance(value, str) else value
         if isinstance(quantity, pint.Quantity):
-            with np.errstate(over="ignore"):  # what overflows is refused as not finite
+            with np.errstate(over="ignore"):  # an overflow is reported as not finite
                 return real_array(quantity.magnitude) * factor(name, str(quantity.units))
         if COLUMNS[name].unit:
             raise UnitError(f"has no unit; give it such as Q([1.0, 2.0], '{COLUMNS[name].unit}')")

@@ -22,7 +22,7 @@ from wearlaw.plugins.shelf import Shelf
 from wearlaw.version import __version__
 
 Kind: TypeAlias = Literal["wear_law", "contact_model", "rig"]
-"""What the plugin is to provide."""
+"""What the plugin provides."""
 
 Licence: TypeAlias = Literal["bsd-3-clause", "mit", "none"]
 """The licence of the plugin; "none" leaves the choice for later."""
@@ -110,7 +110,7 @@ def _check_name(name: str, kind: Kind) -> None:
 
 
 def _takers(name: str, kind: Kind) -> Iterator[str]:
-    """Give what bears a name already, where a look-up would confuse the two.
+    """Yield what already has a name, where a look-up would confuse the two.
 
     `wearlaw show` and `check` take rigs, contact models and wear laws alike, and a wear law hides the parameter set of
     its name. Materials and cases are looked up apart. A distribution replaces that of its name.
