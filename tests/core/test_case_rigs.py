@@ -22,12 +22,12 @@ from tests.core.panels import by_label, by_name
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.output.results import table as results_table
-from wearlaw.pipeline.variables import UNITS
 from wearlaw.report.tables import summaries, tables
 from wearlaw.study.case import Case, case_schema, case_text, load_case, written
 from wearlaw.study.results import axes_of, main_axis
 from wearlaw.study.study import Study, run
 from wearlaw.sweeping import points
+from wearlaw.units.variables import UNITS
 
 WHEEL = {
     "type": "wheel_rail",

@@ -16,9 +16,10 @@ from tests.core.cases import InstallModel, case
 from tests.core.studies import FRICTIONS, LOADS, MEASURED, lattice_study
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS, offered
+from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, offered
 from wearlaw.study.results import along_main_axis, axes_of, main_axis
 from wearlaw.study.study import Study, run
+from wearlaw.units.variables import UNITS
 
 MODELS = {"global": wl.contact_model("global"), "exact": wl.contact_model("exact")}
 LAWS = {"usfd": wl.wear_law("usfd"), "kth": wl.wear_law("kth"), "brr": wl.wear_law("brr")}

@@ -18,30 +18,14 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.errors import InputError
-from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
+from wearlaw.units.quantities import Quantity, QuantityLike, from_si
+from wearlaw.units.variables import expected
 
 NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density")
 """The variables of a `Contact` that differ from node to node."""
 
-UNITS = {
-    "pressure": "MPa",
-    "traction": "MPa",
-    "traction_bound": "MPa",
-    "slip": "%",
-    "slip_speed": "m/s",
-    "wear_index": "N",
-    "wear_index_density": "N/mm^2",
-    "x": "mm",
-}
-"""The units in which variables of a `Contact` are shown; the record itself holds SI."""
-
-_FROM_ARRAYS = {
-    "pressure": Unit("MPa", positive=False),
-    "traction": Unit("MPa", positive=False),
-    "slip": Unit("", positive=False),
-    "area": Unit("mm^2", positive=False),
-}
-
+LAW_VARIABLES = (*NODE_VARIABLES, "traction_bound", "wear_index", "x")
+"""The variables of a `Contact` in which a law may branch, or have its range."""
 
 ONE_SIGN = 1e-9
 """Share of traction of the other sign that passes for rounding; it moves the mean slip by no more."""
@@ -316,8 +300,9 @@ class Contact:
             in one contact.
         """
         given = {"pressure": pressure, "traction": traction, "slip": slip, "area": area}
-        speed = Unit("m/s").si(rolling_speed, "rolling_speed")
-        nodes = _broadcast({name: _FROM_ARRAYS[name].si(value, name) for name, value in given.items()}, speed.ndim)
+        units = expected(*given, "rolling_speed", "density")
+        speed = units["rolling_speed"].si(rolling_speed, "rolling_speed")
+        nodes = _broadcast({name: units[name].si(value, name) for name, value in given.items()}, speed.ndim)
         p, q, s, a = nodes.values()
         axes = tuple(range(speed.ndim, p.ndim))
         if (p < 0).any():
@@ -340,7 +325,7 @@ class Contact:
             normal_force=(p * a).sum(axis=axes),
             tangential_force=force,
             wear_index=(q * s * a).sum(axis=axes),
-            density=np.broadcast_to(Unit("kg/m^3").si(density, "density"), speed.shape),
+            density=np.broadcast_to(units["density"].si(density, "density"), speed.shape),
         )
 
     @property

@@ -16,32 +16,17 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz
-from wearlaw.contact.conditions import CREEPAGE, SPIN, broadcast
+from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material
 from wearlaw.errors import CompositionError, InputError, UnitError
-from wearlaw.units.quantities import QuantityLike, Unit, coefficient, real_array
+from wearlaw.units.quantities import QuantityLike, coefficient, real_array
+from wearlaw.units.variables import VARIABLES
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 Geometry: TypeAlias = Literal["line", "ellipse"]
 """The shape of a contact patch: discs with parallel axes touch in a line, a wheel and a rail in an ellipse."""
-
-UNITS = {
-    "a": Unit("mm"),
-    "b": Unit("mm"),
-    "normal_force": Unit("kN"),
-    "track_width": Unit("mm"),
-    "relative_radius": Unit("mm"),
-    "shear_modulus": Unit("GPa"),
-    "creepage": CREEPAGE,
-    "longitudinal_creepage": CREEPAGE,
-    "lateral_creepage": CREEPAGE,
-    "spin": SPIN,
-    "rolling_speed": Unit("m/s"),
-    "density": Unit("kg/m^3"),
-}
-"""The units expected in `Problem.line` and `Problem.ellipse`."""
 
 
 @dataclass(frozen=True)
@@ -477,7 +462,7 @@ def _flat(array: Array) -> Array:
 def _si(
     given: Mapping[str, QuantityLike], friction_coefficient: ArrayLike, poisson_ratio: ArrayLike
 ) -> dict[str, Array]:
-    arrays = {name: UNITS[name].si(value, name) for name, value in given.items()}
+    arrays = {name: VARIABLES[name].expected.si(value, name) for name, value in given.items()}
     arrays["friction_coefficient"] = coefficient(friction_coefficient, "friction_coefficient")
     arrays["poisson_ratio"] = _poisson_ratio(poisson_ratio)
     return broadcast(arrays)

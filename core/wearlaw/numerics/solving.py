@@ -25,6 +25,7 @@ from wearlaw.models.line_contact_model import LineContactModel
 from wearlaw.models.wear_law import Numbers, WearLaw
 from wearlaw.numerics.blocks import Columns, OfBlock, OnBlock, by_block
 from wearlaw.units.quantities import from_si
+from wearlaw.units.variables import VARIABLES
 
 EVERY = 64
 """Blocks from one comparison of sums with totals to the next."""
@@ -49,9 +50,6 @@ VECTORS = ("traction_x", "traction_y", "slip_x", "slip_y", "y")
 
 LINE_TOTALS = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
 """Of the totals, those that a line contact does not derive."""
-
-TO_SHOW = {"area": "mm^2", "moment_z": "N*m", "wear_index": "N"}
-"""Units in which messages show fields; pressures and forces have units of their own."""
 
 
 class Solver:
@@ -313,5 +311,5 @@ def _words(name: str) -> str:
 
 
 def _shown(name: str, value: float) -> str:
-    unit = TO_SHOW.get(name, "N" if "force" in name else "MPa")
+    unit = "N*m" if name == "moment_z" else "N" if "force" in name else VARIABLES[name].unit
     return repr(from_si(value, unit))

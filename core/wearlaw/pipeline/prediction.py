@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import UNITS, Contact
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.errors import CompositionError, InputError
@@ -21,6 +21,7 @@ from wearlaw.numerics.integrate import SlipTotals, WearTotals
 from wearlaw.numerics.solving import Solver
 from wearlaw.pipeline.composition import law_among
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
+from wearlaw.units.variables import UNITS
 
 if TYPE_CHECKING:
     import xarray
@@ -150,7 +151,7 @@ class Prediction:
     @property
     def normal_force(self) -> Quantity:
         """Normal force, N [N], of a line on its whole width."""
-        return from_si(self.problem.normal_force, "N")
+        return from_si(self.problem.normal_force, "kN")
 
     @property
     def normal_force_per_width(self) -> Quantity:

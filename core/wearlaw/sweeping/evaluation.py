@@ -21,10 +21,10 @@ from wearlaw.errors import CompositionError, InputError, did_you_mean
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.variables import UNITS
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.units.quantities import Quantity
 from wearlaw.units.registry import symbol
+from wearlaw.units.variables import UNITS
 
 Outputs = dict[str, Array]
 """Results of a block by name, (points,) each, in the units of the job."""
