@@ -19,7 +19,7 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import UNITS
 from wearlaw.sweeping.points import Points
 from wearlaw.units.quantities import Quantity
@@ -123,7 +123,7 @@ def output_units(pipeline: Pipeline[...], problem: Problem, points: Points, outp
     """
     if problem.geometry == "line":
         check_traction(pipeline.contact_model, problem)
-    prediction = Prediction.unsolved(pipeline, problem)
+    prediction = unsolved(pipeline, problem)
     given = {*points.varying, *points.fixed}
     units = {}
     for name in outputs:

@@ -151,12 +151,13 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
 
     They are looked at along each dimension, at the first values of the others.
     """
+    problems = []
     for dim in points.dims:
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
-        problem = pipeline.rig.checked_problem({**not_given, **line.conditions()})
-        for law in pipeline.laws if dim == points.dims[0] else ():
-            warn_of_geometry(pipeline.rig, pipeline.contact_model, pipeline.scale, law, problem, stacklevel=4)
-    return problem.flatten()[:1]
+        problems.append(pipeline.rig.checked_problem({**not_given, **line.conditions()}))
+    for law in pipeline.laws:
+        warn_of_geometry(pipeline.rig, pipeline.contact_model, pipeline.scale, law, problems[0], stacklevel=4)
+    return problems[0].flatten()[:1]
 
 
 def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:
