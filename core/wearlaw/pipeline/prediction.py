@@ -73,18 +73,6 @@ class Prediction:
         self._given_forces = forces
         self._given_wear = wear
 
-    @classmethod
-    def unsolved(
-        cls, problem: Problem, contact_model: ContactModel, scale: Scale, laws: tuple[WearLaw, ...]
-    ) -> Prediction:
-        """Return a prediction of zeros, which has every name and unit that the solved one has, at no cost."""
-        none, one = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
-        forces = CreepForces(longitudinal=none, lateral=none, spin_moment=none)
-        wear = WearTotals(wear_rate=none, wear_rate_error=none, patch_area=one)
-        found = cls(problem, contact_model, scale, laws, forces=forces, wear=wear)
-        found._slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
-        return found
-
     @property
     def longitudinal_force(self) -> Quantity:
         """Longitudinal force, Fx [N], with the sign of the longitudinal creepage."""
@@ -428,6 +416,16 @@ class Prediction:
         rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in names)
         points = "1 operating point" if self.problem.size == 1 else f"{self.problem.size} operating points"
         return f"{type(self).__name__} of {points}{rows}"
+
+
+def unsolved(problem: Problem, contact_model: ContactModel, scale: Scale, laws: tuple[WearLaw, ...]) -> Prediction:
+    """Return a prediction of zeros, which has every name and unit that the solved one has, at no cost."""
+    none, one = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
+    forces = CreepForces(longitudinal=none, lateral=none, spin_moment=none)
+    wear = WearTotals(wear_rate=none, wear_rate_error=none, patch_area=one)
+    found = Prediction(problem, contact_model, scale, laws, forces=forces, wear=wear)
+    found._slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
+    return found
 
 
 def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str, named: tuple[str, ...]) -> xarray.Dataset:
