@@ -50,6 +50,11 @@ class Point(NamedTuple):
     y: Array
 
 
+RENEWED = 400
+"""Steps after which the vector at half the angle of the traction gets the length of one: 2^800, its square, is"
+" finite."""
+
+
 def stick_and_slip(growth: Growth, elliptic: bool, stick_nodes: int, slip_nodes: int) -> tuple[Zone, Zone]:
     """Return the nodes of strips before they first slip, and the rest, where a few strips stick once more.
 
@@ -155,6 +160,9 @@ def _directions(growth: Growth, start: Point, x: Array, bound: Array, left: Arra
         half_x[k] = before_x + (turns_x[k] * before_x + turns_y[k] * before_y)
         half_y[k] = before_y + (turns_y[k] * before_x - turns_x[k] * before_y)
         before_x, before_y = half_x[k], half_y[k]
+        if k % RENEWED == RENEWED - 1:  # only the direction matters, and each step may double the length
+            long = np.hypot(before_x, before_y)
+            before_x, before_y = before_x / long, before_y / long
     over = BELOW / np.maximum(half_x * half_x + half_y * half_y, 1e-300)
     return (half_x - half_y) * (half_x + half_y) * over, 2.0 * half_x * half_y * over
 
