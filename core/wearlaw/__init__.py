@@ -67,7 +67,7 @@ from wearlaw.plugins.loader import (
 from wearlaw.rigs.twin_disc import Disc, TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.settings.configuration import Configuration
-from wearlaw.study.sections import CheckedClaim, Section
+from wearlaw.study.sections import CheckedClaim, Section, Verdict
 from wearlaw.uncertainties.distributions import lognormal, normal, published_range, uniform
 from wearlaw.units.quantities import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
 from wearlaw.version import __version__
@@ -141,6 +141,7 @@ __all__ = [
     "Unit",
     "UnitError",
     "UnknownModelError",
+    "Verdict",
     "WearLaw",
     "WearLawField",
     "WearTests",

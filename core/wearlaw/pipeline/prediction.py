@@ -319,8 +319,8 @@ class Prediction:
     def profile_area_rate(self, body: str) -> Quantity:
         """Return the area of a radial section that a body loses per distance rolled [mm²/km].
 
-        This is the measure of the BRR law (Pearce and Sherratt, Wear 144 (1991) 343-351): the depth per distance,
-        times the width of the patch.
+        This is the measure of the BRR law (Pearce and Sherratt, Wear 144 (1991) 343-351, after Tassini et al.
+        2010, section 4.1): the depth per distance, times the width of the patch.
         """
         section = self._volume_rate(body) * self._patch_area / self._circumference(body)
         return from_si(section, "mm^2/km")

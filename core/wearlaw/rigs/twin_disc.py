@@ -154,7 +154,7 @@ class TwinDisc(Rig):
 
         Notes
         -----
-        Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478.
+        Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, read in a secondary transcription.
         """
         standard = Disc(diameter=diameter, material=material or steel())
         disc_1, disc_2 = disc_1 or standard, disc_2 or standard
