@@ -24,7 +24,7 @@ SYMBOLS_OF_SEVERAL_NAMES = {
     "A": "the area of the patch, and the limit of falling friction in its source",
 }
 NAMES_OF_SEVERAL_SYMBOLS = {"wear_index_density": "q·s at a point, and Tγ/A as its mean over the patch"}
-OF_OTHER_KINDS = {"geometry", "problem", "bodies", "dims", "exists"}
+OF_OTHER_KINDS = {"geometry", "problem", "strips", "bodies", "dims", "exists"}
 """Fields of records that are no numbers with a unit."""
 SYMBOL_IS_THE_NAME = {"a", "b", "y"}
 IN_NO_CLASS = {"wear_rate_low", "wear_rate_high", "wear_rate_uncertainty", "frictional_heat"}

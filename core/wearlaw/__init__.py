@@ -18,7 +18,7 @@ from wearlaw.contact import hertz, hertz_ellipse, kalker
 from wearlaw.contact.contact import Contact, LineFields
 from wearlaw.contact.friction import FallingFriction
 from wearlaw.contact.material import Material, steel
-from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
+from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem, Strips
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import (
     CalibrationWarning,
@@ -134,6 +134,7 @@ __all__ = [
     "Section",
     "Speed",
     "Stress",
+    "Strips",
     "Study",
     "SweepError",
     "TwinDisc",

@@ -115,9 +115,17 @@ class Fastsim(wl.LineContactModel):
         contact = solve(problem, patches, self.strips)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 
+    def solve_strips(self, problem: wl.Problem) -> wl.Contact:
+        """Return the contact on the strips of the problem, which do not feel each other."""
+        if self.march == "uniform":
+            raise wl.CompositionError("contact model 'fastsim' solves patches of strips with march='adaptive' only")
+        patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
+        contact = _solution.on_given_strips(problem, patches, self.strips)
+        return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
+
     def on_strips(self, problem: wl.Problem, shares: Array) -> wl.Contact | None:
         """Return the contact on strips at y = `shares` × b; a uniform march has its own strips."""
-        if self.march == "uniform":
+        if self.march == "uniform" or problem.geometry == "strips":
             return None
         patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
         contact = _solution.on_strips(problem, patches, self.strips, shares)

@@ -206,7 +206,9 @@ class Contact:
         slip: tuple[Array, Array],
         traction_bound: Array,
     ) -> Self:
-        """Return the contact that a model found on strips of an ellipse; the pressure is Hertz's.
+        """Return the contact that a model found on strips of an ellipse, or on those of the problem.
+
+        The pressure is Hertz's, or that of the strips.
 
         Parameters
         ----------
@@ -223,10 +225,16 @@ class Contact:
         traction_bound : ndarray, (batch, nodes, strips)
             The largest magnitude that the model allows for the traction [Pa].
         """
-        a, b = problem.a[..., None, None], problem.b[..., None, None]
         across = y[..., None, :]
+        if problem.strips is None:
+            a, b, p0 = (array[..., None, None] for array in (problem.a, problem.b, problem.max_pressure))
+            pressure = hertz_ellipse.pressure(x, across, a, b, p0)
+        else:
+            share = x / problem.strips.half_length[..., None, :]
+            p0 = problem.strips.max_pressure[..., None, :]
+            pressure = p0 * np.sqrt(np.maximum((1.0 - share) * (1.0 + share), 0.0))
         return cls(
-            pressure=hertz_ellipse.pressure(x, across, a, b, problem.max_pressure[..., None, None]),
+            pressure=pressure,
             traction=_magnitude(*traction),
             slip=_magnitude(*slip),
             traction_bound=traction_bound,

@@ -138,7 +138,7 @@ def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Pr
 
 
 def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> None:
-    ellipse = problem.geometry == "ellipse"
+    ellipse = problem.geometry != "line"
     if not isinstance(contact, Contact):
         raise ModelError(f"contact model '{model.name}' returned {contact!r}, not a wearlaw.Contact")
     if ellipse and not contact.on_strips:
@@ -284,7 +284,7 @@ def _error(model: ContactModel, what: str, problem: Problem, wrong: NDArray[np.b
     first = _first(wrong)
     batch = len(problem.batch_shape)
     point, node = first[:batch], first[batch:]
-    creepage = "longitudinal creepage" if problem.geometry == "ellipse" else "creepage"
+    creepage = "creepage" if problem.geometry == "line" else "longitudinal creepage"
     conditions = (
         f"{creepage} {from_si(problem.longitudinal_creepage[point], '%')!r}"
         f" and maximum pressure {from_si(problem.max_pressure[point], 'MPa')!r}"

@@ -10,7 +10,7 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.models.contact_model import ContactModel, Scale
@@ -30,10 +30,13 @@ if TYPE_CHECKING:
 PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
 
-OF_LINE = ("tangential_force", "wear_index", "half_width", "max_pressure", "stick_ratio", "mean_slip")
-OF_ELLIPSE = (
-    "longitudinal_force", "lateral_force", "spin_moment", "wear_index", "semi_axis_a", "semi_axis_b", "max_pressure",
-)  # fmt: skip
+FORCES = ("longitudinal_force", "lateral_force", "spin_moment", "wear_index")
+
+SHOWN: Mapping[Geometry, tuple[str, ...]] = {
+    "line": ("tangential_force", "wear_index", "half_width", "max_pressure", "stick_ratio", "mean_slip"),
+    "ellipse": (*FORCES, "semi_axis_a", "semi_axis_b", "max_pressure"),
+    "strips": (*FORCES, "patch_area", "max_pressure"),
+}
 """What a prediction prints of itself, besides its wear rate."""
 
 
@@ -200,7 +203,7 @@ class Prediction:
         model, scale = self.contact_model, self.scale
         if self._solved is not None:
             return integrate.seen_by_law(model, self._solved.unflattened(self.problem), scale)
-        if self.problem.geometry == "ellipse" or not self.laws:
+        if self.problem.geometry != "line" or not self.laws:
             return integrate.solve(model, self.problem, scale)
         contact = integrate.contact_for(model, self._law, self.problem.flatten(), scale)
         return contact.unflattened(self.problem)
@@ -411,7 +414,7 @@ class Prediction:
         return 2.0 * np.pi * radius
 
     def __repr__(self) -> str:
-        summary = OF_LINE if self.problem.geometry == "line" else OF_ELLIPSE
+        summary = SHOWN[self.problem.geometry]
         names = ("wear_rate", *summary) if self.laws else summary
         rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in names)
         points = "1 operating point" if self.problem.size == 1 else f"{self.problem.size} operating points"

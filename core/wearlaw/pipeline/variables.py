@@ -44,6 +44,7 @@ OF_POINT = (
 OF_OTHERS: Mapping[Geometry, frozenset[str]] = {
     "line": frozenset({"longitudinal_force", "lateral_force", "spin_moment", "cell_wear_index"}),
     "ellipse": frozenset({"averaged_wear_index", "creepage"}),
+    "strips": frozenset({"averaged_wear_index", "creepage"}),
 }
 """Variables that results of a shape of patch leave out, as another one says the same, or they say nothing."""
 

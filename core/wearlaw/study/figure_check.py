@@ -129,7 +129,7 @@ class Contents:
         return Variables(x, ("wear_rate", *of_contact, *of_point), {**UNITS, **self.units})
 
     def _of_profile(self, predictions: list[Prediction]) -> Variables:
-        across = [one for one in predictions if one.problem.geometry == "ellipse"]
+        across = [one for one in predictions if one.problem.geometry != "line"]
         if not across:
             return Variables(("x",), OF_PROFILE, UNITS)
         units = dict(UNITS)
