@@ -215,7 +215,7 @@ _LATER = {
     "fit": "wearlaw.fitting.fit",
     "read_wear_law": "wearlaw.fitting.law_files",
 }
-"""What takes a tenth of the time of `import wearlaw`, and most scripts do without."""
+"""Names loaded at their first use: they take a tenth of the time of `import wearlaw`, and few scripts need them."""
 
 
 def __getattr__(name: str) -> object:
@@ -227,11 +227,11 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    """Return the public names, those among them that are loaded later; the rooms of the package are not for users."""
+    """Return the public names, including those that are loaded later; the rooms of the package are not for users."""
     return __all__
 
 
-if _sys.modules.get("hypothesis") is not None:  # its entry point came too early to know the types
+if _sys.modules.get("hypothesis") is not None:  # its entry point ran before the types existed
     from _wearlaw_hypothesis import register_types as _register_types
 
     _register_types(_sys.modules[__name__])

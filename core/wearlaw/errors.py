@@ -1,8 +1,8 @@
 """Every exception and warning that wearlaw raises on purpose.
 
-An error says which field is wrong, the value it got, what was expected and how to put it right.
-All of them derive from `WearlawError`; those caused by what the user gave derive from `InputError`,
-which is also a `ValueError`, so that generic code may catch either.
+An error names the wrong field, the value it got and the expected value, and suggests a fix. All errors derive from
+`WearlawError`. Errors in the user's input derive from `InputError`, which is also a `ValueError`, so that generic code
+can catch either.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ class WearlawError(Exception):
 
 
 class InputError(WearlawError, ValueError):
-    """A value given by the user cannot be used."""
+    """A value from the user is invalid."""
 
 
 class UnitError(InputError):
-    """A value without its unit, with the wrong dimension, an unknown unit, or no finite real number."""
+    """A value has no unit, an unknown unit or the wrong dimension, or is not a finite real number."""
 
 
 class ConditionsError(InputError):
@@ -33,22 +33,22 @@ class UnknownModelError(InputError):
 
 
 class CaseError(InputError):
-    """A case file is missing, is not TOML, or is wrong in one of its fields."""
+    """A case file is missing, is not TOML, or has a wrong field."""
 
 
 class DataError(InputError):
-    """Tests of a lab cannot be used: their file is missing or wrong, or values are.
+    """Tests of a lab cannot be used: their file or a value is missing or wrong.
 
     Attributes
     ----------
     subject : str
-        What is wrong.
+        The wrong file or table.
     problems : tuple of str
-        Every problem, each with where it is, not only the first one.
+        Every problem with its place, not only the first one.
     """
 
     MOST = 20
-    """How many problems the message lists."""
+    """Largest number of problems that the message lists."""
 
     def __init__(self, subject: str, problems: Iterable[str] = ()) -> None:
         self.subject = subject
@@ -62,7 +62,7 @@ class DataError(InputError):
 
 
 class FitError(InputError):
-    """Parameters cannot be fitted: they are not known, or the tests do not determine them."""
+    """Parameters cannot be fitted: the law does not have them, or the tests do not determine them."""
 
 
 class FrozenError(InputError, AttributeError):
@@ -78,7 +78,7 @@ class CompositionError(WearlawError, TypeError):
 
 
 class SweepError(WearlawError, RuntimeError):
-    """A sweep cannot be finished, since its worker processes die; what was done before is kept where it is on disk."""
+    """A sweep cannot be finished, because its worker processes die; finished blocks on disk are kept."""
 
 
 class ModelError(WearlawError, RuntimeError):
@@ -87,7 +87,7 @@ class ModelError(WearlawError, RuntimeError):
 
 @dataclass(frozen=True)
 class Fault:
-    """One wrong field of a configuration: the path to it and what is wrong there."""
+    """One wrong field of a configuration: its path and a message."""
 
     path: tuple[str, ...]
     message: str
@@ -103,7 +103,7 @@ class ConfigurationError(InputError):
     Attributes
     ----------
     subject : str
-        What was being configured, such as the name of a model.
+        The thing being configured, such as the name of a model.
     problems : tuple of Fault
         Every wrong field with its path, not only the first one.
     """
@@ -120,11 +120,11 @@ class ConfigurationError(InputError):
 
 
 class WearlawWarning(UserWarning):
-    """Base of all warnings issued by wearlaw."""
+    """Base of all warnings of wearlaw."""
 
 
 class CalibrationWarning(WearlawWarning):
-    """A parameter set is used with another contact solution than the one it was fitted for."""
+    """A parameter set is used with a contact solution for which it was not fitted."""
 
 
 class RangeWarning(WearlawWarning):
@@ -132,15 +132,15 @@ class RangeWarning(WearlawWarning):
 
 
 class FitWarning(WearlawWarning):
-    """A fit is there, but is less certain than its numbers say."""
+    """A fit is less certain than its numbers suggest."""
 
 
 class WorkerWarning(WearlawWarning):
-    """A worker process of a sweep died, and what it was at is computed again."""
+    """A worker process of a sweep died, and its block is computed again."""
 
 
 class ResumeWarning(WearlawWarning):
-    """Blocks that an interrupted sweep has left are damaged on disk, and are computed again."""
+    """Blocks of an interrupted sweep are damaged on disk, and are computed again."""
 
 
 class PluginWarning(WearlawWarning):
@@ -148,13 +148,13 @@ class PluginWarning(WearlawWarning):
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return "; did you mean 'x'?" for the nearest known word, or a full stop when none is near."""
+    """Return "; did you mean 'x'?" for the nearest known word, or a full stop if no word is near."""
     near = get_close_matches(word, list(known), n=1)
     return f"; did you mean '{near[0]}'?" if near else "."
 
 
 def message_of(error: BaseException) -> str:
-    """Return the message of an exception, or a remark if its `__str__` fails, as a plugin's may."""
+    """Return the message of an exception, or a remark if its `__str__` fails, which can happen in a plugin."""
     try:
         return str(error)
     except KeyboardInterrupt:
@@ -170,5 +170,5 @@ def described(error: BaseException) -> str:
 
 
 def with_problems(head: str, problems: Iterable[object]) -> str:
-    """Return a message of problems, each on a line below the head."""
+    """Return a message with each problem on a line of its own below the head."""
     return head + "".join(f"\n  {problem}" for problem in problems)

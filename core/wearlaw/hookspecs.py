@@ -1,4 +1,4 @@
-"""The whole extension surface: the hooks that a plugin may implement.
+"""All extension points: the hooks that a plugin can implement.
 
 A plugin is a module named in the entry-point group "wearlaw" of its distribution, with functions of these
 names marked `@wearlaw.hookimpl`.
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 PROJECT = "wearlaw"
 
 INTERFACE_VERSION = 2
-"""The version of what a plugin can rely on: these hooks and the public names of `wearlaw`.
+"""Version of the interface that a plugin can rely on: these hooks and the public names of `wearlaw`.
 
-It rises when a plugin that worked would no longer do. A plugin module that sets ``wearlaw_interface = N`` is only
-loaded by a wearlaw whose version is N.
+It rises when a change could break a working plugin. wearlaw loads a plugin module that sets ``wearlaw_interface = N``
+only if its own version of the interface is N.
 """
 
 hookspec = pluggy.HookspecMarker(PROJECT)
@@ -46,7 +46,7 @@ def wearlaw_wear_laws() -> Iterable[type[WearLaw]]:  # type: ignore[empty-body]
 
 @hookspec
 def wearlaw_parameter_sets() -> Mapping[str, WearLaw]:  # type: ignore[empty-body]
-    """Return wear laws with parameters of their own, such as a lab's for its pair of steels, by name."""
+    """Return wear laws with parameters of their own by name, such as a lab's law for its pair of steels."""
 
 
 @hookspec
@@ -61,9 +61,9 @@ def wearlaw_cases() -> Mapping[str, str]:  # type: ignore[empty-body]
 
 @hookspec
 def wearlaw_tests() -> Mapping[str, str]:  # type: ignore[empty-body]
-    """Return by name the texts of CSV files with wear tests."""
+    """Return the texts of CSV files with wear tests by name."""
 
 
 @hookspec
 def wearlaw_sections() -> Mapping[str, Callable[[Any], Any]]:  # type: ignore[empty-body]
-    """Return by name functions that take a `wearlaw.Study` and return a `wearlaw.Section` of its report."""
+    """Return functions by name that take a `wearlaw.Study` and return a `wearlaw.Section` of its report."""

@@ -127,8 +127,8 @@ def test_tests_that_are_missing_or_wrong_are_refused_with_the_case(tmp_path: Pat
     ("content", "message"),
     [
         (b'title = "no end', "is not valid TOML: "),
-        (b"\xff\xfe\x00", "cannot read the case file .*: it is no text in UTF-8; save it in UTF-8"),
-        (b'title = "\xb5"', "cannot read the case file .*: it is no text in UTF-8; save it in UTF-8"),
+        (b"\xff\xfe\x00", "cannot read the case file .*: it is not text in UTF-8; save it in UTF-8"),
+        (b'title = "\xb5"', "cannot read the case file .*: it is not text in UTF-8; save it in UTF-8"),
         (b"title,rig\n1,2\n", "is not valid TOML: "),
         (b"", "is wrong in:\n  title: is missing"),
     ],

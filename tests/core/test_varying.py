@@ -157,5 +157,5 @@ def test_changed_numbers_are_checked_like_new_ones() -> None:
 
 
 def test_an_unknown_number_is_named() -> None:
-    with pytest.raises(InputError, match=r"usfd: 'qs' is no number among its fields; did you mean 'q_s'\?"):
+    with pytest.raises(InputError, match=r"usfd: 'qs' is not a number among its fields; did you mean 'q_s'\?"):
         changed(wl.wear_law("usfd"), {"qs": 1.0})

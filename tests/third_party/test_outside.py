@@ -28,11 +28,11 @@ BROKEN = {
     ),
     "too_new": (
         "wearlaw_interface = 99",
-        "TypeError: it is built for version 99 of the plugin interface, this wearlaw has version ",
+        "TypeError: it is built for version 99 of the plugin interface, but this wearlaw has version ",
     ),
     "too_old": (
         "wearlaw_interface = 1",
-        "TypeError: it is built for version 1 of the plugin interface, this wearlaw has version ",
+        "TypeError: it is built for version 1 of the plugin interface, but this wearlaw has version ",
     ),
 }
 """Plugins that cannot be loaded, each with its cause."""

@@ -1,4 +1,4 @@
-"""The one array type of the SI inside."""
+"""The array type of all values in SI."""
 
 from __future__ import annotations
 
@@ -12,5 +12,5 @@ Array: TypeAlias = NDArray[np.float64]
 
 
 def type_name(value: object) -> str:
-    """Return what a message calls the type of a value that should be a float64 array."""
+    """Return the type of a value that should be a float64 array, for a message."""
     return str(value.dtype) if type(value) is np.ndarray else type(value).__name__

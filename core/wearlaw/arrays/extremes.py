@@ -1,4 +1,4 @@
-"""The smallest and the largest entry of an array, in one pass where kernels are compiled."""
+"""The smallest and the largest entry of an array, in one pass if kernels are compiled."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SIGNATURE = "UniTuple(float64, 2)(Array(int64, 1, 'C', True))"  # also of arrays
 
 
 def extremes(array: Array) -> tuple[float, float]:
-    """Return the smallest and the largest entry; NaN if any is."""
+    """Return the smallest and the largest entry; NaN if any entry is NaN."""
     if array.ndim == 0:
         value = float(array)
         return value, value
@@ -30,10 +30,10 @@ def extremes(array: Array) -> tuple[float, float]:
 
 
 def _of_bits(bits: Bits) -> tuple[float, float]:
-    """Return the extremes of floats without sign by their bits, and NaN where a sign or NaN is among them.
+    """Return the extremes of floats without sign from their bits, or NaN if any entry has a sign or is NaN.
 
-    Read as integers such floats keep their order, with infinity and NaN at the end. Integers are compared several at a
-    time, unlike floats, of which any may be NaN.
+    Such floats keep their order when they are read as integers, with infinity and NaN at the end. A processor compares
+    several integers at a time. It cannot do so with floats, because any of them may be NaN.
     """
     low = high = bits[0]
     for i in range(bits.size):

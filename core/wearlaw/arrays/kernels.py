@@ -1,8 +1,8 @@
-"""Kernels: formulas for one operating point that run compiled where numba is installed.
+"""Kernels: formulas for one operating point that run compiled if numba is installed.
 
-A kernel is written twice, as a scalar function that numba can compile and as a function of NumPy arrays. Single
-operating points take the scalar function as it is; arrays take the compiled one if numba is installed and not turned
-off, else the NumPy one. All three agree to rounding.
+A kernel is written twice, as a scalar function that numba can compile and as a function of NumPy arrays. A single
+operating point goes to the uncompiled scalar function. Arrays go to the compiled function if numba is installed and not
+turned off, and otherwise to the function of NumPy arrays. All three agree to rounding.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ SETTING = "WEARLAW_ACCELERATE"
 """The environment variable that turns compiled kernels off with "0"."""
 
 WORTHWHILE = 10_000
-"""Operating points from which on compiled kernels are chosen; loading numba takes longer than fewer take in NumPy."""
+"""Smallest number of operating points for compiled kernels; for fewer, NumPy is done before numba is loaded."""
 
 _chosen: bool | None = None
 
@@ -33,7 +33,7 @@ def accelerate(on: bool | None) -> None:
     Raises
     ------
     InputError
-        If they are turned on, but numba is not installed.
+        If `on` is true, but numba is not installed.
     """
     global _chosen
     if on and _numba() is None:
@@ -42,12 +42,12 @@ def accelerate(on: bool | None) -> None:
 
 
 def chosen() -> bool | None:
-    """Return what `accelerate` was last told."""
+    """Return the last argument of `accelerate`."""
     return _chosen
 
 
 def accelerated(points: int) -> bool:
-    """Return whether an array of so many operating points runs through compiled kernels."""
+    """Return whether an array with this number of operating points runs through compiled kernels."""
     if _chosen is not None:
         return _chosen
     return points >= WORTHWHILE and os.environ.get(SETTING, "1") != "0" and _numba() is not None
@@ -61,14 +61,14 @@ class Kernel:
         self.arrays = arrays
 
     def __call__(self, first: Array, *others: Array | float) -> Array:
-        """Return the formula of float64 arrays of one shape, of which all but the first may be single numbers."""
+        """Return the formula of float64 arrays of one shape; all but the first may be single numbers."""
         arguments = (first, *others)
         if first.ndim == 0:
-            value: Any = np.float64(self.scalar(*map(float, arguments)))  # computes as an array without axes does
+            value: Any = np.float64(self.scalar(*map(float, arguments)))  # computes like an array without axes
             return value  # type: ignore[no-any-return]
         if first.size == 1:
             return np.full(first.shape, self.scalar(*map(_number, arguments)))
-        with np.errstate(over="ignore"):  # a threshold may lie infinitely far above what there is
+        with np.errstate(over="ignore"):  # a threshold may lie infinitely far above all values
             return self.compiled(*arguments) if accelerated(first.size) else self.arrays(*arguments)
 
     @functools.cached_property
@@ -88,24 +88,24 @@ def kernel(arrays: Callable[..., Array]) -> Callable[[Callable[..., float]], Ker
     Parameters
     ----------
     arrays : callable
-        The same formula of float64 arrays of one shape, of which all but the first may be single numbers. The scalar
-        function takes as many floats and returns one; it uses only what numba can compile, such as `math` and
-        functions of its module that do the same.
+        The same formula of float64 arrays of one shape; all but the first may be single numbers. The scalar function
+        takes as many floats and returns a float. It uses only code that numba can compile, such as `math` and functions
+        of its module with the same limits.
     """
     return lambda scalar: Kernel(scalar, arrays)
 
 
 def compiled_loop(signature: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Return a decorator that makes a compiled function of loops over arrays, which fills some of them.
+    """Return a decorator that compiles a function of loops over arrays, which writes its results into some of them.
 
-    It is compiled when it is first called, so it is called only where `accelerated` says so. Division by zero gives
+    The function is compiled at its first call, so call it only if `accelerated` returns True. Division by zero gives
     infinity or NaN, as in NumPy.
 
     Parameters
     ----------
     signature : str
-        Types of the arguments, as numba reads them. The function uses only what numba can compile, such as `math`
-        and functions of its module that do the same.
+        Types of the arguments, as numba reads them. The function uses only code that numba can compile, such as `math`
+        and functions of its module with the same limits.
     """
     options = {"fastmath": {"contract"}, "error_model": "numpy"}
 
@@ -124,11 +124,11 @@ def compiled_loop(signature: str) -> Callable[[Callable[..., None]], Callable[..
 
 
 def compiled(compiler: str, function: Callable[..., Any], signature: object, **options: Any) -> Any:
-    """Return what a compiler of numba makes of a function, kept on disk for later processes where there is room."""
+    """Return a function compiled by a compiler of numba, and keep it on disk for later processes if there is room."""
     compile_ = getattr(_numba(), compiler)
     try:
         return compile_([signature], cache=True, **options)(function)
-    except (RuntimeError, OSError):  # no folder that numba may write to, or no room there
+    except (RuntimeError, OSError):  # numba may not write to any folder, or there is no room
         return compile_([signature], **options)(function)
 
 
@@ -149,7 +149,7 @@ def _number(value: Array | float) -> float:
 
 @functools.cache
 def _numba() -> Any:
-    """Return numba, or None where it is not installed or does not fit the rest of the environment."""
+    """Return numba, or None if it is not installed or does not fit the rest of the environment."""
     try:
         import numba
     except ImportError:

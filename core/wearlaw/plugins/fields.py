@@ -1,4 +1,4 @@
-"""Fields that hold a model: written as a name or a table in a file, an instance in Python."""
+"""Fields that hold a model: a name or a table in a file, an instance in Python."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 RIGS = "rig"
-"""The kind of models that are written with `type` in place of `model`."""
+"""The kind of models that a file names with `type` instead of `model`."""
 
 
 def _is_rig(value: object) -> bool:
@@ -32,7 +32,7 @@ def _is_rig(value: object) -> bool:
 
 
 def specification(model: Model) -> dict[str, Any]:
-    """Return a model as a table of its name and fields, from which it can be made again."""
+    """Return a model as a table of its name and fields; the table makes an equal model."""
     key = "type" if model.kind == RIGS else "model"
     return {key: model.name, **model.model_dump(mode="json", exclude_none=True)}
 
@@ -57,7 +57,7 @@ def _material(value: Any) -> Any:
 
 
 class _OrName:
-    """Adds to a field's JSON Schema that a name will do."""
+    """Adds to a field's JSON Schema that a name is valid too."""
 
     @staticmethod
     def __get_pydantic_json_schema__(
@@ -105,7 +105,7 @@ def _rig_of_table(table: Mapping[str, Any]) -> Any:
 
 
 def _without_type(given: Mapping[str, Any]) -> str:
-    """Return what to write in a table without a type, the type first whose fields it has."""
+    """Return the message for a table without a type; it suggests a type with these fields first."""
     rigs, presets = loader.rigs(), ", ".join(known_presets())
     fitting = [name for name, rig in rigs.items() if given and given.keys() <= rig.model_fields.keys()]
     text = f'needs a type, such as type = "{[*fitting, *rigs][0]}". Installed: {", ".join(rigs)}'
@@ -113,7 +113,7 @@ def _without_type(given: Mapping[str, Any]) -> str:
 
 
 def known_presets() -> dict[str, list[type[Any]]]:
-    """Return the rigs that have a preset, by the name of the preset."""
+    """Return for each preset, by its name, the rigs that have it."""
     found: dict[str, list[type[Any]]] = {}
     for rig in loader.rigs().values():
         try:
@@ -127,7 +127,7 @@ def known_presets() -> dict[str, list[type[Any]]]:
 
 
 def _of_preset(kind: str | None, preset: str, given: Mapping[str, Any]) -> Any:
-    """Return the rig that a preset makes, with some of its arguments given."""
+    """Return the rig of a preset, with some of its arguments given."""
     presets = {
         name: rigs
         for name, every in known_presets().items()
@@ -162,7 +162,7 @@ def _no_preset(kind: str | None, preset: str, presets: Mapping[str, list[type[An
 
 
 def preset_fields(rig: type[Any], preset: str) -> type[Configuration]:
-    """Return what a table may give of a preset: the arguments of its function, checked by their annotations."""
+    """Return a record of the arguments of a preset's function, checked by their annotations."""
     make = rig.presets()[preset]
     annotations, docs = get_type_hints(make, include_extras=True), field_docstrings(rig)
     fields: dict[str, Any] = {}
@@ -178,11 +178,11 @@ def preset_fields(rig: type[Any], preset: str) -> type[Configuration]:
 
 
 class OpenPreset(Configuration, extra="allow"):
-    """A preset whose function takes any keyword."""
+    """A preset with a function that takes any keyword."""
 
 
 RIG = (BeforeValidator(_rig), _AS_TABLE, _SCHEMA)
-"""Annotations of a field that takes a rig, its name, or a table with its name as `type` or that of a `preset`."""
+"""Annotations of a field that takes a rig, its name, or a table with its `type` or `preset`."""
 
 ContactModelField = Annotated[
     ContactModel,

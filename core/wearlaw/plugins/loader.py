@@ -1,7 +1,7 @@
 """Discovery of plugins and look-up of models by name.
 
-Each entry point is loaded and asked alone, so that a broken plugin is named and left out while all others go
-on working. Two models of one name are an error that names both distributions.
+Each entry point is loaded and called alone. A broken plugin is therefore left out with a warning that names it, and all
+others go on working. If two models have the same name, an error names both distributions.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from wearlaw.settings.configuration import Configuration, known_as
 
 @dataclass
 class Installed:
-    """Everything that discovery found."""
+    """Everything found by discovery."""
 
     rigs: Shelf[type[Any]] = field(default_factory=lambda: Shelf("rig", type))
     contact_models: Shelf[type[ContactModel]] = field(default_factory=lambda: Shelf("contact model", type))
@@ -44,22 +44,22 @@ class Installed:
     broken: list[Broken] = field(default_factory=list)
 
     def shelves(self) -> tuple[Shelf[Any], ...]:
-        """Return what there is of each kind."""
+        """Return the shelf of each kind."""
         models = (self.rigs, self.contact_models, self.wear_laws, self.parameter_sets)
         return *models, self.materials, self.cases, self.test_sets, self.sections
 
     def of_kind(self, kind: str) -> Shelf[Any]:
-        """Return what there is of a kind, such as "wear law"."""
+        """Return the shelf of a kind, such as "wear law"."""
         return next(shelf for shelf in self.shelves() if shelf.kind == kind)
 
     def listing(self) -> list[tuple[str, str, Origin]]:
-        """Return kind, name and origin of everything that plugins provide."""
+        """Return kind, name and origin of everything from plugins."""
         return [row for shelf in self.shelves() for row in shelf.listing()]
 
 
 def installed() -> Installed:
-    """Return all installed plugins; they are searched for once in a process."""
-    with _searching:  # other threads wait, while a hook that gives a parameter set can look up the law it belongs to
+    """Return all installed plugins; the search runs once in a process."""
+    with _searching:  # other threads wait, but a hook that returns a parameter set can look up its law
         return _under_way[0] if _under_way else _search()
 
 
@@ -79,11 +79,11 @@ def _search() -> Installed:
 _searching = RLock()
 
 _under_way: list[Installed] = []
-"""What discovery has found so far, while it goes on."""
+"""The plugins found so far, while discovery runs."""
 
 
 def _discover(found: Installed) -> None:
-    """Load all plugins: first the models of all of them, then what is given by name and may look up models."""
+    """Load all plugins: first the models of all plugins, then the things given by name, which may look up models."""
     manager = _Manager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)
     loaded: list[tuple[_Plugin, Origin]] = []
@@ -100,10 +100,10 @@ def _discover(found: Installed) -> None:
 
 @contextmanager
 def _isolated(found: Installed, origin: Origin) -> Iterator[None]:
-    """Note what a plugin raises, whatever that is, and go on; only Ctrl-C ends the program."""
+    """Record any exception of a plugin and go on; only Ctrl-C ends the program."""
     try:
         yield
-    except KeyboardInterrupt as interrupt:  # the plugin may have raised it itself, which looks the same
+    except KeyboardInterrupt as interrupt:  # the plugin may have raised it itself, so name the plugin
         interrupt.add_note(f"wearlaw was loading {origin}")
         raise
     except BaseException as error:
@@ -126,21 +126,21 @@ def wear_laws() -> Mapping[str, type[WearLaw]]:
 
 
 def rig(name: str, /, **options: Any) -> Any:
-    """Return the installed rig of a name, such as "twin_disc", with its fields.
+    """Return the installed rig with a name, such as "twin_disc", and the given fields.
 
-    Parameters, errors: as for `contact_model`. Type checkers know the conditions of a rig only by its class.
+    Parameters and errors are those of `contact_model`. Type checkers know the conditions of a rig only from its class.
     """
     found = installed()
     return found.rigs.find(name, found.broken)(**options)
 
 
 def contact_model(name: str, /, **options: Any) -> ContactModel:
-    """Return the installed contact model of a name, with its options.
+    """Return the installed contact model with a name, and the given options.
 
     Parameters
     ----------
     name : str
-        Such as "exact"; `contact_models()` lists all names.
+        Name of the model, such as "exact"; `contact_models()` lists all names.
     **options
         The model's fields, such as ``bound="elliptic"``; ``wearlaw show NAME`` lists them.
 
@@ -156,9 +156,9 @@ def contact_model(name: str, /, **options: Any) -> ContactModel:
 
 
 def wear_law(name: str, /, **options: Any) -> WearLaw:
-    """Return the installed wear law of a name, or the law with the parameter set of that name, with its options.
+    """Return the installed wear law or parameter set with a name, and the given options.
 
-    Parameters, errors: as for `contact_model`.
+    Parameters and errors are those of `contact_model`.
     """
     found = installed()
     if name in found.parameter_sets.providers and name not in found.wear_laws.providers:
@@ -167,7 +167,7 @@ def wear_law(name: str, /, **options: Any) -> WearLaw:
 
 
 def material(name: str, /) -> Material:
-    """Return the installed material of a name.
+    """Return the installed material with a name.
 
     Raises
     ------
@@ -189,10 +189,10 @@ def parameter_sets() -> Mapping[str, WearLaw]:
 
 
 def _entry_points() -> list[tuple[EntryPoint, Origin]]:
-    """Return what the installed distributions name; of two copies of one, the first on `sys.path` counts."""
+    """Return the entry points of all installed distributions; of two copies of one, the first on `sys.path` counts."""
     found: dict[str, list[tuple[EntryPoint, Origin]]] = {}
     for distribution in distributions():
-        if f"[{hookspecs.PROJECT}]" in (distribution.read_text("entry_points.txt") or ""):  # few are; parse no others
+        if f"[{hookspecs.PROJECT}]" in (distribution.read_text("entry_points.txt") or ""):  # parse only the few plugins
             name, version = _name_and_version(distribution)
             points = distribution.entry_points.select(group=hookspecs.PROJECT)
             found.setdefault(canonicalize_name(name), [(point, Origin(point.name, name, version)) for point in points])
@@ -200,7 +200,7 @@ def _entry_points() -> list[tuple[EntryPoint, Origin]]:
 
 
 def _name_and_version(distribution: Distribution) -> tuple[str, str]:
-    """Return what the metadata begins with; `distribution.metadata` would parse the README behind it as well."""
+    """Return name and version from the head of the metadata; `distribution.metadata` would parse the README as well."""
     text = distribution.read_text("METADATA") or distribution.read_text("PKG-INFO") or ""
     lines = (line.partition(": ") for line in text.partition("\n\n")[0].splitlines())
     header = {key: value for key, _, value in lines}
@@ -213,13 +213,13 @@ def _check_interface(needed: object) -> None:
     if needed != hookspecs.INTERFACE_VERSION:
         behind = "wearlaw" if needed > hookspecs.INTERFACE_VERSION else "the plugin"
         raise TypeError(
-            f"it is built for version {needed} of the plugin interface, this wearlaw has version"
+            f"it is built for version {needed} of the plugin interface, but this wearlaw has version"
             f" {hookspecs.INTERFACE_VERSION}; upgrade {behind}"
         )
 
 
 class _Manager(pluggy.PluginManager):
-    """A plugin manager that looks closer at marked names only; to look at all takes most of the time of pluggy."""
+    """A plugin manager that inspects marked names only; inspecting all names takes most of pluggy's time."""
 
     def parse_hookspec_opts(self, module_or_class: Any, name: str) -> Any:
         return getattr(getattr(module_or_class, name), f"{hookspecs.PROJECT}_spec", None)
@@ -230,10 +230,10 @@ class _Manager(pluggy.PluginManager):
 
 
 def _load(manager: pluggy.PluginManager, entry_point: EntryPoint, origin: Origin) -> object:
-    """Return a plugin, or raise what is wrong with it."""
+    """Return a plugin, or raise an error if it is broken."""
     plugin = entry_point.load()
     _check_interface(getattr(plugin, "wearlaw_interface", hookspecs.INTERFACE_VERSION))
-    if not manager.is_registered(plugin):  # else another distribution names it too, and both provide its models
+    if not manager.is_registered(plugin):  # if it is, another distribution names it too, and both provide its models
         manager.register(plugin, str(origin))
     try:
         manager.check_pending()
@@ -247,13 +247,13 @@ def _load(manager: pluggy.PluginManager, entry_point: EntryPoint, origin: Origin
 
 @dataclass(frozen=True)
 class _Plugin:
-    """A plugin that can be asked alone, so that its errors are its own."""
+    """A plugin that can be called alone, so that an error belongs to it."""
 
     manager: pluggy.PluginManager
     registered: object
 
     def answers(self, hook: str) -> list[Any]:
-        """Return what it returns from a hook."""
+        """Return the plugin's results of a hook."""
         asked = [one for one in getattr(self.manager.hook, hook).get_hookimpls() if one.plugin is self.registered]
         return [answer for one in asked if (answer := one.function()) is not None]
 

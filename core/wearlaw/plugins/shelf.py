@@ -1,4 +1,4 @@
-"""Shelves: what plugins provide of one kind, by name, and where it comes from."""
+"""Shelves: everything of one kind from all plugins, by name, with its origin."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ModelT = TypeVar("ModelT", bound=Model)
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a plugin comes from."""
+    """Origin of a plugin: its entry point and distribution."""
 
     entry_point: str
     distribution: str
@@ -28,7 +28,7 @@ class Origin:
 
 @dataclass(frozen=True)
 class Broken:
-    """A plugin that could not be used, or a part of it, and why."""
+    """A plugin, or a part of it, that could not be used, and the cause."""
 
     origin: Origin
     cause: str
@@ -39,14 +39,14 @@ class Broken:
 
 @dataclass
 class Shelf(Generic[T]):
-    """All that plugins provide of one kind, by name."""
+    """Everything of one kind from all plugins, by name."""
 
     kind: str
     base: type[T]
     providers: dict[str, list[tuple[T, Origin]]] = field(default_factory=dict)
 
     def add(self, name: object, item: object, origin: Origin) -> None:
-        """Put something on the shelf, or raise `TypeError` if it is not of the kind."""
+        """Put an item on the shelf, or raise `TypeError` if it is not of the kind."""
         if not isinstance(item, self.base):
             raise TypeError(f"{self.kind} {name!r} must be a {self.base.__name__}, got {item!r}")
         if not (isinstance(name, str) and name.isidentifier()):
@@ -54,26 +54,26 @@ class Shelf(Generic[T]):
         self.providers.setdefault(name, []).append((item, origin))
 
     def origin(self, name: str) -> Origin:
-        """Return where what bears a name comes from."""
+        """Return the origin of the item with a name."""
         return self.providers[name][0][1]
 
     def distribution(self, name: str, item: T | None = None) -> str:
-        """Return the distribution and its version that provides what bears a name, and is `item` if that is given."""
+        """Return distribution and version of the item with a name; if `item` is given, it must be that item."""
         for provided, origin in self.providers.get(name, []):
             if item is None or provided is item:
                 return f"{origin.distribution} {origin.version}"
         return "not installed"
 
     def listing(self) -> list[tuple[str, str, Origin]]:
-        """Return kind, name and origin of everything, also of what bears a name that is taken twice."""
+        """Return kind, name and origin of all items, including items that share a name."""
         return [(self.kind, name, origin) for name, found in sorted(self.providers.items()) for _, origin in found]
 
     def items(self) -> dict[str, T]:
-        """Return everything by name, without what bears a name that is taken twice."""
+        """Return all items by name, except items that share a name."""
         return {name: found[0][0] for name, found in sorted(self.providers.items()) if len(found) == 1}
 
     def find(self, name: str, broken: Iterable[Broken]) -> T:
-        """Return what bears a name, or raise an `UnknownModelError` that says what there is."""
+        """Return the item with a name, or raise an `UnknownModelError` that lists the installed names."""
         found = self.providers.get(name, [])
         if len(found) == 1:
             return found[0][0]
@@ -84,7 +84,7 @@ class Shelf(Generic[T]):
 
 
 def add_model(shelf: Shelf[type[ModelT]], model: Any, origin: Origin) -> None:
-    """Put a model on the shelf of its kind under its own name, or raise `TypeError` if it is none."""
+    """Put a model on the shelf of its kind under its own name, or raise `TypeError` if it is not such a model."""
     if not (inspect.isclass(model) and issubclass(model, Model) and getattr(model, "kind", None) == shelf.kind):
         raise TypeError(f"{model!r} is not a subclass of {shelf.kind.title().replace(' ', '')}")
     if inspect.isabstract(model):
@@ -96,7 +96,7 @@ def add_model(shelf: Shelf[type[ModelT]], model: Any, origin: Origin) -> None:
 
 
 def unknown(kind: str, name: str, known: Iterable[str], broken: Iterable[Broken]) -> str:
-    """Return the message that there is no model of a name, with what there is and what was left out."""
+    """Return the message for an unknown name, with the installed names and the plugins that were left out."""
     names = list(known)
     message = f"no {kind} is called {name!r}{did_you_mean(str(name), names)} Installed: {', '.join(names) or 'none'}"
     return message + "".join(f"\n  left out: {plugin}" for plugin in broken)

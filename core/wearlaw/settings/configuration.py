@@ -1,4 +1,4 @@
-"""The frozen pydantic base of everything that a user configures: models, materials, rigs, pipelines, cases."""
+"""The frozen pydantic base class of models, materials, rigs, pipelines and cases."""
 
 from __future__ import annotations
 
@@ -23,10 +23,9 @@ ConfigurationT = TypeVar("ConfigurationT", bound="Configuration")
 
 
 class Configuration(BaseModel):
-    """A frozen, hashable, picklable record of settings that names every wrong field when it is made.
+    """A frozen, hashable, picklable record of settings; making one raises an error that names every wrong field.
 
-    Quantities serialise to text with a unit (``model_dump(mode="json")``), which validates back to an equal
-    record.
+    Quantities serialise to text with a unit (``model_dump(mode="json")``). Validating that text gives an equal record.
     """
 
     model_config = ConfigDict(
@@ -58,7 +57,7 @@ class Configuration(BaseModel):
 
         @classmethod
         def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
-            """Build the validators, in one thread at a time; without being called that happens at the first use."""
+            """Build the validators, in one thread at a time; pydantic does so at the first use if nobody calls this."""
             with _BUILDING:  # pydantic before 2.14 has no lock of its own
                 return super().model_rebuild(_parent_namespace_depth=_parent_namespace_depth + 1, **options)
 
@@ -70,7 +69,7 @@ class Configuration(BaseModel):
 
         @classmethod
         def model_validate(cls, obj: Any, **options: Any) -> Self:
-            """Return the record that a table of its fields describes."""
+            """Return the record for a table of its fields."""
             try:
                 return super().model_validate(obj, **options)
             except ValidationError as error:
@@ -78,7 +77,7 @@ class Configuration(BaseModel):
 
         @classmethod
         def model_validate_json(cls, json_data: str | bytes | bytearray, **options: Any) -> Self:
-            """Return the record that `model_dump_json` wrote."""
+            """Return the record for a text from `model_dump_json`."""
             try:
                 return super().model_validate_json(json_data, **options)
             except ValidationError as error:
@@ -108,13 +107,13 @@ class Configuration(BaseModel):
 
     @classmethod
     def subject(cls) -> str:
-        """Return what messages call this configuration."""
+        """Return the name of this configuration in messages."""
         return cls.__name__
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:  # noqa: ARG002
-        """Return a copy with some fields changed, checked like a new one; nothing computed before is kept.
+        """Return a copy with some fields changed, checked like a new record; cached values are not copied.
 
-        `deep` makes no difference, since nothing in a configuration can change.
+        `deep` makes no difference, because nothing in a configuration can change.
         """
         aliases = {name: field.alias or name for name, field in type(self).model_fields.items()}
         fields = {alias: getattr(self, name) for name, alias in aliases.items()} | (self.model_extra or {})
@@ -132,7 +131,7 @@ _BUILDING = RLock()
 
 
 class _Signature:
-    """The signature of a class without validators yet; pydantic makes it from the fields as it builds them."""
+    """Signature of a class without validators; pydantic makes it from the fields when it builds the validators."""
 
     def __get__(self, instance: object, owner: type[BaseModel]) -> Signature:
         if instance is None and owner.model_rebuild(raise_errors=False) is not False:
@@ -141,7 +140,7 @@ class _Signature:
 
 
 def parts(value: object) -> Iterator[Configuration]:
-    """Give all configurations in a value: itself, and those that its fields hold at any depth."""
+    """Yield all configurations in a value: the value itself, and those in its fields at any depth."""
     inner: Iterable[object] = ()
     if isinstance(value, Configuration):
         yield value
@@ -153,26 +152,26 @@ def parts(value: object) -> Iterator[Configuration]:
 
 
 def known_as(name: str, record: ConfigurationT) -> ConfigurationT:
-    """Return an equal record that remembers the name under which it was looked up; changed copies do not."""
+    """Return an equal record that remembers its name in the look-up; changed copies forget the name."""
     found = record.model_copy()
     vars(found)["_known_as"] = name
     return found
 
 
 def known_name(record: Configuration) -> str | None:
-    """Return the name under which a record was looked up, if it was."""
+    """Return the name under which a record was looked up, or None if it was not looked up."""
     return vars(record).get("_known_as")
 
 
 class _Text(str):
-    """A text that shows itself without quotes."""
+    """A text with a repr without quotes."""
 
     def __repr__(self) -> str:
         return str(self)
 
 
 def configuration_error(subject: str, model: type[BaseModel], error: ValidationError) -> ConfigurationError:
-    """Return the wearlaw error that says the same as a pydantic error, in the words of the user."""
+    """Return a pydantic error as a wearlaw error, in the words of the user."""
     problems: list[Fault] = []
     for details in error.errors(include_url=False):
         path = tuple(str(part) for part in details["loc"])

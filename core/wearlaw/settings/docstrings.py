@@ -1,6 +1,6 @@
-"""The docstrings of fields: the string literals below them in the source of their class, read when they are asked for.
+"""The docstrings of fields: the string literals below them in the source of their class, read on demand.
 
-Pydantic can read them too, but does so as it makes the class, which then takes three times as long.
+Pydantic can read them too, but it does so as it makes the class, which then takes three times as long.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 def place_of_statement(cls: type) -> tuple[str, int] | None:
-    """Return file and line of the statement that makes a class, while it does.
+    """Return file and line of the class statement that is being executed.
 
-    A cell of a notebook has a file name as well, under which `linecache` knows its lines.
+    A cell of a notebook has a file name as well, and `linecache` knows its lines by that name.
     """
     frame = inspect.currentframe()
     while frame is not None and frame.f_globals.get("__name__") != cls.__module__:
@@ -30,10 +30,10 @@ def place_of_statement(cls: type) -> tuple[str, int] | None:
 
 
 def field_docstrings(model: type[BaseModel]) -> dict[str, str]:
-    """Return what is said of each field: its `description`, else the string literal below it, else "".
+    """Return the docstring of each field: its `description`, or else the string literal below it, or else "".
 
-    An inherited field is described where it was annotated last. Nothing is found where the source is not there, or
-    not the one any more that was imported.
+    An inherited field has the docstring of its last annotation. No string literal is found if the source is missing or
+    has changed since the import.
     """
     found = {name: text for base in reversed(model.__mro__) for name, text in _literals(base)}
     return {name: field.description or found.get(name, "") for name, field in model.model_fields.items()}
@@ -47,7 +47,7 @@ def _literals(cls: type) -> tuple[tuple[str, str], ...]:
 
 @cache  # parsing a module takes milliseconds, and a report asks for its classes several times
 def _of_classes(source: str) -> dict[tuple[str, int], tuple[tuple[str, str], ...]]:
-    """Return what `_literals` says of each class in a module, by name and line."""
+    """Return the result of `_literals` for each class in a module, by name and line."""
     try:
         module = ast.parse(source)
     except SyntaxError:

@@ -1,4 +1,4 @@
-"""The numbers among a model's fields, by name: read, in SI, and changed."""
+"""Read, convert to SI and change the numbers among a model's fields, by name."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ConfigurationT = TypeVar("ConfigurationT", bound=Configuration)
 
 
 def numbers(record: Configuration) -> dict[str, Quantity | float]:
-    """Return the fields that are numbers by name; those of a record within a record as "outer.inner"."""
+    """Return the numbers among the fields by name; a number of a record within a record is "outer.inner"."""
     found: dict[str, Quantity | float] = {}
     for name in type(record).model_fields:
         value = getattr(record, name)
@@ -53,7 +53,7 @@ def changed(record: ConfigurationT, values: Mapping[str, Quantity | float]) -> C
         if name not in known:
             hint = did_you_mean(name, known)
             raise InputError(
-                f"{record.subject()}: '{name}' is no number among its fields{hint} There are: {', '.join(known)}"
+                f"{record.subject()}: '{name}' is not a number among its fields{hint} There are: {', '.join(known)}"
             )
         outer, _, inner = name.partition(".")
         if inner:

@@ -19,28 +19,28 @@ def read_text(path: str | os.PathLike[str]) -> str:
     OSError
         If the file cannot be read.
     InputError
-        If it is no text; the message goes behind the name of the file.
+        If it is not text; the message follows the name of the file.
     """
     try:
         return decoded(Path(path).read_bytes())
     except UnicodeDecodeError:
-        raise InputError("it is no text in UTF-8; save it in UTF-8") from None
+        raise InputError("it is not text in UTF-8; save it in UTF-8") from None
 
 
 def decoded(content: bytes, otherwise: str = "utf-8-sig") -> str:
-    """Return the text of UTF-8, or of UTF-16 with its mark, without the mark.
+    """Decode UTF-8, or UTF-16 with a byte order mark, and return the text without the mark.
 
     Parameters
     ----------
     content : bytes
         The content of a file.
     otherwise : str
-        The encoding of what is neither.
+        The encoding to try if the content is neither.
 
     Raises
     ------
     UnicodeDecodeError
-        If it is no such text.
+        If the content is not text in any of these encodings.
     """
     if content.startswith(UTF_16):
         return content.decode("utf-16")

@@ -1,8 +1,8 @@
-"""Units at the rim: quantities come in and go out with units, plain SI floats live inside.
+"""Units at the interface: users give and get quantities with units, and wearlaw computes in plain SI floats.
 
-`Q(7.4, "kN")` makes a quantity. `Unit` states the unit expected of a field or argument, checks the value and returns SI
-floats. Everything uses pint's application registry, looked up when it is needed,
-so that quantities made by other packages and by `pint.set_application_registry` fit in.
+`Q(7.4, "kN")` makes a quantity. `Unit` states the expected unit of a field or argument, checks the value and returns SI
+floats. All functions look up pint's application registry at each use, so that they accept quantities from other
+packages and from `pint.set_application_registry`.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def Q(value: ArrayLike, unit: str) -> Quantity:
     Raises
     ------
     UnitError
-        If the unit is not known, or the value is no real number.
+        If the unit is not known, or the value is not a real number.
     """
     magnitude: Any = value
     if type(value) not in (int, float):
@@ -62,7 +62,7 @@ def Q(value: ArrayLike, unit: str) -> Quantity:
 
 
 def parse(text: str) -> Quantity:
-    """Return the quantity that a text such as "47 mm", "1e-3 %" or "0.01 dimensionless" stands for.
+    """Return the quantity of a text such as "47 mm", "1e-3 %" or "0.01 dimensionless".
 
     Raises
     ------
@@ -76,12 +76,12 @@ def parse(text: str) -> Quantity:
 
 
 def text_of(quantity: Quantity) -> str:
-    """Return the text that `parse` reads back to the same scalar quantity, to the last digit."""
+    """Return the text of a scalar quantity; `parse` reads it back exactly."""
     return f"{float(quantity.magnitude)!r} {symbol(quantity.units, '~C') or 'dimensionless'}"
 
 
 def shown(value: object) -> str:
-    """Return a value as it is shown to a reader, scalar quantities with all their digits."""
+    """Return the text of a value for a reader; scalar quantities have all their digits."""
     if not isinstance(value, pint.Quantity):
         return str(value)
     return f"{float(value.magnitude)!r} {symbol(value.units, '~P') or 'dimensionless'}"
@@ -92,15 +92,15 @@ _QUANTITY_TEXT = re.compile(
 )
 
 HEAD = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?")
-"""The head of a column, as in "creepage [%]": its name, and its unit if it gives one."""
+"""The head of a column, as in "creepage [%]": a name and an optional unit."""
 
 
 @dataclass(frozen=True)
 class Unit:
-    """The unit expected of a field or argument, with the bounds of its value.
+    """The expected unit of a field or argument, with the bounds of its value.
 
-    Used in an annotation, ``Annotated[Quantity, Unit("mm")]``, it makes pydantic accept a quantity of that
-    dimension, or a text such as "47 mm"; everything else is an error that names the field.
+    In an annotation, ``Annotated[Quantity, Unit("mm")]``, it makes pydantic accept a quantity of that dimension, or a
+    text such as "47 mm". Every other value raises an error that names the field.
 
     Parameters
     ----------
@@ -125,15 +125,15 @@ class Unit:
         Parameters
         ----------
         value : Quantity or str
-            What the user gave, of any shape.
+            The user's value, of any shape.
         name : str
             The argument's name, for the message.
 
         Returns
         -------
         ndarray of float64
-            The value in the coherent SI unit of this dimension, a NumPy scalar if it has no axes; memory is shared
-            where nothing changes.
+            The value in the coherent SI unit of this dimension, a NumPy scalar if it has no axes. It shares memory with
+            the input if the numbers do not change.
         """
         try:
             return self._checked(value)[1]
@@ -157,7 +157,7 @@ class Unit:
         return quantity, in_si
 
     def _allows(self, in_si: NDArray[np.float64]) -> bool:
-        """Return whether no rule is broken, from the extremes alone; an array that is empty or has NaN is not sure."""
+        """Return whether the extremes show that no rule is broken; False for an array that is empty or has NaN."""
         if in_si.size == 0:
             return False
         (low, high), limit = extremes(in_si), self._limit_in_si
@@ -169,7 +169,7 @@ class Unit:
         return self.limit * unit_in_si(self.unit) if self.limit < np.inf else np.inf
 
     def _rules(self, in_si: NDArray[np.float64]) -> Iterator[tuple[NDArray[np.bool_], str]]:
-        """Return where each rule is broken, and the rule."""
+        """Yield for each rule where it is broken, and its text."""
         yield np.isnan(in_si), "must be a number"
         if not self.infinite:
             yield np.isinf(in_si), "must be finite"
@@ -220,9 +220,9 @@ class Unit:
 
 
 def real_array(value: object) -> NDArray[np.float64]:
-    """Return `value` as float64, refusing what is no real number: booleans, complex, text, masked entries."""
+    """Return `value` as float64; raise an error for booleans, complex numbers, text and masked entries."""
     if type(value) is float:
-        return np.float64(value)  # type: ignore[return-value]  # computes as an array without axes, but faster
+        return np.float64(value)  # type: ignore[return-value]  # computes like an array without axes, but faster
     if np.ma.is_masked(value):
         raise UnitError("masked entries have no value")
     if isinstance(value, pint.Quantity) or (
@@ -245,7 +245,7 @@ def coefficient(value: object, name: str) -> NDArray[np.float64]:
     Raises
     ------
     UnitError
-        If it has a dimension, or is no positive finite real number.
+        If it has a dimension, or is not a positive finite real number.
     """
     try:
         array = Unit("")._checked(value)[1] if isinstance(value, pint.Quantity) else real_array(value)
@@ -259,7 +259,7 @@ def coefficient(value: object, name: str) -> NDArray[np.float64]:
 
 
 def scalar_si(quantity: Quantity, unit: str) -> float:
-    """Return the SI value of a scalar quantity that has been validated before."""
+    """Return the SI value of a scalar quantity that is already checked."""
     return quantity.magnitude * si_factor(quantity, unit)  # type: ignore[no-any-return]
 
 
@@ -280,17 +280,17 @@ Speed = Annotated[Quantity, Unit("m/s")]
 Stress = Annotated[Quantity, Unit("GPa")]
 Density = Annotated[Quantity, Unit("kg/m^3")]
 WEAR_RATE = "ug/m/mm^2"
-"""The unit in which wear rates are shown: mass lost per metre rolled and contact area."""
+"""The unit for showing wear rates: mass lost per metre rolled and contact area."""
 
 
 def _first(values: NDArray[np.float64], wrong: NDArray[np.bool_]) -> tuple[float, str]:
-    """Return the first wrong value and, for an array, where it stands."""
+    """Return the first wrong value and, for an array, its index as text."""
     where = f" at index {np.argwhere(wrong)[0].tolist()}" if values.ndim else ""
     return float(values[wrong][0]), where
 
 
 def shortened(value: object) -> str:
-    """Return the repr of a value, cut to a length that fits a message."""
+    """Return the repr of a value, shortened for a message."""
     shown = repr(value)
     return shown if len(shown) <= 60 else shown[:57] + "..."
 

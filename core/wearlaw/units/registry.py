@@ -1,4 +1,4 @@
-"""pint's registry of units: looked up when it is needed, its answers kept, its repr made readable."""
+"""pint's registry of units: looked up at each use, with a cache and a readable repr."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _MAKING = RLock()
 """Held by the thread that makes a registry or its class of quantities."""
 
 _ready: object = None
-"""The last registry that was in force, which is made for certain."""
+"""The last registry in force, which is certain to be complete."""
 
 
 def application_registry() -> pint.UnitRegistry[Any]:
-    """Return the registry that is in force now, which `pint.set_application_registry` may have changed."""
+    """Return the registry in force now, which `pint.set_application_registry` may have changed."""
     current: Any = pint.application_registry
     registry: pint.UnitRegistry[Any] = current.get()
     if registry is not _ready:
@@ -32,7 +32,7 @@ def application_registry() -> pint.UnitRegistry[Any]:
 
 
 def _make(registry: pint.UnitRegistry[Any]) -> None:
-    """Have pint make its default registry, which it puts off until the first use; once made, threads may share it."""
+    """Make pint build its default registry now, not at its first use, so that threads can share it."""
     global _ready
     with _MAKING:
         registry.Unit  # noqa: B018  # any attribute does
@@ -40,7 +40,7 @@ def _make(registry: pint.UnitRegistry[Any]) -> None:
 
 
 _UNBOUNDED = re.compile(r"(?<![.\d])\d{3,}|(\*\*|\^)[^a-zA-Zµμ°%*/]*(\*\*|\^)|\)\s*(\*\*|\^).*\)\s*(\*\*|\^)")
-"""Powers that no unit has: of three digits, or of powers. pint would compute them, for as long as that takes."""
+"""Powers that no unit has: with three digits, or powers of powers. pint would compute them, however long it takes."""
 
 
 @functools.lru_cache(maxsize=512)
@@ -52,7 +52,7 @@ def parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
         return registry.Unit(unit)
     except pint.UndefinedUnitError:
         raise UnitError(f"'{unit}' is not a known unit") from None
-    except Exception:  # the registry's expression parser raises errors of many types on malformed text
+    except Exception:  # the registry's expression parser raises many types of error on malformed text
         raise UnitError(f"'{unit}' is not a unit") from None
 
 
@@ -89,9 +89,10 @@ def _coherent(registry: pint.UnitRegistry[Any], unit: str) -> float:
 
 
 def symbol(unit: Any, style: str) -> str:
-    """Return a unit's symbol in one of pint's styles, with the same micro sign and dot in all of pint's versions.
+    """Return a unit's symbol in one of pint's styles, with the same micro sign and dot in all versions of pint.
 
-    Since version 0.26 pint writes the Greek letter mu and the dot operator, other characters that look the same.
+    Since version 0.26, pint writes the Greek letter mu and the dot operator, which look the same but are other
+    characters.
     """
     return _symbol(unit._REGISTRY, unit._units, style)
 
@@ -102,11 +103,11 @@ _ONE_CHARACTER = str.maketrans("\u03bc\u22c5", "\u00b5\u00b7")
 @functools.lru_cache(maxsize=512)
 def _symbol(registry: pint.UnitRegistry[Any], container: Any, style: str) -> str:
     text = format(registry.Unit(container), style).translate(_ONE_CHARACTER)
-    return "N·m" if text == "m·N" else text  # pint sorts by letter, the field writes moments the other way round
+    return "N·m" if text == "m·N" else text  # pint sorts by letter, but engineers write moments as N·m
 
 
 def quantity(magnitude: Any, unit: str) -> Any:
-    """Return a quantity of the registry that is in force; the magnitude is a float or a float array."""
+    """Return a quantity of the registry in force; the magnitude is a float or a float array."""
     registry = application_registry()
     return quantity_class(registry)(magnitude, parse_unit(registry, unit))
 
@@ -127,8 +128,8 @@ def _shown_in(registry: pint.UnitRegistry[Any], unit: str) -> tuple[type[Any], A
 
 @functools.lru_cache(maxsize=64)
 def quantity_class(registry: pint.UnitRegistry[Any]) -> type[Any]:
-    """Return the registry's quantity class with a repr that a reader of wear rates can read."""
-    with _MAKING:  # pint's methods ask whether two quantities are of one class
+    """Return the registry's quantity class with a readable repr."""
+    with _MAKING:  # pint's methods compare the classes of quantities, so there must be only one
         return _quantity_class(registry)
 
 
@@ -137,7 +138,7 @@ def _quantity_class(registry: pint.UnitRegistry[Any]) -> type[Any]:
     class ReadableQuantity(registry.Quantity):  # type: ignore[misc, name-defined]
         @classmethod
         def of(cls, magnitude: Any, container: Any) -> Any:
-            """Return the quantity without the checks of pint, which take most of the time."""
+            """Return the quantity without pint's checks, which take most of the time."""
             made = object.__new__(cls)
             made._magnitude, made._units = magnitude, container
             return made
