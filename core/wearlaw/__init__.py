@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 import wearlaw.rigs as _rigs  # noqa: F401  importing it later would overwrite the function `rigs` with the package
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop, kernel
-from wearlaw.contact import hertz, hertz_ellipse, kalker
+from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
 from wearlaw.contact.contact import Contact, LineFields
 from wearlaw.contact.elliptic_contact import EllipticContact
 from wearlaw.contact.friction import FallingFriction
@@ -34,6 +34,7 @@ from wearlaw.errors import (
     InputError,
     ModelError,
     OutputError,
+    PlasticityWarning,
     PluginWarning,
     RangeWarning,
     ResumeWarning,
@@ -123,6 +124,7 @@ __all__ = [
     "Panel",
     "PatchMean",
     "Pipeline",
+    "PlasticityWarning",
     "PlotAxis",
     "PluginWarning",
     "Prediction",
@@ -160,6 +162,7 @@ __all__ = [
     "contact_model",
     "contact_models",
     "creepage_for",
+    "elastic_limit",
     "fit",
     "hertz",
     "hertz_ellipse",

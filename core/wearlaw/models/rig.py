@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import warnings
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,11 +13,12 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.extremes import extremes
+from wearlaw.contact.elastic_limit import Overload, overload
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Geometry, Problem
-from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, RangeWarning, did_you_mean
+from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean
 from wearlaw.models.contact_model import Blame, ContactModel, Model
-from wearlaw.units.quantities import from_si, scalar_si
+from wearlaw.units.quantities import scalar_si
 
 if TYPE_CHECKING:
     from wearlaw.pipeline.pipeline import Pipeline
@@ -177,23 +177,34 @@ class Rig(Model):
         assert isinstance(self, Rig)
         return Pipeline(rig=self, contact_model=model)
 
-    def warn_of_plasticity(self, max_pressure: Array, stacklevel: int) -> None:
-        """Warn once if the maximum pressure [Pa] is beyond the elastic limit of a body's material."""
-        limit = self._elastic_limit
-        highest = extremes(max_pressure)[1] if max_pressure.size else 0.0
-        if highest > limit:
-            warnings.warn(
-                f"the maximum pressure reaches {from_si(highest, 'MPa')!r}, beyond the material's elastic limit of"
-                f" {from_si(limit, 'MPa')!r}; the elastic contact models no longer hold there",
-                RangeWarning,
-                stacklevel=stacklevel + 1,
-            )
+    def overload(self, problem: Problem, tangential_force: Array) -> Overload | None:
+        """Return the operating point furthest beyond first yield of a body, or None if all are elastic.
+
+        Parameters
+        ----------
+        problem : Problem
+        tangential_force : ndarray
+            Its magnitude [N], of the batch shape.
+        """
+        if not self._strengths:
+            return None
+        return overload(
+            self._strengths,
+            problem.max_pressure,
+            tangential_force / problem.normal_force,
+            problem.friction_coefficient,
+            None if problem.geometry == "line" else problem.a / problem.b,
+        )
 
     @cached_property
-    def _elastic_limit(self) -> float:
-        """The lowest of the bodies' elastic limits [Pa]; infinite where none is known."""
-        limits = (body.material.elastic_limit for body in self.bodies.values())
-        return min((scalar_si(limit, "Pa") for limit in limits if limit is not None), default=np.inf)
+    def _strengths(self) -> set[tuple[float, float]]:
+        """Yield stress in shear [Pa] and Poisson's ratio of the bodies for which they are known."""
+        materials = (body.material for body in self.bodies.values())
+        return {
+            (scalar_si(one.shear_yield_stress, "Pa"), one.poisson_ratio)
+            for one in materials
+            if one.shear_yield_stress is not None
+        }
 
 
 def check_sizes(sizes: dict[str, Array], friction_coefficient: Array) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import TYPE_CHECKING, Generic, Literal, Self
 
 from pydantic import model_validator
@@ -23,7 +22,7 @@ from wearlaw.pipeline.composition import (
     warn_of_geometry,
 )
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.ranges import RangeWatch, mean_over_patch
+from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.plugins.fields import ContactModelField, RigField, WearLawField
 from wearlaw.settings.configuration import Configuration
 
@@ -145,7 +144,6 @@ class Pipeline(Configuration, Generic[P]):
         """
         if self.rig.geometry not in (None, problem.geometry):
             raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
-        self.rig.warn_of_plasticity(problem.max_pressure, stacklevel=stacklevel)
         for law in self.laws:
             warn_of_geometry(self.rig, self.contact_model, self.scale, law, problem, stacklevel + 1)
         watch = self.range_watch()
@@ -154,7 +152,7 @@ class Pipeline(Configuration, Generic[P]):
         return found
 
     def range_watch(self) -> RangeWatch:
-        """Return what sees whether operating points stay in the range of the law, if there is one."""
+        """Return what sees whether operating points stay elastic, and in the range of the law, if there is one."""
         return RangeWatch(self.laws[0] if self.laws else None)
 
     def watched(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None = None) -> Prediction:
@@ -167,7 +165,7 @@ class Pipeline(Configuration, Generic[P]):
         law = self.laws[0]
 
         def see(part: Problem, columns: Columns) -> None:
-            watch.see(part.size, partial(mean_over_patch, part, columns))
+            watch.see_block(self.rig, part, columns)
             if on_block is not None:
                 on_block(part.size)
 
@@ -177,8 +175,9 @@ class Pipeline(Configuration, Generic[P]):
         return found
 
     def _without_wear(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None) -> Prediction:
-        found = Prediction(self, problem, integrate_forces(self.contact_model, problem))
+        forces = integrate_forces(self.contact_model, problem)
         watch.points += problem.size
+        watch.see_overload(self.rig.overload(problem, forces.tangential))
         if on_block is not None:
             on_block(problem.size)
-        return found
+        return Prediction(self, problem, forces)

@@ -14,7 +14,7 @@ import pint
 
 from wearlaw.arrays import kernels
 from wearlaw.arrays.array import Array
-from wearlaw.arrays.extremes import extremes
+from wearlaw.contact.elastic_limit import Overload
 from wearlaw.errors import CompositionError, InputError, did_you_mean
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.variables import UNITS
@@ -52,8 +52,8 @@ class Seen:
     ----------
     points : int
         How many operating points it has.
-    max_pressure : float
-        The highest of their maximum pressures [Pa].
+    overload : Overload or None
+        The one that is furthest beyond first yield.
     ranges : mapping of str to tuple
         For each variable with a range in the law: lowest and highest mean over the patch in SI, and how many points lie
         outside.
@@ -62,7 +62,7 @@ class Seen:
     """
 
     points: int
-    max_pressure: float
+    overload: Overload | None
     ranges: Mapping[str, tuple[float, float, int]]
     checksum: int
 
@@ -78,7 +78,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     prediction = job.pipeline.watched(problem, watch, on_block)
     outputs = {name: _in_unit(getattr(prediction, name), unit) for name, unit in job.units.items()}
     ranges = {name: (seen.lowest, seen.highest, seen.outside) for name, seen in watch.seen.items()}
-    seen = Seen(watch.points, extremes(problem.max_pressure)[1], ranges, checksum=0)
+    seen = Seen(watch.points, watch.overload, ranges, checksum=0)
     return outputs, replace(seen, checksum=checksum(seen, outputs.values()))
 
 
@@ -88,7 +88,7 @@ def checksum(seen: Seen, outputs: Iterable[Array]) -> int:
     CRC-32 is the fastest checksum of the standard library, above 1 GB/s, and misses one in 2³² cases of accidental
     damage. It does not protect against forgery.
     """
-    found = zlib.crc32(json.dumps([seen.points, seen.max_pressure, seen.ranges]).encode())
+    found = zlib.crc32(json.dumps([seen.points, seen.overload, seen.ranges]).encode())
     for values in outputs:
         found = zlib.crc32(np.ascontiguousarray(values).data, found)
     return found
@@ -102,10 +102,9 @@ def notes(pipeline: Pipeline[...], blocks: Iterable[Seen]) -> list[str]:
     for name, seen in watch.seen.items():
         lowest, highest, outside = zip(*(one.ranges[name] for one in every), strict=True)
         seen.lowest, seen.highest, seen.outside = min(lowest), max(highest), sum(outside)
-    highest_pressure: Any = np.float64(max(one.max_pressure for one in every))
+    watch.overload = max((one.overload for one in every if one.overload), default=None)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        pipeline.rig.warn_of_plasticity(highest_pressure, stacklevel=1)
         watch.warn(stacklevel=1)
     return [str(one.message) for one in caught]
 
