@@ -239,7 +239,7 @@ def test_severe_wear_by_slip_speed_begins_above_20_percent_creepage(ours: str) -
     ours=2356.0,
     rounded=0.5,
 )
-@pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning")  # beyond the elastic limit
+@pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning")  # beyond shakedown
 def test_seizure_begins_at_a_mean_pressure_of_2356_kilonewtons_per_metre(ours: float, rounded: float) -> None:
     def jumps_at(load: float, model: str) -> bool:
         """Whether KTH's rate is that of the high-pressure field anywhere just above a load, and not just below."""

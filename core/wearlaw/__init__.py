@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 import wearlaw.rigs as _rigs  # noqa: F401  importing it later would overwrite the function `rigs` with the package
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop, kernel
-from wearlaw.contact import hertz, hertz_ellipse, kalker
+from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
 from wearlaw.contact.contact import Contact, LineFields
 from wearlaw.contact.friction import FallingFriction
 from wearlaw.contact.material import Material, steel
@@ -33,6 +33,7 @@ from wearlaw.errors import (
     InputError,
     ModelError,
     OutputError,
+    PlasticityWarning,
     PluginWarning,
     RangeWarning,
     ResumeWarning,
@@ -120,6 +121,7 @@ __all__ = [
     "Panel",
     "PatchMean",
     "Pipeline",
+    "PlasticityWarning",
     "PlotAxis",
     "PluginWarning",
     "Prediction",
@@ -159,6 +161,7 @@ __all__ = [
     "contact_model",
     "contact_models",
     "creepage_for",
+    "elastic_limit",
     "fit",
     "hertz",
     "hertz_ellipse",

@@ -131,6 +131,10 @@ class RangeWarning(WearlawWarning):
     """A model is used outside the range for which its source states it."""
 
 
+class PlasticityWarning(RangeWarning):
+    """A contact is loaded beyond first yield or the shakedown limit, which elastic contact models do not know."""
+
+
 class FitWarning(WearlawWarning):
     """A fit is less certain than its numbers suggest."""
 

@@ -76,7 +76,7 @@ def test_a_case_with_shipped_tests_is_written_without_them() -> None:
 
 # What is read is written and read again
 
-RAIL = {**STEEL, "elastic_limit": "1 GPa"}
+RAIL = {**STEEL, "shear_yield_stress": "300 MPa"}
 OWN_K = {"high_pressure": 0.03, "low_speed": 1e-4, "mid_speed": 1e-3, "high_speed": 2e-4}
 OWN_RIG: dict[str, Any] = {
     "type": "twin_disc",

@@ -58,7 +58,10 @@ def disc(**fields: Any) -> wl.Disc:
         (lambda: wl.steel(poisson_ratio=True), "poisson_ratio: input should be a valid number, got True"),
         (lambda: wl.steel(poisson_ratio="0.3"), "poisson_ratio: input should be a valid number, got '0.3'"),  # type: ignore[arg-type]
         (lambda: wl.steel(density="7850 kg"), "got 7850 kg, which is not of the dimension of 'kg/m^3'"),
-        (lambda: wl.steel(elastic_limit="0 GPa"), f"elastic_limit: must be greater than zero, got 0.000 GPa; {IN_GPA}"),
+        (
+            lambda: wl.steel(shear_yield_stress="0 GPa"),
+            f"shear_yield_stress: must be greater than zero, got 0.000 GPa; {IN_GPA}",
+        ),
     ],
 )
 def test_a_wrong_field_is_named_with_value_unit_and_fix(make: Callable[[], object], message: str) -> None:

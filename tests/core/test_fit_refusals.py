@@ -34,7 +34,7 @@ def test_tests_for_which_the_best_fit_predicts_no_wear_are_refused() -> None:
     refused("predicts no wear in test number 1;", predict, tests, ["slope"], bounds=bounds)
 
 
-def test_a_pressure_beyond_the_elastic_limit_is_warned_of() -> None:
+def test_a_pressure_beyond_first_yield_is_warned_of() -> None:
     predict = usfd("global")
     tests = wl.WearTests.from_arrays(
         creepage=Q([1.0, 2.0, 3.0], "%"),
@@ -42,7 +42,7 @@ def test_a_pressure_beyond_the_elastic_limit_is_warned_of() -> None:
         friction_coefficient=0.4,
         wear_rate=Q([45.0, 54.0, 56.0], "ug/m/mm^2"),
     )
-    with pytest.warns(wl.RangeWarning, match="beyond the material's elastic limit") as caught:
+    with pytest.warns(wl.RangeWarning, match="beyond the shakedown limit") as caught:
         wl.fit(predict, tests, free=["q_s"], bootstrap=0)
     assert caught[0].filename == __file__
 

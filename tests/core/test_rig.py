@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import inspect
+import re
+import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -125,7 +127,7 @@ def test_the_rolling_speed_follows_from_the_rotational_speed_and_disc_1() -> Non
     assert problem(wl.TwinDisc.suros(disc_2=big)).rolling_speed == pytest.approx(usual, rel=4 * EPS)
 
 
-@pytest.mark.parametrize("option", ["youngs_modulus", "density", "elastic_limit"])
+@pytest.mark.parametrize("option", ["youngs_modulus", "density", "shear_yield_stress"])
 def test_every_quantity_of_the_default_steel_can_be_overridden(option: str) -> None:
     unit = "kg/m^3" if option == "density" else "GPa"
     values: dict[str, Any] = {option: Q(3.0, unit)}
@@ -169,12 +171,13 @@ def test_conditions_are_not_modified() -> None:
 def test_plasticity_is_warned_of_once_a_call_at_the_users_line(size: int) -> None:
     contact_pipeline = RIG | wl.contact_model("exact")
     line = following_line()
-    with pytest.warns(wl.RangeWarning) as caught:
+    with pytest.warns(wl.PlasticityWarning) as caught:
         contact_pipeline(max_pressure=Q([2500.0] * size, "MPa"), creepage="1 %", friction_coefficient=0.4)
     assert len(caught) == 1
     assert (caught[0].filename, caught[0].lineno) == (__file__, line)
-    assert "the maximum pressure reaches 2500 MPa" in str(caught[0].message)
-    assert "elastic limit of 1680 MPa" in str(caught[0].message)
+    # The slip zone holds the middle of the patch, where the traction is μp0, so that the limit is k/μ, k = 541.3 MPa.
+    said = "the maximum pressure of 2500 MPa at T/N = 0.323 is beyond the shakedown limit, 1353 MPa: the material flows"
+    assert str(caught[0].message).startswith(said)
 
 
 def test_plasticity_is_warned_of_at_the_users_line_by_a_whole_pipeline_too() -> None:
@@ -186,10 +189,35 @@ def test_plasticity_is_warned_of_at_the_users_line_by_a_whole_pipeline_too() -> 
 
 
 def test_the_softer_disc_limits_the_pressure() -> None:
-    soft = wl.Disc(diameter="47 mm", material=wl.steel(elastic_limit="1 GPa"))
-    unknown = wl.Disc(diameter="47 mm", material=wl.steel(elastic_limit=None))
-    conditions: Any = {"creepage": "1 %", "friction_coefficient": 0.4}
-    with pytest.warns(wl.RangeWarning, match="elastic limit of 1000 MPa"):
-        (wl.TwinDisc.suros(disc_2=soft) | wl.contact_model("exact"))(max_pressure="1.2 GPa", **conditions)
-    (RIG | wl.contact_model("exact"))(max_pressure="1.68 GPa", **conditions)
-    (wl.TwinDisc.suros(disc_1=unknown, disc_2=unknown) | wl.contact_model("exact"))(max_pressure="9 GPa", **conditions)
+    soft = wl.Disc(diameter="47 mm", material=wl.steel(shear_yield_stress="300 MPa"))
+    unknown = wl.Disc(diameter="47 mm", material=wl.steel(shear_yield_stress=None))
+    conditions: Any = {"creepage": "2 %", "friction_coefficient": 0.4}
+    assert said_by(wl.TwinDisc.suros(disc_2=soft), "1 GPa", **conditions) == [("the shakedown limit", "750")]
+    assert said_by(wl.TwinDisc.suros(disc_1=soft), "1 GPa", **conditions) == [("the shakedown limit", "750")]
+    assert said_by(RIG, "1 GPa", **conditions) == []
+    assert said_by(wl.TwinDisc.suros(disc_1=unknown, disc_2=unknown), "9 GPa", **conditions) == []
+
+
+def test_the_traction_that_is_transmitted_decides_and_not_the_friction() -> None:
+    # In stick the patch is as without friction, 1657 MPa at first yield; by k/μ shakedown would end at 1177 MPa.
+    assert said_by(RIG, "1.6 GPa", creepage="0.001 %", friction_coefficient=0.46) == []
+    assert said_by(RIG, "1.7 GPa", creepage="0.001 %", friction_coefficient=0.46)[0][0] == "first yield"
+    assert said_by(RIG, "1.6 GPa", creepage="2 %", friction_coefficient=0.46) == [("the shakedown limit", "1177")]
+    assert said_by(RIG, "1.1 GPa", creepage="2 %", friction_coefficient=0.46) == [("first yield", "1005")]
+    assert said_by(RIG, "1 GPa", creepage="2 %", friction_coefficient=0.46) == []
+    assert said_by(RIG, "1.1 GPa", creepage="-2 %", friction_coefficient=0.46) == [("first yield", "1005")]
+
+
+def test_of_many_points_the_one_furthest_beyond_shakedown_is_named() -> None:
+    found = said_by(RIG, [900.0, 1300.0, 2000.0], creepage=Q([2.0, 2.0, 0.001], "%"), friction_coefficient=0.46)
+    assert found == [("the shakedown limit", "1177")]  # and not 2000 MPa, which is 1.2 times first yield
+
+
+def said_by(rig: wl.TwinDisc, pressure: Any, **conditions: Any) -> list[tuple[str, str]]:
+    """Return which limits are said to be passed, and at what pressure in MPa they are."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        load = pressure if isinstance(pressure, str) else Q(pressure, "MPa")
+        (rig | wl.contact_model("exact"))(max_pressure=load, **conditions)
+    assert all(one.category is wl.PlasticityWarning for one in caught)
+    return [re.search(r"beyond (.*), (\d+) MPa", str(one.message)).groups() for one in caught]  # type: ignore[union-attr,misc]

@@ -150,7 +150,9 @@ def test_a_sweep_with_measured_traction_is_for_the_models_that_can_use_it() -> N
     assert list(sweep.contact_model.values) == ["global"]
     assert list(sweep.pair.values) == ["usfd on global", "kth on global", "brr on global"]
     np.testing.assert_allclose(sweep.traction_coefficient, 0.2, rtol=4 * EPS)
-    np.testing.assert_allclose(sweep.tangential_force.sel(contact_model="global"), 200.0 * sweep.normal_force, rtol=4 * EPS)
+    np.testing.assert_allclose(
+        sweep.tangential_force.sel(contact_model="global"), 200.0 * sweep.normal_force, rtol=4 * EPS
+    )
     assert study.notes.count("sweep 'measured': exact is left out, since it computes the traction itself") == 1
 
 

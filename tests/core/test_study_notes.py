@@ -16,6 +16,8 @@ from wearlaw import Array
 from wearlaw.study.case import Case
 from wearlaw.study.study import evaluations, provenance, run
 
+STRONG = {"preset": "suros", "material": dict(wl.steel(shear_yield_stress=None))}
+
 
 def test_what_is_left_out_and_every_warning_is_noted_once() -> None:
     study = lattice_study()
@@ -23,15 +25,17 @@ def test_what_is_left_out_and_every_warning_is_noted_once() -> None:
     assert [note.split(":")[0] for note in left_out] == ["brr on exact is left out"]
     fitted = [note for note in study.notes if "were fitted for" in note]
     assert [note.split(":")[0] for note in fitted] == ["usfd on exact"]
-    assert len(study.notes) == len(set(study.notes)) == 2
+    beyond = [note for note in study.notes if "is beyond the shakedown limit" in note]
+    assert {note.split(":")[0] for note in beyond} == {"sweep 'creepage'", "sweep 'lattice'", "profile 'partial_slip'"}
+    assert len(study.notes) == len(set(study.notes)) == 2 + len(beyond)
 
 
 def test_a_warning_that_all_pairs_give_is_noted_once_for_each_sweep_or_profile() -> None:
-    hard = {**cases.POINT, "max_pressure": "1700 MPa"}  # beyond 1.68 GPa, the elastic limit
-    sweeps = {"a": hard, "b": hard, "c": cases.POINT}
+    hard = {**cases.POINT, "max_pressure": "1700 MPa", "creepage": "3 %"}
+    sweeps = {"a": hard, "b": hard, "c": {**hard, "max_pressure": "900 MPa"}}
     study = run(case(contact_models=["exact", "fastsim"], wear_laws=["kth"], sweeps=sweeps, profiles={"p": hard}))
     assert [note.split(":")[0] for note in study.notes] == ["sweep 'a'", "sweep 'b'", "profile 'p'"]
-    assert all("elastic limit of 1680 MPa" in note for note in study.notes)
+    assert all("shakedown limit, 1177 MPa" in note for note in study.notes)
 
 
 class Warns(cases.Linear):
@@ -45,12 +49,14 @@ class Warns(cases.Linear):
 def test_warnings_of_others_are_passed_on_and_not_noted(install_model: InstallModel) -> None:
     install_model(Warns)
     with pytest.warns(DeprecationWarning, match="from elsewhere"):
-        study = run(case(contact_models=["exact"], wear_laws=[{"model": "warns", "slope": "1 m"}], profiles={}))
+        study = run(
+            case(contact_models=["exact"], wear_laws=[{"model": "warns", "slope": "1 m"}], rig=STRONG, profiles={})
+        )
     assert study.notes == ()
 
 
 def test_a_profile_that_no_model_resolves_is_left_out_and_noted() -> None:
-    study = run(case(contact_models=["global"]))
+    study = run(case(contact_models=["global"], rig=STRONG))
     assert study.notes == ("profile 'partial_slip' is left out: no contact model of the case resolves the patch",)
     assert not study.profiles["partial_slip"]
 

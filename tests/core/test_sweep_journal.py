@@ -14,19 +14,21 @@ import wearlaw as wl
 from tests.core.cases import full_disk
 from tests.core.sweeps import predictor
 from wearlaw import Q
+from wearlaw.contact.elastic_limit import Overload
 from wearlaw.sweeping import journal as sweep_journal
 from wearlaw.sweeping.evaluation import BlockRecord, Job, checksum
 from wearlaw.sweeping.journal import Journal, check_same, run_of, write_whole
 from wearlaw.sweeping.points import outer_product
 
 RUN = {"wearlaw": "0.1.0"}
+OVERLOAD = Overload(beyond_shakedown=True, ratio=1.5, max_pressure=1e9, traction_coefficient=0.3)
 
 
 def journal(path: Path) -> None:
     """Write the journal of a sweep of which two blocks are done."""
     begun = Journal.begin(path, RUN, lambda _: None)
     for number in (0, 1):
-        begun.add(number, BlockRecord(24, 1e9, {"slip_speed": (0.1, 0.2, 3)}, 2**32 - 1))
+        begun.add(number, BlockRecord(24, OVERLOAD, {"slip_speed": (0.1, 0.2, 3)}, 2**32 - 1))
     begun.close()
 
 
@@ -98,12 +100,12 @@ def test_a_line_is_written_after_the_results_of_its_block(
 
     begun = Journal.begin(path, RUN, sync)
     for number in range(9):
-        begun.add(number, BlockRecord(24, 1e9, {}, number))
+        begun.add(number, BlockRecord(24, None, {}, number))
     begun.close()
     assert [number for numbers in synced for number in numbers] == list(range(9))
     assert (len(synced) == 1) == (pause > 0.0)
     resumed = Journal.resume(path, RUN, tmp_path, sync)
-    assert resumed.done == {number: BlockRecord(24, 1e9, {}, number) for number in range(9)}
+    assert resumed.done == {number: BlockRecord(24, None, {}, number) for number in range(9)}
 
 
 @pytest.mark.parametrize("pause", [0.0, 60.0])
@@ -112,7 +114,7 @@ def test_results_that_cannot_be_synced_are_not_listed_and_an_error(
 ) -> None:
     monkeypatch.setattr(sweep_journal, "SYNC_S", pause)
     begun = Journal.begin(tmp_path / "journal", RUN, full_disk)
-    begun.add(0, BlockRecord(24, 1e9, {}, 0))
+    begun.add(0, BlockRecord(24, OVERLOAD, {}, 0))
     with pytest.raises(wl.OutputError, match="journal': finished blocks cannot be kept: No space left on device"):
         begun.close()
     assert (tmp_path / "journal").read_bytes().count(b"\n") == 1
@@ -136,8 +138,8 @@ def test_a_process_that_is_killed_as_it_writes_a_record_leaves_the_one_before(
 
 def test_the_checksum_is_that_of_what_was_seen_and_the_bytes_in_their_order() -> None:
     a, b = np.arange(6.0), np.arange(6.0, 10.0)
-    seen = BlockRecord(24, 1e9, {"slip_speed": (0.1, np.inf, 3)}, 0)
-    text = b'[24, 1000000000.0, {"slip_speed": [0.1, Infinity, 3]}]'
+    seen = BlockRecord(24, OVERLOAD, {"slip_speed": (0.1, np.inf, 3)}, 0)
+    text = b'[24, [true, 1.5, 1000000000.0, 0.3], {"slip_speed": [0.1, Infinity, 3]}]'
     assert checksum(seen, [a, b]) == zlib.crc32(text + a.tobytes() + b.tobytes())
     assert checksum(seen, [a[::2]]) == zlib.crc32(text + a[::2].tobytes())
     assert checksum(seen, [b, a]) != checksum(seen, [a, b])

@@ -176,13 +176,13 @@ def test_the_root_mean_squares_are_those_of_the_residuals(bench: Bench) -> None:
         assert rms == pytest.approx(float(np.sqrt(np.mean((local - target) ** 2))), rel=1.0 / 4000)
 
 
-def test_a_fit_beyond_the_elastic_limit_does_not_repeat_the_warning_of_the_study(bench: Bench) -> None:
+def test_a_fit_beyond_shakedown_does_not_repeat_the_warning_of_the_study(bench: Bench) -> None:
     heavy = dataclasses.replace(bench, normal_force_per_width=wl.Q(2.0 * LOAD, "N/m"))
     conditions: dict[str, Any] = {
         "normal_force_per_width": heavy.normal_force_per_width,
         "friction_coefficient": FRICTION,
     }
-    with pytest.warns(wl.RangeWarning, match="elastic limit"):
+    with pytest.warns(wl.RangeWarning, match="shakedown limit"):
         (heavy.rig | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact"))(creepage="1 %", **conditions)
     one = table_4.fitted(heavy, "exact", 20.5, "absolute")
     assert one.rms < one.rms_published

@@ -19,8 +19,8 @@ class Material(Configuration):
     """Poisson's ratio, ν [-]."""
     density: Density
     """Mass density, ρ [kg/m³]."""
-    elastic_limit: Stress | None = None
-    """Maximum Hertz pressure [Pa] up to which the contact may be taken as elastic; None if not known."""
+    shear_yield_stress: Stress | None = None
+    """Yield stress in shear, k [Pa]; None if not known, and then no contact is said to yield."""
 
     if TYPE_CHECKING:  # checkers do not know that a text is accepted for a quantity
 
@@ -30,7 +30,7 @@ class Material(Configuration):
             youngs_modulus: QuantityLike,
             poisson_ratio: float,
             density: QuantityLike,
-            elastic_limit: QuantityLike | None = None,
+            shear_yield_stress: QuantityLike | None = None,
         ) -> None: ...
 
 
@@ -39,7 +39,7 @@ def steel(
     youngs_modulus: QuantityLike = "206.47742 GPa",
     poisson_ratio: float = 0.28,
     density: QuantityLike = "7850 kg/m^3",
-    elastic_limit: QuantityLike | None = "1.68 GPa",
+    shear_yield_stress: QuantityLike | None = "541.3 MPa",
 ) -> Material:
     """Return the wheel and rail steel of the twin-disc tests, with any value overridden.
 
@@ -52,14 +52,13 @@ def steel(
         ν [-].
     density : Quantity or str
         ρ [kg/m³].
-    elastic_limit : Quantity or str, optional
-        Maximum Hertz pressure [Pa] up to which the work-hardened surface stays elastic. An estimate: the
-        hardness 2.625 GPa that the KTH wear map implies, yield at H/2.8 (Tabor, The Hardness of Metals, 1951),
-        first yield in line contact at p0 = 1.79 Y (Johnson, Contact Mechanics, 1985, section 4.4).
+    shear_yield_stress : Quantity or str, optional
+        k [Pa] of the work-hardened surface. An estimate: the hardness 2.625 GPa that the KTH wear map implies, yield in
+        tension at Y = H/2.8 (Tabor, The Hardness of Metals, 1951), k = Y/√3 by von Mises's criterion.
     """
     return Material(
         youngs_modulus=youngs_modulus,
         poisson_ratio=poisson_ratio,
         density=density,
-        elastic_limit=elastic_limit,
+        shear_yield_stress=shear_yield_stress,
     )

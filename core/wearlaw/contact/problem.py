@@ -10,6 +10,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias
 
 import numpy as np
@@ -19,7 +20,7 @@ from wearlaw.contact import hertz
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material
 from wearlaw.errors import CompositionError, InputError, UnitError
-from wearlaw.units.quantities import QuantityLike, coefficient, real_array
+from wearlaw.units.quantities import QuantityLike, coefficient, real_array, scalar_si
 from wearlaw.units.variables import VARIABLES
 
 if TYPE_CHECKING:
@@ -52,6 +53,12 @@ class Body:
 
     material: Material
     rolling_radius: float | Array
+
+    @cached_property
+    def strength(self) -> tuple[float, float] | None:
+        """Yield stress in shear [Pa] and Poisson's ratio of the material; None if it is not known when it yields."""
+        stress = self.material.shear_yield_stress
+        return None if stress is None else (scalar_si(stress, "Pa"), self.material.poisson_ratio)
 
     def mapped(self, function: Callable[[Array], Array]) -> Body:
         """Return the body with a function applied to its radius, where that is an array."""

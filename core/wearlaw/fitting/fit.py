@@ -93,7 +93,8 @@ def fit(
     replicates = None
     if bootstrap:
         replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
-    predict.rig.warn_of_plasticity(task.observations[0].problem.max_pressure, stacklevel=2)
+    if overload := task.overload(best):
+        overload.warn(stacklevel=2)
     found = summarise(task, best, replicates, confidence, seed)
     _warn(task, best, replicates)
     return found

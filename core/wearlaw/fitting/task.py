@@ -11,12 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
+from wearlaw.contact.elastic_limit import Overload
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, free_names
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
 from wearlaw.fitting.observations import Observations, Scatter, observe
+from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.ranges import overload_of
 from wearlaw.units.quantities import QuantityLike, coefficient
 from wearlaw.wear_tests.tests import WearTests
 
@@ -111,6 +114,14 @@ class Task:
             raise FitError("the fit has not converged; give bounds, or a law whose parameters are nearer to the tests")
         refuse_undetermined(best, fits, self.free, where_tested(self.observations))
         return best
+
+    def overload(self, best: Solutions) -> Overload | None:
+        """Return the test that is furthest beyond first yield, with the traction that the best fit predicts."""
+        problem = self.observations[0].problem
+        friction = self.free.columns(best.theta[:1]).get(FRICTION)
+        if friction is not None:
+            problem = problem.replaced(friction_coefficient=np.full(problem.batch_shape, friction[0]))
+        return overload_of(problem, integrate_forces(self.predict.contact_model, problem).tangential)
 
     def _weigh(self, best: Solutions) -> None:
         """Weigh each kind of measurement by its scatter about the fit."""

@@ -6,10 +6,9 @@ The order is rig | contact model | patch mean, where it is needed, | wear law.
 from __future__ import annotations
 
 import inspect
-import warnings
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from functools import cached_property, partial
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, ParamSpec, Protocol, Self
 
 import numpy as np
@@ -18,7 +17,7 @@ from pydantic import model_validator
 from wearlaw.arrays.array import Array, type_name
 from wearlaw.arrays.extremes import extremes
 from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
-from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, RangeWarning, did_you_mean
+from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics.blocks import Columns
@@ -33,10 +32,9 @@ from wearlaw.pipeline.composition import (
     warn_of_geometry,
 )
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.ranges import RangeWatch, mean_over_patch
+from wearlaw.pipeline.ranges import RangeWatch, overload_of
 from wearlaw.plugins.fields import RIG, ContactModelField, WearLawField
 from wearlaw.settings.configuration import Configuration
-from wearlaw.units.quantities import from_si, scalar_si
 
 ORDER = 'the order is rig | wl.contact_model("exact") | wl.patch_mean(), where it is needed, | wl.wear_law("usfd")'
 
@@ -197,24 +195,6 @@ class Rig(Model):
         assert isinstance(self, Rig)
         return Pipeline(rig=self, contact_model=model)
 
-    def warn_of_plasticity(self, max_pressure: Array, stacklevel: int) -> None:
-        """Warn once if the maximum pressure [Pa] is beyond the elastic limit of a body's material."""
-        limit = self._elastic_limit
-        highest = extremes(max_pressure)[1] if max_pressure.size else 0.0
-        if highest > limit:
-            warnings.warn(
-                f"the maximum pressure reaches {from_si(highest, 'MPa')!r}, beyond the material's elastic limit of"
-                f" {from_si(limit, 'MPa')!r}; the elastic contact models no longer hold there",
-                RangeWarning,
-                stacklevel=stacklevel + 1,
-            )
-
-    @cached_property
-    def _elastic_limit(self) -> float:
-        """The lowest of the bodies' elastic limits [Pa]; infinite where none is known."""
-        limits = (body.material.elastic_limit for body in self.bodies.values())
-        return min((scalar_si(limit, "Pa") for limit in limits if limit is not None), default=np.inf)
-
 
 RigField = Annotated[Rig, *RIG]
 """A field that takes a rig, its name, or a table of its fields with its name as `type` or that of a `preset`."""
@@ -372,7 +352,6 @@ class Pipeline(Configuration, Generic[P]):
         """
         if self.rig.geometry not in (None, problem.geometry):
             raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
-        self.rig.warn_of_plasticity(problem.existing().max_pressure, stacklevel=stacklevel)
         for law in self.laws:
             warn_of_geometry(self.rig.geometry, self.contact_model, self.scale, law, problem.geometry, stacklevel + 1)
         watch = self.range_watch()
@@ -381,7 +360,7 @@ class Pipeline(Configuration, Generic[P]):
         return found
 
     def range_watch(self) -> RangeWatch:
-        """Return what sees whether operating points stay in the range of the law, if there is one."""
+        """Return what sees whether operating points stay elastic, and in the range of the law, if there is one."""
         return RangeWatch(self.laws[0] if self.laws else None)
 
     def watched(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None = None) -> Prediction:
@@ -394,7 +373,7 @@ class Pipeline(Configuration, Generic[P]):
         law = self.laws[0]
 
         def see(part: Problem, columns: Columns) -> None:
-            watch.see(part.size, partial(mean_over_patch, part, columns))
+            watch.see_block(part, columns)
             if on_block is not None:
                 on_block(part.size)
 
@@ -405,8 +384,8 @@ class Pipeline(Configuration, Generic[P]):
 
     def _without_wear(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None) -> Prediction:
         forces = integrate_forces(self.contact_model, problem)
-        found = Prediction(problem, self.contact_model, self.scale, forces=forces)
         watch.points += problem.size
+        watch.see_overload(overload_of(problem, forces.tangential))
         if on_block is not None:
             on_block(problem.size)
-        return found
+        return Prediction(problem, self.contact_model, self.scale, forces=forces)

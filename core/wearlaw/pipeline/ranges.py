@@ -1,14 +1,16 @@
-"""Watching whether operating points stay in the range that a wear law is stated for."""
+"""Watching whether operating points stay elastic, and in the range that a wear law is stated for."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping
+from functools import partial
 
 import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.extremes import extremes
+from wearlaw.contact.elastic_limit import Overload, overload
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.errors import ModelError, RangeWarning
 from wearlaw.models.contact_model import Blame
@@ -19,7 +21,13 @@ from wearlaw.units.variables import UNITS
 
 
 class RangeWatch:
-    """Sees operating points block by block and warns once for each variable that leaves the law's range."""
+    """Sees operating points block by block and warns once for each variable that leaves the law's range.
+
+    Attributes
+    ----------
+    overload : Overload or None
+        The one that is furthest beyond first yield.
+    """
 
     def __init__(self, law: WearLaw | None) -> None:
         self.law = law
@@ -29,6 +37,7 @@ class RangeWatch:
                 self.range = law.valid_range
         self.seen = {name: _Seen() for name in self.range}
         self.points = 0
+        self.overload: Overload | None = None
 
     def see(self, points: int, mean_over_patch: Callable[[str], Array]) -> None:
         """Take note of so many operating points; `mean_over_patch` gives a variable of `Contact` as its mean in SI."""
@@ -43,8 +52,20 @@ class RangeWatch:
             if highest > high:
                 seen.outside += int(np.count_nonzero(values > high))
 
+    def see_block(self, part: Problem, columns: Columns) -> None:
+        """Take note of a block of operating points, with forces [N] and areas [m²] in columns."""
+        self.see(part.size, partial(mean_over_patch, part, columns))
+        self.see_overload(overload_of(part, tangential_force(part, columns)))
+
+    def see_overload(self, overload: Overload | None) -> None:
+        """Take note of the operating point of some that is furthest beyond first yield."""
+        if overload is not None:
+            self.overload = overload if self.overload is None else max(self.overload, overload)
+
     def warn(self, stacklevel: int) -> None:
         """Warn of what has been seen; `stacklevel` 1 is the caller."""
+        if self.overload is not None:
+            self.overload.warn(stacklevel + 1)
         for name, seen in self.seen.items():
             if self.law is not None and seen.outside:
                 low, high = self.range[name]
@@ -82,14 +103,43 @@ def mean_over_patch(problem: Problem, columns: Columns, variable: str) -> Array:
         case "pressure":
             return problem.normal_force / area
         case "traction":
-            on_line = problem.geometry == "line"
-            return (np.abs(columns["longitudinal"]) if on_line else CreepForces.of(columns).tangential) / area
+            return tangential_force(problem, columns) / area
         case "wear_index_density":
             return _power(problem, columns) / area
     raise ModelError(f"`valid_range` names '{variable}', which is no variable of a contact that has a patch mean")
 
 
-def _power(problem: Problem, columns: Columns) -> Array:
+def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
+    """Return the operating point furthest beyond first yield of a body, or None if all are elastic.
+
+    Parameters
+    ----------
+    problem : Problem
+    tangential_force : ndarray
+        Its magnitude [N], of the batch shape; NaN where there is no patch.
+    """
+    strengths = {body.strength for body in problem.bodies.values() if body.strength is not None}
+    if not strengths:
+        return None
+    if problem.exists is not None:
+        tangential_force, problem = tangential_force[problem.exists], problem.existing()
+    return overload(
+        strengths,
+        problem.max_pressure,
+        tangential_force / problem.normal_force,
+        problem.friction_coefficient,
+        None if problem.geometry == "line" else problem.a / problem.b,
+    )
+
+
+def tangential_force(problem: Problem, columns: Columns) -> Array:
+    """Return the magnitude of the tangential force [N]."""
     if problem.geometry == "line":  # of which forces across take a tenth of the time of a prediction
+        return np.abs(columns["longitudinal"])
+    return CreepForces.of(columns).tangential
+
+
+def _power(problem: Problem, columns: Columns) -> Array:
+    if problem.geometry == "line":
         return problem.longitudinal_creepage * columns["longitudinal"]
     return problem.power(CreepForces.of(columns))

@@ -15,7 +15,7 @@ import pint
 
 from wearlaw.arrays import kernels
 from wearlaw.arrays.array import Array
-from wearlaw.arrays.extremes import extremes
+from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean
 from wearlaw.pipeline.composition import check_traction
@@ -56,8 +56,8 @@ class BlockRecord:
     ----------
     points : int
         Number of operating points.
-    max_pressure : float
-        Highest maximum pressure [Pa].
+    overload : Overload or None
+        The one furthest beyond first yield.
     ranges : mapping of str to tuple
         For each variable with a range in the law: lowest and highest mean over the patch in SI, and the number of
         points outside.
@@ -66,7 +66,7 @@ class BlockRecord:
     """
 
     points: int
-    max_pressure: float
+    overload: Overload | None
     ranges: Mapping[str, tuple[float, float, int]]
     checksum: int
 
@@ -82,7 +82,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     prediction = job.pipeline.watched(problem, watch, on_block)
     outputs = {name: _in_unit(getattr(prediction, name), unit) for name, unit in job.units.items()}
     ranges = {name: (seen.lowest, seen.highest, seen.outside) for name, seen in watch.seen.items()}
-    seen = BlockRecord(watch.points, extremes(problem.max_pressure)[1], ranges, checksum=0)
+    seen = BlockRecord(watch.points, watch.overload, ranges, checksum=0)
     return outputs, replace(seen, checksum=checksum(seen, outputs.values()))
 
 
@@ -125,7 +125,7 @@ def checksum(seen: BlockRecord, outputs: Iterable[Array]) -> int:
     CRC-32 is the fastest checksum of the standard library, above 1 GB/s, and misses one in 2³² cases of accidental
     damage. It does not protect against forgery.
     """
-    found = zlib.crc32(json.dumps([seen.points, seen.max_pressure, seen.ranges]).encode())
+    found = zlib.crc32(json.dumps([seen.points, seen.overload, seen.ranges]).encode())
     for values in outputs:
         found = zlib.crc32(np.ascontiguousarray(values).data, found)
     return found
@@ -139,10 +139,9 @@ def notes(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> list[str]:
     for name, seen in watch.seen.items():
         lowest, highest, outside = zip(*(one.ranges[name] for one in every), strict=True)
         seen.lowest, seen.highest, seen.outside = min(lowest), max(highest), sum(outside)
-    highest_pressure: Any = np.float64(max(one.max_pressure for one in every))
+    watch.overload = max((one.overload for one in every if one.overload), default=None)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        pipeline.rig.warn_of_plasticity(highest_pressure, stacklevel=1)
         watch.warn(stacklevel=1)
     return [str(one.message) for one in caught]
 

@@ -12,8 +12,7 @@ from wearlaw.contact.contact import Contact
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import BreakpointMap, Numbers, WearLaw
-from wearlaw.rigs.twin_disc import TwinDisc
-from wearlaw.testing.ellipses import WHEEL_RAIL
+from wearlaw.testing.ellipses import TWIN_DISC, WHEEL_RAIL
 from wearlaw.testing.examples import SAME, SUM, assert_close
 from wearlaw.testing.sampling import random_contacts, rows
 from wearlaw.units.quantities import Q
@@ -77,7 +76,7 @@ def _results(model: Model, part: slice | int) -> tuple[Array, Array]:
 
 
 def _of_line(model: ContactModel, part: slice | int) -> tuple[Array, Array]:
-    predict = (TwinDisc.suros() | model).with_law(Ramps())
+    predict = (TWIN_DISC | model).with_law(Ramps())
     pressure, creepage = np.tile([0.3e9, 1.5e9], POINTS // 2), np.geomspace(1e-5, 0.5, POINTS)
     found = predict(max_pressure=Q(pressure[part], "Pa"), creepage=Q(creepage[part], ""), friction_coefficient=0.46)
     force, index, slip, rate = (

@@ -16,6 +16,7 @@ from wearlaw.contact import kalker
 from wearlaw.contact.material import steel
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel
+from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.testing.examples import SAME, SUM, assert_close
 from wearlaw.testing.shared_checks import friction_limit
@@ -23,7 +24,13 @@ from wearlaw.testing.shared_checks import friction_limit
 SATURATION = (3.0, 32.0 / (3.0 * np.pi))
 """Reduced creepages at which a theory may saturate."""
 
-WHEEL_RAIL = WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=steel(), rolling_speed="30 m/s")
+ELASTIC = steel(shear_yield_stress=None)
+"""Steel of unknown strength, of whose plastic flow nothing warns."""
+
+TWIN_DISC = TwinDisc.suros(material=ELASTIC)
+"""The rig of the University of Sheffield."""
+
+WHEEL_RAIL = WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=ELASTIC, rolling_speed="30 m/s")
 """A new wheel on straight track."""
 
 

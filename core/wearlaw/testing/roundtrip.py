@@ -15,9 +15,8 @@ from wearlaw.contact.problem import Geometry
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.testing import fresh
-from wearlaw.testing.ellipses import random_ellipses
+from wearlaw.testing.ellipses import TWIN_DISC, random_ellipses
 from wearlaw.testing.examples import assert_close
 from wearlaw.testing.sampling import random_contacts
 from wearlaw.units.quantities import Q
@@ -93,7 +92,7 @@ def _arguments(model: Model) -> list[Any]:
         return [random_contacts(16)]
     assert isinstance(model, ContactModel)
     problems: dict[Geometry, Any] = {
-        "line": TwinDisc.suros().problem(
+        "line": TWIN_DISC.problem(
             max_pressure="1.5 GPa", creepage=Q(np.array([-1.0, 0.1, 1.0, 10.0]), "%"), friction_coefficient=0.46
         ),
         "ellipse": random_ellipses(4),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +21,7 @@ from wearlaw.models.wear_law import Numbers
 from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_wear
 from wearlaw.pipeline.composition import check_traction, warn_of_geometry
-from wearlaw.pipeline.ranges import RangeWatch, mean_over_patch
+from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
 from wearlaw.uncertainties.inputs import OTHERS, Known, Uncertain, check_samples, parameter, split
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, QuantityLike, from_si, shortened
@@ -250,11 +250,10 @@ class Uncertainty:
         check_traction(model, flat)
 
         def see(part: Problem, columns: Columns) -> None:
-            watch.see(part.size, partial(mean_over_patch, part, columns))
+            watch.see_block(part, columns)
 
         wear = integrate_wear(model, self._law, flat, scale, see if stacklevel is not None else None, p)
         if stacklevel is not None:
-            predict.rig.warn_of_plasticity(flat.max_pressure, stacklevel=stacklevel)
             warn_of_geometry(predict.rig.geometry, model, scale, self._law, flat.geometry, stacklevel + 1)
             watch.warn(stacklevel)
         return wear.wear_rate.reshape(shape)

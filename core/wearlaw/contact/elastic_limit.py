@@ -1,0 +1,427 @@
+"""First yield and shakedown: the Hertz pressure up to which a contact that transmits traction responds elastically.
+
+The stresses are those of an elastic half-space under Hertz's pressure and this traction along the rolling direction:
+
+- Where T = μN, the whole patch slips, and q = μp.
+- In partial slip q = μ[p - (c/a) p'], with p' the pressure of a patch of the same shape and pressure p0, c/a times as
+  large, that touches the leading edge and sticks. On a line this is Carter's solution, with T/μN = 1 - (c/a)²; on an
+  ellipse it is that of Vermeulen and Johnson, with T/μN = 1 - (c/a)³.
+
+Traction from spin is left out, and a lateral force is counted as if it were longitudinal.
+
+*First yield* is the pressure at which the most stressed point of a body reaches its yield criterion, in whichever
+direction the traction acts on it. The *shakedown limit* is the pressure at which τzx, the shear stress in the rolling
+direction, reaches the yield stress in shear. On a line no residual stress can oppose τzx, so beyond that limit the
+material flows forward with every passage; between first yield and shakedown it flows until residual stresses keep it
+elastic. In full slip on a line the limit is 4k without friction, and k/μ from μ = 0.37 on (Johnson's map). Melan's
+theorem proves it safe by Tresca's criterion in full slip; by von Mises's criterion, and in partial slip, the pressure
+that is proved safe is up to 10 % lower. On an ellipse it is such a bound where the surface decides, from T/N = 0.3 on;
+with less traction it is an estimate, and for a/b above 2 too high, since other stresses decide there.
+
+Notes
+-----
+A semi-elliptic load is a sum over directions of loads that vary along one direction only, each of which makes plane
+strain and antiplane shear in the half-space (the inverse Radon transform of the load). With ζ = ξ/w + iz/w, w the half
+width of the ellipse across the direction ξ, such a load is the real part of F = [2 - ζ ln((ζ+1)/(ζ-1))]/2, over π and
+summed over the directions that divide the ellipse evenly. On a line there is one direction, and F = √(1-ζ²) + iζ, which
+is McEwen's solution. With P + iQ = F and z downwards, a pressure P and a traction P along ξ make
+
+    σξ = -P - z ∂P/∂z,   σz = -P + z ∂P/∂z,   τξz = z ∂P/∂ξ,
+    σξ = -2Q - z ∂P/∂ξ,  σz = z ∂P/∂ξ,        τξz = -P - z ∂P/∂z,
+
+plane strain has ση = ν(σξ + σz), and a traction P across ξ makes τηz = -P and τξη = -Q.
+
+Sources: K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, chapters 2, 7 and 9; K. L. Johnson, A
+graphical approach to shakedown in rolling contact, in Applied Stress Analysis, Elsevier, 1990, 263-274; E. McEwen,
+Phil. Mag. 40 (1949) 454-459; P. J. Vermeulen, K. L. Johnson, ASME J. Appl. Mech. 31 (1964) 338-340. All values are in
+SI units.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, TypeVar
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.errors import InputError, PlasticityWarning
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+Criterion: TypeAlias = Literal["von_mises", "tresca"]
+
+_Value = TypeVar("_Value", float, Array)
+
+FRICTIONS = 64
+"""Steps of μ/(1+μ) from 0 to 1, in which the stresses are a straight line and their peak is convex."""
+
+SLIPS = 32
+"""Steps of √(1 - c/a) from stick to full slip."""
+
+WIDTH = SLIPS + 2
+"""Entries in a row of a table, of which the last is there twice."""
+
+TINY = 1e-12
+"""A friction coefficient that stands for none."""
+
+PER_OCTAVE = 2.0
+"""Axis ratios to an octave for which stresses are computed; those between are interpolated."""
+
+OCTAVES = 5.0
+"""Octaves to either side of the circle; a more slender ellipse counts as one of 1/32 or 32."""
+
+DIRECTIONS = 48
+"""Directions of loads into which an ellipse is divided, in a quarter of it."""
+
+SURFACE = 1e-12
+"""Depth over the smaller semi-axis that stands for the surface, where the formulas are singular at the edges."""
+
+BLOCK = 1 << 16
+"""Operating points that are looked at together."""
+
+
+def first_yield(
+    shear_yield_stress: ArrayLike,
+    traction_coefficient: ArrayLike,
+    friction_coefficient: ArrayLike | None = None,
+    *,
+    poisson_ratio: float,
+    axis_ratio: ArrayLike = 0.0,
+    criterion: Criterion = "von_mises",
+) -> Array:
+    """Return Hertz's maximum pressure at first yield [Pa]; arguments broadcast.
+
+    Parameters
+    ----------
+    shear_yield_stress : array_like of float
+        Yield stress in shear, k [Pa]: Y/√3 of the yield stress Y in tension by von Mises's criterion, Y/2 by Tresca's.
+    traction_coefficient : array_like of float
+        The traction that is transmitted, T/N [-].
+    friction_coefficient : array_like of float, optional
+        μ [-]; where it is above T/N, the patch slips in part. Without it the whole patch slips.
+    poisson_ratio : float
+        ν of the body [-].
+    axis_ratio : array_like of float
+        a/b of the patch [-], a in the rolling direction; 0 for a line.
+    criterion : {"von_mises", "tresca"}
+        When the material yields.
+
+    Raises
+    ------
+    InputError
+        If the criterion is not known.
+
+    Notes
+    -----
+    Interpolated in tables: within 0.15 % where the whole patch of a line slips, else at most 3.5 % too low and 2 % too
+    high, for a/b from 1/20 to 20, T/N up to 1 and T/μN from 0.05 on.
+    """
+    if criterion not in ("von_mises", "tresca"):
+        raise InputError(f'criterion: must be "von_mises" or "tresca", got {criterion!r}')
+    shear = _peak_of(criterion, float(poisson_ratio), traction_coefficient, friction_coefficient, axis_ratio)
+    limit: Array = np.asarray(shear_yield_stress, dtype=np.float64) / shear
+    return limit
+
+
+def shakedown_limit(
+    shear_yield_stress: ArrayLike,
+    traction_coefficient: ArrayLike,
+    friction_coefficient: ArrayLike | None = None,
+    *,
+    axis_ratio: ArrayLike = 0.0,
+) -> Array:
+    """Return Hertz's maximum pressure at the shakedown limit [Pa]; arguments broadcast.
+
+    Parameters
+    ----------
+    shear_yield_stress, traction_coefficient, friction_coefficient, axis_ratio
+        As in `first_yield`.
+
+    Notes
+    -----
+    For perfectly plastic material that yields under the shear stress k, whatever Poisson's ratio. Interpolated in
+    tables: within 0.15 % where the whole patch of a line slips, else within 3.5 %, in the same range as `first_yield`.
+    """
+    shear = _peak_of("forward", 0.0, traction_coefficient, friction_coefficient, axis_ratio)
+    limit: Array = np.asarray(shear_yield_stress, dtype=np.float64) / shear
+    return limit
+
+
+class Overload(NamedTuple):
+    """An operating point beyond first yield; the greater of two is the one that a warning should name."""
+
+    beyond_shakedown: bool
+    """Whether it is beyond the shakedown limit too."""
+    ratio: float
+    """The maximum pressure over the limit that is named, the shakedown limit if it is beyond it."""
+    max_pressure: float
+    """Hertz's maximum pressure, p0 [Pa]."""
+    traction_coefficient: float
+    """The traction that is transmitted, T/N [-]."""
+
+    def warn(self, stacklevel: int) -> None:
+        """Warn of it; `stacklevel` 1 is the caller."""
+        pressure, limit = 1e-6 * self.max_pressure, 1e-6 * self.max_pressure / self.ratio
+        passed, result = (
+            ("the shakedown limit", "the material flows with every passage")
+            if self.beyond_shakedown
+            else ("first yield", "the material flows until residual stresses keep it elastic")
+        )
+        warnings.warn(
+            f"the maximum pressure of {pressure:.4g} MPa at T/N = {self.traction_coefficient:.3g} is beyond {passed},"
+            f" {limit:.4g} MPa: {result}, which elastic contact models leave out",
+            PlasticityWarning,
+            stacklevel=stacklevel + 1,
+        )
+
+
+def overload(
+    bodies: Iterable[tuple[float, float]],
+    max_pressure: Array,
+    traction_coefficient: Array,
+    friction_coefficient: Array,
+    axis_ratio: Array | None,
+) -> Overload | None:
+    """Return the operating point that is furthest beyond the limits of a body, or None if all are elastic.
+
+    Parameters
+    ----------
+    bodies : iterable of pairs of float
+        Yield stress in shear [Pa] and Poisson's ratio of each body.
+    max_pressure, traction_coefficient, friction_coefficient, axis_ratio : ndarray
+        Of one shape, and not negative; an `axis_ratio` of None is a line.
+    """
+    arrays = [max_pressure, traction_coefficient, friction_coefficient, *([] if axis_ratio is None else [axis_ratio])]
+    scalar = axis_ratio is None and max_pressure.ndim == 0
+    worst = None
+    for k, nu in bodies:
+        if scalar:  # in floats, a tenth of the time of arrays
+            found = _overload(k, nu, float(max_pressure), float(traction_coefficient), float(friction_coefficient))
+        else:
+            found = _overload_among(k, nu, [array.reshape(-1) for array in arrays])
+        if found is not None:
+            worst = found if worst is None else max(worst, found)
+    return worst
+
+
+def _overload_among(k: float, nu: float, arrays: list[Array]) -> Overload | None:
+    """Return `overload` of one body, of arrays with one axis."""
+    worst = None
+    for start in range(0, arrays[0].size, BLOCK):
+        p0, t, mu, *ratio = (array[start : start + BLOCK] for array in arrays)
+        if not ratio and _surely_elastic(k, nu, float(p0.max()), float(t.max()), float(mu.max())):
+            continue
+        loads = [p0 * _peak(measure, nu, t, mu, *ratio) / k for measure in ("von_mises", "forward")]
+        beyond = bool(loads[1].max() > 1.0)
+        at = int(loads[beyond].argmax())
+        if loads[beyond][at] > 1.0:
+            found = Overload(beyond, float(loads[beyond][at]), float(p0[at]), float(t[at]))
+            worst = found if worst is None else max(worst, found)
+    return worst
+
+
+def _surely_elastic(k: float, nu: float, max_pressure: float, traction: float, friction: float) -> bool:
+    """Return whether a body on a line stays elastic however much of the patch slips, which takes little time to say."""
+    friction = max(friction, traction)
+    most = _table("von_mises", nu, 0.0).most[int(FRICTIONS * friction / (1.0 + friction))]
+    return max_pressure * (1.0 + friction) * most <= k
+
+
+def _overload(k: float, nu: float, max_pressure: float, traction: float, friction: float) -> Overload | None:
+    """Return `overload` of one body at one operating point on a line."""
+    if _surely_elastic(k, nu, max_pressure, traction, friction):
+        return None
+    load = max_pressure * _on_line("von_mises", nu, traction, friction) / k
+    if load <= 1.0:
+        return None
+    forward = max_pressure * _on_line("forward", nu, traction, friction) / k
+    beyond = forward > 1.0
+    return Overload(beyond, forward if beyond else load, max_pressure, traction)
+
+
+def _peak_of(measure: str, nu: float, traction: ArrayLike, friction: ArrayLike | None, axis_ratio: ArrayLike) -> Array:
+    """Return `_peak` of arguments that broadcast, of which friction may be missing."""
+    t = np.abs(np.asarray(traction, dtype=np.float64))
+    mu = t if friction is None else np.asarray(friction, dtype=np.float64)
+    t, mu, ratio = np.broadcast_arrays(t, mu, np.asarray(axis_ratio, dtype=np.float64))
+    peak: Array = np.empty(t.shape)
+    line = ratio == 0.0
+    peak[line] = _peak(measure, nu, t[line], mu[line])
+    peak[~line] = _peak(measure, nu, t[~line], mu[~line], ratio[~line])
+    return peak
+
+
+def _peak(measure: str, nu: float, traction: Array, friction: Array, axis_ratio: Array | None = None) -> Array:
+    """Return the greatest shear stress that decides over p0 [-], of arrays of one shape with one axis."""
+    if axis_ratio is None:
+        return _on_line(measure, nu, traction, friction)
+    places = PER_OCTAVE * np.clip(np.log2(axis_ratio), -OCTAVES, OCTAVES)
+    lows = np.minimum(np.floor(places), PER_OCTAVE * OCTAVES - 1)
+    peak: Array = np.empty(places.shape)
+    for low in np.unique(lows):
+        here = lows == low
+        at_low, at_high = (
+            _interpolated(_table(measure, nu, 2.0 ** (end / PER_OCTAVE)), traction[here], friction[here], 1.0 / 3.0)
+            for end in (low, low + 1.0)
+        )
+        peak[here] = at_low + (places[here] - low) * (at_high - at_low)
+    return peak
+
+
+def _on_line(measure: str, nu: float, traction: _Value, friction: _Value) -> _Value:
+    """Return the greatest shear stress on a line over p0 [-]."""
+    return _interpolated(_table(measure, nu, 0.0), traction, friction, 0.5)
+
+
+def _interpolated(table: _Table, traction: _Value, friction: _Value, power: float) -> _Value:
+    """Return the value of a table at T/N and μ, times 1 + μ; of floats or of arrays, by the same formula.
+
+    T/μN = 1 - (c/a)^(1/power), and the table has steps of √(1 - c/a).
+    """
+    values: Any
+    place: Any
+    if isinstance(traction, float):
+        values, place = table.floats, int
+        friction = max(friction, traction, TINY)
+    else:
+        values, place = table.array, _places
+        friction = np.maximum(np.maximum(friction, traction), TINY)
+    u = FRICTIONS * (friction / (1.0 + friction))
+    v = SLIPS * (1.0 - (1.0 - traction / friction) ** power) ** 0.5
+    i, j = place(u), place(v)
+    f, g = u - i, v - j
+    at = WIDTH * i + j
+    low = values[at] + g * (values[at + 1] - values[at])
+    high = values[at + WIDTH] + g * (values[at + WIDTH + 1] - values[at + WIDTH])
+    peak: _Value = (1.0 + friction) * (low + f * (high - low))
+    return peak
+
+
+def _places(value: Array) -> Any:
+    return value.astype(np.intp)
+
+
+class _Table(NamedTuple):
+    """Greatest shear stresses over p0 (1 + μ) [-], row by row: one row for each μ/(1+μ), ending with full slip.
+
+    The last row and the last column are there twice, for points on the end of the table.
+    """
+
+    array: Array
+    floats: list[float]
+    most: list[float]
+    """The greatest of each row and the next."""
+
+
+@lru_cache(maxsize=256)
+def _table(measure: str, nu: float, axis_ratio: float) -> _Table:
+    """Return the greatest shear stresses by friction and slip; an axis ratio of 0 is a line."""
+    share = np.linspace(0.0, 1.0, FRICTIONS + 1)[:, None]
+    x, z = _points(min(1.0, 1.0 / axis_ratio) if axis_ratio else 1.0)
+    pressed, slipping = _stresses(x, z, nu, axis_ratio)
+    columns = []
+    for step in range(SLIPS + 1):
+        stick, sheared = 1.0 - (step / SLIPS) ** 2, slipping
+        if stick:
+            sheared = slipping - stick * _stresses((x + 1.0 - stick) / stick, z / stick, nu, axis_ratio)[1]
+        columns.append(MEASURES[measure](pressed, sheared, share).max(axis=-1))
+    rows = np.pad(np.stack(columns, axis=1), ((0, 1), (0, 1)), mode="edge")
+    most = np.maximum(rows[:-1], rows[1:]).max(axis=-1)
+    return _Table(rows.reshape(-1), rows.reshape(-1).tolist(), most.tolist())
+
+
+def _points(depth: float) -> tuple[Array, Array]:
+    """Return x/a and z/a of points in the plane y = 0 among which the greatest stresses are: the surface, and below.
+
+    On the surface they are where the stick zones end, at which traction peaks, and as many again ahead.
+    """
+    ends = 1.0 - 2.0 * (np.arange(SLIPS + 1) / SLIPS) ** 2
+    surface = np.append(ends, np.sin(np.linspace(-0.45, 0.45, 19) * np.pi))
+    x, z = np.meshgrid(np.linspace(-0.88, 0.88, 17), np.linspace(0.06, 0.96, 16), indexing="ij")
+    below = depth * np.append(np.full(surface.shape, SURFACE), z)
+    return np.append(surface, x), below
+
+
+def _stresses(x: Array, z: Array, nu: float, axis_ratio: float) -> tuple[Array, Array]:
+    """Return σx, σy, σz and τzx over p0 (4, points) under pressure, and under an equal traction along x.
+
+    Parameters
+    ----------
+    x, z : ndarray, (points,)
+        Places in the plane y = 0, over a.
+    nu : float
+        Poisson's ratio.
+    axis_ratio : float
+        a/b; 0 for a line.
+    """
+    if axis_ratio:
+        step = (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS
+        angle, weight = 0.5 * np.pi * step**2, 2.0 * step / DIRECTIONS  # dense along x, for points on the edge there
+        narrow = np.hypot(np.cos(angle), axis_ratio * np.sin(angle))  # a/w
+        cos = np.cos(angle) / narrow
+        u, v = x[:, None] * np.cos(angle), z[:, None] * narrow
+        ahead, behind = (u - 1.0) ** 2 + v**2, (u + 1.0) ** 2 + v**2
+        log, turn = 0.5 * np.log(behind / ahead), np.arctan2(v, u + 1.0) - np.arctan2(v, u - 1.0)
+        p, q = 1.0 - 0.5 * (u * log - v * turn), -0.5 * (u * turn + v * log)
+        along = 0.5 * v * ((u + 1.0) / behind + (u - 1.0) / ahead - log)
+        down = 0.5 * v * (v / behind + v / ahead + turn)
+    else:
+        weight, cos = np.ones(1), np.ones(1)
+        zeta = (x + 1j * z)[:, None]
+        root = -1j * np.sqrt(zeta - 1.0) * np.sqrt(zeta + 1.0)
+        load, slope = root + 1j * zeta, z[:, None] * (1j - zeta / root)
+        p, q, along, down = load.real, load.imag, slope.real, -slope.imag
+    sin2 = 1.0 - cos**2
+
+    # Of a load along ξ: its stresses in the frame (ξ, η, z), then turned to x and y. Parts odd in y cancel.
+    def turned(xi: Array, eta: Array, shear: Array | float = 0.0) -> tuple[Array, Array]:
+        return (xi * cos**2 + eta * sin2 - 2.0 * shear) @ weight, (xi * sin2 + eta * cos**2 + 2.0 * shear) @ weight
+
+    pressed = *turned(-p - down, -2.0 * nu * p), (down - p) @ weight, (along * cos) @ weight
+    across = cos * sin2 * q  # τξη sin cos of the traction across ξ, which is -sin
+    sheared = (
+        *turned(cos * (-2.0 * q - along), -2.0 * nu * cos * q, across),
+        (cos * along) @ weight,
+        (-(cos**2) * (p + down) - sin2 * p) @ weight,
+    )
+    return np.stack(pressed), np.stack(sheared)
+
+
+def _von_mises(pressed: Array, sheared: Array, share: Array) -> Array:
+    """Return von Mises's stress over √3 at each share of the traction, the greater for its two directions."""
+
+    def product(one: Array, other: Array) -> Array:
+        normal = (one[:3] - one[[1, 2, 0]]) * (other[:3] - other[[1, 2, 0]])
+        total: Array = normal.sum(axis=0) / 6.0 + one[3] * other[3]
+        return total
+
+    mixed = np.abs(product(pressed, sheared))
+    rest = 1.0 - share
+    square = rest**2 * product(pressed, pressed) + 2.0 * rest * share * mixed + share**2 * product(sheared, sheared)
+    stress: Array = np.sqrt(square)
+    return stress
+
+
+def _tresca(pressed: Array, sheared: Array, share: Array) -> Array:
+    """Return the greatest shear stress at each share of the traction, the greater for its two directions."""
+
+    def greatest(x: Array, y: Array, z: Array, zx: Array) -> Array:
+        radius, middle = np.hypot(0.5 * (x - z), zx), 0.5 * (x + z)
+        return np.maximum(radius, 0.5 * (radius + np.abs(middle - y)))
+
+    pressure, traction = (1.0 - share) * pressed[:, None], share * sheared[:, None]
+    return np.maximum(greatest(*(pressure + traction)), greatest(*(pressure - traction)))
+
+
+def _forward(pressed: Array, sheared: Array, share: Array) -> Array:
+    """Return |τzx| at each share of the traction, the greater for its two directions."""
+    shear: Array = (1.0 - share) * np.abs(pressed[3]) + share * np.abs(sheared[3])
+    return shear
+
+
+MEASURES = {"von_mises": _von_mises, "tresca": _tresca, "forward": _forward}
+"""What decides, of stresses σx, σy, σz, τzx (4, points) at shares (n, 1) of the traction: shear stress (n, points)."""
