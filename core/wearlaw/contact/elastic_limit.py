@@ -419,7 +419,8 @@ def _tresca(pressed: Array, sheared: Array, share: Array) -> Array:
 
 def _forward(pressed: Array, sheared: Array, share: Array) -> Array:
     """Return |τzx| at each share of the traction, the greater for its two directions."""
-    return (1.0 - share) * np.abs(pressed[3]) + share * np.abs(sheared[3])
+    stress: Array = (1.0 - share) * np.abs(pressed[3]) + share * np.abs(sheared[3])
+    return stress
 
 
 MEASURES = {"von_mises": _von_mises, "tresca": _tresca, "forward": _forward}

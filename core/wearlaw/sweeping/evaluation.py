@@ -94,7 +94,7 @@ def checksum(seen: Seen, outputs: Iterable[Array]) -> int:
     return found
 
 
-def notes(pipeline: Pipeline[...], blocks: Iterable[Seen]) -> list[str]:
+def range_warnings(pipeline: Pipeline[...], blocks: Iterable[Seen]) -> list[Warning]:
     """Return what a prediction of all blocks together would warn of."""
     every = list(blocks)
     watch = pipeline.range_watch()
@@ -106,7 +106,7 @@ def notes(pipeline: Pipeline[...], blocks: Iterable[Seen]) -> list[str]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         watch.warn(stacklevel=1)
-    return [str(one.message) for one in caught]
+    return [one.message for one in caught if isinstance(one.message, Warning)]
 
 
 def output_units(pipeline: Pipeline[...], points: Points, outputs: list[str]) -> dict[str, str]:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from contextlib import closing
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import RangeWarning
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.variables import UNITS
 from wearlaw.sweeping.checkpoint import Checkpoint
@@ -43,6 +42,6 @@ class Evaluator:
             check_importable(pipeline)
         target = self._checkpoint.target(key, job, points) if self._checkpoint else Memory(job, points)
         with closing(target):
-            for note in run(target, self._on_block, workers):
-                warnings.warn(note, RangeWarning, stacklevel=2)
+            for warning in run(target, self._on_block, workers):
+                warnings.warn(warning, stacklevel=2)
         return {name: values.reshape(points.shape) for name, values in target.arrays.items()}

@@ -10,12 +10,12 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wearlaw.errors import InputError, RangeWarning, ResumeWarning, WorkerWarning
+from wearlaw.errors import InputError, ResumeWarning, WorkerWarning
 from wearlaw.pipeline.composition import warn_of_geometry
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.cluster import on_cluster
-from wearlaw.sweeping.evaluation import Job, notes, output_units
+from wearlaw.sweeping.evaluation import Job, output_units, range_warnings
 from wearlaw.sweeping.points import Block, Points, outer_product
 from wearlaw.sweeping.processes import Done, in_processes
 from wearlaw.sweeping.progress import Bar
@@ -104,10 +104,10 @@ def sweep(
         if target.damaged:
             warnings.warn(damage(target.damaged, target.listed, path), ResumeWarning, stacklevel=2)
     with closing(target), Bar(points.size, progress) as bar:
-        texts = run(target, bar, workers, client)
-        for text in texts:
-            warnings.warn(text, RangeWarning, stacklevel=2)
-        return target.finish(texts)
+        found = run(target, bar, workers, client)
+        for warning in found:
+            warnings.warn(warning, stacklevel=2)
+        return target.finish([str(warning) for warning in found])
 
 
 def _checked_job(pipeline: Pipeline[...], points: Points, outputs: Sequence[str], elsewhere: bool) -> Job:
@@ -151,8 +151,8 @@ def _check_conditions(pipeline: Pipeline[...], points: Points, not_given: Mappin
             warn_of_geometry(pipeline.rig, pipeline.contact_model, pipeline.scale, law, problem, stacklevel=4)
 
 
-def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:
-    """Evaluate the remaining blocks, and return the remarks that belong to the results.
+def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[Warning]:
+    """Evaluate the remaining blocks, and return the warnings that belong to the results.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def run(target: Target, on_block: Callable[[int], None], workers: int = 1, clien
                 warnings.warn(death, WorkerWarning, stacklevel=3)
             if several:
                 on_block(seen.points)
-    return notes(target.job.pipeline, target.done.values())
+    return range_warnings(target.job.pipeline, target.done.values())
 
 
 def _elsewhere(target: Target, blocks: list[Block], workers: int, client: Any) -> Generator[Done, None, None]:
