@@ -74,4 +74,5 @@ def results(names: list[str]) -> list[str]:
 
 if __name__ == "__main__":
     warnings.simplefilter("ignore", wl.CalibrationWarning)
+    warnings.simplefilter("ignore", wl.PlasticityWarning)
     print(json.dumps(results(sys.argv[1:])))

@@ -55,10 +55,11 @@ def test_the_ranking_is_that_of_the_same_comparison_in_python() -> None:
 
 def test_what_is_left_out_or_fitted_for_another_contact_is_noted_and_recorded() -> None:
     result = wearlaw(*COMPARE, "-o", "cmp")
-    rig, calibration, left_out = result.stderr.splitlines()
+    rig, calibration, left_out, plasticity = result.stderr.splitlines()
     assert rig + "\n" == RIG_NOTE
     assert calibration.startswith("note: usfd on exact: the parameters of wear law 'usfd' were fitted for patch means")
     assert left_out.startswith("note: brr on exact is left out: ")
+    assert plasticity.startswith("note: tests: the maximum pressure of ")
     record = json.loads(Path("cmp/comparison.json").read_text(encoding="utf-8"))
     assert [f"note: {note}" for note in record["notes"]] == result.stderr.splitlines()
     assert wl.Pipeline.model_validate(record["predictors"]["kth on exact"]).wear_law == wl.wear_law("kth")

@@ -96,7 +96,7 @@ def test_parameters_on_another_contact_give_one_warning_that_names_both(
     )
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        predict(**CONDITIONS)
+        predict(**{**CONDITIONS, "normal_force": wl.Q(2, "kN")})  # elastic
         pickle.loads(pickle.dumps(predict))
         copy.copy(predict)
         copy.deepcopy(predict)

@@ -67,7 +67,8 @@ RUN = """
     from their_law import Bent
     from wearlaw import Q
 
-    predict = wl.TwinDisc.suros() | wl.contact_model("exact") | Bent()
+    strong = wl.steel(shear_yield_stress=None)
+    predict = wl.TwinDisc.suros(material=strong) | wl.contact_model("exact") | Bent()
     creepage = Q(np.geomspace(1e-4, 0.3, 50), "")
     for on in (False, True):
         wl.accelerate(on)

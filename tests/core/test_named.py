@@ -46,7 +46,7 @@ def test_a_parameter_set_says_what_it_was_fitted_for_and_its_range(
     law = wl.wear_law("lab_2026")
     predict = RIG | wl.contact_model("exact") | law
     predict(**POINT)
-    assert not recwarn.list
+    assert {one.category for one in recwarn.list} <= {wl.PlasticityWarning}
     with pytest.warns(wl.CalibrationWarning, match=r"fitted for the cells of contact_model\('exact'\)"):
         RIG | wl.contact_model("global") | law
     assert law.valid_range == {"wear_index_density": (0.0, 40e6)}

@@ -215,12 +215,13 @@ def _overload_among(k: float, nu: float, arrays: list[Array]) -> Overload | None
         p0, t, mu, *ratio = (array[start : start + BLOCK] for array in arrays)
         if not ratio and _surely_elastic(k, nu, float(p0.max()), float(t.max()), float(mu.max())):
             continue
-        loads = [p0 * _peak(measure, nu, t, mu, *ratio) / k for measure in ("von_mises", "forward")]
-        beyond = bool(loads[1].max() > 1.0)
-        at = int(loads[beyond].argmax())
-        if loads[beyond][at] > 1.0:
-            found = Overload(beyond, float(loads[beyond][at]), float(p0[at]), float(t[at]))
-            worst = found if worst is None else max(worst, found)
+        for measure in ("forward", "von_mises"):
+            load = p0 * _peak(measure, nu, t, mu, *ratio) / k
+            at = int(load.argmax())
+            if load[at] > 1.0:  # beyond shakedown, first yield need not be looked at
+                found = Overload(measure == "forward", float(load[at]), float(p0[at]), float(t[at]))
+                worst = found if worst is None else max(worst, found)
+                break
     return worst
 
 
@@ -419,8 +420,8 @@ def _tresca(pressed: Array, sheared: Array, share: Array) -> Array:
 
 def _forward(pressed: Array, sheared: Array, share: Array) -> Array:
     """Return |τzx| at each share of the traction, the greater for its two directions."""
-    shear: Array = (1.0 - share) * np.abs(pressed[3]) + share * np.abs(sheared[3])
-    return shear
+    stress: Array = (1.0 - share) * np.abs(pressed[3]) + share * np.abs(sheared[3])
+    return stress
 
 
 MEASURES = {"von_mises": _von_mises, "tresca": _tresca, "forward": _forward}

@@ -13,7 +13,7 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import OutputError, RangeWarning
+from wearlaw.errors import OutputError
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.sweeping.evaluation import Job
 from wearlaw.sweeping.journal import Run, check_same, write_whole
@@ -140,6 +140,6 @@ class Evaluator:
             check_importable(pipeline)
         target = self._checkpoint.target(key, job, points) if self._checkpoint else Memory(job, points)
         with closing(target):
-            for note in run(target, self._on_block, workers):
-                warnings.warn(note, RangeWarning, stacklevel=2)
+            for warning in run(target, self._on_block, workers):
+                warnings.warn(warning, stacklevel=2)
         return {name: values.reshape(points.shape) for name, values in target.arrays.items()}

@@ -131,7 +131,7 @@ def checksum(seen: BlockRecord, outputs: Iterable[Array]) -> int:
     return found
 
 
-def notes(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> list[str]:
+def range_warnings(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> list[Warning]:
     """Return the warnings of a prediction at the points of all blocks together."""
     every = list(blocks)
     watch = pipeline.range_watch()
@@ -143,7 +143,7 @@ def notes(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> list[str]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         watch.warn(stacklevel=1)
-    return [str(one.message) for one in caught]
+    return [one.message for one in caught if isinstance(one.message, Warning)]
 
 
 def output_units(pipeline: Pipeline[...], problem: Problem, points: Points, outputs: list[str]) -> dict[str, str]:

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 import xarray
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import InputError, RangeWarning, ResumeWarning, WorkerWarning
+from wearlaw.errors import InputError, ResumeWarning, WorkerWarning
 from wearlaw.pipeline.composition import check_one_patch, warn_of_geometry
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.configuration import parts
-from wearlaw.sweeping.evaluation import Job, evaluated, notes, output_units
+from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
 from wearlaw.sweeping.points import Block, Points, from_table, outer_product
 from wearlaw.sweeping.progress import Bar
 from wearlaw.sweeping.storage import Memory, Store, Target, damage, finished
@@ -103,10 +103,10 @@ def sweep(
         if target.damaged:
             warnings.warn(damage(target.damaged, target.listed, path), ResumeWarning, stacklevel=2)
     with closing(target), Bar(points.size, progress) as bar:
-        texts = run(target, bar, workers, client)
-        for text in texts:
-            warnings.warn(text, RangeWarning, stacklevel=2)
-        return target.finish(texts)
+        found = run(target, bar, workers, client)
+        for warning in found:
+            warnings.warn(warning, stacklevel=2)
+        return target.finish([str(warning) for warning in found])
 
 
 def _checked_job(
@@ -159,8 +159,8 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
     return first.flatten()[:1]
 
 
-def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:
-    """Evaluate the remaining blocks and return the remarks for the results.
+def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[Warning]:
+    """Evaluate the remaining blocks and return the warnings that belong to the results.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ def run(target: Target, on_block: Callable[[int], None], workers: int = 1, clien
                 warnings.warn(death, WorkerWarning, stacklevel=3)
             if several:
                 on_block(seen.points)
-    return notes(target.job.pipeline, target.done.values())
+    return range_warnings(target.job.pipeline, target.done.values())
 
 
 def _elsewhere(target: Target, blocks: list[Block], workers: int, client: Any) -> Generator[Done, None, None]:
