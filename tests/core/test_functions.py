@@ -174,7 +174,7 @@ def test_a_declaration_that_does_not_fit_is_refused(changes: dict[str, Any], mes
 )
 def test_a_parameter_that_would_hide_what_every_law_has_is_refused(name: str) -> None:
     function = eval(f"lambda w, *, {name}=1.0: {name} * w")
-    with pytest.raises(wl.ConfigurationError, match=f"parameters.{name}: is a name that wear laws keep for themselves"):
+    with pytest.raises(wl.ConfigurationError, match=f"parameters.{name}: is a name that wear laws use themselves"):
         decorate(function, parameters={name: ""})
 
 

@@ -20,7 +20,7 @@ class Material(Configuration):
     density: Density
     """Mass density, ρ [kg/m³]."""
     elastic_limit: Stress | None = None
-    """Maximum Hertz pressure [Pa] up to which the contact may be taken as elastic; None if not known."""
+    """Maximum Hertz pressure up to which the contact counts as elastic [Pa]; None if not known."""
 
     if TYPE_CHECKING:  # checkers do not know that a text is accepted for a quantity
 
@@ -46,15 +46,15 @@ def steel(
     Parameters
     ----------
     youngs_modulus : Quantity or str
-        E [Pa]. Tassini et al. (Wear 268 (2010) 660-667) print neither E nor ν, but 741.43 kN/m for 1500 MPa on
-        discs of 47 mm, which needs E* = 112.0212 GPa; this E gives it with ν = 0.28.
+        E [Pa]. Tassini et al. (Wear 268 (2010) 660-667) print neither E nor ν. They print 741.43 kN/m for 1500 MPa on
+        discs of 47 mm, which needs E* = 112.0212 GPa. The default E gives this E* with ν = 0.28.
     poisson_ratio : float
         ν [-].
     density : Quantity or str
         ρ [kg/m³].
     elastic_limit : Quantity or str, optional
-        Maximum Hertz pressure [Pa] up to which the work-hardened surface stays elastic. An estimate: the
-        hardness 2.625 GPa that the KTH wear map implies, yield at H/2.8 (Tabor, The Hardness of Metals, 1951),
+        Maximum Hertz pressure [Pa] up to which the work-hardened surface stays elastic. The default is an estimate from
+        the hardness 2.625 GPa implied by the KTH wear map, yield at H/2.8 (Tabor, The Hardness of Metals, 1951), and
         first yield in line contact at p0 = 1.79 Y (Johnson, Contact Mechanics, 1985, section 4.4).
     """
     return Material(
