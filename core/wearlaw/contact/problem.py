@@ -198,9 +198,9 @@ class Problem:
         creepage : Quantity or str
             ξ, a ratio or in percent.
         rolling_speed : Quantity or str
-            V [m/s]; it matters to what reads the slip speed.
+            V [m/s]; it matters to laws that read the slip speed.
         density : Quantity or str
-            Of the body whose wear is predicted, ρ [kg/m³].
+            Density of the body whose wear is predicted, ρ [kg/m³].
 
         Raises
         ------
@@ -281,9 +281,9 @@ class Problem:
         spin : Quantity or str
             φ [1/m].
         rolling_speed : Quantity or str
-            V [m/s]; it matters to what reads the slip speed.
+            V [m/s]; it matters to laws that read the slip speed.
         density : Quantity or str
-            Of the body whose wear is predicted, ρ [kg/m³].
+            Density of the body whose wear is predicted, ρ [kg/m³].
 
         Raises
         ------

@@ -87,7 +87,7 @@ def as_wear_law(
     returns : str
         The unit of the return value, such as "ug/m/mm^2".
     breakpoints : mapping of str to sequence of float, optional
-        The points where the function branches, in the units of `inputs`; {} for a smooth function. If left out, nothing
+        The points where the function branches, in the units of `inputs`; {} for a smooth function. By default, nothing
         is known about its branches.
     jumps : sequence of float, or mapping of str to sequence of float
         The breakpoints at which the value of the function jumps.
@@ -159,7 +159,7 @@ def _jumps(
         known = breakpoints.get(name, ())
         for value in values:
             if value not in known:
-                raise _error(subject, f"jumps.{name}", f"{value} is none of the breakpoints, {_listed(known)}")
+                raise _error(subject, f"jumps.{name}", f"{value} is not one of the breakpoints: {_listed(known)}")
     return jumps
 
 
@@ -195,7 +195,7 @@ def _check_names(subject: str, units: Mapping[str, str], inputs: Mapping[str, st
             raise _error(subject, f"parameters.{name}", "is a name that wear laws use themselves; choose another")
     for name in monotone_in:
         if name not in inputs:
-            raise _error(subject, f"monotone_in.{name}", f"is not one of the inputs, {_listed(inputs)}")
+            raise _error(subject, f"monotone_in.{name}", f"is not one of the inputs: {_listed(inputs)}")
 
 
 def _check_unit(subject: str, path: str, unit: str, expected: str) -> None:
@@ -211,12 +211,12 @@ def _in_si(
     """Return breakpoints in SI, given in the units of the inputs."""
     for name in values:
         if name not in inputs:
-            raise _error(subject, f"{path}.{name}", f"is not one of the inputs, {_listed(inputs)}")
+            raise _error(subject, f"{path}.{name}", f"is not one of the inputs: {_listed(inputs)}")
     return {name: tuple(float(v) * unit_in_si(inputs[name]) for v in given) for name, given in values.items()}
 
 
 def _listed(known: Iterable[object]) -> str:
-    return ", ".join(map(str, known)) or "of which there are none"
+    return ", ".join(map(str, known)) or "none"
 
 
 def _error(subject: str, path: str, message: str) -> ConfigurationError:

@@ -199,7 +199,7 @@ class WearLaw(Model):
             raise ModelError(f"wear law '{self.name}' returned a rate that is not finite")
         if rate[contact.slip == 0.0].any():
             raise ModelError(
-                f"wear law '{self.name}' gives wear where the bodies stick; the rate must be zero where the slip is"
+                f"wear law '{self.name}' gives wear where the bodies stick; the rate must be zero if the slip is zero"
             )
         return rate
 

@@ -275,8 +275,8 @@ def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> No
             raise _error(
                 model,
                 f"gave {_words(name)} of {_shown(name, total[first])}, but its nodes sum to"
-                f" {_shown(name, found[first])}; they may differ by twice its `{declared}`, {0.5 * error:.2g} (declare a"
-                " larger one for coarser nodes)",
+                f" {_shown(name, found[first])}; they may differ by twice its `{declared}`, {0.5 * error:.2g}"
+                " (declare a larger one for coarser nodes)",
                 problem,
                 wrong,
             )
