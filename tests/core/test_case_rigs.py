@@ -238,7 +238,7 @@ BY_LOAD = {"sweep": "braking", "x": "normal_force", "y": "wear_rate"}
         ({**ACROSS, "y": "pressure"}, "y: 'pressure' cannot be shown. It can be: depth, sliding_distance"),
         ({**ACROSS, "x": "creepage"}, "x: 'creepage' cannot be shown. It can be: x, y"),
         ({**ACROSS, "body": "rial"}, "body: there is no 'rial'; did you mean 'rail'? There are: wheel, rail"),
-        ({**ACROSS, "body": "rail", "y_range": ["0 um/km", "1 um/km"]}, "y_range: depth: got 0.000 µm/km, which is"),
+        ({**ACROSS, "body": "rail", "y_range": ["0 um/km", "1 um/km"]}, "y_range: depth: got 0.000 µm/km, which does"),
         ({**ACROSS, "y": ["depth", "sliding_distance"]}, "y: one axis has one unit, but these are depth in um/km, "),
         ({**ACROSS, "pairs": ["kth on polach"]}, "pairs: 'kth on polach': polach does not resolve the patch"),
     ],

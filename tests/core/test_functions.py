@@ -141,7 +141,7 @@ def test_the_docstring_and_the_source_are_kept() -> None:
     ("changes", "message"),
     [
         ({"inputs": {"wear_index_densty": "N/mm^2"}}, "unknown variable; did you mean 'wear_index_density'?"),
-        ({"inputs": {"wear_index_density": "mm"}}, "inputs.wear_index_density: .* not of the dimension"),
+        ({"inputs": {"wear_index_density": "mm"}}, "inputs.wear_index_density: .* not have the dimension"),
         ({"inputs": {"wear_index_density": "foo"}}, "'foo' is not a known unit"),
         ({"returns": "kg"}, "returns: .* not have the dimension of 'ug/m/mm"),
         ({"inputs": {}}, "0 are declared; the function takes 1"),
