@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import wearlaw as wl
-from wearlaw.pipeline.variables import NAMES, label
 from wearlaw.plugins.loader import installed
 from wearlaw.rigs.twin_disc import TwinDiscConditions
 from wearlaw.rigs.wheel_rail import WheelRailConditions
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.settings.parameters import numbers
+from wearlaw.units.variables import UNITS, label
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
@@ -129,7 +129,7 @@ def table() -> str:
     writer.writerow(HEAD)
     for (name, symbol, unit), places in sorted(rows.items()):
         used_in = ", ".join(dict.fromkeys(f"`{place.where}`" for place in places))
-        shown = label(name) if name in NAMES else ""
+        shown = label(name) if name in UNITS else ""
         writer.writerow(
             (symbol, f"`{name}`", min((place.meaning for place in places), key=len), f"[{unit}]", shown, used_in)
         )

@@ -13,10 +13,9 @@ import wearlaw as wl
 from docs import nomenclature
 from docs.nomenclature import Documented, read
 from tests.environments import ROOT
-from wearlaw.contact import contact as records
-from wearlaw.pipeline import variables
 from wearlaw.rigs.twin_disc import TWIN_DISC
 from wearlaw.rigs.wheel_rail import WHEEL_RAIL
+from wearlaw.units.variables import VARIABLES
 
 SYMBOLS_OF_SEVERAL_NAMES = {
     "k": "KTH's map has a wear coefficient in each of its four fields",
@@ -25,10 +24,11 @@ SYMBOLS_OF_SEVERAL_NAMES = {
     "A": "the area of the patch, and the limit of falling friction in its source",
 }
 NAMES_OF_SEVERAL_SYMBOLS = {"wear_index_density": "q·s at a point, and Tγ/A as its mean over the patch"}
-OF_OTHER_KINDS = {"geometry", "problem", "bodies", "dims", "exists"}
+OF_OTHER_KINDS = {"geometry", "problem", "strips", "bodies", "dims", "exists"}
 """Fields of records that are no numbers with a unit."""
-IN_NO_CLASS = {"wear_rate_low", "wear_rate_high"}
-"""Columns of a study's results, which the page explains below its table."""
+SYMBOL_IS_THE_NAME = {"a", "b", "y"}
+IN_NO_CLASS = {"wear_rate_low", "wear_rate_high", "wear_rate_uncertainty", "frictional_heat"}
+"""Columns of results and of files with tests, which the page explains below its table."""
 
 
 @pytest.fixture(scope="module")
@@ -134,14 +134,20 @@ def test_records_are_documented_in_si(documented: list[Documented]) -> None:
             assert one_of(one.unit).to_base_units().magnitude == 1.0, one
 
 
-def test_the_units_of_results_and_records_are_of_the_documented_dimension(documented: list[Documented]) -> None:
+def test_the_table_of_variables_has_the_documented_dimensions_and_symbols(documented: list[Documented]) -> None:
     units = {one.name: one.unit for one in documented}
-    shown = variables.UNITS | records.UNITS
-    assert shown.keys() - units.keys() == IN_NO_CLASS
-    assert variables.NAMES.keys() <= units.keys()
-    for name in shown.keys() & units.keys():
-        for unit in (variables.UNITS.get(name), records.UNITS.get(name)):
-            assert unit is None or one_of(unit).is_compatible_with(one_of(units[name])), name
+    symbols = {(one.name, one.symbol) for one in documented if one.symbol}
+    assert VARIABLES.keys() - units.keys() == IN_NO_CLASS
+    for name, variable in VARIABLES.items():
+        if name in units:
+            assert one_of(variable.unit).is_compatible_with(one_of(units[name])), name
+        if variable.symbol and any(name == known for known, _ in symbols):
+            assert (name, variable.symbol) in symbols
+
+
+def test_every_variable_with_a_symbol_in_the_table_has_one_in_its_documentation(documented: list[Documented]) -> None:
+    without = {one.name for one in documented if not one.symbol} - {one.name for one in documented if one.symbol}
+    assert {name for name, one in VARIABLES.items() if one.symbol and name in without} == SYMBOL_IS_THE_NAME
 
 
 def test_what_is_in_no_class_is_explained_on_the_page() -> None:

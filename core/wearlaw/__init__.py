@@ -18,7 +18,7 @@ from wearlaw.contact import hertz, hertz_ellipse, kalker
 from wearlaw.contact.contact import Contact, LineFields
 from wearlaw.contact.friction import FallingFriction
 from wearlaw.contact.material import Material, steel
-from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
+from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem, Strips
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import (
     CalibrationWarning,
@@ -67,7 +67,7 @@ from wearlaw.plugins.loader import (
 from wearlaw.rigs.twin_disc import Disc, TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.settings.configuration import Configuration
-from wearlaw.study.sections import CheckedClaim, Section
+from wearlaw.study.sections import CheckedClaim, Section, Verdict
 from wearlaw.uncertainties.distributions import lognormal, normal, published_range, uniform
 from wearlaw.units.quantities import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
 from wearlaw.version import __version__
@@ -134,6 +134,7 @@ __all__ = [
     "Section",
     "Speed",
     "Stress",
+    "Strips",
     "Study",
     "SweepError",
     "TwinDisc",
@@ -141,6 +142,7 @@ __all__ = [
     "Unit",
     "UnitError",
     "UnknownModelError",
+    "Verdict",
     "WearLaw",
     "WearLawField",
     "WearTests",

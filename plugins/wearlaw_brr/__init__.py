@@ -29,7 +29,8 @@ class BRR(wl.WearLaw):
 
     name: ClassVar[str] = "brr"
     source: ClassVar[str] = (
-        "T. G. Pearce and N. D. Sherratt, Wear 144 (1991) 343-351; Tassini et al., Wear 268 (2010) 660-667, Table 1"
+        "T. G. Pearce and N. D. Sherratt, Wear 144 (1991) 343-351, after Tassini et al., Wear 268 (2010) 660-667,"
+        " Table 1"
     )
     scale: ClassVar[Literal["patch", "any"]] = "patch"
     monotone_in: ClassVar[tuple[str, ...]] = ("wear_index",)

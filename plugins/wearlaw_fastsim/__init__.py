@@ -57,7 +57,10 @@ class Fastsim(wl.LineContactModel):
     between them. "uniform": cells of equal length along each strip, as Kalker marched."""
 
     strips: Annotated[int, Field(ge=2, le=1000, strict=True)] = 10
-    """Strips of an ellipse; the nodes along a strip are in proportion, as many cells where the march is uniform."""
+    """Strips of an ellipse; the nodes along a strip are in proportion, as many cells where the march is uniform.
+    On 10 strips forces are off by 0.4 % of μN, the energy of the cells and USFD by 0.4 %, and KTH, which jumps, by 8 %,
+    root mean square over a/b from 1/10 to 10; single points are ten times further off. The documentation of wheels on
+    rails has a table."""
 
     slip: Literal["local", "scaled"] = "local"
     """Slip on an ellipse. "local": that of the theory. "scaled": the same times one factor for the patch, so that what
@@ -97,9 +100,11 @@ class Fastsim(wl.LineContactModel):
 
     @property
     def elliptic_accuracy(self) -> float:
-        """The most that was found, where spin and creepage nearly cancel in a strip; it is of first order.
+        """0.5/strips, as a share of full slip; 1/strips with the uniform march.
 
-        Over operating points of wheels on rails the root mean square is fifty times less.
+        On 10 strips one in five thousand random points of the range in the documentation is further off, with a/b
+        beyond 6 or below 1/6, where spin and creepage nearly cancel in a strip; a search found 0.14 at a/b = 10. The
+        root mean square is 0.004.
         """
         return 0.5 / self.strips if self.march == "adaptive" else 1.0 / self.strips
 
@@ -110,9 +115,17 @@ class Fastsim(wl.LineContactModel):
         contact = solve(problem, patches, self.strips)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 
+    def solve_strips(self, problem: wl.Problem) -> wl.Contact:
+        """Return the contact on the strips of the problem, which do not feel each other."""
+        if self.march == "uniform":
+            raise wl.CompositionError("contact model 'fastsim' solves patches of strips with march='adaptive' only")
+        patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
+        contact = _solution.on_given_strips(problem, patches, self.strips)
+        return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
+
     def on_strips(self, problem: wl.Problem, shares: Array) -> wl.Contact | None:
         """Return the contact on strips at y = `shares` × b; a uniform march has its own strips."""
-        if self.march == "uniform":
+        if self.march == "uniform" or problem.geometry == "strips":
             return None
         patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
         contact = _solution.on_strips(problem, patches, self.strips, shares)

@@ -41,31 +41,36 @@ def ellipses(problem: wl.Problem, elliptic: bool, interpolation: wl.kalker.Inter
 
 def adaptive(problem: wl.Problem, patches: Ellipses, count: int) -> wl.Contact:
     """Return the contact on `count` strips with nodes where they are needed."""
-    shares, widths = _strips.even_strips(count)
-    return _on_strips(problem, patches, count, shares, widths)
+    return _on_strips(problem, patches, count, _strips.layout_on(patches, *_strips.even_strips(count)))
 
 
 def on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array) -> wl.Contact:
     """Return the contact on strips at y = `shares` × b, with as many nodes on each as among `count` strips."""
     between = 0.5 * (shares[1:] + shares[:-1])
-    return _on_strips(problem, patches, count, shares, np.diff(np.concatenate([[-1.0], between, [1.0]])))
+    widths = np.diff(np.concatenate([[-1.0], between, [1.0]]))
+    return _on_strips(problem, patches, count, _strips.layout_on(patches, shares, widths))
 
 
-def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, shares: Array, widths: Array) -> wl.Contact:
+def on_given_strips(problem: wl.Problem, patches: Ellipses, count: int) -> wl.Contact:
+    """Return the contact on the strips of the problem, with as many nodes on each as among `count` strips."""
+    return _on_strips(problem, patches, count, _strips.given_layout(problem.flatten(), patches.elliptic))
+
+
+def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, layout: _strips.Layout) -> wl.Contact:
     flat = problem.flatten()
     along = max(round(STICK_NODES_PER_STRIP * count), 4), max(round(SLIP_NODES_PER_STRIP * count), 8)
-    found = _strips.strips(patches, shares, *along)
+    found = _strips.strips(patches, layout, *along)
     rolls_freely = (flat.longitudinal_creepage == 0.0) & (flat.lateral_creepage == 0.0) & (flat.spin == 0.0)
     if rolls_freely.any():  # nodes of no length at the trailing edge slip
         for field in (found.traction_x, found.traction_y, found.slip_x, found.slip_y):
             field[rolls_freely] = 0.0
     contact = wl.Contact.from_strips(
         flat,
-        _strips.forces(patches, shares, widths, found),
+        _strips.forces(layout, found),
         x=found.x,
-        y=np.outer(shares, flat.b).T,  # in memory as the nodes are, strip by strip
+        y=layout.y.T,  # in memory as the nodes are, strip by strip
         length=found.length,
-        strip_width=np.outer(widths, flat.b).T,
+        strip_width=layout.width.T,
         traction=(found.traction_x, found.traction_y),
         slip=(found.slip_x, found.slip_y),
         traction_bound=found.bound,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -56,38 +57,83 @@ def even_strips(count: int) -> tuple[Array, Array]:
     return np.cos(angle), np.pi / (count + 1) * np.sin(angle)
 
 
-def strips(ellipses: Ellipses, y_share: Array, stick_nodes: int, slip_nodes: int) -> StripFields:
-    """Return the fields of strips at y = b y_share, |y_share| < 1, of shape (strips,).
+class Layout(NamedTuple):
+    """Strips of patches, as SI arrays of shape (strips, points).
+
+    Attributes
+    ----------
+    y, width : ndarray
+        Position and width [m].
+    half_length : ndarray
+        Half the length [m].
+    greatest : ndarray
+        Bound of the traction in the middle [Pa].
+    """
+
+    y: Array
+    width: Array
+    half_length: Array
+    greatest: Array
+
+
+def layout_on(ellipses: Ellipses, y_share: Array, width_share: Array) -> Layout:
+    """Return strips of ellipses at y = b y_share, |y_share| < 1, that stand for widths of b width_share."""
+    root = np.sqrt((1.0 - y_share) * (1.0 + y_share))
+    greatest = np.multiply.outer(root if ellipses.elliptic else root * root, ellipses.bound_centre)
+    y, width, half_length = (
+        np.multiply.outer(share, size)
+        for share, size in ((y_share, ellipses.b), (width_share, ellipses.b), (root, ellipses.a))
+    )
+    return Layout(y, width, half_length, greatest)
+
+
+def given_layout(problem: wl.Problem, elliptic: bool) -> Layout:
+    """Return the strips of a problem whose pressure is given, of one batch axis.
+
+    The elliptic bound is μp. The parabolic one is proportional to p², and bears the same load; on an ellipse under
+    Hertz's pressure that is the paraboloid.
+    """
+    given = problem.strips
+    assert given is not None
+    y, width, half_length, p0 = (
+        np.moveaxis(array, -1, 0) for array in (given.y, given.width, given.half_length, given.max_pressure)
+    )
+    shape = p0
+    if not elliptic:  # ∫ p² dx = 4/3 a p0²
+        shape = p0**2 * (problem.normal_force / (4.0 / 3.0 * half_length * width * p0**2).sum(axis=0))
+    return Layout(y, width, half_length, problem.friction_coefficient * shape)
+
+
+def strips(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_nodes: int) -> StripFields:
+    """Return the fields of strips.
 
     Each has `stick_nodes` before it first slips, and `slip_nodes` from there on.
     The last axis counts the strips, but the first in memory is that of the nodes.
     """
-    rows = _rows(ellipses, y_share[:, None])
+    rows = _rows(ellipses, layout)
     compiled = wl.accelerated(rows[0].size * (stick_nodes + slip_nodes) // NODES)
     *fields, _ = stick_and_slip(Strips(rows, ellipses.elliptic, compiled), stick_nodes, slip_nodes)
     names = (field.name for field in dataclasses.fields(StripFields))
     return StripFields(**{name: np.moveaxis(field, -1, 0) for name, field in zip(names, fields, strict=True)})
 
 
-def forces(ellipses: Ellipses, y_share: Array, width_share: Array, fields: StripFields) -> wl.CreepForces:
-    """Return the forces and the moment of strips at y = b y_share that stand for widths of b width_share."""
+def forces(layout: Layout, fields: StripFields) -> wl.CreepForces:
+    """Return the forces and the moment that strips transmit."""
     names = ("length", "x", "traction_x", "traction_y")
     length, x, q_x, q_y = (np.moveaxis(getattr(fields, name), 0, -1) for name in names)  # as they are in memory
     along, across = np.einsum("kjp,kjp->jp", length, q_x), np.einsum("kjp,kjp->jp", length, q_y)
-    turning = np.einsum("kjp,kjp,kjp->jp", length, x, q_y) + y_share[:, None] * ellipses.b * along
-    width = np.multiply.outer(width_share, ellipses.b)
-    longitudinal, lateral, moment = ((width * part).sum(axis=0) for part in (along, across, turning))
+    turning = np.einsum("kjp,kjp,kjp->jp", length, x, q_y) + layout.y * along
+    longitudinal, lateral, moment = ((layout.width * part).sum(axis=0) for part in (along, across, turning))
     return wl.CreepForces(longitudinal=longitudinal, lateral=lateral, spin_moment=-moment)
 
 
-def _rows(ellipses: Ellipses, y_share: Array) -> Array:
-    """Return strips at y = b y_share as rows of an array, (7, strips, points), as in `_zone_loops`."""
-    a, b, creepage_x, creepage_y, spin, l1, l2, l3, centre = ellipses.arrays
-    root = np.sqrt((1.0 - y_share) * (1.0 + y_share))
-    half_length, greatest = a * root, centre * (root if ellipses.elliptic else root * root)
+def _rows(ellipses: Ellipses, layout: Layout) -> Array:
+    """Return strips as rows of an array, (7, strips, points), as in `_zone_loops`."""
+    _, _, creepage_x, creepage_y, spin, l1, l2, l3, _ = ellipses.arrays
+    y, _, half_length, greatest = layout
     unit = half_length / greatest
     growth = (
-        (creepage_x / l1 - spin * b * y_share / l3) * unit,
+        (creepage_x / l1 - spin * y / l3) * unit,
         creepage_y / l2 * unit,
         0.5 * spin / l3 * half_length * unit,
     )

@@ -47,7 +47,7 @@ class KTH(wl.WearLaw):
 
     name: ClassVar[str] = "kth"
     source: ClassVar[str] = (
-        "T. Jendel, Wear 253 (2002) 89-99; Tassini et al., Wear 268 (2010) 660-667, Table 2 and eq. (15)"
+        "T. Jendel, Wear 253 (2002) 89-99, after Tassini et al., Wear 268 (2010) 660-667, Table 2 and eq. (15)"
     )
 
     coefficient: Literal["low", "mid", "high"] | Coefficients = "mid"

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,15 @@ TESTED = (0.2, 20.0)
 
 PARTIAL = np.array([0.1, 0.5, 1.0])
 """Creepages in partial slip at which numbers are given [%]."""
+
+WINDOW = 350.0 / 6.2934
+"""Where the window of severe wear ends in the paper's Figure 6c, 350 N on its patch of 6.2934 mm² [N/mm²]."""
+
+Speed = Literal["disc_1", "mean"]
+
+SPEEDS: dict[Speed, str] = {"disc_1": "the surface speed of disc 1", "mean": "the mean surface speed"}
+"""What the rolling speed V can be. The paper defines it as the mean, and prints neither V nor which disc turns at which
+speed; both are computed here for a disc 1 that keeps its speed and drives."""
 
 
 def borders(law: str, variable: str) -> tuple[float, ...]:
@@ -46,11 +56,15 @@ def discs_of(study: wl.Study) -> wl.TwinDisc:
 
 @dataclass(frozen=True)
 class Bench:
-    """A rig under one load and with one friction coefficient, at the creepages of the paper, 0.001 to 25 %."""
+    """A rig under one load and with one friction coefficient, at the creepages of the paper, 0.001 to 25 %.
+
+    The speed of the rig is taken as that of the surface of disc 1; `speed` says what V is then.
+    """
 
     rig: wl.TwinDisc
     normal_force_per_width: wl.Quantity
     friction_coefficient: float
+    speed: Speed = "disc_1"
 
     @classmethod
     def of(cls, study: wl.Study) -> Bench:
@@ -95,11 +109,14 @@ class Bench:
         The law may have parameters that were fitted for another contact.
         """
         contact = wl.contact_model(model) if isinstance(model, str) else model
+        problem = self.rig.problem(
+            normal_force_per_width=self.normal_force_per_width if loads is None else loads,
+            creepage=Q(creepage, "%"),
+            friction_coefficient=self.friction_coefficient,
+        )
         with _quietly():
-            return (self.rig | contact | law)(
-                normal_force_per_width=self.normal_force_per_width if loads is None else loads,
-                creepage=Q(creepage, "%"),
-                friction_coefficient=self.friction_coefficient,
+            return (self.rig | contact | law).predict(
+                problem.replaced(rolling_speed=self.rolling_speed(problem.creepage))
             )
 
     def rate(self, model: wl.ContactModel | str, law: wl.WearLaw, creepage: Array | None = None) -> Array:
@@ -140,13 +157,39 @@ class Bench:
         return float(1e6 * self.problem.patch_area)
 
     @cached_property
-    def rolling_speed(self) -> float:
-        """Rolling speed [m/s]."""
+    def disc_speed(self) -> float:
+        """Surface speed of disc 1, v1 [m/s]."""
         return wl.scalar_si(self.rig.rolling_speed, "m/s")
 
+    def rolling_speed(self, creepage: Array) -> Array:
+        """Return V [m/s] at creepages [-]: v1, or (v1 + v2)/2 = v1/(1 + ξ/2), since ξ = (v1 - v2)/V."""
+        if self.speed == "disc_1":
+            return np.full_like(creepage, self.disc_speed)
+        return self.disc_speed / (1.0 + 0.5 * creepage)
+
     def creepage_at(self, slip_speed: float) -> float:
-        """Return the creepage [%] at which the mean slip has a speed [m/s]."""
-        return 100.0 * slip_speed / self.rolling_speed
+        """Return the creepage [%] at which the mean slip has a speed, ξV [m/s]."""
+        return 100.0 * slip_speed / (self.disc_speed - (0.5 * slip_speed if self.speed == "mean" else 0.0))
+
+    def at_speeds(self) -> dict[str, Bench]:
+        """Return this bench with each of the rolling speeds that the paper may have, by what they are."""
+        return {words: replace(self, speed=speed) for speed, words in SPEEDS.items()}
+
+    @cached_property
+    def slow(self) -> NDArray[np.bool_]:
+        """The tests' creepages at which no cell reaches the lower slip speed of KTH, whichever speed V is."""
+        lower, _ = borders("kth", "slip_speed")
+        fastest = [
+            bench.predict(model, wl.wear_law("kth"), self.creepage).contact.slip_speed.max(axis=-1)
+            for bench in self.at_speeds().values()
+            for model in ("exact", "fastsim")
+        ]
+        return np.asarray(self.tested & (np.max(fastest, axis=0) < lower))
+
+    @cached_property
+    def tested(self) -> NDArray[np.bool_]:
+        """The creepages within the range of the tests."""
+        return (self.creepage >= TESTED[0]) & (self.creepage <= TESTED[1])
 
     @cached_property
     def problem(self) -> wl.Problem:
@@ -172,6 +215,11 @@ class Bench:
         """The wear indices Tγ [N] where severe and where catastrophic wear begins, for the global USFD law."""
         mild, severe = borders("usfd", "wear_index_density")
         return mild * 1e-6 * self.patch_area, severe * 1e-6 * self.patch_area
+
+    @cached_property
+    def window(self) -> float:
+        """The wear index [N] at which the paper's window of severe wear ends, 350 N on the patch of the paper."""
+        return WINDOW * self.patch_area
 
     def between(self, lowest: float, highest: float) -> NDArray[np.bool_]:
         """Return which creepages have a wear index [N] in a range, its ends included."""

@@ -7,18 +7,21 @@ import numpy as np
 import wearlaw as wl
 from wearlaw_sheffield.bench import Bench
 from wearlaw_sheffield.contact_claims import contact_claims
+from wearlaw_sheffield.figures import figures
 from wearlaw_sheffield.law_claims import law_claims
 from wearlaw_sheffield.local_claims import local_claims
 from wearlaw_sheffield.wording import WORDS
 
 TESTS = "lewis2004"
 
+INTRODUCTION = """\
+{count} claims of sections 3 to 6 of the paper, computed for the rig of this case with {load:.5g~P} and a friction \
+coefficient of {friction:g}."""
+
 NOT_CHECKABLE = """\
-Not checked, since no table of the measured wear rates is public: that USFD represents the measured wear best, and \
-as an average in severe wear; how far KTH, BRR and the local USFD are above the tests themselves, in place of which \
-USFD on the patch means stands here; that the measured and the computed wear overlap against W.I. but not against \
-creepage, and that this is due to a real slip that differs from the prescribed one; and the comparison with \
-full-scale tests."""
+No table of the measured wear rates is public. What the paper says of them is put to the test with USFD on the patch \
+means in their place, to which USFD was fitted, or cannot be decided. The comparison with full-scale tests, which it \
+cites, is not checked."""
 
 
 def section(study: wl.Study) -> wl.Section:
@@ -26,11 +29,14 @@ def section(study: wl.Study) -> wl.Section:
     bench = Bench.of(study)
     tests = wl.read_tests(TESTS)
     measured = tests.creepage.to("%").magnitude, np.asarray(tests.traction_coefficient.to("").magnitude)
-    claims = (*contact_claims(bench, measured), *law_claims(bench), *local_claims(bench))
-    holding = sum(claim.holds for claim in claims)
-    text = (
-        f"{holding} of {len(claims)} claims of sections 3 to 6 of the paper hold, computed for the rig of this case"
-        f" with {bench.normal_force_per_width:.5g~P} and a friction coefficient of {bench.friction_coefficient:g}."
+    claims = (*contact_claims(bench, measured), *law_claims(bench, measured), *local_claims(bench))
+    text = INTRODUCTION.format(
+        count=len(claims), load=bench.normal_force_per_width, friction=bench.friction_coefficient
     )
     words = f"{WORDS} The public tests are those of {tests.source}."
-    return wl.Section("Claims of the paper, checked", "\n\n".join((text, words, NOT_CHECKABLE)), claims=claims)
+    return wl.Section(
+        "Claims of the paper, checked",
+        "\n\n".join((text, words, NOT_CHECKABLE)),
+        claims=claims,
+        figures=figures(bench, measured),
+    )

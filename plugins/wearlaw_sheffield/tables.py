@@ -12,7 +12,8 @@ The tables are made from the laws as they compute, not typed in again.
 
 In Table 2 the paper prints "ṡ ≥ 0.2" in the first row below 2.1 GPa, where ṡ < 0.2 m/s is meant; it gives ranges for \
 the coefficient k, of which the predictions show both ends and the middle. The rows leave p = 2.1 GPa open; here it \
-belongs to the upper row. The hardness H is not printed; {hardness} follows from 2.1 GPa = 0.8 H.
+belongs to the upper row. The equations of Table 1 do not meet at {border:g} N: the rate jumps there by a factor of \
+{jump:.2f}, and is kept as published. The hardness H is not printed; {hardness} follows from 2.1 GPa = 0.8 H.
 
 Errata of the equations, all kept to here: eq. (1) needs a factor of 4, a² = 4PR/(πE*), with Johnson's E*; eqs. (4) \
 and (10) need a minus sign before ∂u/∂x, or the stick zone would slip with twice the creepage; eq. (7) lacks a term of \
@@ -25,7 +26,7 @@ def section(study: wl.Study) -> wl.Section:
     kth = dict(wl.wear_law("kth"))
     return wl.Section(
         title="Tables 1 to 4 of the paper",
-        text=TEXT.format(hardness=f"{kth['hardness']:~P}", ratio=printed_slip(discs_of(study))),
+        text=TEXT.format(hardness=f"{kth['hardness']:~P}", ratio=printed_slip(discs_of(study)), **brr_jump()),
         tables={
             "table_1_brr": table_1(),
             "table_2_kth": table_2(),
@@ -33,6 +34,14 @@ def section(study: wl.Study) -> wl.Section:
             "table_4_usfd": table_4(),
         },
     )
+
+
+def brr_jump() -> dict[str, float]:
+    """Return where BRR jumps [N], and its rate behind over the rate before."""
+    brr = dict(wl.wear_law("brr"))
+    border = number(brr["severe_limit"], "N")
+    behind = number(brr["severe_slope"], "mm^3/km/N") * border - number(brr["severe_offset"], "mm^3/km")
+    return {"border": border, "jump": behind / number(brr["plateau"], "mm^3/km")}
 
 
 def number(quantity: wl.Quantity, unit: str) -> float:

@@ -39,7 +39,7 @@ def calibrations() -> dict[str, wl.Calibration]:
             scale="patch",
             materials=MATERIALS,
             stated_range=TESTED,
-            source="R. Lewis and R. S. Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478",
+            source=f"R. Lewis and R. S. Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, after {TASSINI}, Table 4",
         ),
         "exact": wl.Calibration(
             contact_model="exact",

@@ -22,12 +22,12 @@ from tests.core.panels import by_label, by_name
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.output.results import table as results_table
-from wearlaw.pipeline.variables import UNITS
 from wearlaw.report.tables import summaries, tables
 from wearlaw.study.case import Case, case_schema, case_text, load_case, written
 from wearlaw.study.results import axes_of, main_axis
 from wearlaw.study.study import Study, run
 from wearlaw.sweeping import points
+from wearlaw.units.variables import UNITS
 
 WHEEL = {
     "type": "wheel_rail",
@@ -157,7 +157,7 @@ def test_the_sweep_of_a_wheel_holds_what_direct_predictions_give(on_rail: Study)
 def test_tables_run_along_the_creepage_that_the_rig_names(on_rail: Study) -> None:
     assert main_axis(on_rail.sweeps["braking"], "longitudinal_creepage") == "longitudinal_creepage"
     braking, curve = summaries(on_rail)
-    assert braking.title == "Sweep 'braking' at normal force 8e+04 N"
+    assert braking.title == "Sweep 'braking' at normal force 80 kN"
     assert list(braking.frame.columns) == ["wear rate [µg/m/mm²] by longitudinal creepage [%]", "0.01", "0.1", "1"]
     assert list(curve.frame.columns)[1:] == ["0.1"]
 
@@ -166,7 +166,7 @@ def test_the_csv_has_the_conditions_of_every_sweep_and_nothing_where_one_does_no
     rows = results_table(on_rail)
     assert list(rows.columns[:11]) == [
         "sweep", "contact_model", "wear_law", "semi_axis_a [mm]", "semi_axis_b [mm]", "max_pressure [MPa]",
-        "normal_force [N]", "friction_coefficient", "longitudinal_creepage [%]", "lateral_creepage [%]", "spin [1/m]",
+        "normal_force [kN]", "friction_coefficient", "longitudinal_creepage [%]", "lateral_creepage [%]", "spin [1/m]",
     ]  # fmt: skip
     braking, curve = rows[rows.sweep == "braking"], rows[rows.sweep == "curve"]
     assert braking["spin [1/m]"].isna().all()

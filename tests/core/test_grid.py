@@ -10,8 +10,8 @@ import pytest
 import wearlaw as wl
 from wearlaw import Q
 from wearlaw.arrays.array import Array
-from wearlaw.pipeline.variables import UNITS
 from wearlaw.study.grid import MOST_POINTS, Axis, Grid, with_units
+from wearlaw.units.variables import UNITS
 
 RIG = wl.TwinDisc.suros()
 

@@ -17,11 +17,12 @@ import wearlaw as wl
 from tests.core import cases, report_data
 from tests.core.cases import case, tree
 from wearlaw.output.results import CSV, RESULTS, table, write
-from wearlaw.pipeline.variables import OF_CONTACT, UNITS
+from wearlaw.pipeline.variables import OF_CONTACT
 from wearlaw.report.tables import tables
 from wearlaw.study.case import CASE_FILE, Case, load_case
 from wearlaw.study.sections import Section
 from wearlaw.study.study import Study, run
+from wearlaw.units.variables import UNITS
 
 LATTICE = {**cases.SWEEP, "friction_coefficient": [0.3, 0.4]}
 MEASURED = {**cases.POINT, "traction_coefficient": [0.1, 0.2]}

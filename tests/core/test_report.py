@@ -22,6 +22,7 @@ from tests.core.report_data import CLAIMS, EVIL, ODD, ONE, SECTION, THREE, small
 from wearlaw.report.interactive import plotly_figure
 from wearlaw.report.page import cells, paragraphs, report
 from wearlaw.report.tables import Cell
+from wearlaw.study.sections import Verdict
 from wearlaw.study.study import Study, run
 
 VOID = {"meta"}
@@ -139,19 +140,28 @@ def test_the_wear_rates_are_those_of_the_sweep(study: Study, page: Page) -> None
     assert f"kth on exact, low end {low}" in page.text
 
 
-def test_claims_are_a_list_of_what_holds_with_the_numbers(page: Page) -> None:
-    assert "1 of 2 claims hold." in page.text
-    assert page.within("section/h3")[0].endswith(": 1 of 2 claims hold")
-    assert "✓ holds USFD and BRR agree in mild wear. (section 5.2) within 16 % up to 3 N/mm²" in page.text
+def test_claims_are_a_list_of_verdicts_with_criteria_and_numbers(page: Page) -> None:
+    assert "2 claims: 1 holds, 1 does not hold." in page.text
+    assert page.within("section/h3")[0].endswith(": 2 claims: 1 holds, 1 does not hold")
+    holding = "USFD and BRR agree in mild wear. (section 5.2) Criterion: Within 20 %. within 16 % up to 3 N/mm²"
+    assert f"✓ holds {holding}" in page.text
     literal = " ".join(EVIL.split())
-    assert f"✗ does not hold {literal} (section 5.3) 5.2 µg/m/mm² against 6.1 µg/m/mm²" in page.text
+    assert f"✗ does not hold {literal} (section 5.3) Criterion: {literal} 5.2 µg/m/mm² against 6.1" in page.text
+    assert {"5.2 µg/m/mm² against 6.1 µg/m/mm²", "and more"} <= {*page.within("li/p")}
 
 
-def test_one_claim_is_counted_and_none_is_not_spoken_of(study: Study) -> None:
-    one = replace(study, sections=(replace(SECTION, claims=CLAIMS[:1]),))
-    assert "1 of 1 claim holds." in Page(report(one, "")).text
+def test_claims_are_counted_by_verdict_and_none_is_not_spoken_of(study: Study) -> None:
+    def shown(*verdicts: Verdict) -> str:
+        claims = tuple(replace(CLAIMS[0], verdict=verdict) for verdict in verdicts)
+        return Page(report(replace(study, sections=(replace(SECTION, claims=claims),)), "")).text
+
+    assert "1 claim: 1 holds." in shown("holds")
+    several = shown("cannot be decided", "does not hold", "holds in part", "does not hold", "holds", "holds in part")
+    assert "6 claims: 1 holds, 2 hold in part, 2 do not hold, 1 cannot be decided." in several
+    assert "◐ holds in part" in several
+    assert "? cannot be decided" in several
     without = Page(report(replace(study, sections=()), "")).text
-    assert "claims hold" not in without
+    assert "claims:" not in without
     assert "section-1" not in without
 
 

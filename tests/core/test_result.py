@@ -55,7 +55,7 @@ def test_every_property_has_its_unit_and_value(creepage: float) -> None:
     area = 2 * HALF_WIDTH * WIDTH
     wear_rate = mean_over_slip_zone(lambda x: usfd(bound_at(x) * slip_at(x, creepage) * 1e-6), creepage)
     expected = {
-        "normal_force": (FORCE, "N", "N"),
+        "normal_force": (FORCE, "N", "kN"),
         "normal_force_per_width": (FORCE / WIDTH, "N/m", "kN/m"),
         "max_pressure": (MAX_PRESSURE, "Pa", "MPa"),
         "half_width": (HALF_WIDTH, "m", "mm"),

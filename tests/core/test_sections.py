@@ -24,7 +24,8 @@ LAB = """
 
     def highest(study):
         rate = float(study.sweep("creepage")["wear_rate"].max())
-        claim = wl.CheckedClaim("It wears little.", "section 3", f"It reaches {rate:.1f}.", rate < 60.0)
+        verdict = "holds" if rate < 60.0 else "does not hold"
+        claim = wl.CheckedClaim("It wears little.", "section 3", "Below 60.", f"It reaches {rate:.1f}.", verdict)
         return wl.Section("Highest", "One paragraph.", claims=(claim,))
 
     def warned(study):
@@ -95,9 +96,18 @@ def test_a_study_holds_the_sections_in_the_order_of_the_case(install: Install) -
     assert [section.title for section in study.sections] == ["Warned", "Highest"]
     (claim,) = study.sections[1].claims
     rate = float(study.sweeps["creepage"]["wear_rate"].max())
-    assert claim == wl.CheckedClaim("It wears little.", "section 3", f"It reaches {rate:.1f}.", rate < 60.0)
+    assert rate > 60.0
+    found = f"It reaches {rate:.1f}."
+    assert claim == wl.CheckedClaim("It wears little.", "section 3", "Below 60.", found, "does not hold")
     assert study.sections[0].text == "It has 5 pairs."
     assert run(case()).sections == ()
+
+
+@pytest.mark.parametrize("verdict", [True, "fails", "Holds"])
+def test_a_claim_has_one_of_four_verdicts(verdict: Any) -> None:
+    message = "verdict: must be one of 'holds', 'holds in part', 'does not hold', 'cannot be decided', got "
+    with pytest.raises(wl.InputError, match=f"{message}{verdict!r}"):
+        wl.CheckedClaim("It wears little.", "section 3", "Below 60.", "It reaches 55.", verdict)
 
 
 def test_a_warning_becomes_one_note_of_the_section(install: Install) -> None:

@@ -16,9 +16,10 @@ from tests.core.cases import InstallModel, case
 from tests.core.studies import FRICTIONS, LOADS, MEASURED, lattice_study
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS, offered
+from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, offered
 from wearlaw.study.results import along_main_axis, axes_of, main_axis
 from wearlaw.study.study import Study, run
+from wearlaw.units.variables import UNITS
 
 MODELS = {"global": wl.contact_model("global"), "exact": wl.contact_model("exact")}
 LAWS = {"usfd": wl.wear_law("usfd"), "kth": wl.wear_law("kth"), "brr": wl.wear_law("brr")}
@@ -149,7 +150,7 @@ def test_a_sweep_with_measured_traction_is_for_the_models_that_can_use_it() -> N
     assert list(sweep.contact_model.values) == ["global"]
     assert list(sweep.pair.values) == ["usfd on global", "kth on global", "brr on global"]
     np.testing.assert_allclose(sweep.traction_coefficient, 0.2, rtol=4 * EPS)
-    np.testing.assert_allclose(sweep.tangential_force.sel(contact_model="global"), 0.2 * sweep.normal_force, rtol=1e-15)
+    np.testing.assert_allclose(sweep.tangential_force.sel(contact_model="global"), 200.0 * sweep.normal_force, rtol=4 * EPS)
     assert study.notes.count("sweep 'measured': exact is left out, since it computes the traction itself") == 1
 
 

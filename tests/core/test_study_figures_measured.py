@@ -44,7 +44,7 @@ def test_measured_traction_is_shown_where_it_was_measured(measured: dict[str, An
     traction = points(measured, "creepage", "traction_coefficient")
     np.testing.assert_allclose((traction.x, traction.y), ([1.0, 5.0], [0.3, 0.5]), rtol=4 * EPS)
     force = points(measured, "normal_force", "tangential_force")
-    np.testing.assert_allclose((force.x, force.y), ([7000.0, 7000.0], [2100.0, 3500.0]), rtol=8 * EPS)
+    np.testing.assert_allclose((force.x, force.y), ([7.0, 7.0], [2100.0, 3500.0]), rtol=8 * EPS)
     assert force.low is None
 
 

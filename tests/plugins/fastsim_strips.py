@@ -11,7 +11,7 @@ import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_fastsim._march import Ellipses
-from wearlaw_fastsim._strips import StripFields, even_strips, forces, strips
+from wearlaw_fastsim._strips import StripFields, even_strips, forces, layout_on, strips
 
 ROUNDING = 100 * EPS
 
@@ -56,10 +56,16 @@ class Solved(NamedTuple):
 
 def solve(patches: Ellipses, count: int = 12, stick: int = 3, slip: int = 12) -> Solved:
     shares, widths = even_strips(count)
-    fields = strips(patches, shares, stick, slip)
+    layout = layout_on(patches, shares, widths)
+    fields = strips(patches, layout, stick, slip)
     energy = (fields.traction_x * fields.slip_x + fields.traction_y * fields.slip_y) * fields.length
     power = (energy.sum(axis=1) * widths).sum(axis=-1) * patches.b
-    return Solved(fields, forces(patches, shares, widths, fields), power)
+    return Solved(fields, forces(layout, fields), power)
+
+
+def strips_at(patches: Ellipses, shares: Array, stick: int, slip: int) -> StripFields:
+    """Return the fields of strips at y = b shares, whatever widths they stand for."""
+    return strips(patches, layout_on(patches, shares, np.zeros_like(shares)), stick, slip)
 
 
 def limit(patches: Ellipses) -> Array:

@@ -5,6 +5,8 @@ A number in a claim is right if it is the expected one in the digits that it sho
 
 from __future__ import annotations
 
+import dataclasses
+import functools
 import math
 import re
 from collections.abc import Callable
@@ -16,6 +18,7 @@ import pytest
 import wearlaw as wl
 from tests import reference
 from tests.roots import brentq
+from wearlaw import Array
 
 LOAD, FRICTION, RADIUS = 741.43e3, 0.46, 0.047 / 4.0
 MODULUS = 206.47742e9 / (2.0 * (1.0 - 0.28**2))
@@ -37,13 +40,16 @@ HEAT = {0.2: 1.3, 0.5: 9.2, 1.0: 25.7, 3.0: 102.6, 7.5: 246.0, 10.0: 327.8, 15.0
 CONDITIONS: dict[str, Any] = {"normal_force": wl.Q(7.4143, "kN"), "friction_coefficient": FRICTION}
 
 
-def point(percent_creepage: float, load: float = LOAD) -> reference.Point:
-    return reference.Point(load, RADIUS, MODULUS, FRICTION, percent_creepage / 100.0, SPEED)
+def point(percent_creepage: float, load: float = LOAD, speed: float = SPEED) -> reference.Point:
+    return reference.Point(load, RADIUS, MODULUS, FRICTION, percent_creepage / 100.0, speed)
 
 
 SOLUTIONS: dict[str, Callable[[reference.Point], reference.Solution]] = {
     "exact": reference.exact,
+    "as printed": functools.partial(reference.exact, as_printed=True),
     "fastsim": reference.parabolic,
+    "kalker": functools.partial(reference.parabolic, kalker=True),
+    "elliptic": reference.elliptic,
 }
 
 
@@ -91,6 +97,29 @@ def numbers(text: str, before: str) -> list[str]:
     return re.findall(re.escape(before) + r"\s*([+-]?\d+(?:\.\d+)?)", text)
 
 
+def densities(model: str, creepage: Array, cells: int) -> Array:
+    """Return q·s [N/mm²] at the middles of uniform cells, of shape (creepages, cells)."""
+    a = np.sqrt(4.0 * LOAD * RADIUS / (np.pi * MODULUS))
+    x, xi = np.linspace(-1.0, 1.0, 2 * cells + 1)[1::2] * a, creepage[:, None] / 100.0
+    if model == "fastsim":
+        bound = FRICTION * 0.75 * LOAD / a * (1.0 - (x / a) ** 2)
+        flexibility = 4.0 * a / (np.pi * MODULUS)
+        sticks = xi * (x + a) / flexibility < bound
+        slip = xi + flexibility * FRICTION * 1.5 * LOAD / a * x / a**2
+        return np.where(sticks, 0.0, bound * slip) / 1e6
+    k = FRICTION / RADIUS
+    c = np.maximum(a - xi / k, 0.0)
+    bound = FRICTION * 2.0 * LOAD / (np.pi * a) * np.sqrt(1.0 - (x / a) ** 2)
+    slip = np.where(c > 0.0, k * np.sqrt(np.maximum((x + a - c) ** 2 - c**2, 0.0)), xi + k * x)
+    return np.where(x < 2.0 * c - a, 0.0, bound * slip) / 1e6
+
+
+def paragraph(claim: wl.CheckedClaim, start: str) -> wl.CheckedClaim:
+    """Return a claim with that paragraph alone of what was found which begins so."""
+    (found,) = (text for text in claim.found.split("\n\n") if text.startswith(start))
+    return dataclasses.replace(claim, found=found)
+
+
 def assert_says(claim: wl.CheckedClaim, before: str, *expected: float, slack: float = 0.0) -> None:
     """The numbers after these words are the expected ones, to half of their last digit."""
     found = numbers(claim.found, before)
@@ -121,8 +150,14 @@ def exact_force(creepage: float) -> float:
     return reference.exact(point(creepage)).force
 
 
-def kth(model: str, creepage: float, load: float = LOAD) -> float:
-    return reference.kth_mean(SOLUTIONS[model](point(creepage, load)), KTH_MID)
+def kth(model: str, creepage: float, load: float = LOAD, speed: float = SPEED) -> float:
+    return reference.kth_mean(SOLUTIONS[model](point(creepage, load, speed)), KTH_MID)
+
+
+def mean_speed(creepage: float) -> float:
+    """Return the mean surface speed [m/s] where disc 1 turns at `SPEED`: (v1 + v2)/2 with (v1 - v2)/V = ξ."""
+    slower = SPEED * (2.0 - creepage / 100.0) / (2.0 + creepage / 100.0)
+    return 0.5 * (SPEED + slower)
 
 
 def printed(text: str) -> Any:

@@ -41,7 +41,8 @@ def lines(section: wl.Section) -> Iterator[str]:
     """Yield the text of a section, its claims, the rows of its tables, and the words in its figures."""
     yield from (f"# {section.title}", *section.text.splitlines())
     for claim in section.claims:
-        yield from (f"- {claim.statement} {claim.where}: {claim.holds}", f"  {claim.found}")
+        yield f"- {claim.statement} {claim.where}: {claim.verdict}"
+        yield from (f"  Criterion: {claim.criterion}", *(f"  {line}" for line in claim.found.split("\n\n")))
     for name, table in section.tables.items():
         yield f"{name}: {' | '.join(table.columns)}"
         for row in table.itertuples(index=False):

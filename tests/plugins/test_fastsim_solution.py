@@ -169,6 +169,16 @@ def test_scaled_slip_dissipates_what_the_creepages_do_and_local_slip_does_not(bo
     assert (np.abs(as_found.cell_wear_index / some.wear_index - 1.0) > 1e-3).all()
 
 
+@pytest.mark.parametrize("bound", ["parabolic", "elliptic"])
+def test_as_many_strips_as_are_allowed_give_finite_tractions(bound: str) -> None:
+    # A direction that turns towards w in each of many steps: its vector may double in every one, 2^1024 is infinite.
+    contact = wl.contact_model("fastsim", bound=bound, strips=1000).solve(ellipse(longitudinal_creepage=[0.001]))
+    fewer = wl.contact_model("fastsim", bound=bound, strips=250).solve(ellipse(longitudinal_creepage=[0.001]))
+    assert np.isfinite(contact.traction_x).all()
+    assert np.isfinite(contact.slip).all()
+    assert contact.force_x == pytest.approx(fewer.force_x, rel=1.0 / 250**2)  # second order without spin
+
+
 def test_the_declared_accuracy_is_of_first_order_in_the_strips() -> None:
     for march, share in (("adaptive", 0.5), ("uniform", 1.0)):
         for strips in (10, 25):

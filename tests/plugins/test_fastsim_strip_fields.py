@@ -9,11 +9,11 @@ import pytest
 
 import wearlaw as wl
 from tests.plugins.fastsim_marks import COMPILED, each_bound
-from tests.plugins.fastsim_strips import CASE, ROUNDING, ellipses, limit, sample, solve
+from tests.plugins.fastsim_strips import CASE, ROUNDING, ellipses, limit, sample, solve, strips_at
 from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_fastsim._march import Ellipses
-from wearlaw_fastsim._strips import even_strips, strips
+from wearlaw_fastsim._strips import even_strips
 from wearlaw_fastsim._zones import Zone, _where_it_sticks
 
 FIELDS = dataclasses.fields(Ellipses)[:-1]
@@ -92,7 +92,7 @@ def differences(patches: Ellipses, shares: Array, counts: tuple[int, ...]) -> tu
     limits = [2.0 * whole[::2] - half for whole, half in ((whole_x, half_x), (whole_y, half_y))]
     found = []
     for count in counts:
-        fields = strips(patches, shares, 3, count)
+        fields = strips_at(patches, shares, 3, count)
         at = np.arccos(fields.x / (patches.a[:, None, None] * np.sqrt(1.0 - shares**2)))
         off = [
             np.abs(traction[p, :, j] - np.interp(-at[p, :, j], -angle[::2], there[:, p, j])).max()
@@ -145,7 +145,7 @@ def test_strips_that_stick_again_meet_the_limit_of_the_plain_march_in_second_ord
 @each_bound
 def test_strips_that_stick_again_have_slip_stick_and_slip(elliptic: bool) -> None:
     patches = ellipses([1e-4], [1e-3], [1.5], elliptic=elliptic)
-    fields = strips(patches, np.array([-0.01]), 3, 8)
+    fields = strips_at(patches, np.array([-0.01]), 3, 8)
     slips = np.hypot(fields.slip_x, fields.slip_y)[0, :, 0] > 0.0
     stuck = np.flatnonzero(~slips[3:])
     assert slips[3:].sum() == 6
@@ -157,11 +157,11 @@ def test_strips_that_stick_again_have_slip_stick_and_slip(elliptic: bool) -> Non
 def test_a_strip_is_the_same_alone_and_among_others(elliptic: bool) -> None:
     patches = ellipses([1e-4, 3e-3, -2e-4], [1e-3, 1e-3, 1e-4], [1.5, 0.2, 2.0], elliptic=elliptic)  # two stick again
     shares = np.array([-0.7, -0.01, 0.02, 0.3])
-    together = strips(patches, shares, 3, 8)
+    together = strips_at(patches, shares, 3, 8)
     for p in range(3):
         one = dataclasses.replace(patches, **{f.name: getattr(patches, f.name)[p : p + 1] for f in FIELDS})
         for j in range(4):
-            alone = strips(one, shares[j : j + 1], 3, 8)
+            alone = strips_at(one, shares[j : j + 1], 3, 8)
             for name in ("x", "length", "traction_x", "traction_y", "slip_x", "slip_y", "bound"):
                 there = getattr(together, name)[p, :, j]
                 np.testing.assert_allclose(
@@ -183,7 +183,7 @@ def test_centre_strip_with_the_flexibility_of_a_line_is_the_line_contact(ellipti
     radius = modulus * a / (2.0 * p0)
     xi = np.geomspace(1e-5, 0.1, 30)
     patches = ellipses(xi, elliptic=elliptic, l1=4.0 * a / (np.pi * modulus))
-    fields = strips(patches, np.zeros(1), 3, 12)
+    fields = strips_at(patches, np.zeros(1), 3, 12)
     force = (fields.length * fields.traction_x).sum(axis=1)[:, 0]
     reduced = np.pi * xi * radius / (2.0 * friction * a)
     if elliptic:
@@ -195,7 +195,7 @@ def test_centre_strip_with_the_flexibility_of_a_line_is_the_line_contact(ellipti
 
 def check_laws(patches: Ellipses, shares: Array) -> Array:
     """Check what holds in all strips and return which of them stick again."""
-    fields = strips(patches, shares, 3, 8)
+    fields = strips_at(patches, shares, 3, 8)
     for name in ("x", "length", "traction_x", "traction_y", "slip_x", "slip_y", "bound"):
         assert np.isfinite(getattr(fields, name)).all(), name
     traction, slip = np.hypot(fields.traction_x, fields.traction_y), np.hypot(fields.slip_x, fields.slip_y)
@@ -255,7 +255,7 @@ def test_compiled_loops_are_the_same_as_numpy(elliptic: bool) -> None:
     found = []
     for on in (False, True):
         wl.accelerate(on)
-        found.append(strips(patches, shares, 4, 10))
+        found.append(strips_at(patches, shares, 4, 10))
     wl.accelerate(None)
     for name in (field.name for field in dataclasses.fields(found[0])):
         plain, compiled = (getattr(fields, name) for fields in found)
@@ -271,14 +271,14 @@ def test_the_nodes_of_strips_say_whether_loops_are_compiled(monkeypatch: pytest.
         return False
 
     monkeypatch.setattr(wl, "accelerated", accelerated)
-    strips(sample(elliptic=False, count=60), even_strips(7)[0], 3, 8)
+    strips_at(sample(elliptic=False, count=60), even_strips(7)[0], 3, 8)
     assert asked == [1155]  # 60 × 7 × 11 / 4
 
 
 @each_bound
 def test_a_thousand_nodes_may_slip_from_the_leading_edge(elliptic: bool) -> None:
     patches = ellipses(0.9, 0.0, 0.1, elliptic=elliptic)
-    fields = strips(patches, np.array([-0.5, 0.0]), 3, 1000)
+    fields = strips_at(patches, np.array([-0.5, 0.0]), 3, 1000)
     # spin turns w by a tenth of a per cent only
     np.testing.assert_allclose(fields.traction_x[:, 3:], fields.bound[:, 3:], rtol=1e-5)
 

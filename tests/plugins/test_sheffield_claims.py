@@ -15,24 +15,24 @@ from tests.plugins.sheffield_report import SWEEP, study_of
 from wearlaw.study.study import run
 from wearlaw_sheffield import claims as claims_module
 from wearlaw_sheffield.bench import Bench
-from wearlaw_sheffield.wording import first_crossing, largest, percent
+from wearlaw_sheffield.wording import at_both, first_crossing, largest, percent, verdict
 
 
-def test_every_claim_names_its_place_and_its_numbers() -> None:
+def test_every_claim_names_its_place_its_criterion_and_its_numbers() -> None:
     made = claims_module.section(study_of())
-    assert len(made.claims) == len({claim.statement for claim in made.claims}) == 35
+    assert len(made.claims) == len({claim.statement for claim in made.claims}) == 28
     for claim in made.claims:
-        assert re.match(r"(Sections? [356]|Table 1)", claim.where)
-        assert re.search(r"\d", claim.found)
-    holding = sum(claim.holds for claim in made.claims)
-    assert made.text.startswith(f"{holding} of 35 claims")
+        assert re.match(r"Sections? [356]", claim.where)
+        assert claim.criterion.endswith(".")
+        assert re.search(r"\d", claim.found) or claim.verdict == "cannot be decided"
+    assert made.text.startswith("28 claims of sections 3 to 6")
     assert "741.43 kN/m and a friction coefficient of 0.46" in made.text
 
 
-def test_what_needs_measured_wear_is_named_as_not_checked() -> None:
+def test_what_needs_measured_wear_is_named() -> None:
     text = claims_module.section(study_of()).text
-    assert "Not checked, since no table of the measured wear rates is public" in text
-    assert "overlap against W.I. but not against creepage" in text
+    assert "No table of the measured wear rates is public" in text
+    assert "with USFD on the patch means in their place" in text
 
 
 def test_the_bench_is_that_of_the_study() -> None:
@@ -48,7 +48,24 @@ def test_the_bench_has_the_patch_and_the_borders_of_the_formulas(bench: Bench) -
     assert bench.full_slip == pytest.approx(FULL_SLIP, rel=1e-14)
     assert bench.full_force == pytest.approx(FORCE, rel=1e-14)
     assert bench.usfd_borders == pytest.approx((55.0 / 5.3 * AREA, 77.26 * AREA), rel=1e-14)
-    assert bench.rolling_speed == pytest.approx(SPEED, rel=1e-14)
+    assert bench.disc_speed == pytest.approx(SPEED, rel=1e-14)
+    assert bench.window == pytest.approx(350.0, rel=1e-4)  # 6.2934 mm² in five digits
+
+
+def test_the_rolling_speed_is_that_of_disc_1_or_the_mean_of_both(bench: Bench) -> None:
+    creepage = np.array([0.0, 0.05, 0.2, 1.0])
+    of_disc_1, mean = bench.at_speeds().values()
+    np.testing.assert_array_equal(of_disc_1.rolling_speed(creepage), 4 * [bench.disc_speed])
+    # V = (v1 + v2)/2 and ξ = (v1 - v2)/V.
+    slower = SPEED * (2.0 - creepage) / (2.0 + creepage)
+    speed = mean.rolling_speed(creepage)
+    np.testing.assert_allclose(speed, 0.5 * (SPEED + slower), rtol=1e-14)
+    np.testing.assert_allclose((SPEED - slower) / speed, creepage, rtol=1e-13, atol=1e-15)
+    for one in (of_disc_1, mean):
+        found = one.creepage_at(0.2) / 100.0
+        assert found * float(one.rolling_speed(np.array(found))) == pytest.approx(0.2, rel=1e-14)
+        predicted = one.predict("global", wl.wear_law("kth"), 20.0).contact.slip_speed
+        assert predicted == pytest.approx(0.2 * one.rolling_speed(np.array(0.2)), rel=1e-14)
 
 
 def test_the_creepages_of_the_bench_are_dense_and_meet_its_kinks(bench: Bench) -> None:
@@ -80,6 +97,25 @@ def test_a_study_without_the_sweep_is_refused() -> None:
 
 
 # Wording
+
+
+@pytest.mark.parametrize(
+    ("parts", "expected"),
+    [
+        ([True, True], "holds"),
+        ([True, False], "holds in part"),
+        ([True, None], "holds in part"),
+        ([False, False], "does not hold"),
+        ([None, False], "cannot be decided"),
+        ([None], "cannot be decided"),
+    ],
+)
+def test_the_verdict_on_a_claim_is_that_on_its_parts(parts: list[bool | None], expected: wl.Verdict) -> None:
+    assert verdict(parts) == verdict(reversed(parts)) == expected
+
+
+def test_what_depends_on_the_speed_cannot_be_decided() -> None:
+    assert [at_both(parts) for parts in ([True, True], [False, False], [True, False])] == [True, False, None]
 
 
 def test_the_first_crossing_is_found_whichever_curve_is_above() -> None:

@@ -10,7 +10,6 @@ from typing import Any
 
 import pint
 
-from wearlaw.contact.contact import UNITS
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
@@ -19,6 +18,7 @@ from wearlaw.plugins import loader
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.units.quantities import from_si, text_of
 from wearlaw.units.registry import symbol
+from wearlaw.units.variables import UNITS
 
 
 def describe(model: type[Model]) -> str:

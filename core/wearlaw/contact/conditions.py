@@ -12,6 +12,7 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.errors import ConditionsError, did_you_mean
 from wearlaw.units.quantities import Unit, coefficient
+from wearlaw.units.variables import expected
 
 if TYPE_CHECKING:
     pass
@@ -28,17 +29,11 @@ class FrictionLaw(Protocol):
         ...
 
 
-LOADS = {"normal_force": Unit("N"), "normal_force_per_width": Unit("kN/m"), "max_pressure": Unit("MPa")}
-"""The conditions that give the load, with their units."""
-
-CREEPAGE = Unit("", positive=False, limit=1.0)
-"""Creepage is a ratio of magnitude at most 1."""
+LOADS = ("normal_force", "normal_force_per_width", "max_pressure")
+"""The conditions that give the load of a line."""
 
 COEFFICIENTS = ("friction_coefficient", "traction_coefficient")
 """The conditions that are plain numbers."""
-
-SPIN = Unit("1/m", positive=False)
-"""Spin has either sign."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +42,7 @@ class ConditionTable:
 
     Attributes
     ----------
-    loads, creepages : mapping of str to Unit
+    loads, creepages : tuple of str
         Exactly one load and the first creepage are required; other creepages are zero if not given.
     coefficients : tuple of str
         Plain numbers; the first is required.
@@ -55,15 +50,15 @@ class ConditionTable:
         Example values of the required conditions, for messages.
     """
 
-    loads: Mapping[str, Unit]
-    creepages: Mapping[str, Unit]
+    loads: tuple[str, ...]
+    creepages: tuple[str, ...]
     coefficients: tuple[str, ...]
     examples: Mapping[str, str]
 
     @cached_property
     def units(self) -> dict[str, Unit]:
         """The conditions that have a unit."""
-        return {**self.loads, **self.creepages}
+        return expected(*self.loads, *self.creepages)
 
     @cached_property
     def names(self) -> tuple[str, ...]:

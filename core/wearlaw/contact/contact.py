@@ -18,30 +18,14 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.errors import InputError
-from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
+from wearlaw.units.quantities import Quantity, QuantityLike, from_si
+from wearlaw.units.variables import expected
 
 NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density")
 """The variables of a `Contact` with a value at each node."""
 
-UNITS = {
-    "pressure": "MPa",
-    "traction": "MPa",
-    "traction_bound": "MPa",
-    "slip": "%",
-    "slip_speed": "m/s",
-    "wear_index": "N",
-    "wear_index_density": "N/mm^2",
-    "x": "mm",
-}
-"""Units for showing variables of a `Contact`; the record itself holds SI."""
-
-_FROM_ARRAYS = {
-    "pressure": Unit("MPa", positive=False),
-    "traction": Unit("MPa", positive=False),
-    "slip": Unit("", positive=False),
-    "area": Unit("mm^2", positive=False),
-}
-
+LAW_VARIABLES = (*NODE_VARIABLES, "traction_bound", "wear_index", "x")
+"""The variables of a `Contact` in which a law can branch, or have its range."""
 
 ONE_SIGN = 1e-9
 """Share of traction of the other sign that counts as rounding; it changes the mean slip by no more."""
@@ -222,7 +206,9 @@ class Contact:
         slip: tuple[Array, Array],
         traction_bound: Array,
     ) -> Self:
-        """Return the contact for a model's solution on strips of an ellipse, with the pressure by Hertz's theory.
+        """Return the contact for a model's solution on strips of an ellipse, or on the strips of the problem.
+
+        The pressure is Hertz's pressure, or the given pressure of the strips.
 
         Parameters
         ----------
@@ -239,10 +225,16 @@ class Contact:
         traction_bound : ndarray, (batch, nodes, strips)
             The largest magnitude that the model allows for the traction [Pa].
         """
-        a, b = problem.a[..., None, None], problem.b[..., None, None]
         across = y[..., None, :]
+        if problem.strips is None:
+            a, b, p0 = (array[..., None, None] for array in (problem.a, problem.b, problem.max_pressure))
+            pressure = hertz_ellipse.pressure(x, across, a, b, p0)
+        else:
+            share = x / problem.strips.half_length[..., None, :]
+            p0 = problem.strips.max_pressure[..., None, :]
+            pressure = p0 * np.sqrt(np.maximum((1.0 - share) * (1.0 + share), 0.0))
         return cls(
-            pressure=hertz_ellipse.pressure(x, across, a, b, problem.max_pressure[..., None, None]),
+            pressure=pressure,
             traction=_magnitude(*traction),
             slip=_magnitude(*slip),
             traction_bound=traction_bound,
@@ -316,8 +308,9 @@ class Contact:
             in one contact.
         """
         given = {"pressure": pressure, "traction": traction, "slip": slip, "area": area}
-        speed = Unit("m/s").si(rolling_speed, "rolling_speed")
-        nodes = _broadcast({name: _FROM_ARRAYS[name].si(value, name) for name, value in given.items()}, speed.ndim)
+        units = expected(*given, "rolling_speed", "density")
+        speed = units["rolling_speed"].si(rolling_speed, "rolling_speed")
+        nodes = _broadcast({name: units[name].si(value, name) for name, value in given.items()}, speed.ndim)
         p, q, s, a = nodes.values()
         axes = tuple(range(speed.ndim, p.ndim))
         if (p < 0).any():
@@ -340,7 +333,7 @@ class Contact:
             normal_force=(p * a).sum(axis=axes),
             tangential_force=force,
             wear_index=(q * s * a).sum(axis=axes),
-            density=np.broadcast_to(Unit("kg/m^3").si(density, "density"), speed.shape),
+            density=np.broadcast_to(units["density"].si(density, "density"), speed.shape),
         )
 
     @property

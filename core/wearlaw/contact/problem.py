@@ -16,32 +16,25 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz
-from wearlaw.contact.conditions import CREEPAGE, SPIN, broadcast
+from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material
 from wearlaw.errors import CompositionError, InputError, UnitError
-from wearlaw.units.quantities import QuantityLike, Unit, coefficient, real_array
+from wearlaw.units.quantities import QuantityLike, coefficient, real_array
+from wearlaw.units.variables import VARIABLES
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-Geometry: TypeAlias = Literal["line", "ellipse"]
-"""The shape of a contact patch: discs with parallel axes touch in a line, a wheel and a rail in an ellipse."""
+Geometry: TypeAlias = Literal["line", "ellipse", "strips"]
+"""The shape of a contact patch: discs with parallel axes touch in a line, and a wheel and a rail in an ellipse. If the
+curvatures vary over the patch, it consists of strips along the rolling direction, with a given pressure."""
 
-UNITS = {
-    "a": Unit("mm"),
-    "b": Unit("mm"),
-    "normal_force": Unit("kN"),
-    "track_width": Unit("mm"),
-    "relative_radius": Unit("mm"),
-    "shear_modulus": Unit("GPa"),
-    "creepage": CREEPAGE,
-    "longitudinal_creepage": CREEPAGE,
-    "lateral_creepage": CREEPAGE,
-    "spin": SPIN,
-    "rolling_speed": Unit("m/s"),
-    "density": Unit("kg/m^3"),
+PATCHES: Mapping[Geometry, str] = {
+    "line": "line contacts",
+    "ellipse": "elliptic contacts",
+    "strips": "patches of strips",
 }
-"""The expected units of the arguments of `Problem.line` and `Problem.ellipse`."""
+"""Words for the contacts of a geometry in messages."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +58,47 @@ class Body:
         if not isinstance(self.rolling_radius, np.ndarray):
             return self
         return Body(self.material, function(self.rolling_radius))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Strips:
+    """The strips of a patch that is not an ellipse, as SI arrays of shape (batch, strips).
+
+    A strip lies along the rolling direction, with its middle at x = 0. Its pressure is p0 √(1 - (x/a)²), with p0 and a
+    of the strip.
+
+    Attributes
+    ----------
+    y : ndarray
+        Position of the strip across the rolling direction [m].
+    width : ndarray
+        Width that it represents [m].
+    half_length : ndarray
+        Half its length, a [m].
+    max_pressure : ndarray
+        Its maximum pressure, p0 [Pa].
+    """
+
+    y: Array
+    width: Array
+    half_length: Array
+    max_pressure: Array
+
+    @property
+    def area(self) -> Array:
+        """Area of each strip, 2a × width [m²]."""
+        return 2.0 * self.half_length * self.width
+
+    @property
+    def normal_force(self) -> Array:
+        """Normal force on each strip, π/4 of its area times its maximum pressure [N]."""
+        return 0.25 * np.pi * self.area * self.max_pressure
+
+    def mapped(self, function: Callable[[Array], Array]) -> Self:
+        """Return the strips with a function of the batch applied to each of their arrays."""
+        arrays = {name: getattr(self, name) for name in self.__slots__}
+        by_strip = {name: [function(strip) for strip in np.moveaxis(array, -1, 0)] for name, array in arrays.items()}
+        return type(self)(**{name: np.stack(strips, axis=-1) for name, strips in by_strip.items()})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -103,7 +137,9 @@ class CreepForces:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Problem:
-    """Hertzian contact of two rolling bodies on a line or an ellipse: the input of a contact model.
+    """Contact of two rolling bodies: the input of a contact model.
+
+    It is Hertzian on a line or an ellipse; on strips the pressure is given.
 
     The arrays have one shape, the *batch*, with one entry for each operating point. `Problem.line` and
     `Problem.ellipse` make a problem from quantities. If bodies touch in several places, such as two wheels with up to
@@ -113,12 +149,13 @@ class Problem:
 
     Attributes
     ----------
-    geometry : {"line", "ellipse"}
+    geometry : {"line", "ellipse", "strips"}
         The shape of the patch.
     a : ndarray
-        Half the patch's length in the rolling direction [m], of an ellipse its semi-axis.
+        Half the patch's length in the rolling direction [m], of an ellipse its semi-axis. Of strips, semi-axis of the
+        ellipse that stands for the patch in Kalker's coefficients.
     b : ndarray
-        Half the patch's width across the rolling direction [m], of an ellipse its semi-axis.
+        Half the patch's width across the rolling direction [m], of an ellipse its semi-axis. Of strips as for a.
     normal_force : ndarray
         Normal force, N [N].
     max_pressure : ndarray
@@ -141,6 +178,8 @@ class Problem:
         Mass density of the body whose wear is predicted, ρ [kg/m³].
     traction_coefficient : ndarray or None
         Measured tangential over normal force, T/N [-], if the test gave one.
+    strips : Strips or None
+        The strips and their pressure, if the patch is neither a line nor an ellipse.
     bodies : mapping of str to Body
         The two bodies by name; wear is predicted for the first body. {} if the bodies are unknown.
     dims : tuple of str
@@ -163,6 +202,7 @@ class Problem:
     rolling_speed: Array
     density: Array
     traction_coefficient: Array | None = None
+    strips: Strips | None = None
     bodies: Mapping[str, Body] = field(default_factory=dict)
     dims: tuple[str, ...] = ()
     exists: NDArray[np.bool_] | None = None
@@ -316,6 +356,30 @@ class Problem:
             **fields,
         )
 
+    @classmethod
+    def of_strips(cls, strips: Strips, *, shear_modulus: Array, poisson_ratio: Array, **fields: Any) -> Self:
+        """Return the problem of a patch of strips whose pressure is given, of SI arrays of one shape.
+
+        Parameters
+        ----------
+        strips : Strips
+            The strips, of the batch shape and an axis of strips.
+        shear_modulus, poisson_ratio : ndarray
+            G [Pa] and ν [-].
+        **fields
+            The other fields of a `Problem`: the semi-axes `a` and `b` of the ellipse that stands for the patch in
+            Kalker's coefficients, friction, creepages, spin, rolling speed and density.
+        """
+        return cls(
+            geometry="strips",
+            strips=strips,
+            normal_force=strips.normal_force.sum(axis=-1),
+            max_pressure=strips.max_pressure.max(axis=-1),
+            effective_modulus=shear_modulus / (1.0 - poisson_ratio),
+            poisson_ratio=poisson_ratio,
+            **fields,
+        )
+
     @property
     def batch_shape(self) -> tuple[int, ...]:
         """The shape of the batch, () for one operating point."""
@@ -360,7 +424,10 @@ class Problem:
 
     @property
     def patch_area(self) -> Array:
-        """Area of the patch, A [m²], of a line 4ab, of an ellipse πab."""
+        """Area of the patch, A [m²], of a line 4ab, of an ellipse πab, of strips their sum."""
+        if self.strips is not None:
+            area: Array = self.strips.area.sum(axis=-1)
+            return area
         return (4.0 if self.geometry == "line" else np.pi) * self.a * self.b
 
     @property
@@ -368,9 +435,19 @@ class Problem:
         """Root mean square of the rigid slip over the patch [-], of an ellipse √(ξ² + η² + φ²(a² + b²)/4)."""
         if self.geometry == "line":
             return np.abs(self.longitudinal_creepage)
+        if self.strips is not None:
+            return self._rigid_slip_of_strips(self.strips)
         turning = 0.25 * self.spin**2 * (self.a**2 + self.b**2)
         slip: Array = np.sqrt(self.longitudinal_creepage**2 + self.lateral_creepage**2 + turning)
         return slip
+
+    def _rigid_slip_of_strips(self, strips: Strips) -> Array:
+        """Return the root mean square of (ξ - φy, η - φx), where the mean of x² over a strip is a²/3."""
+        spin = self.spin[..., None]
+        along = (self.longitudinal_creepage[..., None] - spin * strips.y) ** 2
+        across = self.lateral_creepage[..., None] ** 2 + spin**2 * strips.half_length**2 / 3.0
+        mean: Array = ((along + across) * strips.area).sum(axis=-1) / strips.area.sum(axis=-1)
+        return np.sqrt(mean)
 
     def body(self, name: str) -> Body:
         """Return the body with a name.
@@ -388,8 +465,7 @@ class Problem:
     def needs(self, geometry: Geometry, what: str) -> None:
         """Raise an error if `what` belongs to patches of another shape."""
         if self.geometry != geometry:
-            named = {"line": "line contacts", "ellipse": "elliptic contacts"}
-            raise CompositionError(f"{what}: belongs to {named[geometry]}, not to {named[self.geometry]}")
+            raise CompositionError(f"{what}: belongs to {PATCHES[geometry]}, not to {PATCHES[self.geometry]}")
 
     def power(self, forces: CreepForces) -> Array:
         """Return the energy dissipated per metre rolled, Tγ = ξFx + ηFy + φMz [N]."""
@@ -409,6 +485,8 @@ class Problem:
 
         a, b and p0 of an ellipse grow with the cube root of the force. a and p0 of a line grow with its square root.
         """
+        if self.strips is not None:
+            raise CompositionError("with_normal_force: the pressure of strips is given; make them for another load")
         ratio = normal_force / self.normal_force
         if self.geometry == "line":
             scale, b = np.sqrt(ratio), self.b
@@ -463,6 +541,8 @@ class Problem:
         for name, value in fields.items():
             if isinstance(value, np.ndarray | np.floating):
                 fields[name] = function(value)  # type: ignore[arg-type]  # a scalar of NumPy
+        if self.strips is not None:
+            fields["strips"] = self.strips.mapped(function)
         fields["bodies"] = {name: body.mapped(function) for name, body in self.bodies.items()}
         return type(self)(**fields)
 
@@ -477,7 +557,7 @@ def _flat(array: Array) -> Array:
 def _si(
     given: Mapping[str, QuantityLike], friction_coefficient: ArrayLike, poisson_ratio: ArrayLike
 ) -> dict[str, Array]:
-    arrays = {name: UNITS[name].si(value, name) for name, value in given.items()}
+    arrays = {name: VARIABLES[name].expected.si(value, name) for name, value in given.items()}
     arrays["friction_coefficient"] = coefficient(friction_coefficient, "friction_coefficient")
     arrays["poisson_ratio"] = _poisson_ratio(poisson_ratio)
     return broadcast(arrays)

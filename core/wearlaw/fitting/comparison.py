@@ -20,8 +20,8 @@ from wearlaw.models.contact_model import Model
 from wearlaw.models.labels import labels
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.pipeline.variables import label
 from wearlaw.units.quantities import WEAR_RATE, in_unit
+from wearlaw.units.variables import label
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FreeParameters
 from wearlaw.fitting.least_squares import Solutions
 from wearlaw.fitting.observations import Observations, wear_index_density
-from wearlaw.pipeline.variables import UNITS
 from wearlaw.units.quantities import from_si
+from wearlaw.units.variables import UNITS
 
 UNSEEN = 1e-6
 """Influence of a parameter, relative to the greatest, below which it counts as none: a hundred times the error of the

@@ -16,8 +16,8 @@ from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.numerics.integrate import integrate_forces, integrate_wear, patch_area
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.pipeline.variables import UNITS
 from wearlaw.units.quantities import in_unit
+from wearlaw.units.variables import UNITS
 from wearlaw.wear_tests.tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]

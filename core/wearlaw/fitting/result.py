@@ -19,9 +19,9 @@ from wearlaw.figures.plot import plot
 from wearlaw.fitting.law_files import write_wear_law
 from wearlaw.fitting.observations import Observations, Scatter, predictions, wear_index_density
 from wearlaw.models.wear_law import WearLaw
-from wearlaw.pipeline.variables import UNITS, label
 from wearlaw.units.quantities import Quantity, from_si, in_unit
 from wearlaw.units.registry import si_factor
+from wearlaw.units.variables import UNITS, label
 from wearlaw.wear_tests.columns import head
 from wearlaw.wear_tests.tests import WearTests
 

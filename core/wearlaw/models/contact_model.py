@@ -11,7 +11,7 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import CreepForces, Geometry, Problem
+from wearlaw.contact.problem import PATCHES, CreepForces, Geometry, Problem
 from wearlaw.errors import CompositionError, ModelError, WearlawError, described
 from wearlaw.settings.configuration import Configuration
 
@@ -32,9 +32,6 @@ OF_ARRAYS = (
     " Write its formulas with NumPy functions that broadcast: np.where instead of if, np.exp instead of math.exp"
 )
 """Hint for a law that fails with arrays instead of numbers."""
-
-PATCHES: dict[Geometry, str] = {"line": "line contacts", "ellipse": "elliptic contacts"}
-"""Words for the contacts of a geometry in messages."""
 
 
 class Model(Configuration, ABC):
@@ -125,7 +122,9 @@ class ContactModel(Model):
         CompositionError
             If the model does not solve contacts of this geometry.
         """
-        return self.solve_ellipse(problem) if problem.geometry == "ellipse" else self.solve_line(problem)
+        if problem.geometry == "line":
+            return self.solve_line(problem)
+        return self.solve_ellipse(problem) if problem.geometry == "ellipse" else self.solve_strips(problem)
 
     def solve_line(self, problem: Problem) -> Contact:  # noqa: ARG002
         """Return the solved line contact on nodes of the model's choice, of shape (batch, nodes)."""
@@ -135,12 +134,19 @@ class ContactModel(Model):
         """Return the solved elliptic contact on strips of the model's choice, of shape (batch, nodes, strips)."""
         raise self._cannot_solve("ellipse")
 
+    def solve_strips(self, problem: Problem) -> Contact:  # noqa: ARG002
+        """Return the solved contact on the strips of the problem, of shape (batch, nodes, strips)."""
+        raise self._cannot_solve("strips")
+
     @classmethod
     def geometries(cls) -> tuple[Geometry, ...]:
         """Return the shapes of patch that the model solves, according to the methods that it implements."""
-        line = cls.solve_line is not ContactModel.solve_line
-        ellipse = cls.solve_ellipse is not ContactModel.solve_ellipse
-        return (*(("line",) if line else ()), *(("ellipse",) if ellipse else ()))
+        methods: dict[Geometry, tuple[object, object]] = {
+            "line": (cls.solve_line, ContactModel.solve_line),
+            "ellipse": (cls.solve_ellipse, ContactModel.solve_ellipse),
+            "strips": (cls.solve_strips, ContactModel.solve_strips),
+        }
+        return tuple(shape for shape, (own, inherited) in methods.items() if own is not inherited)
 
     def _cannot_solve(self, geometry: Geometry) -> CompositionError:
         return CompositionError(
@@ -156,8 +162,8 @@ class ContactModel(Model):
         return self.solve_line(problem).tangential_force
 
     def creep_forces(self, problem: Problem) -> CreepForces:
-        """Return the forces of an elliptic contact, by default from `solve_ellipse`; override it if they cost less."""
-        return self.solve_ellipse(problem).forces
+        """Return the forces of an ellipse or of strips, by default from `solve`; override it if they cost less."""
+        return self.solve(problem).forces
 
     def on_strips(self, problem: Problem, shares: Array) -> Contact | None:  # noqa: ARG002
         """Return the contact on strips at y = `shares` × b, of shape (strips), or None if the model cannot choose them.

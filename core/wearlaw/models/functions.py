@@ -12,11 +12,12 @@ import numpy as np
 from pydantic import Field, create_model
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import NODE_VARIABLES, UNITS, Contact
+from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.errors import ConfigurationError, Fault, UnitError, did_you_mean
 from wearlaw.models.wear_law import BreakpointMap, Numbers, WearLaw
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, Unit, in_unit, text_of
 from wearlaw.units.registry import unit_in_si
+from wearlaw.units.variables import UNITS
 
 VARIABLES = (*NODE_VARIABLES, "wear_index")
 """The variables of a `Contact` that a function can take."""

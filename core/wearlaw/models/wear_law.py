@@ -14,13 +14,14 @@ from pydantic import model_validator
 
 from wearlaw.arrays.array import Array, type_name
 from wearlaw.arrays.extremes import extremes
-from wearlaw.contact.contact import UNITS, Contact
+from wearlaw.contact.contact import LAW_VARIABLES, Contact
 from wearlaw.contact.problem import Geometry
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, did_you_mean
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
 from wearlaw.units.quantities import WEAR_RATE, Quantity, Unit, from_si
+from wearlaw.units.variables import UNITS
 
 Numbers: TypeAlias = Mapping[str, float | Array]
 """A law's numbers in SI, by the names of its fields; a number of a record within a law as "coefficient.low_speed".
@@ -65,8 +66,8 @@ class Calibration(Configuration):
         """The stated range in SI."""
         found = {}
         for variable, low, high in self.stated_range:
-            if variable not in UNITS:
-                raise InputError(f"stated_range: unknown variable '{variable}'{did_you_mean(variable, UNITS)}")
+            if variable not in LAW_VARIABLES:
+                raise InputError(f"stated_range: unknown variable '{variable}'{did_you_mean(variable, LAW_VARIABLES)}")
             unit = Unit(UNITS[variable], positive=False)
             found[variable] = float(unit.si(low, variable)), float(unit.si(high, variable))
         return found

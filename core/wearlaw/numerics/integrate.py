@@ -109,7 +109,7 @@ class WearTotals:
 
 def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
     """Return the forces and the moment, or raise a `ModelError` if they are not finite."""
-    if problem.geometry == "ellipse":
+    if problem.geometry != "line":
 
         def of_ellipse(part: Problem, _: slice) -> Columns:
             return _columns(model.creep_forces(part))
@@ -186,7 +186,7 @@ def integrate_wear(
         If the model or the law breaks its contract.
     """
     p = law.numbers if p is None else p
-    if problem.geometry == "ellipse":
+    if problem.geometry != "line":
         return _over_ellipse(model, law, problem, scale, on_block, p)
     return _over_line(model, law, problem, scale, on_block, p)
 
@@ -346,7 +346,7 @@ def _columns(forces: CreepForces) -> Columns:
 def _by_block(solver: Solver, problem: Problem, columns: OfBlock, on_block: OnBlock | None = None) -> Columns:
     """Return columns over blocks; the model's number of nodes decides the number of operating points in a block."""
     block = NODE_BLOCK
-    if problem.geometry == "ellipse":
+    if problem.geometry != "line":
         few = problem.size <= FEW
         nodes = 1 if few else Solver(solver.model).solve(problem.flatten()[:1]).pressure.size
         block = FEW if few else max(ELLIPSE_NODES // nodes, 1)

@@ -26,6 +26,7 @@ from wearlaw.models.line_contact_model import LineContactModel
 from wearlaw.models.wear_law import Numbers, WearLaw
 from wearlaw.numerics.blocks import Columns, OfBlock, OnBlock, by_block
 from wearlaw.units.quantities import from_si
+from wearlaw.units.variables import VARIABLES
 
 EVERY = 64
 """Number of blocks from one comparison of sums with totals to the next."""
@@ -50,9 +51,6 @@ VECTORS = ("traction_x", "traction_y", "slip_x", "slip_y", "y")
 
 LINE_TOTALS = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
 """The totals that a line contact does not derive from others."""
-
-TO_SHOW = {"area": "mm^2", "moment_z": "N*m", "wear_index": "N"}
-"""Units of fields in messages; pressures and forces have units of their own."""
 
 
 class Solver:
@@ -141,7 +139,7 @@ def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Pr
 
 
 def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> None:
-    ellipse = problem.geometry == "ellipse"
+    ellipse = problem.geometry != "line"
     if not isinstance(contact, Contact):
         raise ModelError(f"contact model '{model.name}' returned {contact!r}, not a wearlaw.Contact")
     if ellipse and not contact.on_strips:
@@ -287,7 +285,7 @@ def _error(model: ContactModel, what: str, problem: Problem, wrong: NDArray[np.b
     first = _first(wrong)
     batch = len(problem.batch_shape)
     point, node = first[:batch], first[batch:]
-    creepage = "longitudinal creepage" if problem.geometry == "ellipse" else "creepage"
+    creepage = "creepage" if problem.geometry == "line" else "longitudinal creepage"
     conditions = (
         f"{creepage} {from_si(problem.longitudinal_creepage[point], '%')!r}"
         f" and maximum pressure {from_si(problem.max_pressure[point], 'MPa')!r}"
@@ -314,5 +312,5 @@ def _words(name: str) -> str:
 
 
 def _shown(name: str, value: float) -> str:
-    unit = TO_SHOW.get(name, "N" if "force" in name else "MPa")
+    unit = "N*m" if name == "moment_z" else "N" if "force" in name else VARIABLES[name].unit
     return repr(from_si(value, unit))

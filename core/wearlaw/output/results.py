@@ -14,13 +14,14 @@ import xarray
 from wearlaw.errors import OutputError
 from wearlaw.figures.curves import FigureData, FigureFormat
 from wearlaw.figures.drawing import draw
-from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS
+from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT
 from wearlaw.report.latex import latex_table
 from wearlaw.report.page import report
 from wearlaw.report.tables import tables
 from wearlaw.study.case import CASE_FILE, Case, written
 from wearlaw.study.study import Study, numbers
 from wearlaw.sweeping.storage import ITEM, check_disk, check_memory
+from wearlaw.units.variables import UNITS
 
 RESULTS = "results.nc"
 CSV = "results.csv"

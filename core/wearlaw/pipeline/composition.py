@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import warnings
 
-from wearlaw.contact.problem import Geometry, Problem
+from wearlaw.contact.problem import PATCHES, Geometry, Problem
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
-from wearlaw.models.contact_model import PATCHES, ContactModel, Model, Scale
+from wearlaw.models.contact_model import ContactModel, Model, Scale
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
 

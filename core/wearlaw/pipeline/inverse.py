@@ -91,7 +91,7 @@ def creepage_for(
     start = np.full(due.size, np.log(SMALLEST))
     at_start, short = lacking(start, points), lacking(np.zeros(due.size), points)
     tried = np.stack([at_start, short])
-    if flat.geometry == "ellipse":
+    if flat.geometry != "line":
         between = [lacking(np.full(due.size, np.log(one)), points) for one in TRIED]
         tried = np.stack([at_start, *between, short])
         short = tried.min(axis=0) + ROUNDED * flat.friction_coefficient

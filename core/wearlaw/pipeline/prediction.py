@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import UNITS, Contact
-from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.models.contact_model import ContactModel, Scale
@@ -21,6 +21,7 @@ from wearlaw.numerics.integrate import SlipTotals, WearTotals
 from wearlaw.numerics.solving import Solver
 from wearlaw.pipeline.composition import law_among
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
+from wearlaw.units.variables import UNITS
 
 if TYPE_CHECKING:
     import xarray
@@ -29,10 +30,13 @@ if TYPE_CHECKING:
 PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
 
-OF_LINE = ("tangential_force", "wear_index", "half_width", "max_pressure", "stick_ratio", "mean_slip")
-OF_ELLIPSE = (
-    "longitudinal_force", "lateral_force", "spin_moment", "wear_index", "semi_axis_a", "semi_axis_b", "max_pressure",
-)  # fmt: skip
+FORCES = ("longitudinal_force", "lateral_force", "spin_moment", "wear_index")
+
+SHOWN: Mapping[Geometry, tuple[str, ...]] = {
+    "line": ("tangential_force", "wear_index", "half_width", "max_pressure", "stick_ratio", "mean_slip"),
+    "ellipse": (*FORCES, "semi_axis_a", "semi_axis_b", "max_pressure"),
+    "strips": (*FORCES, "patch_area", "max_pressure"),
+}
 """What a prediction prints of itself, besides its wear rate."""
 
 
@@ -71,18 +75,6 @@ class Prediction:
         self.laws = laws
         self._given_forces = forces
         self._given_wear = wear
-
-    @classmethod
-    def unsolved(
-        cls, problem: Problem, contact_model: ContactModel, scale: Scale, laws: tuple[WearLaw, ...]
-    ) -> Prediction:
-        """Return a prediction of zeros, which has every name and unit that the solved one has, at no cost."""
-        none, one = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
-        forces = CreepForces(longitudinal=none, lateral=none, spin_moment=none)
-        wear = WearTotals(wear_rate=none, wear_rate_error=none, patch_area=one)
-        found = cls(problem, contact_model, scale, laws, forces=forces, wear=wear)
-        found._slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
-        return found
 
     @property
     def longitudinal_force(self) -> Quantity:
@@ -150,7 +142,7 @@ class Prediction:
     @property
     def normal_force(self) -> Quantity:
         """Normal force, N [N], of a line on its whole width."""
-        return from_si(self.problem.normal_force, "N")
+        return from_si(self.problem.normal_force, "kN")
 
     @property
     def normal_force_per_width(self) -> Quantity:
@@ -211,7 +203,7 @@ class Prediction:
         model, scale = self.contact_model, self.scale
         if self._solved is not None:
             return integrate.seen_by_law(model, self._solved.unflattened(self.problem), scale)
-        if self.problem.geometry == "ellipse" or not self.laws:
+        if self.problem.geometry != "line" or not self.laws:
             return integrate.solve(model, self.problem, scale)
         contact = integrate.contact_for(model, self._law, self.problem.flatten(), scale)
         return contact.unflattened(self.problem)
@@ -330,8 +322,8 @@ class Prediction:
     def profile_area_rate(self, body: str) -> Quantity:
         """Return the area of a radial section that a body loses per distance rolled [mm²/km].
 
-        This is the measure of the BRR law (Pearce and Sherratt, Wear 144 (1991) 343-351): the depth per distance,
-        times the width of the patch.
+        This is the measure of the BRR law (Pearce and Sherratt, Wear 144 (1991) 343-351, after Tassini et al.
+        2010, section 4.1): the depth per distance, times the width of the patch.
         """
         section = self._volume_rate(body) * self._patch_area / self._circumference(body)
         return from_si(section, "mm^2/km")
@@ -422,11 +414,21 @@ class Prediction:
         return 2.0 * np.pi * radius
 
     def __repr__(self) -> str:
-        summary = OF_LINE if self.problem.geometry == "line" else OF_ELLIPSE
+        summary = SHOWN[self.problem.geometry]
         names = ("wear_rate", *summary) if self.laws else summary
         rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in names)
         points = "1 operating point" if self.problem.size == 1 else f"{self.problem.size} operating points"
         return f"{type(self).__name__} of {points}{rows}"
+
+
+def unsolved(problem: Problem, contact_model: ContactModel, scale: Scale, laws: tuple[WearLaw, ...]) -> Prediction:
+    """Return a prediction of zeros, which has every name and unit that the solved one has, at no cost."""
+    none, one = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
+    forces = CreepForces(longitudinal=none, lateral=none, spin_moment=none)
+    wear = WearTotals(wear_rate=none, wear_rate_error=none, patch_area=one)
+    found = Prediction(problem, contact_model, scale, laws, forces=forces, wear=wear)
+    found._slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
+    return found
 
 
 def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str, named: tuple[str, ...]) -> xarray.Dataset:

@@ -9,13 +9,13 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.extremes import extremes
-from wearlaw.contact.contact import UNITS
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.errors import ModelError, RangeWarning
 from wearlaw.models.contact_model import Blame
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics.blocks import Columns
 from wearlaw.units.quantities import from_si
+from wearlaw.units.variables import UNITS
 
 
 class RangeWatch:

@@ -6,6 +6,8 @@ The page contains plotly.js, nearly all of its 5 MB. It loads nothing, and its s
 from __future__ import annotations
 
 import re
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -16,6 +18,7 @@ from plotly.offline import get_plotlyjs
 from wearlaw.figures.curves import FigureData
 from wearlaw.report.interactive import plotly_figure
 from wearlaw.report.tables import Cell, cell, models, parameters, profiles, summaries
+from wearlaw.study.sections import VERDICTS, CheckedClaim, Verdict
 from wearlaw.study.study import Study, used
 from wearlaw.version import __version__
 
@@ -35,7 +38,7 @@ def report(study: Study, case_text: str) -> str:
         study=study,
         case_text=case_text,
         claims=claims,
-        holding=sum(claim.holds for claim in claims),
+        counted=counted,
         summaries=[*summaries(study), *profiles(study)],
         parameters=parameters(study),
         models=models(study),
@@ -68,6 +71,20 @@ def cells(frame: pd.DataFrame) -> tuple[list[Cell], list[list[Cell]]]:
         Cell(str(head), number=any(row[number].number for row in rows)) for number, head in enumerate(frame.columns)
     ]
     return heads, rows
+
+
+def counted(claims: Sequence[CheckedClaim]) -> str:
+    """Return how many claims there are of each verdict, in words."""
+    verdicts = Counter(claim.verdict for claim in claims)
+    each = ", ".join(f"{verdicts[one]} {_of_many(one, verdicts[one])}" for one in VERDICTS if one in verdicts)
+    return f"{len(claims)} {'claim' if len(claims) == 1 else 'claims'}: {each}"
+
+
+def _of_many(verdict: Verdict, count: int) -> str:
+    """Return a verdict as the predicate of so many claims: "hold" and "do not hold" for several."""
+    if count == 1:
+        return verdict
+    return verdict.replace("holds", "hold").replace("does", "do")
 
 
 def paragraphs(text: str) -> list[str]:

@@ -16,13 +16,13 @@ import pint
 import xarray
 
 from wearlaw.models.contact_model import Model
-from wearlaw.pipeline.variables import label as label_of
-from wearlaw.pipeline.variables import name_of
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.study.results import along_main_axis, axes_of, main_axis
 from wearlaw.study.study import Study, used
 from wearlaw.units.registry import symbol
+from wearlaw.units.variables import label as label_of
+from wearlaw.units.variables import name_of
 
 COLUMNS = 5
 """Number of values on the main axis at which wear rates are shown."""

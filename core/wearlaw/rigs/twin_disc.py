@@ -11,7 +11,7 @@ from pydantic import model_validator
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz
-from wearlaw.contact.conditions import COEFFICIENTS, CREEPAGE, LOADS, ConditionTable, FrictionLaw, condition_arrays
+from wearlaw.contact.conditions import COEFFICIENTS, LOADS, ConditionTable, FrictionLaw, condition_arrays
 from wearlaw.contact.material import Material, steel
 from wearlaw.contact.problem import Body, Geometry, Problem
 from wearlaw.errors import InputError, UnitError
@@ -63,7 +63,7 @@ class TwinDiscConditions(TypedDict, total=False):
 
 
 TWIN_DISC = ConditionTable(
-    LOADS, {"creepage": CREEPAGE}, COEFFICIENTS, {"creepage": 'Q(1, "%")', "friction_coefficient": "0.46"}
+    LOADS, ("creepage",), COEFFICIENTS, {"creepage": 'Q(1, "%")', "friction_coefficient": "0.46"}
 )
 """The conditions of a twin-disc test."""
 
@@ -154,7 +154,7 @@ class TwinDisc(Rig):
 
         Notes
         -----
-        Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478.
+        Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, read in a secondary transcription.
         """
         standard = Disc(diameter=diameter, material=material or steel())
         disc_1, disc_2 = disc_1 or standard, disc_2 or standard

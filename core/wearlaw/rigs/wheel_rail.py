@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from wearlaw.contact import hertz, hertz_ellipse
-from wearlaw.contact.conditions import COEFFICIENTS, CREEPAGE, SPIN, ConditionTable, FrictionLaw, condition_arrays
+from wearlaw.contact.conditions import COEFFICIENTS, ConditionTable, FrictionLaw, condition_arrays
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Body, Geometry, Problem
 from wearlaw.pipeline.pipeline import Rig, check_sizes
@@ -54,8 +54,8 @@ class WheelRailConditions(TypedDict, total=False):
 
 
 WHEEL_RAIL = ConditionTable(
-    {"normal_force": Unit("kN"), "max_pressure": Unit("MPa")},
-    {"longitudinal_creepage": CREEPAGE, "lateral_creepage": CREEPAGE, "spin": SPIN},
+    ("normal_force", "max_pressure"),
+    ("longitudinal_creepage", "lateral_creepage", "spin"),
     COEFFICIENTS[:1],
     {"longitudinal_creepage": 'Q(0.2, "%")', "friction_coefficient": "0.3"},
 )

@@ -40,7 +40,6 @@ from wearlaw.errors import (
 from wearlaw.models.contact_model import Model
 from wearlaw.models.labels import labelled, labels
 from wearlaw.pipeline.pipeline import Rig, RigField
-from wearlaw.pipeline.variables import name_of
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import ContactModelField, WearLawField, known_presets, preset_fields
 from wearlaw.plugins.shelf import Shelf
@@ -52,6 +51,7 @@ from wearlaw.study.grid import Condition, Grid
 from wearlaw.study.measured import MeasuredTests, check_rig, known_variables
 from wearlaw.study.uncertain_point import Condition as UncertainCondition
 from wearlaw.study.uncertain_point import UncertainPoint
+from wearlaw.units.variables import name_of
 
 ModelT = TypeVar("ModelT", bound=Model)
 

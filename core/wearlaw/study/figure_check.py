@@ -14,9 +14,10 @@ from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.composition import check_geometry
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS, offered
+from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, offered
 from wearlaw.study.figure_spec import ACROSS, OF_LOAD, OF_PROFILE, FigureSpec, Window, axis_along, wrong_range
 from wearlaw.study.grid import Grid
+from wearlaw.units.variables import UNITS
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,7 @@ class Contents:
         return Variables(x, ("wear_rate", *of_contact, *of_point), {**UNITS, **self.units})
 
     def _of_profile(self, predictions: list[Prediction]) -> Variables:
-        across = [one for one in predictions if one.problem.geometry == "ellipse"]
+        across = [one for one in predictions if one.problem.geometry != "line"]
         if not across:
             return Variables(("x",), OF_PROFILE, UNITS)
         units = dict(UNITS)

@@ -9,10 +9,11 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import ConfigurationError, Fault, UnitError
-from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS
+from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT
 from wearlaw.settings.configuration import Configuration
 from wearlaw.study.grid import Grid
 from wearlaw.units.quantities import Unit, from_si
+from wearlaw.units.variables import UNITS
 
 OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "creepage")
 """Variables along the patch of a line contact; the creepage of the operating point is a level line."""

@@ -15,10 +15,10 @@ import xarray
 
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.models.labels import labels
-from wearlaw.pipeline.variables import UNITS, label, name_of
 from wearlaw.study.figure_spec import ACROSS, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
 from wearlaw.study.measured import measured_points
 from wearlaw.study.results import Results, along, main_axis
+from wearlaw.units.variables import UNITS, label, name_of
 
 if TYPE_CHECKING:
     from wearlaw.arrays.array import Array

@@ -14,11 +14,11 @@ from pydantic import BeforeValidator, Field, model_validator
 from wearlaw.arrays.array import Array
 from wearlaw.errors import ConfigurationError, Fault, InputError, UnitError, WearlawError, did_you_mean
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw.pipeline.variables import UNITS
 from wearlaw.settings.configuration import Configuration
 from wearlaw.sweeping.points import Points, Varying
 from wearlaw.units.quantities import Q, Quantity, parse
 from wearlaw.units.registry import symbol
+from wearlaw.units.variables import UNITS
 
 MOST_POINTS = 10_000_000
 """Largest grid that a case may have."""

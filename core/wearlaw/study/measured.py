@@ -12,10 +12,10 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import InputError
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw.pipeline.variables import UNITS
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import from_si, in_unit
+from wearlaw.units.variables import UNITS
 from wearlaw.wear_tests.columns import COLUMNS
 from wearlaw.wear_tests.reader import parse_tests, text_of_tests
 from wearlaw.wear_tests.tests import WearTests

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
+from wearlaw.errors import InputError
 from wearlaw.figures.curves import FigureData
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+Verdict: TypeAlias = Literal["holds", "holds in part", "does not hold", "cannot be decided"]
+"""What putting a claim to the test can give."""
+
+VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
+"""The verdicts, from best to worst."""
 
 
 @dataclass(frozen=True)
@@ -22,16 +30,29 @@ class CheckedClaim:
         The claim.
     where : str
         Paper and section.
+    criterion : str
+        Which numbers decide, and how near they must be.
     found : str
-        The computed result, with numbers and units.
-    holds : bool
-        Whether the result supports the claim.
+        The computed result, with numbers and units; blank lines separate paragraphs, such as one for each variant.
+    verdict : {"holds", "holds in part", "does not hold", "cannot be decided"}
+        "holds in part": for some variants, or over part of the range. "cannot be decided": it depends on something
+        that the source does not state.
+
+    Raises
+    ------
+    InputError
+        If the verdict is none of these.
     """
 
     statement: str
     where: str
+    criterion: str
     found: str
-    holds: bool
+    verdict: Verdict
+
+    def __post_init__(self) -> None:
+        if self.verdict not in VERDICTS:
+            raise InputError(f"verdict: must be one of {', '.join(map(repr, VERDICTS))}, got {self.verdict!r}")
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,7 +27,7 @@ from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, UNITS, offered
+from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, offered
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import known_name, parts
 from wearlaw.study.case import Case
@@ -37,6 +37,7 @@ from wearlaw.study.results import Results
 from wearlaw.study.sections import Section
 from wearlaw.sweeping.checkpoint import Checkpoint, Evaluator
 from wearlaw.sweeping.points import Points
+from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
 
 if TYPE_CHECKING:

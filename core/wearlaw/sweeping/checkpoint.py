@@ -15,12 +15,12 @@ from pydantic import TypeAdapter
 from wearlaw.arrays.array import Array
 from wearlaw.errors import OutputError, RangeWarning
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.pipeline.variables import UNITS
 from wearlaw.sweeping.evaluation import Job
 from wearlaw.sweeping.journal import Run, check_same, write_whole
 from wearlaw.sweeping.points import Points
 from wearlaw.sweeping.storage import Arrays, Files, Memory, damage
 from wearlaw.sweeping.sweep import check_importable, run
+from wearlaw.units.variables import UNITS
 
 RUN = "run.json"
 

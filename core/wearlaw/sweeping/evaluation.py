@@ -20,11 +20,11 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.variables import UNITS
+from wearlaw.pipeline.prediction import unsolved
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.units.quantities import Quantity
 from wearlaw.units.registry import symbol
+from wearlaw.units.variables import UNITS
 
 Outputs = dict[str, Array]
 """Results of a block by name, (points,) each, in the units of the job."""
@@ -157,7 +157,7 @@ def output_units(pipeline: Pipeline[...], problem: Problem, points: Points, outp
     """
     if problem.geometry == "line":
         check_traction(pipeline.contact_model, problem)
-    prediction = Prediction.unsolved(problem, pipeline.contact_model, pipeline.scale, pipeline.laws)
+    prediction = unsolved(problem, pipeline.contact_model, pipeline.scale, pipeline.laws)
     given = {*points.varying, *points.fixed}
     units = {}
     for name in outputs:

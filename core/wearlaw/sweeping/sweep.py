@@ -148,14 +148,15 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
 
     They are checked along each dimension, at the first values of the others.
     """
+    problems = []
     for dim in points.dims:
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
-        problem = pipeline.rig.checked_problem({**not_given, **line.conditions()})
-        for law in pipeline.laws if dim == points.dims[0] else ():
-            model, scale = pipeline.contact_model, pipeline.scale
-            warn_of_geometry(pipeline.rig.geometry, model, scale, law, problem.geometry, stacklevel=4)
-    check_one_patch(problem, pipeline.rig, "sweep")
-    return problem.flatten()[:1]
+        problems.append(pipeline.rig.checked_problem({**not_given, **line.conditions()}))
+    first, model, scale = problems[0], pipeline.contact_model, pipeline.scale
+    check_one_patch(first, pipeline.rig, "sweep")
+    for law in pipeline.laws:
+        warn_of_geometry(pipeline.rig.geometry, model, scale, law, first.geometry, stacklevel=4)
+    return first.flatten()[:1]
 
 
 def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[str]:

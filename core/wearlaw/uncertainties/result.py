@@ -22,10 +22,10 @@ from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_wear
 from wearlaw.pipeline.composition import check_traction, warn_of_geometry
 from wearlaw.pipeline.ranges import RangeWatch, mean_over_patch
-from wearlaw.pipeline.variables import UNITS, label
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
 from wearlaw.uncertainties.inputs import OTHERS, Known, Uncertain, check_samples, parameter, split
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, QuantityLike, from_si, shortened
+from wearlaw.units.variables import UNITS, label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -3,53 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import UnitError
-from wearlaw.units.quantities import WEAR_RATE, Q
+from wearlaw.units.quantities import Q
 from wearlaw.units.registry import si_factor
+from wearlaw.units.variables import VARIABLES, Variable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class Column(NamedTuple):
-    """A column: the unit in which it is shown, the sign of its values, and their largest magnitude in SI."""
-
-    unit: str
-    sign: Literal["positive", "not negative", "any"] = "positive"
-    limit: float = np.inf
-
-    def wrong(self, si: Array) -> Iterator[tuple[NDArray[np.bool_], str]]:
-        """Yield a mask of the values that break a rule, and the rule, for each rule; missing values break none."""
-        yield np.isinf(si), "must be finite"
-        if self.sign == "positive":
-            yield si <= 0, "must be greater than zero"
-        if self.sign == "not negative":
-            yield si < 0, "must not be negative"
-        yield abs(si) > self.limit, f"must not exceed {100.0 * self.limit:g} % in magnitude; is its unit right?"
-
-
 COLUMNS = {
-    "creepage": Column("%", "any", 1.0),
-    "normal_force": Column("kN"),
-    "normal_force_per_width": Column("kN/m"),
-    "max_pressure": Column("MPa"),
-    "friction_coefficient": Column(""),
-    "traction_coefficient": Column(""),
-    "tangential_force": Column("N"),
-    "frictional_heat": Column("W"),
-    "rolling_speed": Column("m/s"),
-    "wear_rate": Column(WEAR_RATE, "not negative"),
-    "wear_rate_uncertainty": Column(WEAR_RATE),
+    name: VARIABLES[name]
+    for name in (
+        *("creepage", "normal_force", "normal_force_per_width", "max_pressure", "friction_coefficient"),
+        *("traction_coefficient", "tangential_force", "frictional_heat", "rolling_speed"),
+        *("wear_rate", "wear_rate_uncertainty"),
+    )
 }
 """All numeric columns."""
 
-OTHER = Column("", "any")
+OTHER = Variable("", "", sign="any")
 """A condition that is not in `COLUMNS`."""
 
 DERIVED = ("tangential_force", "frictional_heat")
@@ -66,6 +45,16 @@ def head(name: str) -> str:
     """Return the head of a column with its usual unit, as in "creepage [%]"."""
     unit = COLUMNS[name].unit
     return f"{name} [{unit}]" if unit else name
+
+
+def wrong_values(column: Variable, si: Array) -> Iterator[tuple[NDArray[np.bool_], str]]:
+    """Yield a mask of the values that break a rule, and the rule, for each rule; missing values break none."""
+    yield np.isinf(si), "must be finite"
+    if column.sign == "positive":
+        yield si <= 0, "must be greater than zero"
+    if column.sign == "not negative":
+        yield si < 0, "must not be negative"
+    yield abs(si) > column.limit, f"must not exceed {100.0 * column.limit:g} % in magnitude; is its unit right?"
 
 
 def factor(name: str, unit: str) -> float:
@@ -130,7 +119,7 @@ def faulty(columns: Mapping[str, Array]) -> list[tuple[int, str, str]]:
     """
     faults = []
     for name, values in columns.items():
-        for wrong, rule in COLUMNS.get(name, OTHER).wrong(values):
+        for wrong, rule in wrong_values(COLUMNS.get(name, OTHER), values):
             faults += [(int(i), name, rule) for i in np.flatnonzero(wrong)]
         if name in COMPLETE or name not in COLUMNS:
             faults += [(int(i), name, "is missing; every test needs it") for i in np.flatnonzero(np.isnan(values))]

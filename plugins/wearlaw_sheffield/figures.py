@@ -1,0 +1,96 @@
+"""Figures of the paper in another form: with eq. (7) as printed, with other averages, with the measured Tγ."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw_sheffield.bench import TESTED, WEAR_RATE, Bench
+from wearlaw_sheffield.law_claims import measured_wear_index
+from wearlaw_sheffield.local_claims import local_models
+
+PROFILE = 0.5
+"""The creepage in partial slip at which the case shows Figures 3 and 4 [%]; the paper does not state its own."""
+
+MILD = 0.2
+"""The window of mild wear, 70 N, in parts of that of severe wear, 350 N."""
+
+MODELS = {"global": "patch means", "exact": "exact theory", "fastsim": "FASTSIM"}
+
+WEAR = f"wear rate [{WEAR_RATE}]".replace("ug", "µg").replace("mm^2", "mm²")
+
+
+def figures(bench: Bench, tests: tuple[Array, Array]) -> tuple[wl.FigureData, ...]:
+    """Return the figures; `tests` are creepages [%] and measured traction coefficients T/N [-]."""
+    return slip_along_patch(bench), averages(bench), measured_index(bench, tests)
+
+
+def slip_along_patch(bench: Bench) -> wl.FigureData:
+    """Return Figure 4 with both slips of the exact theory."""
+    curves = []
+    for number, (words, model) in enumerate(local_models().items()):
+        profile = bench.predict(model, wl.wear_law("usfd"), PROFILE).profile
+        x = profile["x"].values
+        curves.append(wl.Curve(words, x, profile["slip"].values, colour=number, dash=number))
+    curves.append(wl.Curve("creepage γ", x[[0, -1]], np.full(2, PROFILE), colour=len(curves), dash=len(curves)))
+    panel = wl.Panel(
+        wl.PlotAxis("position x, leading edge left [mm]"), wl.PlotAxis("relative slip s [%]"), tuple(curves)
+    )
+    return wl.FigureData(
+        name="figure_04_as_printed",
+        title="Figure 4 with equation 7 as printed",
+        panels=(panel,),
+        caption=f"At {PROFILE:g} % creepage. With the slip as printed in the paper, ξ + kx over the whole slip zone,"
+        " slip jumps where it begins.",
+    )
+
+
+def averages(bench: Bench) -> wl.FigureData:
+    """Return USFD with its original parameters in mild wear, with three pairs of averages on the axes."""
+    end = MILD * bench.window
+    shown: dict[str, list[wl.Curve]] = {"patch": [], "mixed": [], "zone": []}
+    for number, (model, words) in enumerate(MODELS.items()):
+        prediction = bench.predict(model, wl.wear_law("usfd"), bench.creepage)
+        index, averaged = (
+            np.asarray(values.to("N").magnitude) for values in (prediction.wear_index, prediction.averaged_wear_index)
+        )
+        rate = np.asarray(prediction.wear_rate.to(WEAR_RATE).magnitude)
+        in_zone = rate * prediction.contact.patch_area / prediction.contact.slip_area
+        for kind, x, y in (("patch", index, rate), ("mixed", averaged, rate), ("zone", averaged, in_zone)):
+            inside = x <= end
+            shown[kind].append(wl.Curve(words, x[inside], y[inside], colour=number, dash=number))
+    titles = {
+        "mixed": ("slip zone's mean of s on x, patch mean on y", "averaged W.I. [N]"),
+        "zone": ("means over the slip zone on both", "averaged W.I. [N]"),
+        "patch": ("means over the patch on both", "W.I., Tγ [N]"),
+    }
+    return wl.FigureData(
+        name="figure_08_averages",
+        title="Figures 7 and 8 in mild wear, with other averages",
+        panels=tuple(
+            wl.Panel(wl.PlotAxis(x), wl.PlotAxis(WEAR), tuple(shown[kind]), title)
+            for kind, (title, x) in titles.items()
+        ),
+        caption="USFD with its original parameters. In partial slip the averaged W.I. of section 3.2.3 has the mean"
+        " slip of the slip zone, while the wear rate is a mean over the patch: the first panel, as Figures 7 and 8,"
+        " mixes the two averages. The others have one on both axes. The paper does not say over what it averages the"
+        " rate, but calls the local results of mild wear very similar to the global ones. In full slip all averages are"
+        " the same.",
+    )
+
+
+def measured_index(bench: Bench, tests: tuple[Array, Array]) -> wl.FigureData:
+    """Return Figure 9 with USFD at the measured Tγ in the place of the measured wear."""
+    law = wl.wear_law("usfd")
+    inside = bench.creepage <= TESTED[1]
+    rates = bench.rate_at_index(law, measured_wear_index(bench, tests))
+    curve = wl.Curve("USFD at the modelled Tγ", bench.creepage[inside], bench.rate("global", law)[inside])
+    points = wl.Curve("USFD at the measured Tγ of the tests", tests[0], rates, colour=6, points=True)
+    return wl.FigureData(
+        name="figure_09_measured",
+        title="Figure 9 with USFD at the measured Tγ",
+        panels=(wl.Panel(wl.PlotAxis("creepage [%]"), wl.PlotAxis(WEAR), (curve, points)),),
+        caption="The measured wear rates are not public. USFD at the measured Tγ stands for them: on the axis of W.I."
+        " these points are on the curve, on that of creepage they are not.",
+    )
