@@ -15,7 +15,7 @@ Section = Annotated[wl.Quantity, wl.Unit("mm^3/km")]
 Force = Annotated[wl.Quantity, wl.Unit("N")]
 
 ROUNDING = 1e-12
-"""Relative difference below which two regimes meet."""
+"""Relative difference below which two regimes count as continuous."""
 
 
 class BRR(wl.WearLaw):
@@ -23,8 +23,8 @@ class BRR(wl.WearLaw):
 
     mild, Tγ < 100 N: 0.25 Tγ; 100 N ≤ Tγ < 200 N: 25; severe, Tγ ≥ 200 N: 1.19 Tγ - 154, in mm² mm/km.
 
-    Area × πD is the volume lost per distance, so D cancels in the wear rate, which is ρπ/A times the above. At
-    200 N the published law jumps from 25 to 84; the jump is kept.
+    Area × πD is the volume lost per distance, so D cancels in the wear rate, which is ρπ/A times the values above. At
+    200 N the published law jumps from 25 to 84. wearlaw keeps the jump.
     """
 
     name: ClassVar[str] = "brr"
@@ -42,7 +42,7 @@ class BRR(wl.WearLaw):
     severe_slope: SectionPerForce = Field(default="1.19 mm^3/km/N", validate_default=True)
     """Slope of the severe regime, section × D over Tγ [mm³/km/N]."""
     severe_offset: Section = Field(default="154 mm^3/km", validate_default=True)
-    """What the severe regime takes off from its slope [mm³/km]."""
+    """Offset of the severe regime, subtracted from slope × Tγ [mm³/km]."""
     mild_limit: Force = Field(default="100 N", validate_default=True)
     """Tγ at which the plateau begins [N]."""
     severe_limit: Force = Field(default="200 N", validate_default=True)
@@ -75,7 +75,7 @@ class BRR(wl.WearLaw):
         return {"wear_index": (p["mild_limit"], p["severe_limit"])}
 
     def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
-        """Return where the severe regime begins, as published, or wherever two regimes do not meet."""
+        """Return the start of the severe regime for the published numbers, or else each border with a jump."""
         mild_end, plateau, severe_start = _at_borders(p)
         steps = ((p["mild_limit"], plateau - mild_end), (p["severe_limit"], severe_start - plateau))
         return {"wear_index": tuple(limit for limit, step in steps if np.any(step > ROUNDING * plateau))}

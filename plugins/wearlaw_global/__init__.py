@@ -14,8 +14,7 @@ import wearlaw as wl
 class Global(wl.ContactModel):
     """The patch as one cell: p = P/(2a), s = ξ, q = T/(2a).
 
-    T is the measured one where the conditions hold a traction coefficient; otherwise it is the total of a local
-    model.
+    T is the measured force if the conditions hold a traction coefficient. Otherwise T is the total of a local model.
     """
 
     name: ClassVar[str] = "global"
@@ -24,7 +23,7 @@ class Global(wl.ContactModel):
     uses_measured_traction: ClassVar[bool] = True
 
     total_from: wl.ContactModelField = Field(default="exact", validate_default=True)
-    """The contact model that gives T where no traction coefficient was measured."""
+    """The contact model that gives T if there is no measured traction coefficient."""
 
     @field_validator("total_from")
     @classmethod
@@ -35,12 +34,12 @@ class Global(wl.ContactModel):
 
     @property
     def accuracy(self) -> float:
-        """That of the model that T is taken from."""
+        """Accuracy of the model that gives T."""
         return self.total_from.accuracy
 
     @property
     def exemptions(self) -> Mapping[wl.Claim, str]:
-        """The one cell slips at any creepage; the rest follows the model that T is taken from."""
+        """The one cell slips at any creepage; other exemptions are those of the model that gives T."""
         stick = "the one cell slips as a whole, with a traction below its bound"
         kept = ("saturation", "initial_slope")
         return {"stick": stick, **{c: r for c, r in self.total_from.exemptions.items() if c in kept}}

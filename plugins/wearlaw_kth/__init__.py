@@ -36,13 +36,13 @@ PUBLISHED = {
 class KTH(wl.WearLaw):
     """Archard's law V = k N d / H with k from a map of pressure and slip speed; at a node, ρ k p s / H.
 
-    k is dimensionless and H the hardness; some sources print V = k N d / (3H), with a k three times as large.
-    Where p equals the pressure threshold, which the published map leaves open, its upper field holds. The
-    density ρ is that of the contact.
+    k is dimensionless, and H is the hardness. Some sources print V = k N d / (3H), with a k three times as large. If p
+    equals the pressure threshold, the law takes the upper field of the map; the published map leaves this case open.
+    The density ρ is that of the contact.
 
     Notes
     -----
-    Table 2 of Tassini et al. (2010) prints "ṡ ≥ 0.2" in its first row below 2.1 GPa; "ṡ < 0.2" is meant.
+    Table 2 of Tassini et al. (2010) prints "ṡ ≥ 0.2" in its first row below 2.1 GPa; it must read "ṡ < 0.2".
     """
 
     name: ClassVar[str] = "kth"
@@ -51,11 +51,11 @@ class KTH(wl.WearLaw):
     )
 
     coefficient: Literal["low", "mid", "high"] | Coefficients = "mid"
-    """The published k are ranges: take their low end, middle or high end, or your own values."""
+    """The published values of k are ranges. Choose their low end, middle or high end, or give your own values."""
     hardness: wl.Stress = Field(default="2.625 GPa", validate_default=True)
     """Hardness, H [Pa]. Not printed in the paper; 2.1 GPa is 0.8 H in the wear map."""
     pressure_threshold: wl.Stress = Field(default="2.1 GPa", validate_default=True)
-    """Pressure at and above which the wear is that of seizure [Pa]."""
+    """Pressure at which seizure begins [Pa]."""
     lower_slip_speed: wl.Speed = Field(default="0.2 m/s", validate_default=True)
     """Slip speed at which severe wear begins [m/s]."""
     upper_slip_speed: wl.Speed = Field(default="0.7 m/s", validate_default=True)
@@ -102,13 +102,13 @@ class KTH(wl.WearLaw):
         return self.breakpoints(p)
 
     def explicit(self) -> KTH:
-        """Return this law with its values of k as numbers."""
+        """Return this law with numbers for k."""
         if isinstance(self.coefficient, Coefficients):
             return self
         return self.model_copy(update={"coefficient": Coefficients(**PUBLISHED[self.coefficient])})
 
     def band(self) -> tuple[KTH, KTH, KTH]:
-        """Return this law at the low end, middle and high end of k; own values of k have no width."""
+        """Return this law at the low end, middle and high end of k; your own values of k have no range."""
         if isinstance(self.coefficient, Coefficients):
             return self, self, self
         low, mid, high = (self.model_copy(update={"coefficient": end}) for end in ("low", "mid", "high"))

@@ -17,9 +17,9 @@ class Linear(wl.CreepForceModel):
 
     Notes
     -----
-    It is the limit of the full theory for vanishing creepage and knows no friction. Beside the half-space solution of
-    CONTACT for pure longitudinal creepage at a = b/2, its force is 7 % too high where that is 0.26 μN, 17 % at 0.47 μN,
-    28 % at 0.65 μN, and grows without end.
+    The linear theory is the limit of the full theory for vanishing creepage, and ignores friction. Compared with the
+    half-space solution of CONTACT for pure longitudinal creepage at a = b/2, its force is 7 % too high at 0.26 μN, 17 %
+    at 0.47 μN and 28 % at 0.65 μN. It grows without limit.
     """
 
     name: ClassVar[str] = "linear"
@@ -29,19 +29,19 @@ class Linear(wl.CreepForceModel):
     )
 
     interpolation: wl.kalker.Interpolation = "scaled"
-    """How the table of the coefficients is read, as in `wl.kalker.coefficients`. "contact": as the program CONTACT
-    does, for comparisons with it."""
+    """Method of interpolating the coefficients, as in `wl.kalker.coefficients`. "contact" interpolates as the program
+    CONTACT does, for comparisons with it."""
 
     @property
     def exemptions(self) -> Mapping[wl.Claim, str]:
-        """Linear forces know no friction."""
+        """The linear forces ignore friction."""
         exempt: dict[wl.Claim, str] = {
             "traction_bound": "the force is linear in the creepage and passes μN",
             "saturation": "the force is linear in the creepage and passes μN",
-            "stick": "the one node slips by what dissipates the energy of the creepages, at any traction",
+            "stick": "the one node slips at any traction, so that it dissipates the energy of the creepages",
         }
         if self.interpolation == "contact":
-            exempt["initial_slope"] = "between the rows of Kalker's table long patches differ"
+            exempt["initial_slope"] = "the slopes of long patches differ between the rows of Kalker's table"
         return exempt
 
     def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:

@@ -23,7 +23,7 @@ PARAMETERS = {
 """Table 4 of Tassini et al. (2010)."""
 
 TESTED = (("wear_index_density", "0 N/mm^2", "108.4 N/mm^2"),)
-"""Up to Tγ/A of the tests: 20 % creepage, 1500 MPa and μ = 0.46, or 0.2 · 0.46 · (π/4) 1500 MPa, rounded up."""
+"""Range of Tγ/A in the tests, up to 20 % creepage, 1500 MPa and μ = 0.46: 0.2 · 0.46 · (π/4) 1500 MPa, rounded up."""
 
 Slope = Annotated[wl.Quantity, wl.Unit("ug/m/N")]
 WearRate = Annotated[wl.Quantity, wl.Unit("ug/m/mm^2")]
@@ -32,7 +32,7 @@ WearIndexDensity = Annotated[wl.Quantity, wl.Unit("N/mm^2")]
 
 @cache
 def calibrations() -> dict[str, wl.Calibration]:
-    """Return what the published sets were fitted to."""
+    """Return the calibration of each published set."""
     return {
         "global": wl.Calibration(
             contact_model="global",
@@ -70,8 +70,8 @@ class USFD(wl.WearLaw):
     monotone_in: ClassVar[tuple[str, ...]] = ("wear_index_density",)
 
     fitted_for: Literal["global", "exact", "fastsim"] | wl.Calibration = "global"
-    """The contact solution to which the parameters were fitted. A name also chooses the published set that gives the
-    parameters which are not given by hand; a set of your own states what it was fitted to as a Calibration."""
+    """The contact solution to which the parameters were fitted. A name also chooses a published set, which fills in
+    parameters that you do not give. For a set of your own, give a Calibration."""
     m_m: Slope
     """Slope of the mild regime, m_m [µg/m/N]."""
     q_s: WearRate
@@ -93,7 +93,7 @@ class USFD(wl.WearLaw):
     @model_validator(mode="before")
     @classmethod
     def _published(cls, fields: Any) -> Any:
-        """Fill in the published set where parameters are not given."""
+        """Fill in parameters that are not given from the published set."""
         if not isinstance(fields, dict):
             return fields
         chosen = fields.get("fitted_for", "global")
@@ -118,7 +118,7 @@ class USFD(wl.WearLaw):
         return {"wear_index_density": (p["q_s"] / p["m_m"], p["tr_sc"])}
 
     def ramps(self, p: wl.Numbers) -> tuple[tuple[Any, Any], ...]:
-        """Return the rise of the mild regime, which ends at its border, and that of the catastrophic one."""
+        """Return the rise of the mild regime, its end at the border, and the rise of the catastrophic regime."""
         return (0.0, p["m_m"]), (p["q_s"] / p["m_m"], -p["m_m"]), (p["tr_sc"], p["m_c"])
 
     @property
@@ -128,11 +128,11 @@ class USFD(wl.WearLaw):
 
     @property
     def calibration(self) -> wl.Calibration:
-        """What the parameters were fitted to."""
+        """The record of the fit of the parameters."""
         return calibrations()[self.fitted_for] if isinstance(self.fitted_for, str) else self.fitted_for
 
     def fitted(self, calibration: wl.Calibration) -> USFD:
-        """Return the law with what its parameters were fitted to."""
+        """Return the law with a record of the fit of its parameters."""
         return self.model_copy(update={"fitted_for": calibration})
 
 

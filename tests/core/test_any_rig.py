@@ -129,8 +129,8 @@ def test_parameters_fitted_for_another_shape_of_patch_are_warned_of_in_samples_t
     ("given", "said"),
     [
         ({"mas": wl.normal("20 kg", "1 kg")}, "mas: unknown condition; did you mean 'mass'"),
-        ({"mass": wl.normal("20 N", "1 N")}, "mass: got 20.00 N, which is not of the dimension of 'kg'"),
-        ({"mass": wl.normal("20 kg", "1 N")}, "mass: got 1.000 N, which is not of the dimension of 'kg'"),
+        ({"mass": wl.normal("20 N", "1 N")}, "mass: got 20.00 N, which does not have the dimension of 'kg'"),
+        ({"mass": wl.normal("20 kg", "1 N")}, "mass: got 1.000 N, which does not have the dimension of 'kg'"),
         ({"mass": wl.normal("20 kg", 1.0)}, "mass: got the bare number 1.0, which has no unit"),
         ({"mass": wl.normal(20.0, 1.0)}, "mass: got the bare number 20.0, which has no unit"),
         ({"mass": wl.uniform("20 kg", "2 kg")}, r"mass: the upper end of uniform\(20.0 kg, 2.0 kg\)"),
@@ -353,7 +353,7 @@ def test_the_law_that_made_the_tests_agrees_best(rig: Any, model: str) -> None:
     ("changes", "said"),
     [
         ({"mas": Q(20.0, "kg")}, "mas: unknown condition; did you mean 'mass'"),
-        ({"mass": Q(20.0, "kN")}, "mass: got .* kN, which is not of the dimension of 'kg'"),
+        ({"mass": Q(20.0, "kN")}, "mass: got .* kN, which does not have the dimension of 'kg'"),
         ({"mass": [20.0] * 5}, "mass: got .*, which has no unit"),
         ({"humidity": Q(20.0, "%")}, "humidity: unknown condition. The conditions are: mass, creepage"),
     ],

@@ -70,10 +70,10 @@ WRONG: list[tuple[str, Any, str]] = [
 """What both the loader and the schema refuse."""
 
 WRONG_TO_THE_LOADER: list[tuple[str, Any, str]] = [
-    ("rig.diameter", "47 kN", "rig.diameter: got 47.00 kN, which is not of the dimension of 'mm'"),
+    ("rig.diameter", "47 kN", "rig.diameter: got 47.00 kN, which does not have the dimension of 'mm'"),
     ("rig.diameter", "-1 mm", "rig.diameter: must be greater than zero, got -1.000 mm"),
     ("rig.diameter", "47 foo", "rig.diameter: 'foo' is not a known unit"),
-    ("sweeps.creepage.max_pressure", "1 kN", "sweeps.creepage.max_pressure: got 1.000 kN, which is not of the dim"),
+    ("sweeps.creepage.max_pressure", "1 kN", "sweeps.creepage.max_pressure: got 1.000 kN, which does not have the dim"),
     ("sweeps.creepage.creepage", 1, "sweeps.creepage.creepage: got the bare number 1.0, which has no unit"),
     ("sweeps.creepage.normal_force", "1 N", "sweeps.creepage: give exactly one of normal_force, normal_force_per"),
     ("sweeps.a b", cases.POINT, "sweeps: the name 'a b' must be made of letters, digits and underscores"),

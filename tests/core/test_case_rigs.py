@@ -238,7 +238,7 @@ BY_LOAD = {"sweep": "braking", "x": "normal_force", "y": "wear_rate"}
         ({**ACROSS, "y": "pressure"}, "y: 'pressure' cannot be shown. It can be: depth, sliding_distance"),
         ({**ACROSS, "x": "creepage"}, "x: 'creepage' cannot be shown. It can be: x, y"),
         ({**ACROSS, "body": "rial"}, "body: there is no 'rial'; did you mean 'rail'? There are: wheel, rail"),
-        ({**ACROSS, "body": "rail", "y_range": ["0 um/km", "1 um/km"]}, "y_range: depth: got 0.000 µm/km, which is"),
+        ({**ACROSS, "body": "rail", "y_range": ["0 um/km", "1 um/km"]}, "y_range: depth: got 0.000 µm/km, which does"),
         ({**ACROSS, "y": ["depth", "sliding_distance"]}, "y: one axis has one unit, but these are depth in um/km, "),
         ({**ACROSS, "pairs": ["kth on polach"]}, "pairs: 'kth on polach': polach does not resolve the patch"),
     ],
@@ -257,7 +257,7 @@ WRONG: list[tuple[str, Any, str]] = [
     ("uncertainty.one", {**RUNNING, "creepage": "1 %"}, "uncertainty.one.creepage: unknown condition"),
 ]
 WRONG_TO_THE_LOADER: list[tuple[str, Any, str]] = [
-    ("sweeps.curve.spin", "0.5 %", "sweeps.curve.spin: got 0.5000 %, which is not of the dimension of '1/m'"),
+    ("sweeps.curve.spin", "0.5 %", "sweeps.curve.spin: got 0.5000 %, which does not have the dimension of '1/m'"),
     ("sweeps.braking.normal_force", ["50 kN", "-1 kN"], "sweeps.braking.normal_force: must be greater than zero"),
     ("sweeps.braking.longitudinal_creepage.to", "200 %", "longitudinal_creepage: must not exceed 1 in magnitude"),
     ("profiles.curve.friction_coefficient", "0.3", "profiles.curve.friction_coefficient: '0.3' is not a real number"),
@@ -448,7 +448,7 @@ def test_a_preset_of_a_plugin_makes_its_rig() -> None:
         ("rig", {"preset": "narow"}, "rig.preset: no rig has a preset 'narow'; did you mean 'narrow'?"),
         ("rig", {"preset": "failing"}, "rig: preset 'failing' of rig 'roller' failed: KeyError: 'lost'"),
         ("rig", {"preset": "open"}, "rig.width: is missing"),
-        ("sweeps.load.mass", "20 N", "sweeps.load.mass: got 20.00 N, which is not of the dimension of 'kg'"),
+        ("sweeps.load.mass", "20 N", "sweeps.load.mass: got 20.00 N, which does not have the dimension of 'kg'"),
         ("sweeps.load.mass.to", "1 m", "sweeps.load.mass: '200 kg' and '1 m' are not of one dimension"),
         ("sweeps.load.mas", "20 kg", "sweeps.load.mas: unknown condition; did you mean 'mass'?"),
         ("sweeps.load.creepage", None, "sweeps.load.creepage: is missing"),

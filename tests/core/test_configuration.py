@@ -38,7 +38,7 @@ def disc(**fields: Any) -> wl.Disc:
         (lambda: disc(diameter="47"), f"Disc: diameter: '47' is not a number with a unit; {IN_MM}"),
         (
             lambda: disc(diameter="47 kN"),
-            f"Disc: diameter: got 47.00 kN, which is not of the dimension of 'mm'; {IN_MM}",
+            f"Disc: diameter: got 47.00 kN, which does not have the dimension of 'mm'; {IN_MM}",
         ),
         (lambda: disc(diameter="47 xyz"), f"Disc: diameter: 'xyz' is not a known unit; {IN_MM}"),
         (lambda: disc(diameter="nan mm"), f"Disc: diameter: must be a number, got nan mm; {IN_MM}"),
@@ -57,7 +57,7 @@ def disc(**fields: Any) -> wl.Disc:
         (lambda: wl.steel(poisson_ratio=float("nan")), "poisson_ratio: input should be a finite number, got nan"),
         (lambda: wl.steel(poisson_ratio=True), "poisson_ratio: input should be a valid number, got True"),
         (lambda: wl.steel(poisson_ratio="0.3"), "poisson_ratio: input should be a valid number, got '0.3'"),  # type: ignore[arg-type]
-        (lambda: wl.steel(density="7850 kg"), "got 7850 kg, which is not of the dimension of 'kg/m^3'"),
+        (lambda: wl.steel(density="7850 kg"), "got 7850 kg, which does not have the dimension of 'kg/m^3'"),
         (
             lambda: wl.steel(shear_yield_stress="0 GPa"),
             f"shear_yield_stress: must be greater than zero, got 0.000 GPa; {IN_GPA}",

@@ -172,7 +172,7 @@ class WithAHole(Searched):
 
 def test_a_model_whose_fields_are_not_finite_next_to_a_crossing_is_refused_by_name() -> None:
     model, problem = WithAHole(), suros(0.1)
-    with pytest.raises(wl.ModelError, match="contact model 'exact': its pressure passes a breakpoint, but cannot be f"):
+    with pytest.raises(wl.ModelError, match="contact model 'exact': its pressure crosses a breakpoint, but the "):
         crossings(model, problem, model.zones(problem)[1], {"pressure": (1e9,)})
 
 

@@ -148,7 +148,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"limit_ratio": 0.0}, "limit_ratio: input should be greater than 0"),
     ({"limit_ratio": 1.01}, "limit_ratio: input should be less than or equal to 1"),
     ({"decay": 0.6}, "decay: got the bare number 0.6, which has no unit"),
-    ({"decay": "0.6 m/s"}, "decay: got 0.6000 m/s, which is not of the dimension of 's/m'"),
+    ({"decay": "0.6 m/s"}, "decay: got 0.6000 m/s, which does not have the dimension of 's/m'"),
     ({"decay": "-1 s/m"}, "decay: must be greater than zero"),
     ({"decay": Q([1.0, 2.0], "s/m")}, "decay: must be one value"),
     ({"deca": "1 s/m"}, "deca: unknown field; did you mean 'decay'?"),

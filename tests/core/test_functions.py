@@ -141,21 +141,21 @@ def test_the_docstring_and_the_source_are_kept() -> None:
     ("changes", "message"),
     [
         ({"inputs": {"wear_index_densty": "N/mm^2"}}, "unknown variable; did you mean 'wear_index_density'?"),
-        ({"inputs": {"wear_index_density": "mm"}}, "inputs.wear_index_density: .* not of the dimension"),
+        ({"inputs": {"wear_index_density": "mm"}}, "inputs.wear_index_density: .* not have the dimension"),
         ({"inputs": {"wear_index_density": "foo"}}, "'foo' is not a known unit"),
-        ({"returns": "kg"}, "returns: .* not of the dimension of 'ug/m/mm"),
+        ({"returns": "kg"}, "returns: .* not have the dimension of 'ug/m/mm"),
         ({"inputs": {}}, "0 are declared; the function takes 1"),
         ({"function": lambda w, *, k=1.0: k * w}, "parameters: declare a unit for each of k"),
         ({"parameters": {"k": "mm"}}, "parameters: declare a unit for each of none"),
         ({"function": lambda w, *, k: k * w, "parameters": {"k": ""}}, "parameters.k: needs a default value"),
-        ({"breakpoints": {"pressure": [1.0]}}, "breakpoints.pressure: is not one of the inputs, wear_index_density"),
+        ({"breakpoints": {"pressure": [1.0]}}, "breakpoints.pressure: is not one of the inputs: wear_index_density"),
         ({"jumps": [1.0]}, "jumps: name their variable"),
         (
             {"breakpoints": {"wear_index_density": [1.0, 2.0]}, "jumps": [2.0, 3.0]},
-            "jumps.wear_index_density: 3.0 is none of the breakpoints, 1.0, 2.0",
+            "jumps.wear_index_density: 3.0 is not one of the breakpoints: 1.0, 2.0",
         ),
-        ({"jumps": {"wear_index_density": [1.0]}}, "1.0 is none of the breakpoints, of which there are none"),
-        ({"monotone_in": ["slip"]}, "monotone_in.slip: is not one of the inputs, wear_index_density"),
+        ({"jumps": {"wear_index_density": [1.0]}}, "1.0 is not one of the breakpoints: none"),
+        ({"monotone_in": ["slip"]}, "monotone_in.slip: is not one of the inputs: wear_index_density"),
         (
             {"function": lambda w, *, k=1.0: k * w, "parameters": {"k": "foo"}},
             "parameters.k: 'foo' is not a known unit",
@@ -174,7 +174,7 @@ def test_a_declaration_that_does_not_fit_is_refused(changes: dict[str, Any], mes
 )
 def test_a_parameter_that_would_hide_what_every_law_has_is_refused(name: str) -> None:
     function = eval(f"lambda w, *, {name}=1.0: {name} * w")
-    with pytest.raises(wl.ConfigurationError, match=f"parameters.{name}: is a name that wear laws keep for themselves"):
+    with pytest.raises(wl.ConfigurationError, match=f"parameters.{name}: is a name that wear laws use themselves"):
         decorate(function, parameters={name: ""})
 
 

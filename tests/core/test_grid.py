@@ -168,7 +168,7 @@ CREEPAGE_FIX = "give creepage in percent or as a ratio"
         ("creepage", "1 foo", "creepage: 'foo' is not a known unit"),
         ("creepage", "101 %", "creepage: must not exceed 1 in magnitude, got 101.0 %"),
         ("creepage", ["1 %", "nan %"], "creepage: must be a number, got nan %"),
-        ("max_pressure", "1 kN", "max_pressure: got 1.000 kN, which is not of the dimension of 'MPa'"),
+        ("max_pressure", "1 kN", "max_pressure: got 1.000 kN, which does not have the dimension of 'MPa'"),
         ("max_pressure", "0 MPa", "max_pressure: must be greater than zero"),
         ("max_pressure", None, "give exactly one of normal_force, normal_force_per_width, max_pressure; got none"),
         ("normal_force", "1 kN", "give exactly one of normal_force, normal_force_per_width, max_pressure; got norm"),

@@ -159,7 +159,7 @@ def test_a_rig_that_makes_ellipses_gives_their_results() -> None:
     [
         ({"mass": "20 kg"}, "creepage: is missing; rig 'roller' takes mass, creepage, friction_coefficient"),
         ({"mas": "20 kg", "creepage": "1 %"}, "mas: unknown condition; did you mean 'mass'?"),
-        ({"mass": "20 N", "creepage": "1 %"}, "mass: got 20.00 N, which is not of the dimension of 'kg'"),
+        ({"mass": "20 N", "creepage": "1 %"}, "mass: got 20.00 N, which does not have the dimension of 'kg'"),
     ],
 )
 def test_wrong_conditions_are_named(given: dict[str, Any], said: str) -> None:

@@ -218,7 +218,7 @@ def test_wrong_json_is_an_error_of_the_package_with_the_path() -> None:
     with pytest.raises(wl.ConfigurationError) as caught:
         wl.Pipeline.model_validate_json(text)
     message = str(caught.value)
-    assert "rig.track_width: got 10.00 kN, which is not of the dimension of 'mm'" in message
+    assert "rig.track_width: got 10.00 kN, which does not have the dimension of 'mm'" in message
     assert "laws.0: no wear law is called 'khh'; did you mean 'kth'?" in message
 
 

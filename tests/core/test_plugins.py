@@ -85,13 +85,13 @@ BROKEN = {
     ),
     "built_for_a_newer_interface": (
         "wearlaw_interface = 99",
-        "TypeError: it is built for version 99 of the plugin interface, but this wearlaw has version 2; upgrade"
-        " wearlaw",
+        "TypeError: it is built for version 99 of the plugin interface, but this wearlaw has version 2;"
+        " upgrade wearlaw",
     ),
     "built_for_an_older_interface": (
         textwrap.dedent(LAW).format(name="outside") + "\nwearlaw_interface = 1",
-        "TypeError: it is built for version 1 of the plugin interface, but this wearlaw has version 2; upgrade the"
-        " plugin",
+        "TypeError: it is built for version 1 of the plugin interface, but this wearlaw has version 2;"
+        " upgrade the plugin",
     ),
     "law_of_an_older_interface": (
         textwrap.dedent(LAW).format(name="outside").replace("contact, p)", "contact)"),

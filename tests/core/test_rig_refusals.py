@@ -80,7 +80,7 @@ WRONG_CONDITIONS: list[tuple[dict[str, Any], type[Exception], list[str]]] = [
     ({"normal_force": "0 N"}, wl.UnitError, ["normal_force: must be greater than zero, got 0.000 N"]),
     ({"normal_force": "-5 N"}, wl.UnitError, ["normal_force: must be greater than zero, got -5.000 N"]),
     ({"normal_force": "inf N"}, wl.UnitError, ["normal_force: must be finite, got inf N"]),
-    ({"normal_force": "5 mm"}, wl.UnitError, ["normal_force: got 5.000 mm, which is not of the dimension of 'kN'"]),
+    ({"normal_force": "5 mm"}, wl.UnitError, ["normal_force: got 5.000 mm, which does not have the dimension of 'kN'"]),
     ({"normal_force_per_width": "5 kN"}, wl.UnitError, ["normal_force_per_width: got 5.000 kN", 'Q(1.0, "kN/m")']),
     ({"max_pressure": "0 MPa"}, wl.UnitError, ["max_pressure: must be greater than zero", 'Q(1.0, "MPa")']),
     ({"max_pressure": "5 N"}, wl.UnitError, ["max_pressure: got 5.000 N"]),

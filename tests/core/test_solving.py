@@ -318,7 +318,7 @@ def test_models_of_few_cells_are_held_to_what_they_declare() -> None:
         def accuracy(self) -> float:
             return QUADRATURE
 
-    with pytest.raises(wl.ModelError, match=r"'undeclared' gave a normal force .* twice its `accuracy`, 5e-08,"):
+    with pytest.raises(wl.ModelError, match=r"'undeclared' gave a normal force .* twice its `accuracy`, 5e-08 "):
         (RIG | Undeclared(cells=20) | PerEnergy())(**ON_DISCS)
     assert (RIG | Cells(cells=20) | PerEnergy())(**ON_DISCS).wear_rate.magnitude.min() > 0.0
 

@@ -45,7 +45,7 @@ def test_quantities_of_another_registry_are_brought_home() -> None:
     assert LENGTH.si(foreign.Quantity(47.0, "mm"), "x") == pytest.approx(0.047, rel=1e-15)
     disc = wl.Disc(diameter=foreign.Quantity(47.0, "mm"), material=wl.steel())
     assert disc == wl.Disc(diameter=Q(47.0, "mm"), material=wl.steel())
-    with pytest.raises(wl.UnitError, match=r"x: got 1\.000 kN, which is not of the dimension of 'mm'"):
+    with pytest.raises(wl.UnitError, match=r"x: got 1\.000 kN, which does not have the dimension of 'mm'"):
         LENGTH.si(foreign.Quantity(1.0, "kN"), "x")
 
 

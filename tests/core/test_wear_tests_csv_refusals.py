@@ -33,7 +33,7 @@ HEAD_FAULTS = [
     (
         "[kN]",
         "[mm]",
-        "column 'normal_force [mm]': got 'mm', which is not of the dimension of 'kN'; give it in kN or an",
+        "column 'normal_force [mm]': got 'mm', which does not have the dimension of 'kN'; give it in kN or an",
     ),
     (
         "[kN]",
@@ -45,7 +45,11 @@ HEAD_FAULTS = [
         "[N*]",
         "line 1, column 'normal_force [N*]': 'N*' is not a unit; give it in kN or another unit of that dim",
     ),
-    ("[ug/m/mm^2]", "[degC]", "column 'wear_rate [degC]': got 'degC', which is not of the dimension of 'ug/m/mm^2'"),
+    (
+        "[ug/m/mm^2]",
+        "[degC]",
+        "column 'wear_rate [degC]': got 'degC', which does not have the dimension of 'ug/m/mm^2'",
+    ),
     ("label", "label [-]", "line 1, column 'label [-]': is text and takes no unit"),
     ("label", "creepage [-]", "line 1, column 'creepage [%]': is there more than once; keep one of them"),
     ("label", "creepage [-]", "line 1, column 'creepage [-]': is there more than once; keep one of them"),

@@ -105,7 +105,7 @@ def test_a_hollow_wheel_on_a_more_curved_rail_is_accepted() -> None:
 
 
 WRONG_CONDITIONS: list[tuple[dict[str, Any], str]] = [
-    ({"spin": Q(0.3, "1/s")}, "spin: got 0.3000 1/s, which is not of the dimension of '1/m'"),
+    ({"spin": Q(0.3, "1/s")}, "spin: got 0.3000 1/s, which does not have the dimension of '1/m'"),
     ({"longitudinal_creepage": Q(1.1, "")}, "longitudinal_creepage: must not exceed 1 in magnitude"),
     ({"longitudinal_creepage": None}, "longitudinal_creepage: is missing; give longitudinal_creepage=Q(0.2"),
     (

@@ -1,4 +1,4 @@
-"""The conditions of a test, as the user gives them: checked, with units, broadcast against each other."""
+"""The conditions of a test: check the user's values and units, and broadcast them against each other."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Arrays: TypeAlias = dict[str, Array]
 
 
 class FrictionLaw(Protocol):
-    """Friction that depends on how fast the bodies slide over each other."""
+    """Friction that depends on the speed of sliding."""
 
     def coefficient(self, creep_speed: Array) -> Array:
         """Return μ [-] at creep speeds [m/s], of their shape."""
@@ -38,16 +38,16 @@ COEFFICIENTS = ("friction_coefficient", "traction_coefficient")
 
 @dataclass(frozen=True)
 class ConditionTable:
-    """Which conditions a rig takes.
+    """The conditions of a rig.
 
     Attributes
     ----------
     loads, creepages : tuple of str
-        Exactly one of the loads is needed, and the first of the creepages; those that are not given are zero.
+        Exactly one load and the first creepage are required; other creepages are zero if not given.
     coefficients : tuple of str
-        Plain numbers, of which the first is needed.
+        Plain numbers; the first is required.
     examples : mapping of str to str
-        How to give what is needed.
+        Example values of the required conditions, for messages.
     """
 
     loads: tuple[str, ...]
@@ -71,7 +71,7 @@ class ConditionTable:
         return coefficient(value, name) if unit is None else unit.si(value, name)
 
     def unknown(self, name: str) -> ConditionsError:
-        """Return what to raise for a condition that the rig does not take."""
+        """Return the error for a condition that the rig does not take."""
         names = self.names
         return ConditionsError(
             f"{name}: unknown condition{did_you_mean(name, names)} The conditions are: {', '.join(names)}"
@@ -83,7 +83,7 @@ def condition_arrays(
 ) -> Arrays:
     """Return all conditions as SI arrays of one shape.
 
-    `creep_speed` gives the speed that friction may depend on [m/s] from the other conditions.
+    `creep_speed` computes the speed that friction can depend on [m/s] from the other conditions.
     """
     given = {name: value for name, value in conditions.items() if value is not None}
     friction = given.get("friction_coefficient")
@@ -91,7 +91,7 @@ def condition_arrays(
         given["friction_coefficient"] = 1.0
     units = table.units
     arrays: Arrays = {}
-    for name, value in given.items():  # not by `table.si`, whose calls take a hundredth of a prediction
+    for name, value in given.items():  # not by `table.si`, because its calls take a hundredth of a prediction
         if name in units:
             arrays[name] = units[name].si(value, name)
         elif name in table.coefficients:
@@ -107,13 +107,13 @@ def condition_arrays(
 
 
 def is_friction_law(friction: object) -> TypeGuard[FrictionLaw]:
-    """Return whether friction depends on how fast the bodies slide."""
-    # Whether it is an instance of the protocol takes a tenth of the time of a prediction.
+    """Return whether friction depends on the speed of sliding."""
+    # A test with isinstance(friction, FrictionLaw) would take a tenth of the time of a prediction.
     return hasattr(friction, "coefficient") and not isinstance(friction, type)
 
 
 def _check_names(conditions: Mapping[str, Any], arrays: Arrays, table: ConditionTable) -> None:
-    """Refuse conditions that are unknown, missing, or give the load twice."""
+    """Raise an error for an unknown or missing condition, or for several loads."""
     names = table.names
     for name in conditions:
         if name not in names:
@@ -129,7 +129,7 @@ def _check_names(conditions: Mapping[str, Any], arrays: Arrays, table: Condition
 
 
 def broadcast(arrays: Arrays) -> Arrays:
-    """Return the arrays in one shape, as views that cannot be written to."""
+    """Return the arrays in one shape, as read-only views."""
     shapes = {array.shape for array in arrays.values()}
     if shapes == {()}:
         return arrays

@@ -1,8 +1,8 @@
 """The solved contact: the record that a contact model returns and a wear law reads.
 
-It is frozen and holds SI float64 arrays. Its first axes are the *batch*, one entry an operating point; a scalar
-prediction has no batch axis. The axes behind the batch are the *nodes* of the patch; on an ellipse there are two, along
-a strip and from strip to strip.
+The record is frozen and holds SI float64 arrays. Its first axes are the *batch*, with one entry for each operating
+point; a scalar prediction has no batch axis. The axes after the batch are the *nodes* of the patch. An ellipse has two
+of them, along a strip and from strip to strip.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from wearlaw.units.quantities import Quantity, QuantityLike, from_si
 from wearlaw.units.variables import expected
 
 NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density")
-"""The variables of a `Contact` that differ from node to node."""
+"""The variables of a `Contact` with a value at each node."""
 
 LAW_VARIABLES = (*NODE_VARIABLES, "traction_bound", "wear_index", "x")
-"""The variables of a `Contact` in which a law may branch, or have its range."""
+"""The variables of a `Contact` in which a law can branch, or have its range."""
 
 ONE_SIGN = 1e-9
-"""Share of traction of the other sign that passes for rounding; it moves the mean slip by no more."""
+"""Share of traction of the other sign that counts as rounding; it changes the mean slip by no more."""
 
 
 def _broadcast(arrays: dict[str, Array], batch_axes: int) -> dict[str, Any]:
@@ -39,7 +39,7 @@ def _broadcast(arrays: dict[str, Array], batch_axes: int) -> dict[str, Any]:
     except ValueError:
         raise InputError(f"the shapes of the arrays do not broadcast: {shapes}") from None
     if len(shape) <= batch_axes or 0 in shape:
-        raise InputError(f"there must be at least one node behind the {batch_axes} axes of rolling_speed; got {shapes}")
+        raise InputError(f"there must be at least one node after the {batch_axes} axes of rolling_speed; got {shapes}")
     return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
 
 
@@ -54,18 +54,18 @@ class LineFields:
 
 
 _DERIVED: Any = None
-"""Default of the fields that a line contact derives from others."""
+"""Default of the fields that a line contact derives from other fields."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Contact:
     """A solved contact: pressure, traction and slip at the nodes of the patch, and the totals.
 
-    A node is a point with an area weight. Uniform cells, the nodes of a quadrature and the single cell of a
-    global model are all this one record, so that a wear law is written once for all of them. In a line contact traction
-    and slip lie along x, and their components across it are zero; on an ellipse they are vectors. `Contact.from_line`,
-    `Contact.from_strips` and `Contact.of_patch` make the record of a model's solution, `Contact.from_arrays` that of
-    another program's.
+    A node is a point with an area weight. Uniform cells, the nodes of a quadrature and the single cell of a global
+    model all use this record, so that a wear law is written once for all of them. In a line contact, traction and slip
+    lie along x, and their components across it are zero. On an ellipse, they are vectors. `Contact.from_line`,
+    `Contact.from_strips` and `Contact.of_patch` make the record from a model's solution, `Contact.from_arrays` from
+    the solution of another program.
 
     Attributes
     ----------
@@ -75,11 +75,11 @@ class Contact:
         Tangential traction, q [Pa], with the sign of the creepage; on an ellipse its magnitude.
     slip : ndarray, (batch, nodes)
         Relative slip, s [-], the slip velocity over the rolling speed, with the sign of the creepage, on an ellipse its
-        magnitude; zero in stick.
+        magnitude; zero in the stick zone.
     traction_bound : ndarray, (batch, nodes)
         The largest magnitude that the model allows for the traction [Pa].
     area : ndarray, (batch, nodes)
-        Area of the patch that the node stands for [m²].
+        Area of the patch that the node represents [m²].
     x : ndarray, (batch, nodes)
         Position along the rolling direction, from the leading to the trailing edge, x [m].
     rolling_speed : ndarray, (batch)
@@ -111,9 +111,9 @@ class Contact:
     moment_z : ndarray, (batch)
         Spin moment [N m], with the sign of the spin; on a line zero.
     strip_width : ndarray, (batch, strips)
-        Width of the patch that a strip of an ellipse stands for [m]; a line has no strips.
+        Width of the patch that a strip of an ellipse represents [m]; a line has no strips.
     problem : Problem or None
-        The problem that was solved; None for a contact solved elsewhere.
+        The solved problem; None for a contact solved elsewhere.
     """
 
     pressure: Array
@@ -139,7 +139,7 @@ class Contact:
     problem: Problem | None = None
 
     def __post_init__(self) -> None:
-        """Give a contact without strips its components."""
+        """Fill in the vector components of a contact without strips."""
         if self.on_strips:
             return
         nothing, none = np.zeros(np.shape(self.traction)), np.zeros(np.shape(self.tangential_force))
@@ -163,16 +163,16 @@ class Contact:
     def from_line(
         cls, problem: Problem, fields: LineFields, *, x: Array, length: Array, force_per_width: Array
     ) -> Self:
-        """Return the contact that a solution of a line problem makes over the whole track width.
+        """Return the contact for a solution of a line problem, over the whole track width.
 
         Parameters
         ----------
         problem : Problem
-            The problem that was solved.
+            The solved problem.
         fields : LineFields
             The solution at the nodes, each of shape (batch, nodes).
         x, length : ndarray, (batch, nodes)
-            Position of each node and the length that it stands for [m].
+            Position of each node and the length that it represents [m].
         force_per_width : ndarray, (batch)
             T [N/m], with the sign of the creepage.
         """
@@ -206,22 +206,22 @@ class Contact:
         slip: tuple[Array, Array],
         traction_bound: Array,
     ) -> Self:
-        """Return the contact that a model found on strips of an ellipse, or on those of the problem.
+        """Return the contact for a model's solution on strips of an ellipse, or on the strips of the problem.
 
-        The pressure is Hertz's, or that of the strips.
+        The pressure is Hertz's pressure, or the given pressure of the strips.
 
         Parameters
         ----------
         problem : Problem
-            The problem that was solved.
+            The solved problem.
         forces : CreepForces
             The totals.
         x, length : ndarray, (batch, nodes, strips)
-            Position of each node and the length along its strip that it stands for [m].
+            Position of each node and the length along its strip that it represents [m].
         y, strip_width : ndarray, (batch, strips)
-            Position of each strip and the width that it stands for [m].
+            Position of each strip and the width that it represents [m].
         traction, slip : pair of ndarray, (batch, nodes, strips)
-            Their components along x and y [Pa], [-].
+            Components along x and y [Pa], [-].
         traction_bound : ndarray, (batch, nodes, strips)
             The largest magnitude that the model allows for the traction [Pa].
         """
@@ -252,9 +252,9 @@ class Contact:
 
     @classmethod
     def of_patch(cls, problem: Problem, forces: CreepForces) -> Self:
-        """Return the contact of one node that holds the means of an ellipse, of a model that knows the forces alone.
+        """Return a contact of one node with the means of an ellipse, for a model that knows only the forces.
 
-        Its slip is the root mean square of the rigid slip, its components those in the centre, and its
+        The slip of the node is the root mean square of the rigid slip. Its slip components are those at the centre. Its
         `wear_index_density` is Tγ/A.
         """
         area = problem.patch_area
@@ -289,13 +289,13 @@ class Contact:
         rolling_speed: QuantityLike,
         density: QuantityLike = "7850 kg/m^3",
     ) -> Self:
-        """Return a contact that was solved elsewhere, by a multibody or boundary-element program.
+        """Return a contact solved elsewhere, such as by a multibody or boundary-element program.
 
         Parameters
         ----------
         pressure, traction, slip, area : Quantity, (batch, nodes)
             Pressure [Pa], traction [Pa], relative slip [-] and area [m²] of each node; they broadcast against each
-            other. Traction and slip have one sign, or are magnitudes, and there may be several axes of nodes.
+            other. Traction and slip have the same sign, or are magnitudes. There can be several axes of nodes.
         rolling_speed, density : Quantity, (batch)
             Rolling speed [m/s] and mass density of the body whose wear is predicted [kg/m³].
 
@@ -322,7 +322,7 @@ class Contact:
         force, magnitude = (q * a).sum(axis=axes), (np.abs(q) * a).sum(axis=axes)
         if (magnitude - np.abs(force) > ONE_SIGN * magnitude).any():
             raise InputError(
-                "traction: has both signs in one contact, so that its sum is not the force that dissipates; give"
+                "traction: has both signs in one contact, so its sum is not the force that dissipates energy; give"
                 " traction and slip as magnitudes"
             )
         return cls(
@@ -340,7 +340,7 @@ class Contact:
     def wear_index_density(self) -> Array:
         """Energy dissipated per metre rolled and area, q·s [N/m²], of shape (batch, nodes).
 
-        On one node that stands for an ellipse it is Tγ/A.
+        On a single node that represents an ellipse, it is Tγ/A.
         """
         if not self.on_strips:
             return self.traction * self.slip
@@ -393,7 +393,7 @@ class Contact:
 
     @property
     def forces(self) -> CreepForces:
-        """The forces and the moment that the contact transmits."""
+        """The forces and the moment transmitted by the contact."""
         return CreepForces(longitudinal=self.force_x, lateral=self.force_y, spin_moment=self.moment_z)
 
     @property
@@ -418,12 +418,12 @@ class Contact:
         return integral
 
     def scaled_to_wear_index(self) -> Self:
-        """Return the contact with slips scaled so that what the nodes dissipate is Tγ.
+        """Return the contact with slips scaled so that the nodes dissipate Tγ in total.
 
         Raises
         ------
         InputError
-            If no node dissipates energy where Tγ is not zero.
+            If Tγ is not zero, but no node dissipates energy.
         """
         dissipated = self.cell_wear_index
         if ((dissipated == 0) & (self.wear_index != 0)).any():
@@ -434,7 +434,7 @@ class Contact:
         return self.replaced(slip=self.slip * factor, slip_x=self.slip_x * factor, slip_y=self.slip_y * factor)
 
     def unflattened(self, problem: Problem) -> Self:
-        """Return the contact of a flattened problem in the shape of its batch, with NaN where there is no patch."""
+        """Return the contact of a flattened problem in the shape of its batch, with NaN for missing patches."""
         if problem.exists is None and problem.batch_shape == self.rolling_speed.shape:
             return self
         return self._mapped(problem.unflatten, problem)
@@ -444,7 +444,7 @@ class Contact:
         return self.mapped(lambda array: array[index])
 
     def mapped(self, function: Callable[[Array], Array]) -> Self:
-        """Return the contact with a function applied to each of its arrays and to those of its problem."""
+        """Return the contact with a function applied to each of its arrays and each array of its problem."""
         return self._mapped(function, self.problem and self.problem.mapped(function))
 
     def _mapped(self, function: Callable[[Array], Array], problem: Problem | None) -> Self:
@@ -456,11 +456,10 @@ class Contact:
         return dataclasses.replace(self, **fields)
 
     def patch_mean(self) -> Contact:
-        """Return the contact of one node that holds the patch means.
+        """Return a contact of one node with the patch means.
 
-        Pressure and traction are area means. The slip of a line is the one that dissipates the same energy,
-        s = Tγ / T, which is the creepage; that of an ellipse is the root mean square of the rigid slip, without a
-        direction.
+        Pressure and traction are area means. The slip of a line is s = Tγ / T, which dissipates the same energy and
+        equals the creepage. The slip of an ellipse is the root mean square of the rigid slip, without a direction.
         """
         force, area = self.tangential_force, self.patch_area
         slip = np.divide(self.wear_index, force, out=np.zeros_like(force), where=force != 0)
@@ -493,11 +492,11 @@ class Contact:
 TOTALS = (
     "rolling_speed", "normal_force", "tangential_force", "wear_index", "density", "force_x", "force_y", "moment_z",
 )  # fmt: skip
-"""The arrays of a `Contact` that are of the batch shape."""
+"""The arrays of a `Contact` with the batch shape."""
 
 
 def _magnitude(x: Array, y: Array) -> Array:
-    """Return √(x² + y²), five times as fast as `np.hypot`, whose care no traction or slip needs."""
+    """Return √(x² + y²), five times as fast as `np.hypot`, which guards against overflow that cannot happen here."""
     magnitude: Array = np.sqrt(x * x + y * y)
     return magnitude
 

@@ -13,11 +13,11 @@ from wearlaw.units.quantities import Quantity, QuantityLike, Unit, scalar_si
 
 
 class FallingFriction(Configuration):
-    """Friction that falls with the creep speed: μ = μ0 [(1 - A) exp(-B w) + A], in place of a friction coefficient.
+    """Friction that falls with the creep speed: μ = μ0 [(1 - A) exp(-B w) + A]. Use it instead of a coefficient.
 
-    w is the magnitude of the rigid slip velocity at the centre of the patch, V √(ξ² + η²), spin left out. It is one
-    number for the whole patch, so that any contact model can take the resulting friction; friction that
-    differs from point to point, with the local slip, is another theory.
+    w is the magnitude of the rigid slip velocity at the centre of the patch, V √(ξ² + η²), without spin. It is one
+    number for the whole patch, so any contact model can take the resulting friction. Friction that differs from point
+    to point, with the local slip, is another theory.
 
     Notes
     -----

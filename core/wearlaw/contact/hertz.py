@@ -27,9 +27,9 @@ def effective_modulus(
 def mean_poisson_ratio(
     youngs_modulus_1: float, poisson_ratio_1: float, youngs_modulus_2: float, poisson_ratio_2: float
 ) -> float:
-    """Return ν [-] of like bodies that stand for unlike ones: ν/G = (ν1/G1 + ν2/G2)/2, where 1/G = (1/G1 + 1/G2)/2.
+    """Return ν [-] of like bodies equivalent to unlike ones: ν/G = (ν1/G1 + ν2/G2)/2, where 1/G = (1/G1 + 1/G2)/2.
 
-    With these means G/(1-ν) is the E* of the unlike bodies, since (1-ν²)/E = (1-ν)/(2G) for each.
+    With these means, G/(1-ν) is the E* of the unlike bodies, because (1-ν²)/E = (1-ν)/(2G) for each body.
     """
     softness_1, softness_2 = (1.0 + poisson_ratio_1) / youngs_modulus_1, (1.0 + poisson_ratio_2) / youngs_modulus_2
     return (poisson_ratio_1 * softness_1 + poisson_ratio_2 * softness_2) / (softness_1 + softness_2)
@@ -61,7 +61,7 @@ def pressure(x: Array, half_width: Array, max_pressure: Array) -> Array:
 
 
 def distances_at_pressure(pressure: Array, half_width: Array, max_pressure: Array) -> Array:
-    """Return how far from an edge the patch bears a pressure [m], of shape (..., 2); NaN where it nowhere does."""
+    """Return the distances from an edge with a given pressure [m], of shape (..., 2); NaN if no point has it."""
     share = np.where(pressure <= max_pressure, pressure / max_pressure, np.nan)
     x = np.sqrt((1.0 - share) * (1.0 + share))
     return half_width[..., None] * np.stack([share**2 / (1.0 + x), 1.0 + x], axis=-1)

@@ -1,8 +1,8 @@
 """The normal problem: Hertz's theory of elliptic contact.
 
-Two smooth bodies touch at a point, and their principal planes of curvature coincide: one holds the rolling
-direction x, the other the lateral direction y. The gap between them is z = A x² + B y² before they are pressed
-together by the normal force N; then they meet in the ellipse with the semi-axes a along x and b along y.
+Two smooth bodies touch at a point, and their principal planes of curvature coincide: one plane holds the rolling
+direction x, the other the lateral direction y. Without load, the gap between the bodies is z = A x² + B y². Under the
+normal force N they touch in an ellipse with the semi-axes a along x and b along y.
 
 With p = p0 √(1-(x/a)²-(y/b)²) and p0 = 3N/(2πab), the surfaces fit together inside the ellipse if
 
@@ -24,7 +24,7 @@ import scipy
 from wearlaw.arrays.array import Array
 
 _ITERATIONS = 10
-"""At most; within the stated range of axis ratios five are enough."""
+"""Largest number of iterations; five are enough within the stated range of axis ratios."""
 
 
 def curvature(radius_1: Array, radius_2: Array) -> Array:
@@ -39,7 +39,7 @@ def curvature(radius_1: Array, radius_2: Array) -> Array:
 
 
 def axis_ratio(curvature_x: Array, curvature_y: Array) -> Array:
-    """Return a/b [-], which the ratio of the curvatures alone decides.
+    """Return a/b [-], which depends on the ratio of the curvatures alone.
 
     Parameters
     ----------
@@ -67,8 +67,8 @@ def semi_axes(
     normal_force : ndarray
         N [N].
     curvature_x, curvature_y : ndarray
-        A and B of the gap A x² + B y² [1/m], both positive. The axis ratio is solved for in their own common shape, so
-        that a sweep over loads costs one solution for each pair of curvatures.
+        A and B of the gap A x² + B y² [1/m], both positive. The axis ratio is solved in their own common shape, so that
+        a sweep over loads costs one solution for each pair of curvatures.
     effective_modulus : ndarray or float
         E* [Pa].
 
@@ -92,7 +92,7 @@ def max_pressure(normal_force: Array, a: Array, b: Array) -> Array:
 
 
 def approach(normal_force: Array, a: Array, b: Array, effective_modulus: Array | float) -> Array:
-    """Return δ [m], by how much distant points of the two bodies come closer (Johnson, eq. 4.26c)."""
+    """Return δ [m], the approach of distant points of the two bodies (Johnson, eq. 4.26c)."""
     distance: Array = normal_force * (1.5 / np.pi) / effective_modulus * scipy.special.elliprf(0.0, a**2, b**2)
     return distance
 
@@ -120,10 +120,10 @@ def _elongation(curvature_x: Array, curvature_y: Array) -> Array:
 
 
 def _log_curvature_ratio(log_elongation: Array) -> tuple[Array, Array]:
-    """Return the logarithm of the ratio of the curvatures, and its derivative by that of the elongation."""
+    """Return the logarithm of the ratio of the curvatures, and its derivative by the logarithm of the elongation."""
     square = np.exp(2.0 * log_elongation)
     across, along = scipy.special.elliprd(0.0, square, 1.0), scipy.special.elliprd(0.0, 1.0, square)
-    near_circle = log_elongation < 1e-4  # where the difference has no digits, and the slope is 3/2 + O(logarithm²)
+    near_circle = log_elongation < 1e-4  # there the difference has no digits, and the slope is 3/2 + O(logarithm²)
     mixed = (across - along) / np.where(near_circle, 1.0, square - 1.0)
     slope = np.where(near_circle, 1.5, 3.0 - mixed * (square / across + 1.0 / along))
     return np.log(across / along), slope

@@ -51,7 +51,7 @@ _EDGE = 0.1
 
 _SHORT_POWERS = 0.0, 0.0, 0.0, 1.0
 _LONG_POWERS = 1.0, 1.0, 1.5, 0.0
-"""Times g to these powers, g = min(a/b, b/a), the coefficients C11, C22, C23, C33 change least from row to row."""
+"""Powers of g = min(a/b, b/a): C11, C22, C23, C33 times g to these powers change least from row to row."""
 
 
 def _scaled_table() -> Array:
@@ -71,15 +71,15 @@ def _rows_last(rows: Array) -> Array:
 _BARE, _SCALED = _rows_last(_TABLE.reshape(19, 4, 3)), _scaled_table()
 
 Interpolation = Literal["scaled", "contact"]
-"""How coefficients are interpolated: after division by their growth, or as the program CONTACT does."""
+"""Method of interpolating coefficients: after division by their growth, or as in the program CONTACT."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CreepageCoefficients:
     """Kalker's creepage coefficients [-], all of one shape.
 
-    With the shear modulus G, the forces in the sense of the creepages ξ (longitudinal), η (lateral) and φ (spin, 1/m)
-    are, at vanishing creepage,
+    With the shear modulus G, the forces in the direction of the creepages ξ (longitudinal), η (lateral) and φ (spin,
+    1/m) are, at vanishing creepage,
 
         Fx = G ab C11 ξ,  Fy = G ab (C22 η + √(ab) C23 φ),  Mz = G ab (-√(ab) C23 η + ab C33 φ).
 
@@ -107,7 +107,7 @@ def coefficients(
     poisson_ratio : ndarray or float
         ν [-], from 0 to 1/2.
     interpolation : {"scaled", "contact"}
-        How to read the table, see the notes; "contact" is for comparisons with the program CONTACT.
+        Method of interpolating the table, see the notes; "contact" is for comparisons with the program CONTACT.
 
     Returns
     -------
@@ -117,31 +117,32 @@ def coefficients(
     Raises
     ------
     InputError
-        If an axis ratio is not positive and finite, a Poisson's ratio is not from 0 to 1/2, or there is no such
-        interpolation.
+        If an axis ratio is not positive and finite, a Poisson's ratio is not from 0 to 1/2, or the interpolation is
+        unknown.
 
     Notes
     -----
-    From a/b = 0.1 to 10 the values are those of Kalker's table, which has three digits. Between its rows, each
-    coefficient is linear in g = min(a/b, b/a) after division by the power of g with which it grows towards slender
-    patches: C33 by 1/g where a < b, and C11 and C22 by 1/g and C23 by 1/g^(3/2) where a > b. A row left out is met
-    within 2.6 % by its neighbours; by linear interpolation of the bare coefficients, it is missed by up to 46 %. At
-    ν = 0.28 the two ways differ by 0.8 % at most for a/b from 1/2 to 2.
+    From a/b = 0.1 to 10 the values are those of Kalker's table, which has three digits. The coefficients grow towards
+    slender patches as powers of g = min(a/b, b/a): for a < b, C33 grows as 1/g; for a > b, C11 and C22 grow as 1/g and
+    C23 as 1/g^(3/2). Each coefficient is divided by this power and interpolated linearly in g between the rows. If one
+    row is left out, its neighbours predict it within 2.6 %. Linear interpolation of the bare coefficients misses it by
+    up to 46 %. At ν = 0.28, the two methods differ by 0.8 % at most for a/b from 1/2 to 2.
 
-    Between the three Poisson's ratios, 1/C11, 1/C22 and 1/C23 are quadratic in ν, as in CONTACT, and so is (1-ν) C33:
-    so the asymptotes at g = 0.1 are met within 0.02 %, and 1.3 % for C33, where 1/C33 would miss by 18 %.
+    Between the three Poisson's ratios, 1/C11, 1/C22 and 1/C23 are quadratic in ν, as in CONTACT, and (1-ν) C33 is
+    quadratic too. The coefficients then meet the asymptotes at g = 0.1 within 0.02 %, and within 1.3 % for C33; a
+    quadratic 1/C33 would miss by 18 %.
 
-    Outside the table, Kalker's asymptotes for a/b → 0 and b/a → 0 hold. At the ends of the table C11, C22, C23 and C33
-    differ from them by up to 1.7, 2.5, 6.6 and 5.2 % where a < b, and by 4.5, 3.1, 0.9 and 7.1 % where a > b. So each
-    asymptote is multiplied by the quotient found at the end, which fades to 1 as the terms do that the asymptote
-    neglects: with g where a < b, with 1/ln²(16/g²) where a > b. The coefficients are continuous and keep Kalker's
-    limits. Numerical solutions for two half-spaces agree within 2.5 % from a/b = 0.05 to 20, but C33 is uncertain for
-    long patches: at a/b = 20 they give 9 % less for ν = 0.28, and 18 % less for ν = 0.45.
+    Outside the table, Kalker's asymptotes for a/b → 0 and b/a → 0 hold. At the ends of the table, C11, C22, C23 and C33
+    differ from them by up to 1.7, 2.5, 6.6 and 5.2 % for a < b, and by 4.5, 3.1, 0.9 and 7.1 % for a > b. Each
+    asymptote is therefore multiplied by the quotient at the end of the table. The quotient fades to 1 like the terms
+    that the asymptote neglects: with g for a < b, and with 1/ln²(16/g²) for a > b. The coefficients are continuous and
+    keep Kalker's limits. Numerical solutions for two half-spaces agree within 2.5 % from a/b = 0.05 to 20, but C33 is
+    uncertain for long patches: at a/b = 20, the solutions give 9 % less for ν = 0.28, and 18 % less for ν = 0.45.
 
     The program CONTACT (E. A. H. Vollebregt, Vtech CMCC; subroutine linrol) interpolates the bare coefficients linearly
-    in g, takes all of 1/C as quadratic in ν, and the bare asymptotes outside, where the coefficients jump. It has no
-    C33, to which "contact" does the same. The two ways differ in C33, in the other coefficients where a > b, and
-    outside the table.
+    in g and takes every 1/C as quadratic in ν. Outside the table it takes the bare asymptotes, so the coefficients jump
+    at its ends. CONTACT has no C33; "contact" treats C33 like the other coefficients. The two methods differ in C33, in
+    the other coefficients for a > b, and outside the table.
     """
     if interpolation not in get_args(Interpolation):
         raise InputError(f"interpolation: must be 'scaled' or 'contact', got {interpolation!r}")
@@ -164,12 +165,12 @@ def _refuse(rule: str, values: Array, right: NDArray[np.bool_]) -> None:
 
 
 def linear_forces(problem: Problem, interpolation: Interpolation = "scaled") -> CreepForces:
-    """Return the forces and the moment of the linear theory, as if the creepages of a problem were vanishing.
+    """Return the forces and the moment of the linear theory, which holds for vanishing creepages.
 
     Parameters
     ----------
     problem : Problem
-        The contact; friction and load have no part in the result.
+        The contact; friction and load do not affect the result.
     interpolation : {"scaled", "contact"}
         As in `coefficients`.
     """
@@ -196,7 +197,7 @@ def _from_table(ratio: Array, nu: Array) -> list[Array]:
 
 
 def _as_contact(ratio: Array, nu: Array) -> list[Array]:
-    """Return C11, C22, C23 and C33 for axis ratios within the table, as the program CONTACT interpolates."""
+    """Return C11, C22, C23 and C33 for axis ratios within the table, interpolated as in the program CONTACT."""
     return list(_of_reciprocals(_between_rows(_BARE, ratio), nu))
 
 
@@ -209,14 +210,14 @@ def _between_rows(table: Array, ratio: Array) -> Array:
 
 
 def _of_reciprocals(values: Array, nu: Array) -> Array:
-    """Return coefficients whose reciprocals are parabolas of ν, from their values at the three Poisson's ratios."""
+    """Return coefficients from their values at the three Poisson's ratios; the reciprocals are parabolas of ν."""
     at_0, at_1, at_2 = _parabolas(nu)
     found: Array = 1.0 / (at_0 / values[:, 0] + at_1 / values[:, 1] + at_2 / values[:, 2])
     return found
 
 
 def _parabolas(nu: Array) -> tuple[Array, Array, Array]:
-    """Return the parabolas of ν that are one at one of the three Poisson's ratios and zero at the others."""
+    """Return the parabolas of ν that are one at one of the three Poisson's ratios and zero at the other two."""
     return 8.0 * (nu - 0.25) * (nu - 0.5), 16.0 * nu * (0.5 - nu), 8.0 * nu * (nu - 0.25)
 
 
@@ -228,9 +229,9 @@ def _continue(
     asymptotes: Callable[[Array, Array], tuple[tuple[Array, ...], Array]],
     fades: bool,
 ) -> None:
-    """Replace the values of the table's end, where they lie beyond it, by the asymptotes.
+    """Replace the values beyond the table's end by the asymptotes.
 
-    With `fades`, by those that lead there: the quotient at the table's end fades to one.
+    With `fades`, each asymptote is multiplied by the quotient at the table's end, which fades to one.
     """
     g, nu = g[beyond], nu[beyond]
     (limits, neglected), (ends, neglected_at_end) = asymptotes(g, nu), asymptotes(np.full_like(g, _EDGE), nu)
@@ -240,14 +241,14 @@ def _continue(
 
 
 def _short_asymptotes(g: Array, nu: Array) -> tuple[tuple[Array, ...], Array]:
-    """Return the coefficients for g = a/b → 0, and what they neglect, of the order of g."""
+    """Return the coefficients for g = a/b → 0, and the order of the neglected terms, g."""
     c22 = np.full_like(g, np.pi**2 / 4.0)
     c23 = np.pi * np.sqrt(g) / (3.0 * (1.0 - nu)) * (1.0 + nu * (np.log(16.0 / g) - 5.0))
     return (c22 / (1.0 - nu), c22, c23, c22 / (4.0 * (1.0 - nu) * g)), g
 
 
 def _long_asymptotes(g: Array, nu: Array) -> tuple[tuple[Array, ...], Array]:
-    """Return the coefficients for g = b/a → 0, and what they neglect, of the order of 1/Λ² with Λ = ln(16/g²)."""
+    """Return the coefficients for g = b/a → 0, and the order of the neglected terms, 1/Λ² with Λ = ln(16/g²)."""
     big = 2.0 * np.log(4.0 / g)
     along, across, turning = big - 2.0 * nu, (1.0 - nu) * big + 2.0 * nu, (1.0 - nu) * big - 2.0 + 4.0 * nu
     c11 = 2.0 * np.pi / (g * along) * (1.0 + (3.0 - np.log(4.0)) / along)

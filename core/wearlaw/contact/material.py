@@ -20,7 +20,7 @@ class Material(Configuration):
     density: Density
     """Mass density, ρ [kg/m³]."""
     shear_yield_stress: Stress | None = None
-    """Yield stress in shear, k [Pa]; None if not known, and then no contact is said to yield."""
+    """Yield stress in shear, k [Pa]; None if not known, and then no contact counts as yielding."""
 
     if TYPE_CHECKING:  # checkers do not know that a text is accepted for a quantity
 
@@ -46,15 +46,16 @@ def steel(
     Parameters
     ----------
     youngs_modulus : Quantity or str
-        E [Pa]. Tassini et al. (Wear 268 (2010) 660-667) print neither E nor ν, but 741.43 kN/m for 1500 MPa on
-        discs of 47 mm, which needs E* = 112.0212 GPa; this E gives it with ν = 0.28.
+        E [Pa]. Tassini et al. (Wear 268 (2010) 660-667) print neither E nor ν. They print 741.43 kN/m for 1500 MPa on
+        discs of 47 mm, which needs E* = 112.0212 GPa. The default E gives this E* with ν = 0.28.
     poisson_ratio : float
         ν [-].
     density : Quantity or str
         ρ [kg/m³].
     shear_yield_stress : Quantity or str, optional
-        k [Pa] of the work-hardened surface. An estimate: the hardness 2.625 GPa that the KTH wear map implies, yield in
-        tension at Y = H/2.8 (Tabor, The Hardness of Metals, 1951), k = Y/√3 by von Mises's criterion.
+        k [Pa] of the work-hardened surface. The default is an estimate from the hardness 2.625 GPa implied by the KTH
+        wear map, yield in tension at Y = H/2.8 (Tabor, The Hardness of Metals, 1951), and k = Y/√3 by von Mises's
+        criterion.
     """
     return Material(
         youngs_modulus=youngs_modulus,

@@ -1,7 +1,7 @@
-"""The contact problem: two bodies that are pressed together and roll, as SI arrays with one entry an operating point.
+"""The contact problem of two rolling bodies under load, as SI arrays with one entry for each operating point.
 
 x runs along the rolling direction, from the leading to the trailing edge, and y across it. Creepages are those of body
-1, an upper disc or a wheel, relative to body 2; the rigid slip is (ξ - φy, η - φx).
+1, an upper disc or a wheel, relative to body 2. The rigid slip is (ξ - φy, η - φx).
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 Geometry: TypeAlias = Literal["line", "ellipse", "strips"]
-"""The shape of a contact patch: discs with parallel axes touch in a line, a wheel and a rail in an ellipse, and where
-curvatures vary over the patch, in strips along the rolling direction whose pressure is given."""
+"""The shape of a contact patch: discs with parallel axes touch in a line, and a wheel and a rail in an ellipse. If the
+curvatures vary over the patch, it consists of strips along the rolling direction, with a given pressure."""
 
 PATCHES: Mapping[Geometry, str] = {
     "line": "line contacts",
     "ellipse": "elliptic contacts",
     "strips": "patches of strips",
 }
-"""What messages call the contacts of a geometry."""
+"""Words for the contacts of a geometry in messages."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,10 @@ class Body:
     Attributes
     ----------
     material : Material
-        What it is made of.
+        Its material.
     rolling_radius : float or ndarray
-        Radius of the surface that rolls [m], one for all operating points or an array of the batch shape; infinite
-        where the body is flat or straight, as a rail is.
+        Radius of the rolling surface [m], one for all operating points or an array of the batch shape; infinite for a
+        flat or straight body, such as a rail.
     """
 
     material: Material
@@ -61,7 +61,7 @@ class Body:
         return None if stress is None else (scalar_si(stress, "Pa"), self.material.poisson_ratio)
 
     def mapped(self, function: Callable[[Array], Array]) -> Body:
-        """Return the body with a function applied to its radius, where that is an array."""
+        """Return the body with a function applied to its radius if the radius is an array."""
         if not isinstance(self.rolling_radius, np.ndarray):
             return self
         return Body(self.material, function(self.rolling_radius))
@@ -69,17 +69,17 @@ class Body:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Strips:
-    """The strips of a patch that is no ellipse, as SI arrays of shape (batch, strips).
+    """The strips of a patch that is not an ellipse, as SI arrays of shape (batch, strips).
 
-    A strip lies along the rolling direction, its middle at x = 0. Its pressure is p0 √(1 - (x/a)²), where p0 and a are
-    its own.
+    A strip lies along the rolling direction, with its middle at x = 0. Its pressure is p0 √(1 - (x/a)²), with p0 and a
+    of the strip.
 
     Attributes
     ----------
     y : ndarray
         Position of the strip across the rolling direction [m].
     width : ndarray
-        Width that it stands for [m].
+        Width that it represents [m].
     half_length : ndarray
         Half its length, a [m].
     max_pressure : ndarray
@@ -110,7 +110,7 @@ class Strips:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CreepForces:
-    """The forces and the moment that a contact transmits, as SI arrays of the batch shape.
+    """The forces and the moment transmitted by a contact, as SI arrays of the batch shape.
 
     Attributes
     ----------
@@ -128,7 +128,7 @@ class CreepForces:
 
     @classmethod
     def of(cls, columns: Mapping[str, Array]) -> Self:
-        """Return the forces that are among some columns; those of a line have no lateral force and no moment."""
+        """Return the forces from the columns of results; a line has no lateral force and no moment."""
         along = columns["longitudinal"]
         if "lateral" in columns:
             return cls(longitudinal=along, lateral=columns["lateral"], spin_moment=columns["spin_moment"])
@@ -144,15 +144,15 @@ class CreepForces:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Problem:
-    """Contact of two rolling bodies: what a contact model is asked to solve.
+    """Contact of two rolling bodies: the input of a contact model.
 
     It is Hertzian on a line or an ellipse; on strips the pressure is given.
 
-    The arrays are of one shape, the *batch*, with one entry an operating point. `Problem.line` and `Problem.ellipse`
-    make a problem of quantities. A rig whose bodies touch in several places, such as two wheels with up to three
-    patches each, adds axes to the batch and names them in `dims`; `exists` says which of the patches there are.
-    Unlike materials enter by the effective modulus and by Kalker's mean of ν/G; the coupling of normal and tangential
-    displacement between them is neglected.
+    The arrays have one shape, the *batch*, with one entry for each operating point. `Problem.line` and
+    `Problem.ellipse` make a problem from quantities. If bodies touch in several places, such as two wheels with up to
+    three patches each, the rig adds axes to the batch, names them in `dims` and marks the existing patches in `exists`.
+    Unlike materials enter through the effective modulus and Kalker's mean of ν/G. The coupling of normal and tangential
+    displacement between unlike bodies is neglected.
 
     Attributes
     ----------
@@ -174,7 +174,7 @@ class Problem:
     friction_coefficient : ndarray
         Friction coefficient, μ [-].
     longitudinal_creepage : ndarray
-        Longitudinal creepage, ξ [-], positive where body 1 is the faster one.
+        Longitudinal creepage, ξ [-], positive if body 1 is the faster one.
     lateral_creepage : ndarray
         Lateral creepage, η [-].
     spin : ndarray
@@ -184,15 +184,15 @@ class Problem:
     density : ndarray
         Mass density of the body whose wear is predicted, ρ [kg/m³].
     traction_coefficient : ndarray or None
-        Measured tangential over normal force, T/N [-], where the test gave one.
+        Measured tangential over normal force, T/N [-], if the test gave one.
     strips : Strips or None
-        The strips and their pressure, where the patch is no line and no ellipse.
+        The strips and their pressure, if the patch is neither a line nor an ellipse.
     bodies : mapping of str to Body
-        The two bodies by name, of which the first is the one whose wear is predicted; {} where they are unknown.
+        The two bodies by name; wear is predicted for the first body. {} if the bodies are unknown.
     dims : tuple of str
-        Names of the last axes of the batch, where the rig adds some to those of the conditions.
+        Names of the last axes of the batch, if the rig adds axes to those of the conditions.
     exists : array of bool, or None
-        Which patches there are; the others are not solved, and results are NaN there. None where all are.
+        Marks the existing patches; the others are not solved, and their results are NaN. None if all patches exist.
     """
 
     geometry: Geometry
@@ -245,9 +245,9 @@ class Problem:
         creepage : Quantity or str
             ξ, a ratio or in percent.
         rolling_speed : Quantity or str
-            V [m/s]; it matters to what reads the slip speed.
+            V [m/s]; it matters to laws that read the slip speed.
         density : Quantity or str
-            Of the body whose wear is predicted, ρ [kg/m³].
+            Density of the body whose wear is predicted, ρ [kg/m³].
 
         Raises
         ------
@@ -281,7 +281,7 @@ class Problem:
         creepage: Array,
         **fields: Any,
     ) -> Self:
-        """Return the problem of a line contact under P [N/m], of SI arrays of one shape, by Hertz's theory."""
+        """Return the problem of a line contact under P [N/m] by Hertz's theory, from SI arrays of one shape."""
         a = hertz.half_width(normal_force_per_width, relative_radius, effective_modulus)
         none = np.broadcast_to(0.0, creepage.shape)
         return cls(
@@ -311,7 +311,7 @@ class Problem:
         rolling_speed: QuantityLike = "1 m/s",
         density: QuantityLike = "7850 kg/m^3",
     ) -> Self:
-        """Return the problem of two bodies of like materials that touch in a known ellipse; arguments broadcast.
+        """Return the problem of two bodies of like materials that touch in a given ellipse; arguments broadcast.
 
         Parameters
         ----------
@@ -328,9 +328,9 @@ class Problem:
         spin : Quantity or str
             φ [1/m].
         rolling_speed : Quantity or str
-            V [m/s]; it matters to what reads the slip speed.
+            V [m/s]; it matters to laws that read the slip speed.
         density : Quantity or str
-            Of the body whose wear is predicted, ρ [kg/m³].
+            Density of the body whose wear is predicted, ρ [kg/m³].
 
         Raises
         ------
@@ -354,7 +354,7 @@ class Problem:
 
     @classmethod
     def ellipse_from_si(cls, *, shear_modulus: Array, poisson_ratio: Array, **fields: Any) -> Self:
-        """Return the problem of an elliptic contact, of SI arrays of one shape: the arguments of `ellipse`."""
+        """Return the problem of an elliptic contact from the arguments of `ellipse` as SI arrays of one shape."""
         return cls(
             geometry="ellipse",
             max_pressure=1.5 * fields["normal_force"] / (np.pi * fields["a"] * fields["b"]),
@@ -394,12 +394,12 @@ class Problem:
 
     @property
     def size(self) -> int:
-        """The number of operating points, or of the patches that there are."""
+        """The number of operating points or, with several patches, of existing patches."""
         return math.prod(self.batch_shape) if self.exists is None else int(self.exists.sum())
 
     @property
     def creepage(self) -> Array:
-        """Longitudinal creepage, ξ [-], with its sign; positive where body 1 is the faster one."""
+        """Longitudinal creepage, ξ [-], with its sign; positive if body 1 is the faster one."""
         return self.longitudinal_creepage
 
     @property
@@ -457,12 +457,12 @@ class Problem:
         return np.sqrt(mean)
 
     def body(self, name: str) -> Body:
-        """Return the body of a name.
+        """Return the body with a name.
 
         Raises
         ------
         InputError
-            If there is none.
+            If no body has that name.
         """
         if name not in self.bodies:
             names = " and ".join(repr(one) for one in self.bodies) or "not named"
@@ -470,7 +470,7 @@ class Problem:
         return self.bodies[name]
 
     def needs(self, geometry: Geometry, what: str) -> None:
-        """Refuse what belongs to patches of another shape."""
+        """Raise an error if `what` belongs to patches of another shape."""
         if self.geometry != geometry:
             raise CompositionError(f"{what}: belongs to {PATCHES[geometry]}, not to {PATCHES[self.geometry]}")
 
@@ -488,9 +488,9 @@ class Problem:
         return self if lowest >= 0.0 else self.replaced(longitudinal_creepage=np.abs(creepage))
 
     def with_normal_force(self, normal_force: Array) -> Self:
-        """Return the problem under another normal force [N], of the batch shape, with the patch that Hertz gives.
+        """Return the problem under another normal force [N], of the batch shape, with the patch by Hertz's theory.
 
-        a, b and p0 of an ellipse grow with the cube root of the force, a and p0 of a line with its square root.
+        a, b and p0 of an ellipse grow with the cube root of the force. a and p0 of a line grow with its square root.
         """
         if self.strips is not None:
             raise CompositionError("with_normal_force: the pressure of strips is given; make them for another load")
@@ -515,11 +515,11 @@ class Problem:
         return self.mapped(lambda array: array[index])
 
     def broadcast_to(self, shape: tuple[int, ...]) -> Self:
-        """Return the problem with a larger batch shape, to which its own broadcasts; the new axes come first."""
+        """Return the problem broadcast to a larger batch shape; the new axes come first."""
         return self.mapped(lambda array: np.broadcast_to(array, shape))
 
     def flatten(self) -> Self:
-        """Return the problem with its batch as one axis, of the patches that there are."""
+        """Return the problem with a batch of one axis that holds the existing patches."""
         flat = self.mapped(_flat)
         if not flat.dims and flat.exists is None:
             return flat
@@ -527,13 +527,13 @@ class Problem:
         return flat if self.exists is None else flat[self.exists.reshape(-1)]
 
     def existing(self) -> Self:
-        """Return the problem of the patches that there are: itself where all are."""
+        """Return the problem of the existing patches, which is `self` if all patches exist."""
         return self if self.exists is None else self.flatten()
 
     def unflatten(self, values: Array) -> Array:
-        """Return values of the flattened problem in the shape of the batch, with NaN where there is no patch.
+        """Return values of the flattened problem in the shape of the batch, with NaN for missing patches.
 
-        Axes behind that of the flattened problem stay.
+        Axes after the axis of the flattened problem stay.
         """
         shape = self.batch_shape + values.shape[1:]
         if self.exists is None:
@@ -555,7 +555,7 @@ class Problem:
 
 
 def _flat(array: Array) -> Array:
-    """Return an array with one axis, without a copy of one number that stands for all."""
+    """Return an array with one axis; if one number is broadcast to all entries, it is not copied."""
     if array.ndim > 1 and not any(array.strides) and array.size:
         return np.broadcast_to(array[(0,) * array.ndim], array.size)
     return array.reshape(-1)

@@ -1,9 +1,9 @@
 """Nodes over a line contact, and quadrature over its slip zone.
 
-Positions are distances from the edges of the patch, which keep their digits where a zone is short. The slip zone ends
-at the trailing edge; with y = span·sin²(ψ/2) for the distance y from there, the square-root behaviour that traction
-and slip have at the ends of the span becomes smooth in ψ, and Gauss-Legendre rules in ψ converge exponentially.
-Splitting the range of ψ into panels where an integrand has a kink or a jump keeps that.
+Positions are distances from the edges of the patch, which keep their digits in a short zone. The slip zone ends at the
+trailing edge, and y is the distance from there. Traction and slip behave like square roots at the ends of the span.
+With y = span·sin²(ψ/2) they are smooth in ψ, so Gauss-Legendre rules in ψ converge exponentially. An integrand with
+kinks or jumps keeps this convergence if the range of ψ is split into panels there.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from numpy.typing import NDArray
 from wearlaw.arrays.array import Array
 
 ORDER = 24
-"""Nodes of a panel."""
+"""Number of nodes of a panel."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Nodes:
-    """Positions in a line contact, with the lengths that they stand for.
+    """Positions in a line contact, with the length of the patch that each represents.
 
     Attributes
     ----------
     from_leading, from_trailing : ndarray, (batch, nodes)
         Distance from the leading edge, a + x, and from the trailing edge, a - x [m].
     length : ndarray, (batch, nodes)
-        Length of the patch that each node stands for [m].
+        Length of the patch that each node represents [m].
     """
 
     from_leading: Array
@@ -39,7 +39,7 @@ class Nodes:
 
     @classmethod
     def at(cls, x: Array, half_width: Array) -> Self:
-        """Return points at positions `x` (batch, nodes) of a patch of half-width (batch), which stand for no length."""
+        """Return nodes of length zero at positions `x` (batch, nodes) of a patch of half-width (batch)."""
         width = half_width[..., None]
         return cls(width + x, width - x, np.zeros_like(x))
 
@@ -56,7 +56,7 @@ class Nodes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Zone:
-    """A zone of a patch that begins at an edge, and the length over which it is mapped.
+    """A zone of a patch that begins at an edge, and its mapping to ψ.
 
     Attributes
     ----------
@@ -65,8 +65,8 @@ class Zone:
     length : ndarray, (batch)
         Length of the zone [m].
     span : ndarray, (batch)
-        Length from the edge to the next point where the fields behave like square roots [m]: that of the zone, or
-        that of the patch.
+        Length from the edge to the next point with square-root behaviour of the fields [m]: the length of the zone or
+        of the patch.
     angle : ndarray, (batch)
         ψ at the end of the zone.
     """
@@ -82,14 +82,14 @@ class Zone:
 
     @classmethod
     def of(cls, half_width: Array, length: Array, over_patch: bool) -> Self:
-        """Return the zone of a length; mapped over the whole patch, or over itself."""
+        """Return the zone with a length; ψ is mapped over the whole patch or over the zone."""
         patch = 2.0 * half_width
         if over_patch:
             return cls(patch, length, patch, 2.0 * np.arcsin(np.sqrt(np.minimum(length / patch, 1.0))))
         return cls(patch, length, length, np.full_like(length, np.pi))
 
     def angle_of(self, distance: Array) -> Array:
-        """Return ψ at distances (batch, points) from the edge; what lies beyond the zone, and NaN, is at its end."""
+        """Return ψ at distances (batch, points) from the edge; points beyond the zone, and NaN, are at its end."""
         length = self.length[..., None]
         inside = (distance < length) & (length > 0.0)  # False for NaN
         share = np.divide(np.maximum(distance, 0.0), self.span[..., None], out=np.zeros_like(distance), where=inside)
@@ -103,7 +103,7 @@ class Zone:
         splits : ndarray, (batch, k), optional
             Values of ψ from 0 to the zone's angle at which to begin a new panel, in ascending order.
         panels : int
-            How many equal panels to use where no splits are given.
+            Number of equal panels if there are no splits.
 
         Returns
         -------
@@ -127,7 +127,7 @@ class Zone:
         return Nodes((self.patch[..., None] - span) + span * cosine**2, span * sine**2, length)
 
     def middle(self) -> Nodes:
-        """Return one node in the middle that stands for the whole zone."""
+        """Return one node in the middle that represents the whole zone."""
         distance = 0.5 * self.length[..., None]
         return Nodes(self.patch[..., None] - distance, distance, self.length[..., None])
 
@@ -149,8 +149,8 @@ def uniform_cells(half_width: Array, cells: int) -> Nodes:
 def remainder(weighted: Array) -> Array:
     """Return an error estimate for an integral from its weighted samples, panel by panel.
 
-    The integrand of each panel is expanded in Legendre polynomials; the size of the last two coefficients
-    that the nodes resolve bounds what is left out as long as the coefficients fall.
+    The integrand of each panel is expanded in Legendre polynomials. As long as the coefficients fall, the size of the
+    last two coefficients that the nodes resolve bounds the remainder.
 
     Parameters
     ----------

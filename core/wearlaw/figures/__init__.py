@@ -1,1 +1,1 @@
-"""Figures: what they show, and how they are drawn for print."""
+"""The contents of figures, and drawing them for print."""

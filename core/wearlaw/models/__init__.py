@@ -1,1 +1,1 @@
-"""What a plugin implements: rigs, contact models and wear laws."""
+"""The classes that plugins implement: rigs, contact models and wear laws."""

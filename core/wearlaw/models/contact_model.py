@@ -1,6 +1,6 @@
-"""What a plugin implements that solves the tangential contact: `ContactModel`, or one of the classes derived from it.
+"""The base class of contact models, `ContactModel`, and of all models, `Model`.
 
-A model is its configuration: a frozen pydantic record whose fields carry units and whose methods compute.
+A model is its configuration: a frozen pydantic record. Its fields carry units, and its methods compute.
 """
 
 from abc import ABC
@@ -16,7 +16,7 @@ from wearlaw.errors import CompositionError, ModelError, WearlawError, described
 from wearlaw.settings.configuration import Configuration
 
 Scale: TypeAlias = Literal["patch", "cells"]
-"""Whether a contact holds the means of the whole patch in one node, or resolves it into many."""
+"""Whether a contact holds the means of the whole patch in one node, or resolves the patch into many nodes."""
 
 Claim: TypeAlias = Literal["traction_bound", "stick", "energy_balance", "saturation", "initial_slope", "similarity"]
 """An invariant that a contact model keeps unless it declares itself exempt; see `ContactModel.exemptions`."""
@@ -25,30 +25,30 @@ QUADRATURE = 5e-8
 """Accuracy of the quadrature of `LineContactModel`; its worst case is a slip zone just short of the whole patch."""
 
 ELLIPTIC = 5e-3
-"""Error of sums over an ellipse that a model is held to unless it declares another."""
+"""Default limit for the error of sums over an ellipse; a model can declare another."""
 
 OF_ARRAYS = (
-    "\nIn a fit or an uncertainty its numbers are arrays of shape (points, 1), one value for each operating point."
+    "\nIn a fit or an uncertainty, its numbers are arrays of shape (points, 1), one value for each operating point."
     " Write its formulas with NumPy functions that broadcast: np.where instead of if, np.exp instead of math.exp"
 )
-"""Hint for a law that fails with arrays in place of numbers."""
+"""Hint for a law that fails with arrays instead of numbers."""
 
 
 class Model(Configuration, ABC):
-    """What rigs, contact models and wear laws have in common."""
+    """Base class of rigs, contact models and wear laws."""
 
     kind: ClassVar[str]
-    """What messages call a model of this kind."""
+    """Word for a model of this kind in messages."""
 
     name: ClassVar[str]
-    """The name under which the model is looked up."""
+    """Name of the model in the look-up."""
 
     source: ClassVar[str]
-    """The literature that the model is taken from."""
+    """Literature source of the model."""
 
     @classmethod
     def subject(cls) -> str:
-        """Return what messages call this model."""
+        """Return the name of this model in messages."""
         return cls.name
 
     if not TYPE_CHECKING:  # checkers reject this order by themselves
@@ -61,16 +61,16 @@ class Model(Configuration, ABC):
 
 
 class Blame:
-    """A context in which whatever a model's code raises becomes a `ModelError` that names the model.
+    """A context that turns an exception in a model's code into a `ModelError` that names the model.
 
-    wearlaw's own errors pass, as they say what is wrong; so do a person's interrupt and a lack of memory.
+    wearlaw's own errors pass unchanged, because their messages are complete. Ctrl-C and a lack of memory pass as well.
 
     Parameters
     ----------
     model : Model
-        The model that is named.
+        The model to name.
     p : mapping of str to float or ndarray, optional
-        The numbers that a wear law was given. If there are arrays among them, the message says how to take them.
+        The numbers given to a wear law. If there are arrays among them, the message says how to compute with arrays.
     """
 
     __slots__ = ("_model", "_p")
@@ -93,14 +93,14 @@ class Blame:
 class ContactModel(Model):
     """A theory of the tangential contact: from a contact problem to traction and slip in the patch.
 
-    A subclass that knows its fields at any point in closed form derives from `LineContactModel` instead,
-    which lets the wear be integrated to rounding error.
+    Derive a model with closed-form fields from `LineContactModel` instead, so that its wear is integrated to rounding
+    error.
     """
 
     kind: ClassVar[str] = "contact model"
 
     scale: ClassVar[Scale] = "cells"
-    """"patch" where the model gives the means of the whole patch only."""
+    """"patch" if the model gives only the means of the whole patch."""
 
     uses_measured_traction: ClassVar[bool] = False
     """Whether the model can use a measured traction coefficient."""
@@ -108,14 +108,14 @@ class ContactModel(Model):
     if not TYPE_CHECKING:
 
         def __new__(cls, *_: object, **__: object) -> Self:
-            """Refuse a model that solves nothing."""
+            """Raise an error for a class that solves neither geometry."""
             if not cls.geometries():
                 raise TypeError(f"{cls.__name__} is abstract: it implements neither solve_line nor solve_ellipse")
             return super().__new__(cls)
 
     @final
     def solve(self, problem: Problem) -> Contact:
-        """Return the solved contact, on nodes of the model's choice.
+        """Return the solved contact on nodes of the model's choice.
 
         Raises
         ------
@@ -140,7 +140,7 @@ class ContactModel(Model):
 
     @classmethod
     def geometries(cls) -> tuple[Geometry, ...]:
-        """Return the shapes of patch that the model solves: those whose method it implements."""
+        """Return the shapes of patch that the model solves, according to the methods that it implements."""
         methods: dict[Geometry, tuple[object, object]] = {
             "line": (cls.solve_line, ContactModel.solve_line),
             "ellipse": (cls.solve_ellipse, ContactModel.solve_ellipse),
@@ -157,25 +157,25 @@ class ContactModel(Model):
     def tangential_force(self, problem: Problem) -> Array:
         """Return T [N] of a line contact with the sign of the creepage, of the batch shape.
 
-        It is that of `solve_line`, unless the model knows it without.
+        By default it is the force of `solve_line`. A model can override this method to compute the force for less.
         """
         return self.solve_line(problem).tangential_force
 
     def creep_forces(self, problem: Problem) -> CreepForces:
-        """Return the forces of an elliptic contact or of strips; those of `solve`, unless it knows them without."""
+        """Return the forces of an ellipse or of strips, by default from `solve`; override it if they cost less."""
         return self.solve(problem).forces
 
     def on_strips(self, problem: Problem, shares: Array) -> Contact | None:  # noqa: ARG002
-        """Return the contact on strips at y = `shares` × b, of shape (strips), or None if it is known on its own only.
+        """Return the contact on strips at y = `shares` × b, of shape (strips), or None if the model cannot choose them.
 
-        Each strip stands for the width from half-way to the one before to half-way to the next one.
+        Each strip represents the width from half-way to the strip before it to half-way to the strip after it.
         """
         return None
 
     def refined(self) -> "ContactModel | None":
-        """Return the same theory on twice as fine nodes, or None, the default, if the model has no such choice.
+        """Return the same theory on nodes twice as fine, or None, the default, if the model cannot be refined.
 
-        The checks then hold the model to errors of its sums that fall with refinement, at the least in first order.
+        The checks then require that the errors of the sums fall with refinement, at least in first order.
         """
         return None
 
@@ -186,7 +186,7 @@ class ContactModel(Model):
 
     @property
     def elliptic_accuracy(self) -> float:
-        """Error of sums over the nodes of an elliptic contact, as a share of what they are in full slip."""
+        """Error of sums over the nodes of an elliptic contact, as a share of the sums in full slip."""
         return ELLIPTIC
 
     @property

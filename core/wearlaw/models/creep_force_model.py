@@ -1,4 +1,4 @@
-"""What a model implements that gives the creep forces of an ellipse without resolving the patch: `CreepForceModel`."""
+"""The base class of contact models that give the creep forces of an ellipse without resolving the patch."""
 
 from __future__ import annotations
 

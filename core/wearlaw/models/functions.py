@@ -20,13 +20,13 @@ from wearlaw.units.registry import unit_in_si
 from wearlaw.units.variables import UNITS
 
 VARIABLES = (*NODE_VARIABLES, "wear_index")
-"""The variables of a `Contact` that a function may take."""
+"""The variables of a `Contact` that a function can take."""
 
 Function = Callable[..., Any]
 
 
 class FunctionLaw(WearLaw):
-    """The base of laws that `as_wear_law` makes; their fields are the parameters of the function."""
+    """Base class of the laws made by `as_wear_law`; their fields are the parameters of the function."""
 
     function: ClassVar[Function]
     inputs: ClassVar[Mapping[str, str]]
@@ -35,11 +35,11 @@ class FunctionLaw(WearLaw):
     declared: ClassVar[tuple[BreakpointMap | None, BreakpointMap]]
 
     def breakpoints(self, p: Numbers) -> BreakpointMap | None:  # noqa: ARG002
-        """Return the breakpoints that were declared, in SI."""
+        """Return the declared breakpoints in SI."""
         return self.declared[0]
 
     def jumps(self, p: Numbers) -> BreakpointMap:  # noqa: ARG002
-        """Return the jumps that were declared, in SI."""
+        """Return the declared jumps in SI."""
         return self.declared[1]
 
     def rate(self, contact: Contact, p: Numbers) -> Array:
@@ -60,7 +60,7 @@ class FunctionLaw(WearLaw):
 
 
 def _restore(module: str, name: str, fields: dict[str, str]) -> FunctionLaw:
-    """Make a law again from the module attribute that the decorated function has become."""
+    """Make a law again from the decorated function, which is an attribute of its module."""
     law: Any = importlib.import_module(module)
     for part in name.split("."):
         law = getattr(law, part)
@@ -83,27 +83,28 @@ def as_wear_law(
     Parameters
     ----------
     inputs : mapping of str to str
-        The variables of a `Contact` that the function takes as its positional arguments, with the units in which it
-        takes them: "pressure", "traction", "slip", "slip_speed", "wear_index_density" at the nodes, or "wear_index".
+        The positional arguments of the function, each a variable of a `Contact`, with their units: "pressure",
+        "traction", "slip", "slip_speed", "wear_index_density" at the nodes, or "wear_index".
     returns : str
-        The unit of what it returns, such as "ug/m/mm^2".
+        The unit of the return value, such as "ug/m/mm^2".
     breakpoints : mapping of str to sequence of float, optional
-        Where it branches, in the units of `inputs`; {} for a smooth function. Without it nothing is known.
+        The points where the function branches, in the units of `inputs`; {} for a smooth function. By default, nothing
+        is known about its branches.
     jumps : sequence of float, or mapping of str to sequence of float
-        Those of the breakpoints at which its value jumps.
+        The breakpoints at which the value of the function jumps.
     parameters : mapping of str to str, optional
-        Its keyword arguments with their units; their defaults are the defaults of the law's fields. Fits and
-        uncertainties pass arrays of shape (points, 1) for them, so write the function with NumPy functions that
-        broadcast, such as ``np.where`` instead of ``if``.
+        The keyword arguments of the function with their units; their defaults are the defaults of the law's fields.
+        Fits and uncertainties pass arrays of shape (points, 1) for them, so write the function with NumPy functions
+        that broadcast, such as ``np.where`` instead of ``if``.
     monotone_in : sequence of str
-        Inputs in which it never falls.
+        The inputs with which the value never falls.
     source : str
-        The literature that it is taken from.
+        The literature source of the function.
 
     Returns
     -------
     callable
-        A decorator. The decorated function becomes a `WearLaw` of its name.
+        A decorator. The decorated function becomes a `WearLaw` with the name of the function.
 
     Raises
     ------
@@ -150,7 +151,7 @@ def _fields(function: Function, units: Mapping[str, str]) -> dict[str, Any]:
 def _jumps(
     subject: str, jumps: Sequence[float] | Mapping[str, Sequence[float]], breakpoints: Mapping[str, Sequence[float]]
 ) -> Mapping[str, Sequence[float]]:
-    """Return the jumps by their variable, which need not be named where only one has breakpoints."""
+    """Return the jumps by variable; their variable can be left out if only one has breakpoints."""
     if not isinstance(jumps, Mapping):
         if len(jumps) and len(breakpoints) != 1:
             raise _error(subject, "jumps", "name their variable, as in {'pressure': [2.1]}, unless there is only one")
@@ -159,12 +160,12 @@ def _jumps(
         known = breakpoints.get(name, ())
         for value in values:
             if value not in known:
-                raise _error(subject, f"jumps.{name}", f"{value} is none of the breakpoints, {_listed(known)}")
+                raise _error(subject, f"jumps.{name}", f"{value} is not one of the breakpoints: {_listed(known)}")
     return jumps
 
 
 def _check(subject: str, function: Function, inputs: Mapping[str, str], units: Mapping[str, str], returns: str) -> None:
-    """Refuse a declaration that does not fit the function."""
+    """Raise an error for a declaration that does not fit the function."""
     for name, unit in inputs.items():
         if name not in VARIABLES:
             hint = did_you_mean(name, VARIABLES)
@@ -189,13 +190,13 @@ def _check(subject: str, function: Function, inputs: Mapping[str, str], units: M
 
 
 def _check_names(subject: str, units: Mapping[str, str], inputs: Mapping[str, str], monotone_in: Sequence[str]) -> None:
-    """Refuse parameters that cannot be fields of a law, and declarations of variables that are no inputs."""
+    """Raise an error for a parameter that cannot be a field of a law, or a variable that is not among the inputs."""
     for name in units:
         if name.startswith("_") or name in FunctionLaw.__class_vars__ or hasattr(FunctionLaw, name):
-            raise _error(subject, f"parameters.{name}", "is a name that wear laws keep for themselves; choose another")
+            raise _error(subject, f"parameters.{name}", "is a name that wear laws use themselves; choose another")
     for name in monotone_in:
         if name not in inputs:
-            raise _error(subject, f"monotone_in.{name}", f"is not one of the inputs, {_listed(inputs)}")
+            raise _error(subject, f"monotone_in.{name}", f"is not one of the inputs: {_listed(inputs)}")
 
 
 def _check_unit(subject: str, path: str, unit: str, expected: str) -> None:
@@ -211,12 +212,12 @@ def _in_si(
     """Return breakpoints in SI, given in the units of the inputs."""
     for name in values:
         if name not in inputs:
-            raise _error(subject, f"{path}.{name}", f"is not one of the inputs, {_listed(inputs)}")
+            raise _error(subject, f"{path}.{name}", f"is not one of the inputs: {_listed(inputs)}")
     return {name: tuple(float(v) * unit_in_si(inputs[name]) for v in given) for name, given in values.items()}
 
 
 def _listed(known: Iterable[object]) -> str:
-    return ", ".join(map(str, known)) or "of which there are none"
+    return ", ".join(map(str, known)) or "none"
 
 
 def _error(subject: str, path: str, message: str) -> ConfigurationError:

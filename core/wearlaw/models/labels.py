@@ -1,4 +1,4 @@
-"""Short names for models that are shown side by side."""
+"""Short names for models shown side by side."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ModelT = TypeVar("ModelT", bound=Model)
 
 
 def labels(models: Sequence[Model]) -> list[str]:
-    """Return a short name for each model: its own, with the options that tell it from others of that name."""
+    """Return a short name for each model: its own name, and the options that tell it from models of the same name."""
     found = []
     for model in models:
         namesakes = [other for other in models if other.name == model.name]
@@ -25,12 +25,12 @@ def labels(models: Sequence[Model]) -> list[str]:
 
 
 def labelled(models: Sequence[ModelT]) -> dict[str, ModelT]:
-    """Return models by `labels`."""
+    """Return models by their `labels`."""
     return dict(zip(labels(models), models, strict=True))
 
 
 def _telling_apart(models: Sequence[Model]) -> list[str]:
-    """Return the fewest fields, in their order, by which different models of one name differ."""
+    """Return the fewest fields, in their order, that tell models of one name apart."""
     fields: list[str] = []
     kinds: set[tuple[str, ...]] = {()}
     for field in type(models[0]).model_fields:

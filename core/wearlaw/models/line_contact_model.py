@@ -15,21 +15,21 @@ from wearlaw.contact.quadrature import Nodes, Zone, join
 from wearlaw.models.contact_model import ContactModel
 
 FieldVariable: TypeAlias = Literal["pressure", "traction", "slip", "wear_index_density"]
-"""A variable of the nodes that follows from the fields alone."""
+"""A variable of the nodes that depends on the fields alone."""
 
 
 class LineContactModel(ContactModel):
-    """A contact model that knows its fields at any point in closed form, with one slip zone at the trailing edge.
+    """Base class for contact models with closed-form fields and one slip zone, at the trailing edge.
 
-    Its wear is integrated to rounding error. The methods are only called with creepage ≥ 0; `solve` mirrors the
-    result for negative creepage. Those that return None by default make the same result faster.
+    The wear is integrated to rounding error. The methods are only called with creepage ≥ 0; `solve` mirrors the result
+    for negative creepage. Methods that return None by default are optional; they only save time.
     """
 
     @property
     def square_roots_at(self) -> Literal["slip_zone", "patch"]:
-        """The interval at whose ends pressure, traction and slip behave like square roots.
+        """The interval with square-root behaviour of pressure, traction and slip at its ends.
 
-        "slip_zone" suits elastic half-spaces, "patch" models whose slip is smooth up to where it begins.
+        "slip_zone" suits elastic half-spaces. "patch" suits models with smooth slip up to the start of the slip zone.
         """
         return "slip_zone"
 
@@ -39,9 +39,9 @@ class LineContactModel(ContactModel):
 
     @abstractmethod
     def fields(self, problem: Problem, nodes: Nodes) -> LineFields:
-        """Return the fields at `nodes`, whose positions are of shape (batch, nodes) or broadcast to it.
+        """Return the fields at `nodes`; their positions have the shape (batch, nodes) or broadcast to it.
 
-        The arrays of `problem` come with a last axis of length one, so that formulas broadcast against positions.
+        The arrays of `problem` have a last axis of length one, so that formulas broadcast against positions.
         """
 
     @abstractmethod
@@ -49,7 +49,7 @@ class LineContactModel(ContactModel):
         """Return T [N/m], of the batch shape."""
 
     def crossings(self, problem: Problem, variable: FieldVariable, value: Array) -> Array | None:  # noqa: ARG002
-        """Return where in the slip zone a variable crosses a value, or None to have it searched for.
+        """Return the positions in the slip zone where a variable crosses a value, or None to let wearlaw search.
 
         Parameters
         ----------
@@ -63,14 +63,14 @@ class LineContactModel(ContactModel):
         Returns
         -------
         ndarray, (batch, k), or None
-            Distances from the trailing edge [m]; NaN, or any value beyond the slip zone, where there is none.
+            Distances from the trailing edge [m]; NaN, or any value beyond the slip zone, if there is no crossing.
         """
         return None
 
     def excess_dissipation(self, problem: Problem, threshold: float | Array) -> Array | None:  # noqa: ARG002
         """Return ∫ max(q·s - threshold, 0) dx over the patch [N/m], of the batch shape, or None if not known.
 
-        `threshold` [N/m²] is positive; one number, or an array of the batch shape.
+        `threshold` [N/m²] is positive, a single number or an array of the batch shape.
         """
         return None
 
@@ -82,7 +82,7 @@ class LineContactModel(ContactModel):
         return np.copysign(self.tangential_force_per_width(problem.forward()), problem.creepage)
 
     def zones(self, problem: Problem) -> tuple[Zone, Zone]:
-        """Return what sticks, by distances from the leading edge, and what slips, by those from the trailing edge."""
+        """Return the stick zone, measured from the leading edge, and the slip zone, measured from the trailing edge."""
         over_patch, length = self.square_roots_at == "patch", self.slip_length(problem.forward())
         stick = Zone.of(problem.half_width, 2.0 * problem.half_width - length, over_patch)
         return stick, Zone.of(problem.half_width, length, over_patch)

@@ -1,4 +1,4 @@
-"""What a plugin implements that predicts wear, `WearLaw`, and what its parameters were fitted to."""
+"""The base class of wear laws, `WearLaw`, and the record of the fit of their parameters, `Calibration`."""
 
 import inspect
 import math
@@ -24,10 +24,10 @@ from wearlaw.units.quantities import WEAR_RATE, Quantity, Unit, from_si
 from wearlaw.units.variables import UNITS
 
 Numbers: TypeAlias = Mapping[str, float | Array]
-"""A law's numbers in SI, by the names of its fields; those of a record within a law as "coefficient.low_speed".
+"""A law's numbers in SI, by the names of its fields; a number of a record within a law as "coefficient.low_speed".
 
-Each is a float, or, where it differs from operating point to operating point, an array of shape (points, 1), on an
-ellipse (points, 1, 1), which broadcasts over the nodes.
+Each number is a float. If it differs between operating points, it is an array of shape (points, 1), on an ellipse
+(points, 1, 1), which broadcasts over the nodes.
 """
 
 BreakpointMap: TypeAlias = Mapping[str, tuple[Any, ...]]
@@ -38,14 +38,14 @@ TAKE_NUMBERS = {"rate": ("self", "contact", "p"), **dict.fromkeys(("breakpoints"
 
 
 class Calibration(Configuration):
-    """What the parameters of a wear law were fitted to."""
+    """Record of the contact, materials and tests that the parameters of a wear law were fitted to."""
 
     contact_model: str
-    """Name of the contact model whose solution the wear was related to."""
+    """Name of the contact model in the fit."""
     scale: Scale
-    """Whether its patch means or its cells were used."""
+    """Whether the fit used patch means or cells."""
     options: tuple[tuple[str, str], ...] = ()
-    """Settings of that contact model that matter, as pairs of field and value."""
+    """Relevant settings of that contact model, as pairs of field and value."""
     geometry: Geometry = "line"
     """Shape of the contact patch."""
     materials: str
@@ -58,7 +58,7 @@ class Calibration(Configuration):
 
     @model_validator(mode="after")
     def _range_has_units(self) -> "Calibration":
-        self.range_in_si  # noqa: B018  raises where it is wrong
+        self.range_in_si  # noqa: B018  raises if it is wrong
         return self
 
     @cached_property
@@ -79,7 +79,7 @@ class Calibration(Configuration):
         return f"the cells of contact_model({self.contact_model!r}{options})"
 
     def covers(self, model: ContactModel, scale: Scale, geometry: Geometry = "line") -> bool:
-        """Return whether the parameters were fitted for this contact model at this scale, for this shape of patch."""
+        """Return whether the parameters were fitted for this contact model, scale and shape of patch."""
         if scale != self.scale or geometry != self.geometry:
             return False
         if scale == "patch":
@@ -91,7 +91,7 @@ class Calibration(Configuration):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LocalWear:
-    """The wear in a contact that was solved elsewhere.
+    """The wear in a contact solved elsewhere.
 
     Attributes
     ----------
@@ -139,16 +139,16 @@ class WearLaw(Model):
     kind: ClassVar[str] = "wear law"
 
     scale: ClassVar[Literal["patch", "any"]] = "any"
-    """"patch" where the law is stated for the means of the whole patch only."""
+    """"patch" if the law is stated only for the means of the whole patch."""
 
     monotone_in: ClassVar[tuple[str, ...]] = ()
-    """Variables of a `Contact` in which the rate never falls while the others stay as they are."""
+    """Variables of a `Contact` with which the rate never falls while the others stay the same."""
 
     if not TYPE_CHECKING:  # checkers compare the methods with those of this class by themselves
 
         @classmethod
         def __pydantic_init_subclass__(cls, **options: Any) -> None:
-            """Refuse methods that do not take the law's numbers."""
+            """Raise an error for methods that do not take the law's numbers."""
             super().__pydantic_init_subclass__(**options)
             for name, arguments in TAKE_NUMBERS.items():
                 _check_arguments(cls, name, arguments)
@@ -157,21 +157,21 @@ class WearLaw(Model):
     def rate(self, contact: Contact, p: Numbers) -> Array:
         """Return the mass lost per metre rolled and contact area [kg/m/m²], of the shape of the nodes.
 
-        It is not negative, and zero where nothing slips.
+        The rate is not negative, and it is zero where nothing slips.
 
         Parameters
         ----------
         contact : Contact
             The solved contact.
         p : mapping of str to float or ndarray
-            The law's numbers in SI; read them here and not from `self`. Fits and uncertainties pass arrays, which hold
-            one value for each operating point, so write the rate with NumPy functions that broadcast: ``np.where``
-            instead of ``if``, ``np.exp`` instead of ``math.exp``.
+            The law's numbers in SI; read them here and not from `self`. Fits and uncertainties pass arrays with one
+            value for each operating point, so write the rate with NumPy functions that broadcast: ``np.where`` instead
+            of ``if``, ``np.exp`` instead of ``math.exp``.
         """
 
     @cached_property
     def numbers(self) -> Mapping[str, float]:
-        """The law's own numbers in SI, as floats, with those that a name such as "mid" stands for."""
+        """The law's own numbers in SI, as floats; a name such as "mid" is replaced by its numbers."""
         with Blame(self):
             return numbers_in_si(self.explicit())
 
@@ -181,7 +181,7 @@ class WearLaw(Model):
         Raises
         ------
         ModelError
-            If it is not what a rate must be, or `rate` fails.
+            If `rate` fails, or returns wrong values.
         """
         p = self.numbers if p is None else p
         with Blame(self, p):
@@ -200,12 +200,12 @@ class WearLaw(Model):
             raise ModelError(f"wear law '{self.name}' returned a rate that is not finite")
         if rate[contact.slip == 0.0].any():
             raise ModelError(
-                f"wear law '{self.name}' gives wear where the bodies stick; the rate must be zero where the slip is"
+                f"wear law '{self.name}' gives wear where the bodies stick; the rate must be zero if the slip is zero"
             )
         return rate
 
     def __ror__(self, contact: Contact) -> LocalWear:
-        """Return the wear in a contact that was solved elsewhere, as in ``Contact.from_arrays(...) | law``.
+        """Return the wear in a contact solved elsewhere, as in ``Contact.from_arrays(...) | law``.
 
         Raises
         ------
@@ -225,16 +225,16 @@ class WearLaw(Model):
         return LocalWear(contact, rate)
 
     def check_not_negative(self, rate: Array, error: Callable[[], Array] = lambda: np.zeros(())) -> None:
-        """Raise a `ModelError` where wear is negative by more than its numerical error [kg/m/m²].
+        """Raise a `ModelError` if wear is negative by more than its numerical error [kg/m/m²].
 
-        It is for what is shown to users: on its way to the best fit, a law may pass through such wear.
+        This is a check of results for users. On its way to the best fit, a law may pass through negative wear.
         """
         low, _ = extremes(rate)
         if low < 0.0 and (rate < -error()).any():
             raise ModelError(f"wear law '{self.name}' gives a negative wear rate, {low:g} kg/m/m²; see its parameters")
 
     def _warn_of_calibration(self, contact: Contact, scale: Scale) -> None:
-        """Warn of parameters that were fitted for another contact than one solved elsewhere, as far as it shows."""
+        """Warn if the parameters were fitted for another kind of contact, as far as the contact shows its kind."""
         fitted_for = self.calibration
         if fitted_for is None:
             return
@@ -251,22 +251,22 @@ class WearLaw(Model):
         )
 
     def breakpoints(self, p: Numbers) -> BreakpointMap | None:  # noqa: ARG002
-        """Return the variables in which the law branches, with the SI values where it does.
+        """Return the variables in which the law branches, with the SI values of the branch points.
 
-        {} declares a law that is smooth everywhere; None, the default, that nothing is known.
+        {} declares a law that is smooth everywhere. None, the default, declares nothing.
         """
         return None
 
     def ramps(self, p: Numbers) -> tuple[tuple[Any, Any], ...] | None:  # noqa: ARG002
         """Return the law as pairs of threshold [N/m²] and slope [kg/m/N], if it is a sum of ramps in q·s.
 
-        The rate is Σ slope · max(q·s - threshold, 0). Contact models with a closed form of the energy above a
-        threshold then give the mean over the patch without nodes.
+        The rate is Σ slope · max(q·s - threshold, 0). Contact models with a closed form of the energy above a threshold
+        then give the mean over the patch without nodes.
         """
         return None
 
     def jumps(self, p: Numbers) -> BreakpointMap:  # noqa: ARG002
-        """Return those of the breakpoints at which the rate jumps."""
+        """Return the breakpoints at which the rate jumps."""
         return {}
 
     @property
@@ -276,19 +276,19 @@ class WearLaw(Model):
 
     @property
     def calibration(self) -> Calibration | None:
-        """What the parameters were fitted to; None where they are not tied to a contact solution."""
+        """Record of the fit of the parameters; None if they are not tied to a contact solution."""
         return None
 
     def explicit(self) -> "WearLaw":
-        """Return the same law with a number in place of each name that stands for published ones."""
+        """Return the same law with numbers instead of names of published values."""
         return self
 
     def fitted(self, calibration: Calibration) -> "WearLaw":  # noqa: ARG002
-        """Return this law, whose parameters were fitted to a contact, knowing that; by default it does not."""
+        """Return this law with a record of the fit of its parameters; by default the law keeps no record."""
         return self
 
     def band(self) -> "tuple[WearLaw, WearLaw, WearLaw] | None":
-        """Return the laws at the low, middle and high end of published parameter ranges, where there are any."""
+        """Return the laws at the low end, middle and high end of published parameter ranges, or None without ranges."""
         return None
 
 

@@ -1,4 +1,4 @@
-"""Operating points block by block, so that what is computed for them stays in the cache."""
+"""Evaluation of operating points block by block, so that the arrays of a block stay in the cache."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConditionsError
 
 Columns: TypeAlias = dict[str, Array]
-"""Arrays with one entry an operating point."""
+"""Arrays with one entry for each operating point."""
 
 OfBlock: TypeAlias = Callable[[Problem, slice], Columns]
-"""A function of a block of operating points, and of where in the whole problem they lie."""
+"""A function of a block of operating points and of the block's slice in the whole problem."""
 
 OnBlock: TypeAlias = Callable[[Problem, Columns], None]
-"""What is called with a block of operating points and what was computed for them."""
+"""A function called with a block of operating points and its results."""
 
 KEPT = 2**24
 """Bytes that are allocated and freed before the first of several blocks. The C library of Linux then keeps twice as
-much of what a block frees for the next one, where it would hand it back to the system and ask for it again, which takes
-as long as the arithmetic."""
+much of the memory that a block frees, for the next block. Otherwise it would return the memory to the system and
+request it again, which takes as long as the arithmetic."""
 
 
 def by_block(
@@ -33,9 +33,9 @@ def by_block(
     on_block: OnBlock | None = None,
     drop_force: bool = False,
 ) -> Columns:
-    """Return the columns of a function of a problem with one batch axis at most, evaluated block by block.
+    """Evaluate a function of a problem with at most one batch axis block by block, and return its columns.
 
-    With `drop_force`, the forces are told to `on_block` and not kept.
+    With `drop_force`, the forces are passed to `on_block` and not kept.
     """
     points = problem.size
     if points == 0:
@@ -60,5 +60,5 @@ def by_block(
 
 
 def blocks(points: int, block: int) -> Iterator[slice]:
-    """Return the operating points of each block."""
+    """Return the slice of each block."""
     return (slice(first, min(first + block, points)) for first in range(0, points, block))

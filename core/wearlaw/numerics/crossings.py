@@ -1,4 +1,4 @@
-"""Where in the slip zone a variable of the contact crosses a wear law's breakpoints."""
+"""Find the points in the slip zone where a variable of the contact crosses a wear law's breakpoints."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ from wearlaw.errors import ModelError
 from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
 
 SAMPLES = 32
-"""Equal intervals of ψ that are searched for a crossing."""
+"""Number of equal intervals of ψ that are searched for a crossing."""
 
 END_SAMPLES = 5
-"""How often the first and the last of them are cut again, each time to a quarter next to the end.
+"""Number of further cuts of the first and the last interval, each to a quarter next to the end.
 
-A variable is even in ψ about an end, so that a maximum close to it would hide in an equal interval.
+A variable is even in ψ about an end, so a maximum close to the end would hide in an equal interval.
 """
 
 CROSSINGS = 2
-"""Crossings found for each breakpoint; the variables of a line contact rise, or rise and fall, in x."""
+"""Largest number of crossings of a breakpoint, since the variables of a line contact rise, or rise and fall, in x."""
 
 END_GAP = 3e-7
-"""Share of the range of ψ between the outermost samples and the ends, where a slip may grow without bound.
+"""Share of the range of ψ between the outermost samples and the ends, where slip may grow without bound.
 
-What lies beyond them is 2.5e-13 of the zone.
+The part of the zone beyond the outermost samples is 2.5e-13.
 """
 
 
 def crossings(
     model: LineContactModel, problem: Problem, zone: Zone, breakpoints: Mapping[str, tuple[Any, ...]]
 ) -> Array:
-    """Return the ψ at which variables cross their breakpoints, in ascending order.
+    """Return the values of ψ at which variables cross their breakpoints, in ascending order.
 
     Parameters
     ----------
@@ -52,8 +52,8 @@ def crossings(
     Returns
     -------
     ndarray, (points, k)
-        ψ of each crossing, as exact as rounding lets it be; the zone's angle where there is none. k is at most
-        2 × the number of breakpoints.
+        ψ of each crossing, exact to rounding; the zone's angle if there is no crossing. k is at most 2 × the number of
+        breakpoints.
     """
     points = problem.creepage.size
     distances, columns = [np.empty((points, 0))], [np.empty((points, 0))]
@@ -74,7 +74,7 @@ def crossings(
 
 
 def _in_closed_form(model: LineContactModel, problem: Problem, name: str, levels: Array) -> Array | None:
-    """Return how far from the trailing edge a variable crosses levels (points, k), or None if not known."""
+    """Return the distances from the trailing edge at which a variable crosses levels (points, k), or None."""
     points, count = levels.shape
     if name == "slip_speed":
         name, levels = "slip", levels / problem.rolling_speed[:, None]
@@ -114,14 +114,14 @@ def _sample_shares() -> Array:
 
 
 def _elementwise() -> Any:
-    """Return scipy's search for roots and minima of many functions at once, which takes long to load."""
+    """Return scipy's search for roots and minima of many functions at once; loading it takes long."""
     from scipy.optimize import elementwise
 
     return elementwise
 
 
 def _searched(variable: _Variable, value: Array) -> Array:
-    """Return the crossings of a breakpoint (points, 1), as shares of Ψ (points, CROSSINGS); 1 where there is none."""
+    """Return the crossings of a breakpoint (points, 1), as shares of Ψ (points, CROSSINGS); 1 for no crossing."""
     found = np.ones((variable.samples.shape[0], CROSSINGS))
     for point, column, low, high in (_sign_changes(variable, value), _hidden_humps(variable, value)):
         if point.size:
@@ -132,15 +132,15 @@ def _searched(variable: _Variable, value: Array) -> Array:
             )
             if not root.success.all():
                 raise ModelError(
-                    f"contact model '{variable.model.name}': its {variable.name} passes a breakpoint, but cannot be"
-                    " followed to it; it must be finite in the whole slip zone, and the same at each call"
+                    f"contact model '{variable.model.name}': its {variable.name} crosses a breakpoint, but the crossing"
+                    " cannot be found; it must be finite in the whole slip zone, and the same at each call"
                 )
             found[point, column] = root.x
     return found
 
 
 Brackets: TypeAlias = tuple[NDArray[np.intp], NDArray[np.intp], Array, Array]
-"""Operating points, columns of the result, and the shares between which a crossing lies; each of shape (m,)."""
+"""Operating points, columns of the result, and the shares of Ψ on both sides of a crossing; each of shape (m,)."""
 
 
 def _sign_changes(variable: _Variable, value: Array) -> Brackets:
@@ -152,13 +152,13 @@ def _sign_changes(variable: _Variable, value: Array) -> Brackets:
 
 
 def _hidden_humps(variable: _Variable, value: Array) -> Brackets:
-    """Return the brackets of crossings on both sides of a maximum that lies between two samples."""
+    """Return the brackets of crossings on both sides of a maximum between two samples."""
     share, samples = variable.share, variable.samples
     top = samples.argmax(axis=-1).clip(1, share.size - 2)
     points = np.arange(samples.shape[0])
     left, middle, right = (samples[points, top + step] for step in (-1, 0, 1))
-    # A smooth hump exceeds its highest sample by less than four times what that one exceeds its lower neighbour by,
-    # for intervals of which one is no more than four times the next.
+    # Neighbouring intervals differ by a factor of at most four. The top of a smooth hump then lies above its highest
+    # sample by less than four times the difference between that sample and its lower neighbour.
     level = value[:, 0]
     may_reach = (middle < level) & (level < middle + 4.0 * (middle - np.minimum(left, right)))
     point = points[may_reach & (middle >= np.maximum(left, right))]

@@ -1,14 +1,14 @@
-"""Where the nodes lie, and what a law's rate is on average over the patch.
+"""The mean of a law's rate over the patch.
 
-The only code that sees both a contact model and a wear law. Three ways, from the most that is known to the least:
+This is the only code that sees both a contact model and a wear law. It uses the first of three methods that applies:
 
-1. The law is a sum of ramps in q·s, and the model knows the energy above a threshold: a closed form without nodes.
-2. The model knows its fields on a line: quadrature over the slip zone, to rounding error where the law declares the
-   breakpoints at which the zone is then split.
-3. Else, and always on an ellipse, the law at the nodes that the model chose.
+1. Closed form without nodes, if the law is a sum of ramps in q·s, and the model knows the energy above a threshold.
+2. Quadrature over the slip zone, if the model knows its fields on a line. The result is exact to rounding if the law
+   declares its breakpoints, because the zone is then split there.
+3. The law at the model's own nodes. This is always the method on an ellipse.
 
-On a line the last two come with an error estimate, on an ellipse `wear_rate_error` makes one. The number of cells of a
-plot has no part in this.
+On a line, the last two methods give an error estimate. On an ellipse, `wear_rate_error` computes one. The number of
+cells of a plot does not matter here.
 """
 
 from __future__ import annotations
@@ -33,26 +33,26 @@ from wearlaw.numerics.crossings import crossings
 from wearlaw.numerics.solving import Solver, check_columns, check_type
 
 BLOCK = 8192
-"""Operating points of a block in closed form: its arrays stay in the cache, and in memory that is used again."""
+"""Operating points of a block in closed form: its arrays stay in the cache and in reused memory."""
 
 COMPILED_BLOCK = 16384
-"""The same with compiled kernels, which make fewer arrays."""
+"""The same number with compiled kernels, which make fewer arrays."""
 
 NODE_BLOCK = 3072
 """Operating points of a block with nodes."""
 
 ELLIPSE_NODES = 2**16
-"""Nodes of a block of elliptic contacts: enough to outweigh what each call of NumPy takes, few enough for the memory of
-any machine."""
+"""Nodes of a block of elliptic contacts: enough to outweigh the overhead of each NumPy call, and few enough for the
+memory of any machine."""
 
 FEW = 8
-"""Elliptic contacts that are solved at once, whatever their nodes."""
+"""Number of elliptic contacts that are solved at once with any number of nodes."""
 
 PANELS_UNDECLARED = 4
-"""Panels of the slip zone for a law that says nothing about where it branches."""
+"""Panels of the slip zone for a law that does not declare its breakpoints."""
 
 ROUNDINGS = 32.0
-"""Roundings of the largest term in a closed form."""
+"""Number of roundings of the largest term in a closed form."""
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -62,14 +62,14 @@ ALL = slice(None)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlipTotals:
-    """How the patch slips at each operating point, as SI arrays of the batch shape.
+    """Slip of the patch at each operating point, as SI arrays of the batch shape.
 
     Attributes
     ----------
     mean_slip : ndarray
         Area mean of the magnitude of the slip [-].
     slip_area : ndarray
-        Area of what slips [m²].
+        Area of the slip zone [m²].
     patch_area : ndarray
         Area of the whole patch, the sum of its nodes' areas [m²].
     cell_wear_index : ndarray
@@ -84,20 +84,20 @@ class SlipTotals:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WearTotals:
-    """The outcome at each operating point, as SI arrays of the batch shape.
+    """Wear and forces at each operating point, as SI arrays of the batch shape.
 
     Attributes
     ----------
     wear_rate : ndarray
         Area mean of the law's rate over the patch [kg/m/m²].
     wear_rate_error : ndarray or None
-        Estimate of the numerical error in it [kg/m/m²]; None where `wear_rate_error` gives it.
+        Estimate of its numerical error [kg/m/m²]; None if the function `wear_rate_error` computes the estimate.
     forces : CreepForces or None
-        The forces and the moment; None where the contact model knows them without nodes.
+        The forces and the moment; None if the contact model knows them without nodes.
     patch_area : ndarray or None
-        Area of the patch, the sum of its nodes' areas [m²]; None where that is the area of the problem.
+        Area of the patch, the sum of its nodes' areas [m²]; None if it equals the area of the problem.
     contact : Contact or None
-        The contact as the model solved it, for a batch of one axis, where it is an ellipse and fits into one block.
+        The model's solution, for a batch of one axis; only for an ellipse that fits into one block.
     """
 
     wear_rate: Array
@@ -115,7 +115,7 @@ def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
             return _columns(model.creep_forces(part))
 
         return CreepForces.of(_by_block(Solver(model), problem, of_ellipse))
-    if isinstance(model, LineContactModel):  # in closed form, without nodes that would fill the memory
+    if isinstance(model, LineContactModel):  # closed form, without nodes that would fill the memory
         there = problem.existing()
         with Blame(model):
             force = model.tangential_force(there)
@@ -132,7 +132,7 @@ def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
 def integrate_slip(
     model: ContactModel, problem: Problem, scale: Scale, solved_before: Contact | None = None
 ) -> SlipTotals:
-    """Return how the patch slips; of a contact that was `solved_before`, as `WearTotals.contact`, at no cost."""
+    """Return the slip of the patch; a contact `solved_before`, as in `WearTotals.contact`, is not solved again."""
     solver = Solver(model)
 
     def columns(part: Problem, _: slice) -> Columns:
@@ -153,7 +153,7 @@ def integrate_slip(
 
 def patch_area(model: ContactModel, problem: Problem, scale: Scale) -> Array:
     """Return the area of the patch, the sum of its nodes' areas [m²]."""
-    if isinstance(model, LineContactModel) and problem.geometry == "line":  # its nodes share out the patch
+    if isinstance(model, LineContactModel) and problem.geometry == "line":  # its nodes cover the whole patch
         return problem.patch_area
     return integrate_slip(model, problem, scale).patch_area
 
@@ -176,7 +176,7 @@ def integrate_wear(
     scale : str
         Whether the law sees the patch means or the cells.
     on_block : callable, optional
-        Called with each block of operating points, and the forces [N] among its columns.
+        Called with each block of operating points and its columns, which include the forces [N].
     p : mapping of str to float or ndarray, optional
         The law's numbers in SI, by default its own. Arrays of shape (points, 1) need a batch of one axis, (points,).
 
@@ -233,7 +233,7 @@ def _over_line(
         ramps = law.ramps(p) if scale == "cells" else None
     closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
 
-    if closed and problem.batch_shape == ():  # scalars are computed as scalars
+    if closed and problem.batch_shape == ():  # compute scalars as scalars
         with Blame(model):
             found = closed_form(*closed, problem)
         if found is not None:
@@ -263,10 +263,10 @@ def _over_line(
 def wear_rate_error(model: ContactModel, law: WearLaw, problem: Problem, scale: Scale, totals: WearTotals) -> Array:
     """Return an estimate of the error of wear rates [kg/m/m²].
 
-    Of a closed form it is some roundings of what each ramp would give without its threshold. On an ellipse it is how
-    far the rates move on nodes twice and four times as fine, times the 4/3 by which errors of first order exceed the
-    sum of both steps; or, of a model that has no finer nodes, how far they move when nodes are left out, which in
-    partial slip can fall short of the error, by six times on 64 strips.
+    For a closed form, the estimate is some roundings of the sum of all ramps without their thresholds. For an ellipse,
+    it is the change of the rates on nodes twice and four times as fine, times 4/3, because errors of first order exceed
+    the sum of both steps by this factor. If the model has no finer nodes, the estimate is the change of the rates when
+    nodes are left out. In partial slip, this last estimate can be too small, by six times on 64 strips.
     """
     if totals.wear_rate_error is not None:
         return totals.wear_rate_error
@@ -294,7 +294,7 @@ def wear_rate_error(model: ContactModel, law: WearLaw, problem: Problem, scale: 
 def integrate_across(
     model: ContactModel, law: WearLaw, problem: Problem, strips: int | None, solved_before: Contact | None = None
 ) -> tuple[Array, Array, Array]:
-    """Return what happens along each strip of an ellipse, block by block, of the batch shape and an axis of strips.
+    """Return the wear and slip integrated along each strip of an ellipse, of the batch shape and an axis of strips.
 
     Parameters
     ----------
@@ -302,14 +302,14 @@ def integrate_across(
     law : WearLaw
     problem : Problem
     strips : int, optional
-        How many strips of equal width; by default, and of a model that has strips of its own only, those of the model.
+        Number of strips of equal width. By default, and if the model cannot choose strips, the model's own strips.
     solved_before : Contact, optional
         As in `WearTotals.contact`.
 
     Returns
     -------
     y, wear, slid : ndarray, (batch, strips)
-        Place of each strip [m], ∫ rate dx [kg/m²] and ∫ |s| dx [m] along it.
+        Position of each strip [m], ∫ rate dx [kg/m²] and ∫ |s| dx [m] along it.
     """
     solver, flat = Solver(model), problem.flatten()
     edges = np.linspace(-1.0, 1.0, (strips or 0) + 1)
@@ -344,7 +344,7 @@ def _columns(forces: CreepForces) -> Columns:
 
 
 def _by_block(solver: Solver, problem: Problem, columns: OfBlock, on_block: OnBlock | None = None) -> Columns:
-    """Return columns over blocks of as many operating points as the model's nodes allow."""
+    """Return columns over blocks; the model's number of nodes decides the number of operating points in a block."""
     block = NODE_BLOCK
     if problem.geometry != "line":
         few = problem.size <= FEW
@@ -354,17 +354,17 @@ def _by_block(solver: Solver, problem: Problem, columns: OfBlock, on_block: OnBl
 
 
 def solve(model: ContactModel, problem: Problem, scale: Scale) -> Contact:
-    """Return the contact of a model on its own nodes, or its patch mean where that is asked for."""
+    """Return the contact of a model on its own nodes, or its patch mean if the scale is "patch"."""
     return seen_by_law(model, Solver(model).solve(problem.existing()).unflattened(problem), scale)
 
 
 def seen_by_law(model: ContactModel, contact: Contact, scale: Scale) -> Contact:
-    """Return a contact as a law gets to see it: its patch means, where those are asked for."""
+    """Return the contact that a law receives: the patch means if the scale is "patch"."""
     return contact.patch_mean() if scale == "patch" and model.scale != "patch" else contact
 
 
 def contact_for(model: ContactModel, law: WearLaw, problem: Problem, scale: Scale) -> Contact:
-    """Return the contact on the nodes that suit a law, for a batch of one axis."""
+    """Return the contact on nodes suited to a law, for a batch of one axis."""
     if scale == "patch" or not isinstance(model, LineContactModel):
         return solve(model, problem, scale)
     with Blame(model):
@@ -379,7 +379,7 @@ def closed_form(
 ) -> Columns | None:
     """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form.
 
-    `points` says where the problem lies in arrays of thresholds and slopes, (points, 1).
+    `points` is the slice of the problem in arrays of thresholds and slopes, (points, 1).
     """
     forward = problem.forward()
     force = model.tangential_force_per_width(forward)
@@ -395,14 +395,14 @@ def closed_form(
         total += 0.5 * slope * excess
     force = force * problem.track_width
     rate = total / problem.half_width
-    if extremes(rate)[0] < 0.0:  # ramps that cancel leave their rounding
+    if extremes(rate)[0] < 0.0:  # ramps that cancel leave a rounding error
         rate = np.maximum(rate, 0.0)
     signed = force if forward is problem else np.copysign(force, problem.creepage)
     return {"wear_rate": rate, "longitudinal": signed}
 
 
 def _per_point(number: float | Array, points: slice) -> float | Array:
-    """Return a number, or one for each of some operating points without the axis of the nodes."""
+    """Return a number, or an array of one number for each operating point, without the axis of the nodes."""
     return number[points, 0] if isinstance(number, np.ndarray) and number.ndim else number
 
 
@@ -430,7 +430,7 @@ def _from_nodes(solver: Solver, law: WearLaw, p: Numbers, problem: Problem, scal
 
 
 def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem) -> Columns:
-    """Return the mean of a law's rate, with as many panels as each operating point needs."""
+    """Return the mean of a law's rate, with the number of panels that each operating point needs."""
     stick, slip = model.zones(problem)
     splits = splits_of(model, law, p, problem, slip)
     totals = solver.block_is_summed()
@@ -453,7 +453,7 @@ def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Nu
 
 
 def splits_of(model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem, slip: Zone) -> Array | None:
-    """Return ψ where a law branches in the slip zone, (points, k), or None if nothing is known of that."""
+    """Return ψ where a law branches in the slip zone, (points, k), or None if the law does not declare it."""
     with Blame(law, p):
         breakpoints = law.breakpoints(p)
     if breakpoints is None:
@@ -473,7 +473,8 @@ def _over_panels(
 ) -> Columns:
     """Return the mean of a law's rate over the patch, its error estimate and the force, by panels of the slip zone.
 
-    Where nothing slips nothing wears, so that one node is enough there, unless sums are compared with `totals`.
+    Nothing wears in the stick zone, so one node is enough there. With `totals`, the stick zone has all its nodes,
+    because sums over the nodes are then compared with the totals.
     """
     stick, zone = zones
     nodes = zone.nodes(panels=PANELS_UNDECLARED) if splits is None else zone.nodes(splits)
@@ -488,10 +489,11 @@ def _over_panels(
 
 
 def thinning_error(contact: Contact, rate: Array) -> Array:
-    """Return how far the mean moves when nodes are left out, for nodes of which nothing is known.
+    """Return the change of the mean when nodes are left out, an error estimate for any set of nodes.
 
-    The means over every other node show steps that fall between nodes; they agree by symmetry for a rate that
-    vanishes at both ends, where the middle nodes of every three, with the area of the three, still differ.
+    The difference between the means over every other node shows steps between nodes. By symmetry, these means agree for
+    a rate that vanishes at both ends. The second term still shows such an error: it gives the middle one of every three
+    nodes the area of all three.
     """
     shape = (*contact.rolling_speed.shape, -1)
     area, weighted = contact.area.reshape(shape), (rate * contact.area).reshape(shape)

@@ -1,8 +1,9 @@
-"""Solving contacts by a model, and checking what it returns.
+"""Solve contacts by a model, and check the result.
 
 A contact model may come from anyone, so each block of operating points is checked: types, shapes, finite values, areas
-that are not negative, tractions within their bound. What the nodes sum to is compared with the totals in the first
-block and in every 64th one after it. A breach is a `ModelError` that names the model, the field and the first place.
+that are not negative, and tractions within their bound. In the first block and in every 64th block after it, the sums
+over the nodes are compared with the totals. A breach raises a `ModelError` that names the model, the field and the
+first place.
 """
 
 from __future__ import annotations
@@ -28,28 +29,28 @@ from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import VARIABLES
 
 EVERY = 64
-"""Blocks from one comparison of sums with totals to the next."""
+"""Number of blocks from one comparison of sums with totals to the next."""
 
 SLACK = 2.0
-"""Factor by which sums over nodes may be farther off than the model declares: a declared error is one that the
-conformance kit has verified on a sample of contacts."""
+"""Factor by which the error of a sum over nodes may exceed the declared error, since the conformance kit has verified
+the declared error on a sample of contacts only."""
 
 ROUNDINGS = 64.0 * float(np.finfo(np.float64).eps)
-"""Rounding error of a sum over nodes, or of the magnitude of a vector."""
+"""Relative rounding error of a sum over nodes, or of the magnitude of a vector."""
 
 FLOAT64 = np.dtype(np.float64)
 
 ONE_THREAD = 10_000
-"""Length up to which BLAS multiplies vectors in one thread. Several would take processors from other workers."""
+"""Length up to which BLAS multiplies vectors in one thread. More threads would take processors from other workers."""
 
 FIELDS = ("pressure", "traction", "slip", "area", "traction_bound", "x")
 """Arrays with one value for each node."""
 
 VECTORS = ("traction_x", "traction_y", "slip_x", "slip_y", "y")
-"""Those that a line contact derives from them."""
+"""Arrays with one value for each node that a line contact derives from `FIELDS`."""
 
 LINE_TOTALS = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
-"""Of the totals, those that a line contact does not derive."""
+"""The totals that a line contact does not derive from others."""
 
 
 class Solver:
@@ -72,7 +73,7 @@ class Solver:
         on_block: OnBlock | None = None,
         drop_force: bool = False,
     ) -> Columns:
-        """Return the columns of a function of the problem, in the shape of its batch; see `blocks.by_block`.
+        """Return the columns of a function of the problem in the shape of its batch; see `blocks.by_block`.
 
         Raises
         ------
@@ -97,9 +98,9 @@ class Solver:
         return contact if contact.problem is not None else contact.replaced(problem=problem)
 
     def at(self, problem: Problem, nodes: Nodes, *, totals: bool) -> Contact:
-        """Return the contact on given nodes, by a model that knows its fields.
+        """Return the contact on given nodes, for a model with closed-form fields.
 
-        `totals` says whether sums over the nodes, which then cover the whole patch, are compared with the totals.
+        With `totals`, the nodes cover the whole patch, and sums over them are compared with the totals.
         """
         assert isinstance(self.model, LineContactModel)
         with Blame(self.model):
@@ -108,7 +109,7 @@ class Solver:
         return contact
 
     def block_is_summed(self) -> bool:
-        """Count a block, and return whether its sums are to be compared with its totals."""
+        """Count a block, and return whether to compare its sums with its totals."""
         self._blocks += 1
         return self._blocks % EVERY == 1
 
@@ -120,7 +121,7 @@ class Solver:
             _check_totals(self.model, contact, problem)
 
     def rate(self, law: WearLaw, contact: Contact, problem: Problem, p: Numbers | None = None) -> Array:
-        """Return the rates of a law with its numbers, or blame the contact for them if that is what is wrong."""
+        """Return the rates of a law; if they are wrong because of the contact, raise an error that names its model."""
         try:
             return law.checked_rate(contact, p)
         except ModelError:
@@ -166,7 +167,7 @@ def _check_fields(model: ContactModel, contact: Contact, names: tuple[str, ...],
 
 
 def check_type(model: ContactModel, name: str, values: Any, shape: tuple[int, ...]) -> None:
-    """Raise a `ModelError` unless a value is a float64 array of a shape, or a number where that has no axes."""
+    """Raise a `ModelError` unless a value is a float64 array of a shape, or a number if the shape has no axes."""
     if type(values) not in (np.ndarray, np.float64) or values.dtype != FLOAT64:
         raise ModelError(
             f"contact model '{model.name}' gave {_words(name)} of type {type_name(values)}; it must be a float64 array"
@@ -178,24 +179,24 @@ def check_type(model: ContactModel, name: str, values: Any, shape: tuple[int, ..
 
 
 def _check_values(model: ContactModel, contact: Contact, problem: Problem, *, areas: bool) -> None:
-    """Check the values that laws read in few passes, and search for the first wrong one only if there is one.
+    """Check the values that laws read in few passes, and search for the first wrong value only if there is one.
 
-    Components of vectors are checked by their magnitudes, and where sums are compared with totals. Areas are checked
-    where the model chose the nodes; an infinite one is found by its sum.
+    Components of vectors are checked through their magnitudes, and again in the comparison of sums with totals. Areas
+    are checked if the model chose the nodes; an infinite area is found by its sum.
     """
     area, traction, bound = contact.area, contact.traction, contact.traction_bound
     if areas and not area.min() >= 0.0:
         check_finite(model, contact, problem)
         raise _error(model, "gave a negative area", problem, area < 0.0)
     finite = math.isfinite(_product(contact.pressure, contact.slip))
-    if "traction_bound" in model.exemptions:  # where it may be infinite, it keeps no traction finite
+    if "traction_bound" in model.exemptions:  # an infinite bound would not show an infinite traction
         finite = finite and math.isfinite(traction.max())
     if not finite:
         check_finite(model, contact, problem)
     magnitude = traction if traction.min() >= 0.0 else np.abs(traction)
-    if (magnitude <= bound).all():  # False where one is no number
+    if (magnitude <= bound).all():  # False for NaN
         return
-    with np.errstate(invalid="ignore"):  # infinity less infinity is NaN
+    with np.errstate(invalid="ignore"):  # infinity minus infinity is NaN
         margin = float((bound - magnitude).min())
     if not margin > -math.inf:
         check_finite(model, contact, problem)
@@ -206,7 +207,7 @@ def _check_values(model: ContactModel, contact: Contact, problem: Problem, *, ar
 def _product(one: Array, other: Array) -> float:
     """Return the sum of the products of two arrays of one shape, which is finite only if all their entries are.
 
-    This is the fastest way to look at them. The sum may overflow as well.
+    This is the fastest test for finite entries. The sum can also overflow for finite entries.
     """
     first, second = one.ravel(order="K"), other.ravel(order="K")
     total = 0.0
@@ -236,12 +237,12 @@ def _check_bound(model: ContactModel, contact: Contact, problem: Problem) -> Non
 
 
 def _rounding_of_traction(model: ContactModel) -> float:
-    """Return by how much a traction may exceed its bound: by rounding, or by the error of the force that it is."""
+    """Return the share by which a traction may exceed its bound: rounding, or the error of a force over the patch."""
     return ROUNDINGS if model.scale == "cells" or model.accuracy == QUADRATURE else model.accuracy
 
 
 def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> None:
-    """Compare sums over the nodes with the totals, to what the model declares of its sums."""
+    """Compare sums over the nodes with the totals, within the model's declared accuracy."""
     ellipse = contact.on_strips
     totals = np.stack([getattr(contact, name) for name in (TOTALS if ellipse else LINE_TOTALS)])
     vectors = (getattr(contact, name) for name in (VECTORS if ellipse else ()))
@@ -272,15 +273,15 @@ def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> No
             raise _error(
                 model,
                 f"gave {_words(name)} of {_shown(name, total[first])}, but its nodes sum to"
-                f" {_shown(name, found[first])}; they may differ by twice its `{declared}`, {0.5 * error:.2g}, which a"
-                " model on coarser nodes declares",
+                f" {_shown(name, found[first])}; they may differ by twice its `{declared}`, {0.5 * error:.2g}"
+                " (declare a larger one for coarser nodes)",
                 problem,
                 wrong,
             )
 
 
 def _error(model: ContactModel, what: str, problem: Problem, wrong: NDArray[np.bool_]) -> ModelError:
-    """Return the error that names the first place where something is wrong, of the shape of the batch or the nodes."""
+    """Return the error for the first wrong place; `wrong` has the shape of the batch or the nodes."""
     first = _first(wrong)
     batch = len(problem.batch_shape)
     point, node = first[:batch], first[batch:]
@@ -298,7 +299,7 @@ def _first(wrong: NDArray[np.bool_]) -> tuple[int, ...]:
 
 
 def _words(name: str) -> str:
-    """Return what messages call a field, with its article."""
+    """Return the words for a field in messages, with an article."""
     words = {
         "force_x": "longitudinal force",
         "force_y": "lateral force",

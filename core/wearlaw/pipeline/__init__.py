@@ -1,1 +1,1 @@
-"""What a user composes: rig | contact model | wear law, its predictions, and what it warns of."""
+"""Pipelines of rig | contact model | wear law, their predictions and their warnings."""

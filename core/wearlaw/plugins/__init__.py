@@ -1,1 +1,1 @@
-"""Finding installed plugins, and looking up by name what they provide."""
+"""Finding installed plugins, and looking up their models and data by name."""

@@ -1,1 +1,1 @@
-"""Frozen records of settings that are checked, written and read again, and the numbers in them."""
+"""Frozen, checked records of settings, written to files and read again, and the numbers in them."""

@@ -1,4 +1,4 @@
-"""The conformance kit: what every rig, contact model and wear law must keep, and strategies to test your own code with.
+"""The conformance kit: the rules for every rig, contact model and wear law, and strategies for testing your own code.
 
 `checks` yields the checks of a model, `conformance` makes pytest tests of them. The strategies are also what
 hypothesis draws from for arguments typed `Material`, `TwinDisc`, `WheelRail`, `Problem` and `Contact`.

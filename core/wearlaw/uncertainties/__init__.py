@@ -1,1 +1,1 @@
-"""How uncertain predictions are."""
+"""Uncertainties of predictions."""

@@ -66,7 +66,7 @@ def si_factor(quantity: Any, due: str) -> float:
 def _factor(registry: pint.UnitRegistry[Any], container: Any, due: str) -> float:
     given, due_unit = registry.Unit(container), parse_unit(registry, due)
     if given.dimensionality != due_unit.dimensionality:
-        raise UnitError("which is not " + (f"of the dimension of '{due}'" if due else "a ratio"))
+        raise UnitError(f"which does not have the dimension of '{due}'" if due else "which is not a ratio")
     zero, one = (registry.convert(value, given, due_unit) for value in (0.0, 1.0))
     if zero != 0.0:  # degrees Celsius, decibel
         raise UnitError("whose unit has an offset or is logarithmic; convert it first")
