@@ -17,8 +17,8 @@ from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.testing import fresh
-from wearlaw.testing.ellipses import random_ellipses
 from wearlaw.testing.examples import assert_close
+from wearlaw.testing.problems import random_ellipses
 from wearlaw.testing.sampling import random_contacts
 from wearlaw.units.quantities import Q
 
