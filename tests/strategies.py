@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 import wearlaw as wl
-from wearlaw.testing.contact_checks import repeated, saturation, with_creepage
+from wearlaw.testing.problems import saturation, with_creepage
 from wearlaw.testing.sampling import EPS
 from wearlaw.testing.strategies import line_problems as kit_problems
 from wearlaw.testing.strategies import log_uniform
@@ -18,7 +18,6 @@ __all__ = [
     "MODELS",
     "line_problems",
     "log_uniform",
-    "repeated",
     "saturation_creepage",
     "with_creepage",
 ]

@@ -26,7 +26,6 @@ from tests.strategies import (
     MODELS,
     line_problems,
     log_uniform,
-    repeated,
     saturation_creepage,
     with_creepage,
 )
@@ -244,7 +243,7 @@ def prediction(model: wl.ContactModel, law: wl.WearLaw, problem: wl.Problem) -> 
 @given(problem=line_problems())
 def test_wear_does_not_know_the_sign_of_the_creepage_and_is_zero_without(name: str, problem: wl.Problem) -> None:
     creepage = float(problem.creepage)
-    batch = with_creepage(repeated(problem, (3,)), np.array([creepage, 0.0, -creepage]))
+    batch = with_creepage(problem.broadcast_to((3,)), np.array([creepage, 0.0, -creepage]))
     for law in LAWS.values():
         found = prediction(MODELS[name], law, batch)
         forward, none, backward = found.wear_rate.magnitude

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from wearlaw.testing import examples
 from wearlaw.testing.examples import for_each
-from wearlaw.testing.strategies import LINE_PROBLEMS
+from wearlaw.testing.shapes import LINE
 
 
 def test_a_function_that_writes_into_its_examples_leaves_those_of_the_next_as_they_are() -> None:
@@ -21,7 +21,7 @@ def test_a_function_that_writes_into_its_examples_leaves_those_of_the_next_as_th
             seen[-1].append(float(problem.creepage))
             np.asarray(problem.creepage)[...] = np.nan
 
-        for_each(LINE_PROBLEMS, examine)
+        for_each(LINE.problems, examine)
     assert len(seen[0]) == examples._SETTINGS.max_examples >= examples.EXAMPLES
     assert seen[0] == seen[1]
     assert np.isfinite(seen[0]).all()

@@ -41,6 +41,30 @@ WRONG: dict[Any, str] = {
 }
 
 
+RIGHT_LAWS: list[Any] = [wrong_declarations.Ramps(), wl.wear_law("brr")]
+RIGHT_RIGS: list[Any] = [wrong_rigs.Weight()]
+RIGHT_ON: dict[str, list[Any]] = {
+    "line": [wl.contact_model("exact"), cells.Cells()],
+    "ellipse": [strips.Strips()],
+}
+"""Right contact models by the shape that they solve.
+
+Of the patch and of cells, with ramps, with fields at any position, and with cells and strips that can be refined:
+between them these models are given every check.
+"""
+
+
+def names_of(models: list[Any]) -> set[str]:
+    return {check.name for model in models for check in checks(model)}
+
+
+BEGINS = {"line": "on a line: ", "ellipse": "on an ellipse: "}
+"""How messages begin."""
+
+ON_EACH_SHAPE = set.intersection(*map(names_of, RIGHT_ON.values())) - names_of(RIGHT_LAWS) - {"exemptions_are_claims"}
+"""Checks that run on each shape which a contact model solves."""
+
+
 def made(mutant: Any) -> Any:
     if issubclass(mutant, wrong_rigs.LosesArm):
         return mutant(arm="1 m")
@@ -61,6 +85,8 @@ def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any, monkey
     with pytest.raises(AssertionError) as failure:
         check()
     assert len(str(failure.value)) > 10
+    if check.name in ON_EACH_SHAPE:
+        assert str(failure.value).startswith(tuple(BEGINS[shape] for shape in mutant.geometries()))
 
 
 @pytest.mark.validates(
@@ -70,13 +96,31 @@ def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any, monkey
     held_to="every check catches one",
 )
 def test_every_check_of_an_invariant_catches_a_mutant() -> None:
-    # Of the patch and of cells, with ramps, with fields at any position, and with cells and strips that can be refined:
-    # between them they are given every check.
-    laws: list[Any] = [wrong_declarations.Ramps(), wl.wear_law("brr")]
-    contact_models: list[Any] = [wl.contact_model("exact"), cells.Cells(), strips.Strips()]
-    rigs: list[Any] = [wrong_rigs.Weight()]
-    names = {check.name for model in laws + contact_models + rigs for check in checks(model)}
-    assert names == set(WRONG.values())
+    contact_models = [model for models in RIGHT_ON.values() for model in models]
+    assert names_of(RIGHT_LAWS + contact_models + RIGHT_RIGS) == set(WRONG.values())
+
+
+@pytest.mark.parametrize("shape", RIGHT_ON)
+def test_a_check_on_each_shape_catches_a_mutant_of_each(shape: str) -> None:
+    of_shape = {name for mutant, name in WRONG.items() if getattr(mutant, "geometries", tuple)() == (shape,)}
+    assert of_shape >= ON_EACH_SHAPE
+    assert len(ON_EACH_SHAPE) > 20
+
+
+class FailsOnEllipses(cells.Cells):
+    """Right on a line, and with an error on an ellipse."""
+
+    def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
+        raise ZeroDivisionError("by nothing")
+
+
+def test_an_error_of_the_model_names_the_shape() -> None:
+    finite = {check.name: check for check in checks(FailsOnEllipses())}["contact_is_finite"]
+    with pytest.raises(
+        AssertionError, match=r"^on an ellipse: the model raised ZeroDivisionError: by nothing"
+    ) as failure:
+        finite()
+    assert "Problem(geometry='ellipse'" in "\n".join(failure.value.__notes__)
 
 
 @wl.as_wear_law(

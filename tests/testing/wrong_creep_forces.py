@@ -79,14 +79,14 @@ class KnowsMillimetres(Means):
 
 
 CAUGHT: dict[Any, str] = {
-    FallsWithLongitudinalCreepage: "longitudinal_force_grows_with_creepage",
+    FallsWithLongitudinalCreepage: "force_grows_with_creepage",
     JumpsIntoFullSlipOnTheEllipse: "forces_are_continuous",
-    AboveFrictionOnTheEllipse: "forces_stay_below_friction",
-    NeverAllFriction: "translation_reaches_full_slip",
-    AsideOfTheCreepage: "translation_reaches_full_slip",
-    StepsIntoFullSlipOnTheEllipse: "full_slip_on_the_ellipse_is_met_from_both_sides",
+    AboveFrictionOnTheEllipse: "force_stays_below_friction",
+    NeverAllFriction: "full_slip_is_reached",
+    AsideOfTheCreepage: "full_slip_is_reached",
+    StepsIntoFullSlipOnTheEllipse: "full_slip_is_met_from_both_sides",
     TooSoftForSpin: "initial_slopes_are_kalkers",
     TooStiffAtFirst: "initial_slopes_are_kalkers",
-    KnowsMillimetres: "elliptic_contacts_are_similar",
+    KnowsMillimetres: "contacts_are_similar",
 }
 """The check that must catch each."""

@@ -88,7 +88,7 @@ class KernelOfExcessDiffers(Exact):  # type: ignore[misc]
 CAUGHT: dict[Any, str] = {
     SlipsBeforeTheZone: "slip_lies_in_the_slip_zone",
     SlipZoneBeyondThePatch: "slip_lies_in_the_slip_zone",
-    ForceOfAnother: "force_alone_is_that_of_the_contact",
+    ForceOfAnother: "forces_alone_are_those_of_the_contact",
     CrossingAside: "crossings_are_where_the_fields_cross",
     OneCrossingOfTwo: "crossings_are_where_the_fields_cross",
     TooMuchExcess: "excess_dissipation_is_that_of_the_fields",

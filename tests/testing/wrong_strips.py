@@ -40,6 +40,10 @@ class RefinedHasAsManyStrips(Strips):
         return self
 
 
+class RefinedHasTheSameForces(RefinedHasAsManyStrips):
+    """Its forces seem to converge at once, since it has as many strips and cells."""
+
+
 class DoesNotConverge(Spoilt):
     """The forces go up and down with the refinement, by less than its accuracy."""
 
@@ -85,10 +89,11 @@ class OtherwiseForOnePoint(Spoilt):
 
 
 CAUGHT: dict[Any, str] = {
-    LosesEnergyOfTranslation: "translation_dissipates_the_energy_fed_in",
-    LosesEnergyOnAnyStrips: "refined_strips_improve_the_sums",
-    ForcesAreNoSumOnAnyStrips: "refined_strips_improve_the_sums",
-    RefinedHasAsManyStrips: "refined_strips_improve_the_sums",
+    LosesEnergyOfTranslation: "slip_dissipates_the_energy_fed_in",
+    LosesEnergyOnAnyStrips: "refined_nodes_improve_the_sums",
+    ForcesAreNoSumOnAnyStrips: "refined_nodes_improve_the_sums",
+    RefinedHasAsManyStrips: "refined_nodes_improve_the_sums",
+    RefinedHasTheSameForces: "refined_strips_improve_the_forces",
     DoesNotConverge: "refined_strips_improve_the_forces",
     StripsOfHalfTheWear: "other_strips_have_the_same_sums",
     StripsSomewhereElse: "other_strips_have_the_same_sums",

@@ -12,8 +12,8 @@ from wearlaw.contact.contact import Contact
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import BreakpointMap, Numbers, WearLaw
-from wearlaw.testing.ellipses import TWIN_DISC, WHEEL_RAIL
 from wearlaw.testing.examples import SAME, SUM, assert_close
+from wearlaw.testing.problems import TWIN_DISC, WHEEL_RAIL
 from wearlaw.testing.sampling import random_contacts, rows
 from wearlaw.units.quantities import Q
 

@@ -1,233 +1,283 @@
-"""Checks of a contact model that hold for every theory.
-
-Tolerances: a position is exact to the rounding of the half-width a, so an integral over a slip zone is exact to
-rounding over the zone's share of the patch. Models with nodes of their own, whose sums are only as exact as their
-cells, declare that as `accuracy`.
-"""
+"""Checks of a contact model that hold for every theory."""
 
 from __future__ import annotations
 
 import copy
+import dataclasses
 from functools import partial
 
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import Problem
-from wearlaw.contact.quadrature import uniform_cells
-from wearlaw.models.contact_model import QUADRATURE, ContactModel
-from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.contact.contact import NODE_VARIABLES, TOTALS, Contact
+from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.models.contact_model import ContactModel
+from wearlaw.rigs.wheel_rail import WheelRailConditions
+from wearlaw.testing.acceleration import Ramps
 from wearlaw.testing.bisection import lost_digits
-from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
-from wearlaw.testing.sampling import EPS
-from wearlaw.testing.shared_checks import (
-    assert_carries,
-    assert_double,
-    assert_finite,
-    assert_solved_alike,
-    assert_unchanged,
-    friction_limit,
-)
-from wearlaw.testing.strategies import LINE_PROBLEMS, TWO_LINE_PROBLEMS
+from wearlaw.testing.examples import SUM, assert_close, for_each
+from wearlaw.testing.problems import WHEEL_RAIL, with_creepage
+from wearlaw.testing.sampling import EPS, arrays_of
+from wearlaw.testing.shapes import ELLIPSE, LINE, WORDS, Shape, on_each_shape
+from wearlaw.units.quantities import Q
+
+FIELDS = (
+    "pressure", "traction", "slip", "traction_bound", "area", "x", "y", "traction_x", "traction_y", "slip_x", "slip_y",
+)  # fmt: skip
+
+LOADS = np.array([[60.0, 80.0, 100.0], [50.0, 70.0, 90.0]])
+"""Loads [kN], of two axes."""
 
 
-def with_creepage(problem: Problem, creepage: Array | float) -> Problem:
-    """Return the problem at another creepage."""
-    return problem.replaced(longitudinal_creepage=np.asarray(creepage, dtype=np.float64))
+def sums_of(contact: Contact) -> CreepForces:
+    """Return the forces and the moment that the tractions at the nodes sum to."""
+    qx, qy = contact.traction_x * contact.area, contact.traction_y * contact.area
+    return CreepForces(
+        longitudinal=contact.sum_over_nodes(qx),
+        lateral=contact.sum_over_nodes(qy),
+        spin_moment=-contact.sum_over_nodes(contact.x * qy + contact.y * qx),
+    )
 
 
-def repeated(problem: Problem, shape: tuple[int, ...]) -> Problem:
-    """Return one operating point many times."""
-    return problem.broadcast_to(shape)
-
-
-def saturation(problem: Problem) -> Array:
-    """Return μa/R, at which Carter's theory slips everywhere."""
-    return problem.friction_coefficient * problem.half_width / problem.relative_radius
-
-
-def error_of_force(model: ContactModel) -> float:
-    """Return the permitted relative error of a force.
-
-    This is rounding, or the accuracy that a model declares: its force is then a sum over its nodes.
-    """
-    return SAME if model.accuracy == QUADRATURE else model.accuracy
-
-
-def error_of_traction(model: ContactModel) -> float:
-    """Return the permitted relative error of a traction in full slip: rounding, or that of the force as its mean."""
-    return error_of_force(model) if model.scale == "patch" else SAME
-
-
-def solutions(model: ContactModel, problem: Problem) -> list[Contact]:
-    """Return the contact on the model's own nodes and, where its fields are known anywhere, on uniform cells."""
-    contacts = [model.solve(problem)]
-    if isinstance(model, LineContactModel):
-        contacts.append(model.at(problem, uniform_cells(problem.half_width, 97)))
-    return contacts
-
-
-def contact_has_the_shape_of_the_problem(model: ContactModel) -> None:
-    """Totals have the batch shape, fields one more axis; without a batch axis, with one and with two."""
+@on_each_shape
+def contact_has_the_shape_of_the_problem(model: ContactModel, shape: Shape) -> None:
+    """Totals have the batch shape, fields one more axis, on an ellipse two, of nodes and strips."""
 
     def examine(problem: Problem) -> None:
-        for shape in ((), (1,), (2, 3)):
-            contact = model.solve(repeated(problem, shape))
-            for name in ("normal_force", "tangential_force", "wear_index", "rolling_speed", "density"):
+        for batch in ((), (1,), (2, 3)):
+            # As from conditions that broadcast: arrays without strides, which cannot be written to.
+            contact = model.solve(problem.broadcast_to(batch))
+            of_batch = f"for a batch of shape {batch}"
+            for name in TOTALS:
                 found = getattr(contact, name).shape
-                assert found == shape, f"{name} has the shape {found} for a batch of shape {shape}"
-            for name in ("pressure", "traction", "slip", "traction_bound", "area", "x"):
+                assert found == batch, f"{name} has the shape {found} {of_batch}"
+            nodes = contact.pressure.shape[len(batch) :]
+            assert len(nodes) == shape.node_axes, f"pressure has the shape {contact.pressure.shape} {of_batch}"
+            for name in FIELDS:
                 found = getattr(contact, name).shape
-                assert found == contact.pressure.shape, f"{name} has the shape {found}, pressure another"
-                assert found[:-1] == shape, f"{name} has the shape {found} for a batch of shape {shape}"
+                assert found == (*batch, *nodes), f"{name} has the shape {found}, not {(*batch, *nodes)}"
+            found, strips = np.shape(contact.strip_width), (*batch, *(nodes[1:] or (0,)))
+            assert found == strips, f"strip_width has the shape {found}, not {strips}"
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.problems, examine)
 
 
-def contact_is_finite(model: ContactModel) -> None:
+@on_each_shape
+def contact_is_finite(model: ContactModel, shape: Shape) -> None:
     """Every field and total is a finite number; the traction bound may be infinite."""
 
     def examine(problem: Problem) -> None:
-        assert_finite(model.solve(problem))
+        for name, value in arrays_of(model.solve(problem)).items():
+            bad = np.isnan(value).any() or (name != "traction_bound" and np.isinf(value).any())
+            assert not bad, f"{name} is not finite: {value!r}"
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.problems, examine)
 
 
-def contact_carries_the_conditions(model: ContactModel) -> None:
+@on_each_shape
+def contact_carries_the_conditions(model: ContactModel, shape: Shape) -> None:
     """Rolling speed, density and normal force are those of the problem, and so is the problem that it keeps."""
 
     def examine(problem: Problem) -> None:
-        assert_carries(model.solve(problem), problem)
+        contact = model.solve(problem)
+        for name in ("rolling_speed", "density", "normal_force"):
+            assert_close(getattr(contact, name), getattr(problem, name), f"the {name} of the contact")
+        if contact.problem is not None:
+            for name in _differing(contact.problem, problem):
+                raise AssertionError(f"the contact's problem has another {name}")
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.problems, examine)
 
 
-def nodes_cover_the_patch(model: ContactModel) -> None:
+def _differing(problem: Problem, other: Problem) -> list[str]:
+    """Return the fields in which two problems differ."""
+    names = [field.name for field in dataclasses.fields(problem)]
+    return [name for name in names if not np.array_equal(getattr(problem, name), getattr(other, name))]
+
+
+@on_each_shape
+def nodes_cover_the_patch(model: ContactModel, shape: Shape) -> None:
     """Nodes lie in the patch, none has a negative area, and their areas sum to that of the patch."""
 
     def examine(problem: Problem) -> None:
         contact = model.solve(problem)
         assert (contact.area >= 0).all(), f"an area is negative: {contact.area.min()!r}"
-        inside = np.abs(contact.x) <= problem.half_width * (1.0 + SAME)
-        assert inside.all(), f"a node lies outside the patch, at x = {contact.x[~inside]!r}"
-        assert_close(contact.patch_area, problem.patch_area, "the sum of the areas", SUM)
+        assert (contact.strip_width >= 0).all(), f"a strip's width is negative: {contact.strip_width.min()!r}"
+        outside = ~shape.inside(problem, contact)
+        assert not outside.any(), (
+            f"a node lies outside the patch, at x, y = {contact.x[outside]!r}, {contact.y[outside]!r}"
+        )
+        assert_close(contact.patch_area, problem.patch_area, "the sum of the areas", shape.error_of_areas(model))
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.problems, examine)
 
 
-def pressure_sums_to_the_load(model: ContactModel) -> None:
+@on_each_shape
+def pressure_sums_to_the_load(model: ContactModel, shape: Shape) -> None:
     """The pressure is never negative, and pressure times area sums to the normal force."""
 
     def examine(problem: Problem) -> None:
         contact = model.solve(problem)
         assert (contact.pressure >= 0).all(), f"a pressure is negative: {contact.pressure.min()!r}"
         load = contact.sum_over_nodes(contact.pressure * contact.area)
-        assert_close(load, problem.normal_force, "the sum of the pressures", model.accuracy)
+        assert_close(load, problem.normal_force, "the sum of the pressures", shape.error_of_sums(model))
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.problems, examine)
 
 
-def tractions_sum_to_the_force(model: ContactModel) -> None:
-    """Traction times area sums to the tangential force."""
+@on_each_shape
+def tractions_sum_to_the_forces(model: ContactModel, shape: Shape) -> None:
+    """Traction times area sums to Fx and Fy, and on the cells of an ellipse -(x qy + y qx) to the spin moment."""
+    error = shape.error_of_sums(model)
 
     def examine(problem: Problem) -> None:
         contact = model.solve(problem)
-        allowed = model.accuracy * friction_limit(problem)
-        force = contact.sum_over_nodes(contact.traction * contact.area)
-        assert_close(force, contact.tangential_force, "the sum of the tractions", absolute=allowed)
+        due, sums = contact.forces, sums_of(contact)
+        sizes = shape.sizes_of_sums(problem, due)
+        if model.scale == "patch":  # the means of a patch have no moment
+            sizes.pop("spin_moment", None)
+        for name, size in sizes.items():
+            message = f"{WORDS[name]} that the tractions sum to"
+            assert_close(getattr(sums, name), getattr(due, name), message, 0.0, error * size)
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.problems, examine)
 
 
 def traction_and_slip_follow_the_creepage(model: ContactModel) -> None:
-    """Traction and slip have the sign of the creepage or are zero, so that q·s is never negative."""
+    """On a line traction and slip have the sign of the creepage or are zero, so that q·s is never negative."""
 
     def examine(problem: Problem) -> None:
         for sign in (-1.0, 1.0):
-            for contact in solutions(model, with_creepage(problem, sign * problem.creepage)):
+            for contact in LINE.solutions(model, with_creepage(problem, sign * problem.creepage)):
                 # The slip of full slip is a difference that vanishes at the leading edge, to rounding of the creepage.
                 allowed = 4.0 * EPS * problem.creepage
                 assert (sign * contact.slip >= -allowed).all(), f"slip against the creepage: {contact.slip!r}"
                 assert (sign * contact.traction >= 0).all(), f"traction against the creepage: {contact.traction!r}"
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(LINE.problems, examine)
 
 
-def random_problems(points: int) -> Problem:
-    """Return discs of many sizes and stiffnesses under many loads, frictions and speeds; always the same ones."""
-    random = np.random.default_rng(5)
-    radius, modulus = 10.0 ** random.uniform(-3, 1, points), 10.0 ** random.uniform(9, 12, points)
-    half_width = 2.0 * radius * 10.0 ** random.uniform(-5, np.log10(3e-2), points)
-    friction = random.uniform(0.01, 1.5, points)
-    return Problem.line_from_si(
-        normal_force_per_width=0.25 * np.pi * modulus * half_width**2 / radius,
-        relative_radius=radius,
-        effective_modulus=modulus,
-        friction_coefficient=friction,
-        creepage=friction * half_width / radius * 10.0 ** random.uniform(-3, 1, points),
-        rolling_speed=10.0 ** random.uniform(-2, 2, points),
-        track_width=10.0 ** random.uniform(-4, 0, points),
-        density=random.uniform(1e3, 2e4, points),
-    )
-
-
-def batch_equals_loop(model: ContactModel) -> None:
-    """All operating points at once give the same as one at a time."""
+def no_node_gains_energy(model: ContactModel) -> None:
+    """Traction times slip is negative at no node of an ellipse."""
 
     def examine(problem: Problem) -> None:
-        # Stick, full slip and none in one batch: the points that a batch must keep apart.
-        factors = np.array([[1.0, 0.0, -1.0], [1e-3, 1e3, 1.0 + 1e-9]])
-        batch = with_creepage(repeated(problem, factors.shape), problem.creepage * factors)
+        contact = model.solve(problem)
+        gains = contact.wear_index_density < -4.0 * EPS * contact.traction * contact.slip
+        where = contact.x[gains] / problem.a, contact.y[gains] / problem.b
+        cosine = contact.wear_index_density[gains] / (contact.traction * contact.slip)[gains]
+        assert not gains.any(), f"traction and slip are at angles of cosines {cosine!r} at x/a, y/b = {where!r}"
+
+    for_each(ELLIPSE.problems, examine)
+
+
+def magnitudes_are_those_of_the_vectors(model: ContactModel) -> None:
+    """On an ellipse traction, tangential force, and slip on cells are the magnitudes of their components."""
+
+    def examine(problem: Problem) -> None:
+        contact = model.solve(problem)
+        for name, components in MAGNITUDES.items():
+            if (name, model.scale) == ("slip", "patch"):  # a mean of slips in many directions
+                continue
+            due = np.hypot(*(getattr(contact, component) for component in components))
+            assert_close(getattr(contact, name), due, f"the magnitude of the {name.replace('_', ' ')}")
+
+    for_each(ELLIPSE.problems, examine)
+
+
+MAGNITUDES = {
+    "traction": ("traction_x", "traction_y"),
+    "slip": ("slip_x", "slip_y"),
+    "tangential_force": ("force_x", "force_y"),
+}
+"""What is a magnitude, and of which components."""
+
+
+@on_each_shape
+def batch_equals_loop(model: ContactModel, shape: Shape) -> None:
+    """All operating points at once give the same as one at a time."""
+
+    def examine(batch: Problem) -> None:
         together = model.solve(batch)
-        for index in np.ndindex(factors.shape):
-            alone = model.solve(batch[index])
-            for name in ("tangential_force", "wear_index", "patch_area", "mean_slip"):
-                # A batch may hold zones without length, which change the order of a sum.
-                found, due = getattr(together, name)[index], getattr(alone, name)
-                assert_close(found, due, f"the {name} at operating point {index} of a batch", SUM)
+        for index in np.ndindex(batch.batch_shape):
+            part, found, message = batch[index], together[index], f"at operating point {index} of a batch"
+            alone = model.solve(part)
+            # A batch may hold zones without length, which change the order of a sum.
+            shape.assert_same_forces(part, found.forces, alone.forces, message, SUM)
+            shape.assert_same_power(part, found, alone, message, SUM)
+            for name in ("patch_area", "mean_slip"):
+                assert_close(getattr(found, name), getattr(alone, name), f"the {name} {message}", SUM)
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.batches, examine)
 
 
-def problem_is_not_changed(model: ContactModel) -> None:
+@on_each_shape
+def problem_is_not_changed(model: ContactModel, shape: Shape) -> None:
     """The model leaves the arrays of the problem as they are."""
 
     def examine(problem: Problem) -> None:
-        batch = repeated(problem, (2,))
-        before = copy.deepcopy(batch)
-        model.solve(batch)
-        assert_unchanged(batch, before)
+        before = copy.deepcopy(problem)
+        model.solve(problem)
+        shape.forces_alone(model, problem)
+        for name in _differing(problem, before):
+            raise AssertionError(f"the model changed the problem's {name}")
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.batches, examine)
 
 
-def solutions_agree_to_the_bit(model: ContactModel) -> None:
+@on_each_shape
+def solutions_agree_to_the_bit(model: ContactModel, shape: Shape) -> None:
     """The same problem gives the same contact again, with another problem in between."""
 
     def examine(problems: tuple[Problem, Problem]) -> None:
-        assert_solved_alike(model, *problems)
+        problem, other = problems
+        first = model.solve(problem)
+        kept = copy.deepcopy(first)
+        model.solve(other)
+        second = model.solve(problem)
+        for name, value in arrays_of(kept).items():
+            for contact in (first, second):
+                same = np.array_equal(getattr(contact, name), value)
+                assert same, f"two solutions of one problem differ in {name}"
 
-    for_each(TWO_LINE_PROBLEMS, examine)
+    for_each(shape.pairs, examine)
 
 
-def solution_is_in_double_precision(model: ContactModel) -> None:
-    """The force is a float64 and exact to rounding, in steps of 1e-8 of creepage, friction and half-width."""
-    problem = random_problems(64)
-    assert_double(model.solve(problem))
+@on_each_shape
+def solution_is_in_double_precision(model: ContactModel, shape: Shape) -> None:
+    """All is float64, and the force exact to rounding, in steps of 1e-8 of creepage, friction and half-length."""
+    problem = shape.random(64)
+    for name, value in arrays_of(model.solve(problem)).items():
+        assert value.dtype == np.float64, f"{name} is of type {value.dtype}, not float64"
     # An iteration that ends at 1e-10 moves a change of 1e-8 by a fiftieth; single precision, by six of it.
-    rounding = min(error_of_force(model), 1e-10)
+    rounding = min(shape.error_of_force(model), 1e-10)
     for name in ("longitudinal_creepage", "friction_coefficient", "a"):
-        lost_digits(
-            partial(_force_with, model, problem, name), f"the tangential force loses digits of {name}", rounding
-        )
+        force = partial(_force_with, model, shape, problem, name)
+        lost_digits(force, f"the tangential force loses digits of {name}", rounding)
 
 
-def _force_with(model: ContactModel, problem: Problem, name: str, factor: float) -> Array:
-    changed = {name: getattr(problem, name) * factor}
-    if name == "a":  # by the load, as Hertz has it
-        changed |= {"max_pressure": problem.max_pressure * factor, "normal_force": problem.normal_force * factor**2}
-    return model.solve(problem.replaced(**changed)).tangential_force
+def _force_with(model: ContactModel, shape: Shape, problem: Problem, name: str, factor: float) -> Array:
+    changed = (
+        shape.longer(problem, factor) if name == "a" else problem.replaced(**{name: getattr(problem, name) * factor})
+    )
+    return shape.forces(model, changed).tangential
+
+
+def wear_laws_run_on_the_ellipse(model: ContactModel) -> None:
+    """A wheel on a rail wears by the mean of the law's rate over the nodes, one rate for each of them."""
+    conditions: WheelRailConditions = {
+        "normal_force": Q(LOADS, "kN"),
+        "longitudinal_creepage": "0.3 %",
+        "friction_coefficient": 0.4,
+    }
+    contact = model.solve(WHEEL_RAIL.problem(**conditions))
+    for variable in NODE_VARIABLES:
+        found = getattr(contact, variable).shape
+        assert found == contact.pressure.shape, f"{variable} has the shape {found}, not {contact.pressure.shape}"
+    law = Ramps()
+    due = contact.mean(law.rate(contact, law.numbers))
+    found = (WHEEL_RAIL | model).with_law(law)(**conditions).wear_rate.m_as("kg/m/m^2")
+    assert (due > 0).all(), f"the wear rates are {due!r}"
+    assert_close(found, due, "the wear rate of a pipeline", SUM)
 
 
 CHECKS = (
@@ -236,10 +286,19 @@ CHECKS = (
     contact_carries_the_conditions,
     nodes_cover_the_patch,
     pressure_sums_to_the_load,
-    tractions_sum_to_the_force,
+    tractions_sum_to_the_forces,
     traction_and_slip_follow_the_creepage,
+    magnitudes_are_those_of_the_vectors,
+    no_node_gains_energy,
     batch_equals_loop,
     problem_is_not_changed,
     solutions_agree_to_the_bit,
     solution_is_in_double_precision,
+    wear_laws_run_on_the_ellipse,
 )
+
+OF_LINES = (traction_and_slip_follow_the_creepage,)
+"""Checks of models that solve lines."""
+
+OF_ELLIPSES = (magnitudes_are_those_of_the_vectors, no_node_gains_energy, wear_laws_run_on_the_ellipse)
+"""Checks of models that solve ellipses."""

@@ -1,22 +1,21 @@
-"""Checks of the energy that slip dissipates, and of its convergence with finer nodes."""
+"""Checks of sums over the nodes: the energy that slip dissipates, other strips, and convergence with finer nodes."""
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import Problem
+from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.models.contact_model import QUADRATURE, ContactModel
 from wearlaw.models.line_contact_model import LineContactModel
-from wearlaw.testing.contact_checks import random_problems, saturation, with_creepage
+from wearlaw.testing.contact_checks import sums_of
 from wearlaw.testing.examples import SUM, assert_close, for_each
-from wearlaw.testing.shared_checks import Claims, friction_limit
-from wearlaw.testing.strategies import LINE_PROBLEMS
-
-MANY = 512
-"""Number of problems to average an error over, since the place within a cell where a zone begins is random."""
+from wearlaw.testing.problems import friction_limit, random_ellipses, sliding_power, without_spin
+from wearlaw.testing.shapes import ELLIPSE, LINE, PATCHES, Claims, Shape, on_each_shape
 
 CHANCE = 1.3
 """Scatter of a mean of `MANY` errors: they scatter by 0.58 of their mean where one step falls anywhere in a
@@ -26,41 +25,22 @@ cell, and those in short slip zones weigh more, as if there were 128. The ratio 
 REFINEMENTS = 3
 """Number of refinements by a factor of two; they reduce a first-order error to an eighth."""
 
+STRIPS = 200
+"""Strips of equal width, whose sums of what is a parabola across the patch are off by 1/(2 `STRIPS`²) of it."""
 
-def slip_dissipates_the_energy_fed_in(model: ContactModel) -> None:
-    """Traction times slip, summed over the patch, is the tangential force times the creepage."""
+
+@on_each_shape
+def slip_dissipates_the_energy_fed_in(model: ContactModel, shape: Shape) -> None:
+    """Traction times slip, summed over the patch, is ξFx, and on an ellipse without spin ξFx + ηFy."""
 
     def examine(problem: Problem) -> None:
-        contact = model.solve(problem)
-        slipping = contact.slip_area / contact.patch_area
-        # Positions are exact to the rounding of a, so in a short slip zone q·s is that much less exact.
-        rounding = SUM / np.maximum(slipping, SUM)
-        due = contact.tangential_force * problem.creepage
-        # A slip zone may be shorter than a cell: the error of sums over cells is a share of what full slip dissipates.
-        whole = due if model.accuracy == QUADRATURE else friction_limit(problem) * problem.creepage
-        allowed = model.accuracy * whole
-        assert_close(_dissipated(contact), due, "the energy dissipated per metre", rounding, allowed)
+        straight = without_spin(problem)
+        contact = model.solve(straight)
+        due = straight.power(contact.forces)
+        allowed = shape.error_of_power(model, straight, contact, due)
+        assert_close(contact.cell_wear_index, due, "the energy dissipated per metre", 0.0, allowed)
 
-    for_each(LINE_PROBLEMS, examine)
-
-
-def _dissipated(contact: Contact) -> Array:
-    return contact.sum_over_nodes(contact.wear_index_density * contact.area)
-
-
-def _many_problems() -> Problem:
-    problem = random_problems(MANY)
-    # Nearer to zero, the slip zone is shorter than a cell.
-    return with_creepage(problem, np.linspace(0.1, 1.2, MANY) * saturation(problem))
-
-
-def _energy_error(contact: Contact) -> float:
-    return float(np.abs(_dissipated(contact) / contact.wear_index - 1.0).mean())
-
-
-def _traction_error(contact: Contact) -> float:
-    force = contact.sum_over_nodes(contact.traction * contact.area)
-    return float(np.abs(force / contact.tangential_force - 1.0).mean())
+    for_each(shape.problems, examine)
 
 
 def energy_balance_improves_with_refinement(model: LineContactModel) -> None:
@@ -68,23 +48,32 @@ def energy_balance_improves_with_refinement(model: LineContactModel) -> None:
 
     The dissipation of a step that falls anywhere in a cell is of first order, that of a square root of order 3/2.
     """
-    problem = _many_problems()
-    coarse, fine = (_energy_error(model.at(problem, uniform_cells(problem.half_width, cells))) for cells in (50, 800))
+    (problem,) = LINE.to_refine()
+    coarse, fine = (
+        float(_energy_error(LINE, problem, model.at(problem, uniform_cells(problem.half_width, cells))).mean())
+        for cells in (50, 800)
+    )
     assert fine <= max(CHANCE * coarse / 16.0, SUM), (
         f"the energy is off by {coarse:.2g} on 50 cells, by {fine:.2g} on 800"
     )
 
 
-def refined_nodes_improve_the_sums(model: ContactModel) -> None:
-    """On nodes refined three times, sums of energy and traction are eight times as good, or as good as quadrature."""
-    problem = _many_problems()
-    models = refinements(model)
-    coarse, fine = (chosen.solve(problem) for chosen in (models[0], models[-1]))
-    for name, error in (("energy", _energy_error), ("traction", _traction_error)):
-        assert_improved(name, error(coarse), error(fine))
+@on_each_shape
+def refined_nodes_improve_the_sums(model: ContactModel, shape: Shape) -> None:
+    """On nodes refined three times, sums of energy and traction are eight times as good, or as good as quadrature.
+
+    The energy is that without spin.
+    """
+    models = _refinements(model)
+    coarse, fine = (_errors(chosen, shape) for chosen in (models[0], models[-1]))
+    for name, before in coarse.items():
+        assert fine[name] <= max(CHANCE * before / 2**REFINEMENTS, QUADRATURE), (
+            f"the sum of {name} is off by {before:.2g}, and still by {fine[name]:.2g} on {2**REFINEMENTS} times finer"
+            " nodes"
+        )
 
 
-def refinements(model: ContactModel) -> list[ContactModel]:
+def _refinements(model: ContactModel) -> list[ContactModel]:
     """Return the model on its own nodes, and refined once up to `REFINEMENTS` times."""
     models = [model]
     for _ in range(REFINEMENTS):
@@ -94,23 +83,88 @@ def refinements(model: ContactModel) -> list[ContactModel]:
     return models
 
 
-def assert_improved(name: str, before: float, behind: float) -> None:
-    """Assert that the error of a sum over nodes has fallen at first order, or to that of quadrature."""
-    assert behind <= max(CHANCE * before / 2**REFINEMENTS, QUADRATURE), (
-        f"the sum of {name} is off by {before:.2g}, and still by {behind:.2g} on {2**REFINEMENTS} times finer nodes"
+def _errors(model: ContactModel, shape: Shape) -> dict[str, float]:
+    """Return the mean errors of the sums of energy, without spin, and of traction."""
+    energy, traction = [], []
+    for problem in shape.to_refine():
+        contact = model.solve(problem)
+        traction.append(_traction_error(shape, problem, contact))
+        if problem.spin.any():
+            problem = without_spin(problem)
+            contact = model.solve(problem)
+        energy.append(_energy_error(shape, problem, contact))
+    return {"energy": float(np.mean(energy)), "traction": float(np.mean(traction))}
+
+
+def _energy_error(shape: Shape, problem: Problem, contact: Contact) -> Array:
+    due = problem.power(contact.forces)
+    return np.abs(contact.cell_wear_index - due) / shape.size_of_power(problem, contact.forces)
+
+
+def _traction_error(shape: Shape, problem: Problem, contact: Contact) -> Array:
+    sums, due = sums_of(contact), contact.forces
+    off: Array = np.hypot(sums.longitudinal - due.longitudinal, sums.lateral - due.lateral)
+    return off / shape.sizes(problem, due)["longitudinal"]
+
+
+def refined_strips_improve_the_forces(model: ContactModel) -> None:
+    """Each refinement, to twice the nodes or more, changes the forces on an ellipse half as much as the one before.
+
+    Or less, or no more than quadrature.
+    """
+    problem, models = random_ellipses(PATCHES), _refinements(model)
+    # One at a time since the nodes may be many.
+    contacts = [[chosen.solve(problem[index]) for index in range(PATCHES)] for chosen in models]
+    nodes = [of_model[0].x.size for of_model in contacts]
+    assert (np.diff(nodes) >= nodes[:-1]).all(), f"`refined` has {nodes[1:]} nodes, from {nodes[0]}"
+    forces = [np.array([[c.force_x, c.force_y] for c in of_model]).T / friction_limit(problem) for of_model in contacts]
+    first, *_, last = (np.abs(fine - coarse).mean() for coarse, fine in pairwise(forces))
+    assert last <= max(CHANCE * first / 2 ** (REFINEMENTS - 1), QUADRATURE), (
+        f"the first refinement changes the forces by {first:.2g} μN, the last one by {last:.2g}"
     )
 
 
+def other_strips_have_the_same_sums(model: ContactModel) -> None:
+    """On given strips, traction and energy sum to the same over y as on the model's own."""
+    shares = (2.0 * np.arange(STRIPS) + 1.0) / STRIPS - 1.0
+    problem = random_ellipses(PATCHES)
+    contact, own = model.on_strips(problem, shares), model.solve(problem)
+    if contact is None:  # its nodes are where they are
+        return
+    assert_close(contact.y, shares * problem.b[:, None, None], "the position of a strip")
+    error = 2.0 * ELLIPSE.error_of_sums(model) + 1.0 / STRIPS**2
+    qx, qy = (contact.over_strip(traction) for traction in (contact.traction_x, contact.traction_y))
+    lateral, y = qy * contact.strip_width, contact.y[..., 0, :]
+    turning = contact.over_strip(contact.x * contact.traction_y) + y * qx
+    sums = CreepForces(
+        longitudinal=(qx * contact.strip_width).sum(axis=-1),
+        lateral=lateral.sum(axis=-1),
+        spin_moment=-(turning * contact.strip_width).sum(axis=-1),
+    )
+    ELLIPSE.assert_same_forces(problem, sums, own.forces, "summed over the strips", error)
+    ELLIPSE.assert_same_forces(problem, contact.forces, own.forces, "on the strips", error)
+    energy = (contact.over_strip(contact.wear_index_density) * contact.strip_width).sum(axis=-1)
+    assert_close(energy, own.cell_wear_index, "the energy summed over the strips", 0.0, error * sliding_power(problem))
+
+
 CLAIMS: Claims = {
-    "energy_balance": (slip_dissipates_the_energy_fed_in,),
+    "energy_balance": (
+        slip_dissipates_the_energy_fed_in,
+        energy_balance_improves_with_refinement,
+        refined_nodes_improve_the_sums,
+    ),
 }
 
-CLAIMS_OF_FIELDS: Claims = {
-    "energy_balance": (energy_balance_improves_with_refinement,),
-}
-"""Checks of claims for models with fields at any position."""
+CHECKS = (refined_strips_improve_the_forces, other_strips_have_the_same_sums)
 
-CLAIMS_OF_REFINED: Claims = {
-    "energy_balance": (refined_nodes_improve_the_sums,),
-}
-"""Checks of claims for models that can refine their nodes."""
+OF_FIELDS = (energy_balance_improves_with_refinement,)
+"""Checks of models with fields at any position."""
+
+OF_REFINED = (refined_nodes_improve_the_sums,)
+"""Checks of models that can refine their nodes."""
+
+OF_REFINED_STRIPS = (refined_strips_improve_the_forces,)
+"""Checks of models of ellipses that can refine their nodes."""
+
+OF_STRIPS = (other_strips_have_the_same_sums,)
+"""Checks of models that solve on given strips."""

@@ -10,8 +10,8 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
-from wearlaw.testing.contact_checks import random_problems
 from wearlaw.testing.examples import SAME, SUM, assert_close
+from wearlaw.testing.problems import random_lines
 
 POINTS = 64
 """Operating points, from almost all stick to full slip."""
@@ -29,7 +29,7 @@ error falls as (3 + √8)^-2 for each node, to 3e-25."""
 
 def slip_lies_in_the_slip_zone(model: LineContactModel) -> None:
     """The length of the slip zone is between zero and that of the patch, and there is no slip in front of it."""
-    problem = random_problems(POINTS)
+    problem = random_lines(POINTS)
     patch, length = 2.0 * problem.half_width, model.slip_length(problem)
     assert (length >= 0).all(), f"the slip zone has a negative length, {length.min()!r}"
     assert (length <= patch * (1.0 + SAME)).all(), f"the slip zone is {(length / patch).max()!r} times the patch"
@@ -77,7 +77,7 @@ def crossings_are_where_the_fields_cross(model: LineContactModel) -> None:
 
     A distance may be off by the rounding of the slip zone's length, a value by its own.
     """
-    problem = random_problems(POINTS)
+    problem = random_lines(POINTS)
     for variable in get_args(FieldVariable):
         zone = _SlipZone(model, problem, variable)
         distance = zone.length * np.sin(np.linspace(0.0, 0.5 * np.pi, SAMPLES + 2)[1:-1]) ** 2
@@ -118,7 +118,7 @@ def _compare_crossings(zone: _SlipZone, distance: Array, value: Array, found: Ar
 
 def excess_dissipation_is_that_of_the_fields(model: LineContactModel) -> None:
     """`excess_dissipation` is the integral of max(q·s - threshold, 0) over the slip zone, and never negative."""
-    problem = random_problems(POINTS)
+    problem = random_lines(POINTS)
     zone = _SlipZone(model, problem, "wear_index_density")
     edges = _panel_edges(zone)
     highest = zone.at_angle(edges).max(axis=-1)
@@ -169,7 +169,11 @@ def _integral(zone: _SlipZone, threshold: Array, edges: Array) -> Array:
     return total
 
 
-CHECKS = (slip_lies_in_the_slip_zone,)
+CHECKS = (
+    slip_lies_in_the_slip_zone,
+    crossings_are_where_the_fields_cross,
+    excess_dissipation_is_that_of_the_fields,
+)
 """Checks of models with fields at any position."""
 
 OF_CROSSINGS = (crossings_are_where_the_fields_cross,)

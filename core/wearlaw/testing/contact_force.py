@@ -1,4 +1,4 @@
-"""Checks of how the tangential force follows the creepage."""
+"""Checks of how the forces follow the creepages."""
 
 from __future__ import annotations
 
@@ -7,120 +7,147 @@ from functools import partial
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.problem import Problem
+from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.testing.bisection import Indices, find_jumps
-from wearlaw.testing.contact_checks import (
-    error_of_force,
-    random_problems,
-    repeated,
-    saturation,
-    with_creepage,
-)
 from wearlaw.testing.examples import SAME, assert_close, for_each
-from wearlaw.testing.shared_checks import friction_limit
-from wearlaw.testing.strategies import LINE_PROBLEMS
+from wearlaw.testing.problems import at_magnitude, creeping, friction_limit, parts_of_power, translation
+from wearlaw.testing.shapes import ELLIPSE, Shape, on_each_shape
 
 
-def force_is_odd_in_creepage(model: ContactModel) -> None:
-    """The opposite creepage gives the opposite force and the same wear index."""
+@on_each_shape
+def forces_are_odd_in_the_creepages(model: ContactModel, shape: Shape) -> None:
+    """Opposite creepages and spin give opposite forces and moment, and the same wear index."""
 
     def examine(problem: Problem) -> None:
-        ahead, back = model.solve(problem), model.solve(with_creepage(problem, -problem.creepage))
-        assert_close(-back.tangential_force, ahead.tangential_force, "minus the force at the opposite creepage")
-        assert_close(back.wear_index, ahead.wear_index, "the wear index at the opposite creepage")
+        _compare_turned(model, shape, problem, (-1.0, -1.0, -1.0), "at the opposite creepages")
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.problems, examine)
 
 
-def force_grows_with_creepage(model: ContactModel) -> None:
-    """The tangential force never falls when the creepage grows."""
+def forces_are_mirrored_with_the_creepages(model: ContactModel) -> None:
+    """Opposite lateral creepage and spin give the same Fx and wear index, and opposite Fy and Mz, as y is mirrored."""
+
+    def examine(problem: Problem) -> None:
+        _compare_turned(model, ELLIPSE, problem, (1.0, -1.0, -1.0), "at the mirrored creepages")
+
+    for_each(ELLIPSE.problems, examine)
+
+
+def _compare_turned(
+    model: ContactModel, shape: Shape, problem: Problem, signs: tuple[float, float, float], message: str
+) -> None:
+    """Compare forces and wear index with those for creepages, and hence forces, of other signs."""
+    contact, other = model.solve(problem), model.solve(creeping(problem, *signs))
+    due = CreepForces(
+        longitudinal=signs[0] * contact.force_x,
+        lateral=signs[1] * contact.force_y,
+        spin_moment=signs[2] * contact.moment_z,
+    )
+    shape.assert_same_forces(problem, other.forces, due, message, shape.rounding)
+    shape.assert_same_power(problem, other, contact, message, shape.rounding)
+
+
+@on_each_shape
+def force_grows_with_creepage(model: ContactModel, shape: Shape) -> None:
+    """Fx never falls when a longitudinal creepage alone grows."""
 
     def examine(problem: Problem) -> None:
         growing = np.concatenate([[1.0], 1.0 + np.logspace(-12, 3, 31)])
-        force = model.solve(
-            with_creepage(repeated(problem, growing.shape), problem.creepage * growing)
-        ).tangential_force
-        fell = np.diff(force) < -SAME * force[:-1]
+        none = np.zeros(growing.shape)
+        batch = problem.broadcast_to(growing.shape).with_creepages(translation(problem) * growing, none, none)
+        force = shape.forces(model, batch).longitudinal
+        fell = np.diff(force) < -shape.rounding * force[:-1]
         assert not fell.any(), f"the force falls as the creepage grows: {force!r}"
         assert force[0] > 0, f"the force is {force[0]!r} at a positive creepage"
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.problems, examine)
 
 
-def force_stays_below_friction(model: ContactModel) -> None:
-    """The tangential force does not exceed μN."""
+@on_each_shape
+def force_stays_below_friction(model: ContactModel, shape: Shape) -> None:
+    """The tangential force, on an ellipse of Fx and Fy, does not exceed μN, unless an ellipse has no traction bound."""
+    if shape is ELLIPSE and "traction_bound" in model.exemptions:
+        return
 
     def examine(problem: Problem) -> None:
-        creepage = problem.creepage * np.logspace(0, 4, 9)
-        force = model.solve(with_creepage(repeated(problem, creepage.shape), creepage)).tangential_force
-        limit = friction_limit(problem) * (1.0 + error_of_force(model))
-        assert (force <= limit).all(), f"the force reaches {force.max() / friction_limit(problem):.9g} μN"
+        growing = np.logspace(0, 4, 9)
+        batch = creeping(problem.broadcast_to(growing.shape), growing)
+        share = shape.forces(model, batch).tangential / friction_limit(problem)
+        assert (share <= 1.0 + shape.error_of_force(model)).all(), f"the force reaches {share.max():.9g} μN"
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.problems, examine)
 
 
-def force_is_continuous(model: ContactModel) -> None:
-    """Force and mean slip have no jump as the creepage grows, through full slip; one of 1/1000 is found.
+@on_each_shape
+def forces_are_continuous(model: ContactModel, shape: Shape) -> None:
+    """Forces and mean slip have no jump as creepages grow through full slip; one of 1/1000 is found.
 
-    Cells begin to slip as a whole: with them, the mean slip may jump by the accuracy times μa/R.
+    Cells begin to slip as a whole: with them, the mean slip may jump by the accuracy times the creepage, on a line that
+    of full slip. On the nodes of an ellipse, with spin, a force may jump by the accuracy times μN.
     """
-    points = 2
-    problem = random_problems(points)
-    low, decades = 1e-2 * saturation(problem), 3.0
+    path = shape.path(model)
+    growth = path.high / path.low
 
     def solved(name: str, index: Indices, share: Array) -> Array:
-        value: Array = getattr(model.solve(with_creepage(problem[index], low[index] * 10.0 ** (decades * share))), name)
+        value: Array = getattr(model.solve(at_magnitude(path.problem[index], path.low * growth**share)), name)
         return value
 
-    # Where a cell begins to slip, the sum of the slips is off by a share of what it is in full slip.
-    cell = {"tangential_force": np.zeros(points), "mean_slip": model.accuracy * saturation(problem)}
-    # Carter's force has a curvature of 2 at full slip, hence changes by 2 (3 ln 10/512/2)² = 1e-4 more in one half.
-    for name, allowed in cell.items():
-        for point, share, before, behind in find_jumps(partial(solved, name), points, intervals=512):
-            creepage = low[point] * 10.0 ** (decades * share)
+    for name, allowed in path.allowed.items():
+        for point, share, before, behind in find_jumps(partial(solved, name), path.problem.size, path.intervals):
             assert abs(behind - before) <= allowed[point], (
-                f"{name} jumps from {before:.9g} to {behind:.9g} in SI units at creepage {creepage:g}"
+                f"{name} jumps from {before:.9g} to {behind:.9g} in SI units at {path.low * growth**share:g} of"
+                f" {shape.unit}"
             )
 
 
-def zero_creepage_gives_nothing(model: ContactModel) -> None:
-    """Free rolling has no traction, no slip and no wear index."""
+@on_each_shape
+def zero_creepage_gives_nothing(model: ContactModel, shape: Shape) -> None:
+    """Free rolling has no traction, no slip, no forces and no wear index."""
 
     def examine(problem: Problem) -> None:
-        contact = model.solve(with_creepage(problem, 0.0))
-        for name in ("traction", "slip", "tangential_force", "wear_index"):
+        contact = model.solve(creeping(problem, 0.0))
+        for name in ("traction", "slip", "tangential_force", "force_x", "force_y", "moment_z", "wear_index"):
             value = getattr(contact, name)
-            assert (value == 0).all(), f"at zero creepage {name} is {value!r}"
+            assert (value == 0).all(), f"without creepage {name} reaches {np.abs(value).max():.3g} in SI units"
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.problems, examine)
 
 
-def wear_index_is_force_times_creepage(model: ContactModel) -> None:
-    """Tγ is the tangential force times the creepage."""
+@on_each_shape
+def wear_index_is_forces_times_creepages(model: ContactModel, shape: Shape) -> None:
+    """Tγ is ξFx, and on an ellipse ξFx + ηFy + φMz."""
 
     def examine(problem: Problem) -> None:
         contact = model.solve(problem)
-        assert_close(contact.wear_index, contact.tangential_force * problem.creepage, "the wear index")
+        rounding = SAME * parts_of_power(problem, contact.forces)
+        assert_close(contact.wear_index, problem.power(contact.forces), "the wear index", 0.0, rounding)
 
-    for_each(LINE_PROBLEMS, examine)
+    for_each(shape.problems, examine)
 
 
-def force_alone_is_that_of_the_contact(model: ContactModel) -> None:
-    """`tangential_force` gives what `solve` gives, with the sign of the creepage."""
-    for sign in (-1.0, 0.0, 1.0):
-        problem = random_problems(64)
-        problem = with_creepage(problem, sign * problem.creepage)
-        due = model.solve(problem).tangential_force
-        assert_close(model.tangential_force(problem), due, "what `tangential_force` gives")
+@on_each_shape
+def forces_alone_are_those_of_the_contact(model: ContactModel, shape: Shape) -> None:
+    """`tangential_force` and `creep_forces` give what `solve` gives, with the sign of the creepage."""
+
+    def examine(problem: Problem) -> None:
+        found, due = shape.forces_alone(model, problem), model.solve(problem).forces
+        shape.assert_same_forces(problem, found, due, "alone", shape.rounding)
+
+    for_each(shape.problems, examine)
+    for_each(shape.batches, examine)
 
 
 CHECKS = (
-    force_is_odd_in_creepage,
+    forces_are_odd_in_the_creepages,
+    forces_are_mirrored_with_the_creepages,
     force_grows_with_creepage,
     force_stays_below_friction,
-    force_is_continuous,
+    forces_are_continuous,
     zero_creepage_gives_nothing,
-    wear_index_is_force_times_creepage,
-    force_alone_is_that_of_the_contact,
+    wear_index_is_forces_times_creepages,
+    forces_alone_are_those_of_the_contact,
 )
+
+OF_ELLIPSES = (forces_are_mirrored_with_the_creepages,)
+"""Checks of models that solve ellipses."""

@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from wearlaw.arrays.array import Array
+from wearlaw.errors import described
 from wearlaw.testing.sampling import EPS
 
 T = TypeVar("T")
@@ -71,6 +72,18 @@ def _search(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> Non
         examine(example)
 
     check()
+
+
+def as_failure(error: BaseException) -> AssertionError:
+    """Return an error as the failure of a check: of a model's own, one with its name, message and notes."""
+    while isinstance(error, BaseExceptionGroup):  # of several different failures, the first
+        error = error.exceptions[0]
+    if isinstance(error, AssertionError):
+        return error
+    failure = AssertionError(f"the model raised {described(error)}")
+    for note in getattr(error, "__notes__", []):
+        failure.add_note(note)
+    return failure
 
 
 def assert_close(

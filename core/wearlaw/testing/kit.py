@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias, TypeVar
 
-from wearlaw.errors import InputError, described, did_you_mean
+from wearlaw.errors import InputError, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.line_contact_model import LineContactModel
 from wearlaw.models.wear_law import WearLaw
@@ -20,18 +20,14 @@ from wearlaw.testing import (
     contact_force,
     contact_limits,
     declarations,
-    ellipse_checks,
-    ellipse_energy,
-    ellipse_force,
-    ellipse_limits,
     law_branches,
     law_checks,
     law_shape,
     rig_checks,
     unit_checks,
 )
+from wearlaw.testing.examples import as_failure
 from wearlaw.testing.roundtrip import RoundTrip
-from wearlaw.testing.shared_checks import Claims
 
 CheckFunction: TypeAlias = Callable[..., None]
 
@@ -69,16 +65,9 @@ class Check:
             self._run()
         except (AssertionError, KeyboardInterrupt):
             raise
-        except BaseException as raised:
-            error = raised
-            while isinstance(error, BaseExceptionGroup):  # of several different failures, the first
-                error = error.exceptions[0]
-            if isinstance(error, AssertionError):
-                raise error from None
-            failure = AssertionError(f"the model raised {described(error)}")
-            for note in getattr(error, "__notes__", []):
-                failure.add_note(note)
-            raise failure from error
+        except BaseException as error:
+            failure = as_failure(error)
+            raise failure from (None if isinstance(error, BaseExceptionGroup) else error)
 
 
 def checks(model: Model) -> Iterator[Check]:
@@ -174,40 +163,37 @@ def _of_law(law: WearLaw) -> list[CheckFunction]:
 
 
 def _of_contact_model(model: ContactModel) -> list[CheckFunction]:
-    geometries = model.geometries()
-    of_line = _of_line_contacts(model) if "line" in geometries else []
-    of_ellipse = _of_elliptic_contacts(model) if "ellipse" in geometries else []
-    return [*of_line, *of_ellipse, *COMMON, *acceleration.CHECKS, *declarations.OF_CONTACT_MODELS]
-
-
-def _of_line_contacts(model: ContactModel) -> list[CheckFunction]:
-    tables: list[Claims] = [contact_limits.CLAIMS, contact_energy.CLAIMS]
-    of_fields: list[CheckFunction] = []
-    if isinstance(model, LineContactModel):
-        tables.append(contact_energy.CLAIMS_OF_FIELDS)
-        of_fields += contact_fields.CHECKS
-        if type(model).crossings is not LineContactModel.crossings:
-            of_fields += contact_fields.OF_CROSSINGS
-        if type(model).excess_dissipation is not LineContactModel.excess_dissipation:
-            of_fields += contact_fields.OF_EXCESS
-    if model.refined() is not None:
-        tables.append(contact_energy.CLAIMS_OF_REFINED)
-    return [*contact_checks.CHECKS, *contact_force.CHECKS, *_claimed(model, tables), *of_fields]
-
-
-def _of_elliptic_contacts(model: ContactModel) -> list[CheckFunction]:
-    tables: list[Claims] = [ellipse_limits.CLAIMS, ellipse_energy.CLAIMS]
-    of_strips: list[CheckFunction] = []
-    if model.refined() is not None:
-        tables.append(ellipse_energy.CLAIMS_OF_REFINED)
-        of_strips += ellipse_energy.OF_REFINED
-    if type(model).on_strips is not ContactModel.on_strips:
-        of_strips += ellipse_energy.OF_STRIPS
-    return [*ellipse_checks.CHECKS, *ellipse_force.CHECKS, *_claimed(model, tables), *of_strips]
-
-
-def _claimed(model: ContactModel, tables: list[Claims]) -> list[CheckFunction]:
-    return [f for table in tables for claim, of in table.items() if claim not in model.exemptions for f in of]
+    claims = [*contact_limits.CLAIMS.items(), *contact_energy.CLAIMS.items()]
+    idle = [function for claim, of in claims if claim in model.exemptions for function in of]
+    if "line" not in model.geometries():
+        idle += [*contact_checks.OF_LINES, *contact_limits.OF_LINES]
+    if "ellipse" not in model.geometries():
+        idle += [*contact_checks.OF_ELLIPSES, *contact_force.OF_ELLIPSES, *contact_limits.OF_ELLIPSES]
+        idle += contact_energy.OF_REFINED_STRIPS
+    if model.refined() is None:
+        idle += [*contact_energy.OF_REFINED, *contact_energy.OF_REFINED_STRIPS]
+    if type(model).on_strips is ContactModel.on_strips:
+        idle += contact_energy.OF_STRIPS
+    if not isinstance(model, LineContactModel):
+        idle += [*contact_energy.OF_FIELDS, *contact_fields.CHECKS]
+    else:
+        if type(model).crossings is LineContactModel.crossings:
+            idle += contact_fields.OF_CROSSINGS
+        if type(model).excess_dissipation is LineContactModel.excess_dissipation:
+            idle += contact_fields.OF_EXCESS
+    functions: list[CheckFunction] = [
+        *contact_checks.CHECKS,
+        *contact_force.CHECKS,
+        *(function for _, of in claims for function in of),
+        *contact_energy.CHECKS,
+        *contact_fields.CHECKS,
+    ]
+    return [
+        *(function for function in functions if function not in idle),
+        *COMMON,
+        *acceleration.CHECKS,
+        *declarations.OF_CONTACT_MODELS,
+    ]
 
 
 def _check(function: CheckFunction, model: Model) -> Check:

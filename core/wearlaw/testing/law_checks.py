@@ -16,8 +16,7 @@ from wearlaw.models.wear_law import Numbers, WearLaw
 from wearlaw.settings.parameters import changed, number_like, numbers
 from wearlaw.testing.examples import SAME, assert_close, for_each
 from wearlaw.testing.law_shape import contacts_for
-from wearlaw.testing.sampling import aimed, at_nodes, forward, random_contacts, retotalled, rows
-from wearlaw.testing.shared_checks import arrays_of
+from wearlaw.testing.sampling import aimed, arrays_of, at_nodes, forward, random_contacts, retotalled, rows
 
 STEPS = (1.0, 1.001, 0.999)
 """Factors of a parameter at one operating point after the other; small, since laws refuse parameters out of order."""

@@ -16,8 +16,8 @@ from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.testing import fresh
-from wearlaw.testing.ellipses import TWIN_DISC, random_ellipses
 from wearlaw.testing.examples import assert_close
+from wearlaw.testing.problems import TWIN_DISC, random_ellipses
 from wearlaw.testing.sampling import random_contacts
 from wearlaw.units.quantities import Q
 

@@ -92,6 +92,12 @@ def random_contacts(points: int, nodes: int = 1, seed: int = 0, loaded: bool = F
     return contact_from_shares(shares, conditions)
 
 
+def arrays_of(contact: Contact) -> dict[str, Array]:
+    """Return the fields and totals of a contact by name."""
+    fields = {field.name: getattr(contact, field.name) for field in dataclasses.fields(contact)}
+    return {name: value for name, value in fields.items() if value is not None and name != "problem"}
+
+
 def retotalled(contact: Contact, **changed: Array) -> Contact:
     """Return the contact with some node values changed, and its sums recomputed."""
     values: dict[str, Array] = {name: getattr(contact, name) for name in _VALUES}

@@ -21,7 +21,7 @@ from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Problem
 from wearlaw.rigs.twin_disc import Disc, TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
-from wearlaw.testing.ellipses import SATURATION, Creepages, at_reduced
+from wearlaw.testing.problems import SATURATION, at_reduced, creeping, translation
 from wearlaw.testing.sampling import CONDITIONS_DRAWN, NODE_VALUES_DRAWN, aimed, contact_from_shares
 from wearlaw.units.quantities import Q
 
@@ -147,10 +147,6 @@ def _line_problem(
     return Problem.line_from_si(**{name: np.asarray(value, dtype=np.float64) for name, value in values.items()})
 
 
-LINE_PROBLEMS = line_problems()
-"""Shared by the checks, to draw the problems only once."""
-TWO_LINE_PROBLEMS = st.tuples(LINE_PROBLEMS, LINE_PROBLEMS)
-
 _SIGNS = st.sampled_from([1.0, -1.0])
 
 
@@ -165,7 +161,7 @@ def elliptic_problems(draw: st.DrawFn, crowded: tuple[float, ...] = SATURATION) 
     Parameters
     ----------
     crowded : tuple of float
-        Creepages to crowd at, over what linear theory needs for μN; see `wearlaw.testing.ellipses`.
+        Creepages to crowd at, over what linear theory needs for μN; see `wearlaw.testing.problems`.
     """
     return _elliptic_problem(**draw(_parts_of_ellipse(crowded)))
 
@@ -215,19 +211,13 @@ def _elliptic_problem(
     }
     problem = Problem.ellipse_from_si(**{name: np.asarray(value, dtype=np.float64) for name, value in values.items()})
     problem = at_reduced(problem, creepage * direction[0], creepage * direction[1], spin)
-    creepages = Creepages.of(problem)
-    fastest = np.hypot(creepages.longitudinal, creepages.lateral) + np.abs(creepages.spin) * max(a, b)
-    return problem.with_creepages(*creepages.times(1.0 / np.maximum(fastest, 1.0)))
+    fastest = translation(problem) + np.abs(problem.spin) * max(a, b)
+    return creeping(problem, 1.0 / np.maximum(fastest, 1.0))
 
 
 def problems() -> st.SearchStrategy[Problem]:
     """Return one operating point of a contact on a line or on an ellipse."""
     return line_problems() | elliptic_problems()
-
-
-ELLIPTIC_PROBLEMS = elliptic_problems()
-"""Shared by the checks, to draw the problems only once."""
-TWO_ELLIPTIC_PROBLEMS = st.tuples(ELLIPTIC_PROBLEMS, ELLIPTIC_PROBLEMS)
 
 
 @cache

@@ -20,9 +20,8 @@ from wearlaw.errors import WearlawError
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw.testing.contact_checks import random_problems
-from wearlaw.testing.ellipses import TWIN_DISC, WHEEL_RAIL, random_ellipses
 from wearlaw.testing.examples import SAME, assert_close
+from wearlaw.testing.problems import TWIN_DISC, WHEEL_RAIL, random_ellipses, random_lines
 from wearlaw.testing.rig_checks import values_of, varied
 from wearlaw.testing.sampling import EPS, random_contacts
 from wearlaw.units.quantities import Q
@@ -73,7 +72,7 @@ def _computed(model: Model) -> Array:
     if isinstance(model, WearLaw):
         return model.rate(random_contacts(POINTS), model.numbers)
     assert isinstance(model, ContactModel)
-    problems: dict[Geometry, Any] = {"line": random_problems(POINTS), "ellipse": random_ellipses(POINTS)}
+    problems: dict[Geometry, Any] = {"line": random_lines(POINTS), "ellipse": random_ellipses(POINTS)}
     return np.stack([model.solve(problems[geometry]).tangential_force for geometry in model.geometries()])
 
 

@@ -1,0 +1,165 @@
+"""Contact problems for the checks: random ones, and their creepages *reduced* by the size that saturates.
+
+On a line, reduced creepages are over μa/R, at which Carter's theory slips everywhere. On an ellipse they are the forces
+of Kalker's linear theory that they cause, over μN. A translation then saturates near 3 whatever the patch: at 3 in the
+theory of Vermeulen and Johnson, ASME J. Appl. Mech. 31 (1964) 338-340, and at 32/(3π) in FASTSIM with a parabolic
+bound, where ξ/L1 is the steepest slope of the bound, 4μN/(πa²b).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact import kalker
+from wearlaw.contact.material import steel
+from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.rigs.twin_disc import TwinDisc
+from wearlaw.rigs.wheel_rail import WheelRail
+
+SATURATION = (3.0, 32.0 / (3.0 * np.pi))
+"""Reduced creepages at which a theory of ellipses may saturate."""
+
+ELASTIC = steel(shear_yield_stress=None)
+"""Steel of unknown strength, of whose plastic flow nothing warns."""
+
+TWIN_DISC = TwinDisc.suros(material=ELASTIC)
+"""The rig of the University of Sheffield."""
+
+WHEEL_RAIL = WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=ELASTIC, rolling_speed="30 m/s")
+"""A new wheel on straight track."""
+
+
+def friction_limit(problem: Problem) -> Array:
+    """Return μN."""
+    return problem.friction_coefficient * problem.normal_force
+
+
+def translation(problem: Problem) -> Array:
+    """Return the magnitude of the creepage, √(ξ²+η²)."""
+    magnitude: Array = np.hypot(problem.longitudinal_creepage, problem.lateral_creepage)
+    return magnitude
+
+
+def lever(problem: Problem) -> Array:
+    """Return √((a²+b²)/5) [m], the rms distance of Hertz's pressure on an ellipse from the centre."""
+    arm: Array = np.hypot(problem.a, problem.b) / np.sqrt(5.0)
+    return arm
+
+
+def sliding_power(problem: Problem) -> Array:
+    """Return the dissipation of full slip per metre rolled [N], without the reduction of slip by spin."""
+    return friction_limit(problem) * (translation(problem) + np.abs(problem.spin) * lever(problem))
+
+
+def parts_of_power(problem: Problem, forces: CreepForces) -> Array:
+    """Return |ξFx| + |ηFy| + |φMz| [N], the scale of the rounding error of their sum."""
+    return (
+        np.abs(problem.longitudinal_creepage * forces.longitudinal)
+        + np.abs(problem.lateral_creepage * forces.lateral)
+        + np.abs(problem.spin * forces.spin_moment)
+    )
+
+
+def with_creepage(problem: Problem, creepage: Array | float) -> Problem:
+    """Return the problem at another longitudinal creepage."""
+    return problem.replaced(longitudinal_creepage=np.asarray(creepage, dtype=np.float64))
+
+
+def creeping(problem: Problem, *factors: Array | float) -> Problem:
+    """Return the problem with ξ, η and φ multiplied by a factor each, or by a single one."""
+    longitudinal, lateral, spin = factors * (3 // len(factors))
+    return problem.with_creepages(
+        problem.longitudinal_creepage * longitudinal, problem.lateral_creepage * lateral, problem.spin * spin
+    )
+
+
+def without_spin(problem: Problem) -> Problem:
+    """Return the problem with the same translation and no spin."""
+    return creeping(problem, 1.0, 1.0, 0.0)
+
+
+def saturation(problem: Problem) -> Array:
+    """Return μa/R of a line, at which Carter's theory slips everywhere."""
+    return problem.friction_coefficient * problem.half_width / problem.relative_radius
+
+
+def unit_creepages(problem: Problem) -> tuple[Array, Array, Array]:
+    """Return ξ, η and φ that are 1 when reduced.
+
+    On a line μa/R and zeros, on an ellipse μN/(G ab C11), μN/(G ab C22) and μN/(G ab √(ab) C23).
+    """
+    if problem.geometry == "line":
+        none = np.zeros(problem.batch_shape)
+        return saturation(problem), none, none
+    known = kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
+    area = problem.a * problem.b
+    unit = friction_limit(problem) / (problem.shear_modulus * area)
+    return unit / known.c11, unit / known.c22, unit / (np.sqrt(area) * known.c23)
+
+
+def at_reduced(problem: Problem, longitudinal: Array | float, lateral: Array | float, spin: Array | float) -> Problem:
+    """Return the problem at reduced creepages, to which its batch broadcasts."""
+    shape = np.broadcast_shapes(problem.batch_shape, np.shape(longitudinal), np.shape(lateral), np.shape(spin))
+    problem = problem.broadcast_to(shape)
+    units = unit_creepages(problem)
+    return problem.with_creepages(longitudinal * units[0], lateral * units[1], spin * units[2])
+
+
+def at_magnitude(problem: Problem, reduced: Array | float) -> Problem:
+    """Return the problem with the same spin, and with a translation of the same direction and a reduced magnitude."""
+    along, across, _ = unit_creepages(problem)
+    lateral = problem.lateral_creepage
+    size = np.hypot(
+        problem.longitudinal_creepage / along, np.divide(lateral, across, out=np.zeros_like(across), where=across > 0.0)
+    )
+    return creeping(problem, reduced / size, reduced / size, 1.0)
+
+
+def random_lines(points: int) -> Problem:
+    """Return discs of many sizes and stiffnesses under many loads, frictions and speeds; always the same ones."""
+    random = np.random.default_rng(5)
+    radius, modulus = 10.0 ** random.uniform(-3, 1, points), 10.0 ** random.uniform(9, 12, points)
+    half_width = 2.0 * radius * 10.0 ** random.uniform(-5, np.log10(3e-2), points)
+    friction = random.uniform(0.01, 1.5, points)
+    return Problem.line_from_si(
+        normal_force_per_width=0.25 * np.pi * modulus * half_width**2 / radius,
+        relative_radius=radius,
+        effective_modulus=modulus,
+        friction_coefficient=friction,
+        creepage=friction * half_width / radius * 10.0 ** random.uniform(-3, 1, points),
+        rolling_speed=10.0 ** random.uniform(-2, 2, points),
+        track_width=10.0 ** random.uniform(-4, 0, points),
+        density=random.uniform(1e3, 2e4, points),
+    )
+
+
+def random_ellipses(points: int) -> Problem:
+    """Return patches of many shapes, loads and frictions, the same at every call.
+
+    Reduced creepages go from 0.3, where the slip zone is a tenth of the patch, to 3.5, and have random directions.
+    Every other patch spins.
+    """
+    random = np.random.default_rng(6)
+
+    def between(low: float, high: float) -> Array:
+        return 10.0 ** random.uniform(np.log10(low), np.log10(high), points)
+
+    size, ratio = between(1e-4, 2e-2), between(0.1, 10.0)
+    a, b, shear_modulus = size * np.sqrt(ratio), size / np.sqrt(ratio), between(1e9, 1e12)
+    problem = Problem.ellipse_from_si(
+        a=a,
+        b=b,
+        normal_force=2.0 / 3.0 * np.pi * a * b * between(1e-4, 2e-2) * shear_modulus,
+        shear_modulus=shear_modulus,
+        poisson_ratio=random.uniform(0.0, 0.5, points),
+        friction_coefficient=between(0.05, 1.0),
+        longitudinal_creepage=np.zeros(points),
+        lateral_creepage=np.zeros(points),
+        spin=np.zeros(points),
+        rolling_speed=between(0.1, 100.0),
+        density=random.uniform(1e3, 2e4, points),
+    )
+    size, angle = between(0.3, 3.5), random.uniform(-np.pi, np.pi, points)
+    spin = between(0.1, 3.0) * random.choice([-1.0, 1.0], points) * (np.arange(points) % 2)
+    return at_reduced(problem, size * np.cos(angle), size * np.sin(angle), spin)

@@ -1,0 +1,421 @@
+"""The two shapes of a contact patch, as the checks see them: what to draw, what saturates, and how exact a model is.
+
+A check that says the same of both shapes takes the model and a shape, and is marked `on_each_shape`.
+
+Tolerances on a line: a position is exact to the rounding of the half-width a, so an integral over a slip zone is exact
+to rounding over the zone's share of the patch. Models with nodes of their own, whose sums are only as exact as their
+cells, declare that as `accuracy`. On an ellipse, sums over nodes on strips are as exact as the model declares in
+`elliptic_accuracy`, as a share of what they are in full slip; the patch means of one node, to rounding.
+"""
+
+from __future__ import annotations
+
+import functools
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping
+from typing import ClassVar, NamedTuple, TypeAlias
+
+import numpy as np
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import CreepForces, Geometry, Problem
+from wearlaw.contact.quadrature import uniform_cells
+from wearlaw.models.contact_model import QUADRATURE, Claim, ContactModel
+from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.testing.examples import SAME, SUM, as_failure, assert_close
+from wearlaw.testing.problems import (
+    at_magnitude,
+    creeping,
+    friction_limit,
+    lever,
+    parts_of_power,
+    random_ellipses,
+    random_lines,
+    saturation,
+    sliding_power,
+    translation,
+    with_creepage,
+)
+from wearlaw.testing.strategies import elliptic_problems, line_problems, log_uniform
+
+Claims: TypeAlias = Mapping[Claim, tuple[Callable[..., None], ...]]
+"""Checks by the claim from which a contact model may be exempt."""
+
+Problems: TypeAlias = st.SearchStrategy[Problem]
+Pairs: TypeAlias = st.SearchStrategy[tuple[Problem, Problem]]
+
+MANY = 512
+"""Lines to average an error over."""
+
+PATCHES = 8
+"""Ellipses to average an error over."""
+
+WORDS = {"longitudinal": "Fx", "lateral": "Fy", "spin_moment": "Mz"}
+"""What messages call the forces of `CreepForces`."""
+
+
+class Path(NamedTuple):
+    """Problems at creepages that grow through full slip, to look for jumps.
+
+    The reduced creepages go from `low` to `high`, in `intervals` that are small enough for `find_jumps`. `allowed` is
+    by how much each field of the contact may jump, for each problem.
+    """
+
+    problem: Problem
+    low: float
+    high: float
+    intervals: int
+    allowed: dict[str, Array]
+
+
+class Shape(ABC):
+    """What the checks need to know of one shape of a patch."""
+
+    geometry: ClassVar[Geometry]
+    where: ClassVar[str]
+    """How messages begin."""
+    unit: ClassVar[str]
+    """What messages call a reduced creepage of 1."""
+    problems: ClassVar[Problems]
+    pairs: ClassVar[Pairs]
+    """Two problems of which neither is like the other."""
+    similar: ClassVar[Pairs]
+    """Two problems with the same forces over μN."""
+    batches: ClassVar[Problems]
+    """Batches with and without slip, and in full slip: the points that a batch must keep apart."""
+    node_axes: ClassVar[int]
+    """Number of axes of the nodes."""
+    rounding: ClassVar[float]
+    """Error of forces and powers that are computed in two ways, over `sizes` and `size_of_power`."""
+    edge: ClassVar[float]
+    """Rounding of a traction bound on the very edge, over that in the centre."""
+    fall: ClassVar[float]
+    """Share to which the difference between partial and full slip falls, from 1e-4 to 1e-8 away from full slip."""
+    directions: ClassVar[Array]
+    """Directions (2, n) of reduced creepages ξ and η."""
+
+    @abstractmethod
+    def random(self, points: int) -> Problem:
+        """Return the same random problems at every call, as one batch."""
+
+    def forces(self, model: ContactModel, problem: Problem) -> CreepForces:
+        """Return the forces; alone, unless a shape says otherwise, since a model may know them for less."""
+        return self.forces_alone(model, problem)
+
+    @abstractmethod
+    def forces_alone(self, model: ContactModel, problem: Problem) -> CreepForces:
+        """Return the forces by the method that gives nothing else."""
+
+    def solutions(self, model: ContactModel, problem: Problem) -> list[Contact]:
+        """Return the contact on the model's own nodes, and on others where they can be chosen."""
+        return [model.solve(problem)]
+
+    @abstractmethod
+    def inside(self, problem: Problem, contact: Contact) -> NDArray[np.bool_]:
+        """Return which nodes lie in the patch."""
+
+    @abstractmethod
+    def longer(self, problem: Problem, factor: float) -> Problem:
+        """Return the problem with a patch longer by a factor."""
+
+    @abstractmethod
+    def path(self, model: ContactModel) -> Path:
+        """Return creepages that grow through full slip."""
+
+    @abstractmethod
+    def to_refine(self) -> Iterator[Problem]:
+        """Yield problems to average the error of sums over, in batches that may be solved on fine nodes."""
+
+    @abstractmethod
+    def error_of_sums(self, model: ContactModel) -> float:
+        """Return the error of sums over the nodes."""
+
+    def error_of_areas(self, model: ContactModel) -> float:
+        """Return the relative error of the sum of the areas."""
+        return self.error_of_sums(model)
+
+    def error_of_force(self, model: ContactModel) -> float:
+        """Return the relative error of a force."""
+        return self.error_of_sums(model)
+
+    def error_of_traction(self, model: ContactModel) -> float:  # noqa: ARG002
+        """Return the relative error of a traction at its bound."""
+        return SAME
+
+    @abstractmethod
+    def error_of_stick(self, model: ContactModel) -> float:
+        """Return the slip below the bound, over the power of full slip."""
+
+    @abstractmethod
+    def error_of_power(self, model: ContactModel, problem: Problem, contact: Contact, due: Array) -> Array:
+        """Return the error of the dissipation at the nodes [N]."""
+
+    @abstractmethod
+    def sizes(self, problem: Problem, forces: CreepForces) -> dict[str, Array]:
+        """Return the sizes that rounding of the forces and of the moment is relative to."""
+
+    def sizes_of_sums(self, problem: Problem, forces: CreepForces) -> dict[str, Array]:
+        """Return the sizes that errors of sums over the nodes are relative to."""
+        return self.sizes(problem, forces)
+
+    @abstractmethod
+    def size_of_power(self, problem: Problem, forces: CreepForces) -> Array:
+        """Return the size that the rounding of Tγ is relative to [N]."""
+
+    def assert_same_forces(
+        self, problem: Problem, found: CreepForces, due: CreepForces, message: str, error: float
+    ) -> None:
+        """Assert that forces and moment agree to a share of their sizes."""
+        for name, size in self.sizes(problem, due).items():
+            assert_close(getattr(found, name), getattr(due, name), f"{WORDS[name]} {message}", 0.0, error * size)
+
+    def assert_same_power(self, problem: Problem, found: Contact, due: Contact, message: str, error: float) -> None:
+        """Assert that two contacts have the same Tγ, to a share of its size."""
+        allowed = error * self.size_of_power(problem, due.forces)
+        assert_close(found.wear_index, due.wear_index, f"the wear index {message}", 0.0, allowed)
+
+
+class Line(Shape):
+    """Discs with parallel axes: one axis of nodes, one creepage."""
+
+    geometry = "line"
+    where = "on a line"
+    unit = "the creepage μa/R"
+    problems = line_problems()
+    pairs = st.tuples(problems, problems)
+    similar = pairs.map(lambda pair: (pair[0], _at_the_same_reduced_creepage(*pair)))
+    batches = problems.map(lambda problem: _at_factors(problem, [[1.0, 0.0, -1.0], [1e-3, 1e3, 1.0 + 1e-9]]))
+    node_axes = 1
+    rounding = SAME
+    edge = 0.0
+    # At least as the square root of the distance, the steepest onset in theories of contact.
+    fall = 0.01
+    directions = np.array([[1.0], [0.0]])
+
+    def random(self, points: int) -> Problem:
+        """Return discs of many sizes."""
+        return random_lines(points)
+
+    def forces(self, model: ContactModel, problem: Problem) -> CreepForces:
+        """Return the forces of the contact."""
+        return model.solve(problem).forces
+
+    def forces_alone(self, model: ContactModel, problem: Problem) -> CreepForces:
+        """Return what `tangential_force` gives."""
+        return CreepForces.of({"longitudinal": model.tangential_force(problem)})
+
+    def solutions(self, model: ContactModel, problem: Problem) -> list[Contact]:
+        """Return the contact on the model's own nodes and, where its fields are known anywhere, on uniform cells."""
+        contacts = [model.solve(problem)]
+        if isinstance(model, LineContactModel):
+            contacts.append(model.at(problem, uniform_cells(problem.half_width, 97)))
+        return contacts
+
+    def inside(self, problem: Problem, contact: Contact) -> NDArray[np.bool_]:
+        """Return where |x| is a at most."""
+        within: NDArray[np.bool_] = np.abs(contact.x) <= problem.a * (1.0 + SAME)
+        return within
+
+    def longer(self, problem: Problem, factor: float) -> Problem:
+        """Return the problem under the load at which Hertz's half-width is longer."""
+        return problem.replaced(
+            a=problem.a * factor,
+            max_pressure=problem.max_pressure * factor,
+            normal_force=problem.normal_force * factor**2,
+        )
+
+    def path(self, model: ContactModel) -> Path:
+        """Return creepages from a hundredth of μa/R to ten times as much."""
+        problem = random_lines(2)
+        # Where a cell begins to slip, the sum of the slips is off by a share of what it is in full slip.
+        allowed = {"force_x": np.zeros(2), "mean_slip": model.accuracy * saturation(problem)}
+        # Carter's force has a curvature of 2 at full slip, hence changes by 2 (3 ln 10/512/2)² = 1e-4 more in one half.
+        return Path(problem, low=1e-2, high=10.0, intervals=512, allowed=allowed)
+
+    def to_refine(self) -> Iterator[Problem]:
+        """Yield one batch of many, since the place within a cell where a zone begins is random."""
+        problem = random_lines(MANY)
+        # Nearer to zero, the slip zone is shorter than a cell.
+        yield with_creepage(problem, np.linspace(0.1, 1.2, MANY) * saturation(problem))
+
+    def error_of_sums(self, model: ContactModel) -> float:
+        """Return what the model declares."""
+        return model.accuracy
+
+    def error_of_areas(self, model: ContactModel) -> float:  # noqa: ARG002
+        """Return rounding."""
+        return SUM
+
+    def error_of_force(self, model: ContactModel) -> float:
+        """Return rounding, or the accuracy that a model declares: its force is then a sum over its nodes."""
+        return SAME if model.accuracy == QUADRATURE else model.accuracy
+
+    def error_of_traction(self, model: ContactModel) -> float:
+        """Return rounding, or the error of the force of which the traction is the mean."""
+        return self.error_of_force(model) if model.scale == "patch" else SAME
+
+    def error_of_stick(self, model: ContactModel) -> float:  # noqa: ARG002
+        """Return zero: a node slips or sticks."""
+        return 0.0
+
+    def error_of_power(self, model: ContactModel, problem: Problem, contact: Contact, due: Array) -> Array:
+        """Return rounding, and the accuracy as a share of the power, of cells of that in full slip."""
+        slipping = contact.slip_area / contact.patch_area
+        # Positions are exact to the rounding of a, so in a short slip zone q·s is that much less exact.
+        rounding = SUM / np.maximum(slipping, SUM)
+        # A slip zone may be shorter than a cell: the error of sums over cells is a share of what full slip dissipates.
+        whole = due if model.accuracy == QUADRATURE else sliding_power(problem)
+        return rounding * np.abs(due) + model.accuracy * whole
+
+    def sizes(self, problem: Problem, forces: CreepForces) -> dict[str, Array]:  # noqa: ARG002
+        """Return the force."""
+        return {"longitudinal": np.abs(forces.longitudinal)}
+
+    def sizes_of_sums(self, problem: Problem, forces: CreepForces) -> dict[str, Array]:  # noqa: ARG002
+        """Return μN."""
+        return {"longitudinal": friction_limit(problem)}
+
+    def size_of_power(self, problem: Problem, forces: CreepForces) -> Array:
+        """Return the power."""
+        return parts_of_power(problem, forces)
+
+
+class Ellipse(Shape):
+    """A wheel on a rail: nodes on strips, two creepages and a spin."""
+
+    geometry = "ellipse"
+    where = "on an ellipse"
+    unit = "the creepage that linear theory needs for μN"
+    problems = elliptic_problems()
+    pairs = st.tuples(problems, problems)
+    _factor = log_uniform(0.1, 10.0)
+    similar = st.tuples(
+        problems,
+        # Of length, modulus, friction, creepage and speed; the creepages may not grow above 1.
+        st.tuples(_factor, _factor, _factor, log_uniform(0.1, 1.0), _factor),
+    ).map(lambda case: (case[0], _scaled(case[0], *case[1])))
+    batches = st.builds(lambda: _at_factors(random_ellipses(8), [[0.0], [1.0], [1e3]]))
+    node_axes = 2
+    rounding = SUM
+    edge = SAME
+    # What begins as a square root, c √gap (1 + d √gap), falls to a fiftieth where d is as low as -50.
+    fall = 0.02
+    directions = np.array([[1.0, 1.0, 0.0, -1.0, -1.0, -1.0, 0.0, 1.0], [0.0, 1.0, 1.0, 1.0, 0.0, -1.0, -1.0, -1.0]])
+
+    def random(self, points: int) -> Problem:
+        """Return patches of many shapes."""
+        return random_ellipses(points)
+
+    def forces_alone(self, model: ContactModel, problem: Problem) -> CreepForces:
+        """Return what `creep_forces` gives."""
+        return model.creep_forces(problem)
+
+    def inside(self, problem: Problem, contact: Contact) -> NDArray[np.bool_]:
+        """Return where (x/a)² + (y/b)² is 1 at most."""
+        within: NDArray[np.bool_] = (contact.x / problem.a) ** 2 + (contact.y / problem.b) ** 2 <= 1.0 + SAME
+        return within
+
+    def longer(self, problem: Problem, factor: float) -> Problem:
+        """Return the problem with another a."""
+        return problem.replaced(a=problem.a * factor)
+
+    def path(self, model: ContactModel) -> Path:
+        """Return translations from 0.6 to 6 of what linear theory needs for μN, one of them without spin.
+
+        On nodes, with spin, strips may begin to slip elsewhere at once: then a force may jump by the accuracy times μN.
+        """
+        problem, high = random_ellipses(4)[[0, 1, 3]], 6.0
+        error = 0.0 if model.scale == "patch" else model.elliptic_accuracy
+        of_forces = error * (problem.spin != 0) * friction_limit(problem)
+        # Where a cell begins to slip, the sum of the slips is off by a share of what it is in full slip.
+        of_slip = error * translation(at_magnitude(problem, high))
+        allowed = {"force_x": of_forces, "force_y": of_forces, "mean_slip": of_slip}
+        # A force has a logarithmic slope that changes by up to 2 per e-fold: by 2 (ln 10/64/2)² = 6e-4 in one half.
+        return Path(problem, low=0.6, high=high, intervals=64, allowed=allowed)
+
+    def to_refine(self) -> Iterator[Problem]:
+        """Yield patches one at a time, since the nodes may be many."""
+        problem = random_ellipses(PATCHES)
+        return (problem[index] for index in range(PATCHES))
+
+    def error_of_sums(self, model: ContactModel) -> float:
+        """Return what the model declares, and rounding where one node holds the means."""
+        return SAME if model.scale == "patch" else model.elliptic_accuracy
+
+    def error_of_stick(self, model: ContactModel) -> float:
+        """Return the accuracy: a cell may slip on one side and stick on the other, and the traction turn within it."""
+        return model.elliptic_accuracy
+
+    def error_of_power(
+        self,
+        model: ContactModel,
+        problem: Problem,
+        contact: Contact,  # noqa: ARG002
+        due: Array,
+    ) -> Array:
+        """Return a share of what full slip dissipates, since a slip zone may be shorter than a cell."""
+        whole: Array = self.error_of_sums(model) * np.maximum(sliding_power(problem), due)
+        return whole
+
+    def sizes(self, problem: Problem, forces: CreepForces) -> dict[str, Array]:
+        """Return μN, or the force where it is larger, and for the moment that times its lever."""
+        size = np.maximum(friction_limit(problem), forces.tangential)
+        moment = np.maximum(size * lever(problem), np.abs(forces.spin_moment))
+        return {"longitudinal": size, "lateral": size, "spin_moment": moment}
+
+    def size_of_power(self, problem: Problem, forces: CreepForces) -> Array:
+        """Return the power of full slip, or that of the forces where it is larger."""
+        size: Array = np.maximum(sliding_power(problem), parts_of_power(problem, forces))
+        return size
+
+
+LINE, ELLIPSE = Line(), Ellipse()
+SHAPES: tuple[Shape, ...] = (LINE, ELLIPSE)
+
+
+def _at_factors(problem: Problem, factors: list[list[float]]) -> Problem:
+    """Return the problem at its creepages times factors, to which its batch broadcasts."""
+    shape = np.broadcast_shapes(problem.batch_shape, np.shape(factors))
+    return creeping(problem.broadcast_to(shape), np.array(factors))
+
+
+def _at_the_same_reduced_creepage(problem: Problem, other: Problem) -> Problem:
+    return with_creepage(other, problem.creepage / saturation(problem) * saturation(other))
+
+
+def _scaled(problem: Problem, length: float, modulus: float, friction: float, creepage: float, speed: float) -> Problem:
+    """Return the similar problem of other length, modulus, friction, creepages and speed."""
+    pressure = creepage * modulus / friction
+    other = problem.replaced(
+        a=length * problem.a,
+        b=length * problem.b,
+        effective_modulus=modulus * problem.effective_modulus,
+        max_pressure=pressure * problem.max_pressure,
+        friction_coefficient=friction * problem.friction_coefficient,
+        normal_force=pressure * length**2 * problem.normal_force,
+        rolling_speed=speed * problem.rolling_speed,
+    )
+    return creeping(other, creepage, creepage, creepage / length)
+
+
+def on_each_shape(check: Callable[[ContactModel, Shape], None]) -> Callable[[ContactModel], None]:
+    """Return the check that runs on each shape which the model solves, and begins its message with that shape."""
+
+    @functools.wraps(check)
+    def on_all(model: ContactModel) -> None:
+        for shape in SHAPES:
+            if shape.geometry not in model.geometries():
+                continue
+            try:
+                check(model, shape)
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:
+                failure = as_failure(error)
+                failure.args = (f"{shape.where}: {failure}",)
+                raise failure from (None if failure is error else error)
+
+    return on_all
