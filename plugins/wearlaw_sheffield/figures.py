@@ -28,7 +28,7 @@ def figures(bench: Bench, tests: tuple[Array, Array]) -> tuple[wl.FigureData, ..
 
 def slip_along_patch(bench: Bench) -> wl.FigureData:
     """Return Figure 4 with both slips of the exact theory."""
-    curves = []
+    curves, x = [], np.zeros(0)
     for number, (words, model) in enumerate(local_models().items()):
         profile = bench.predict(model, wl.wear_law("usfd"), PROFILE).profile
         x = profile["x"].values

@@ -267,7 +267,7 @@ def thresholds_beyond_tests(bench: Bench) -> wl.CheckedClaim:
     (lower, _), (threshold,) = borders("kth", "slip_speed"), borders("kth", "pressure")
     found, parts = [], []
     for words, model in {"the patch means": "global", **{words: model for model, words in THEORY.items()}}.items():
-        below, said = [], []
+        below, said, pressure = [], [], 0.0
         for of_speed, one in bench.at_speeds().items():
             contact = one.predict(model, wl.wear_law("kth"), TESTED[1]).contact
             speed = float(contact.slip_speed.max())

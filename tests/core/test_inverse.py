@@ -15,9 +15,7 @@ from wearlaw import Q
 
 RIG = wl.TwinDisc.suros()
 LOAD: Any = {"normal_force_per_width": Q(741.43, "kN/m"), "friction_coefficient": 0.46}
-SATURATION = (
-    0.46 * float((RIG | wl.contact_model("exact"))(creepage="1 %", **LOAD).half_width.to("m").magnitude) / 11.75e-3
-)
+SATURATION = 0.46 * float(RIG.problem(creepage="1 %", **LOAD).half_width) / 11.75e-3
 
 SHARES = st.floats(1e-9, 0.999)
 

@@ -285,20 +285,21 @@ def _interpolated(table: _Table, traction: _Value, friction: _Value, power: floa
     """
     values: Any
     place: Any
+    mu: Any
     if isinstance(traction, float):
         values, place = table.floats, int
-        friction = max(friction, traction, TINY)
+        mu = max(friction, traction, TINY)
     else:
         values, place = table.array, _places
-        friction = np.maximum(np.maximum(friction, traction), TINY)
-    u = FRICTIONS * (friction / (1.0 + friction))
-    v = SLIPS * (1.0 - (1.0 - traction / friction) ** power) ** 0.5
+        mu = np.maximum(np.maximum(friction, traction), TINY)
+    u = FRICTIONS * (mu / (1.0 + mu))
+    v = SLIPS * (1.0 - (1.0 - traction / mu) ** power) ** 0.5
     i, j = place(u), place(v)
     f, g = u - i, v - j
     at = WIDTH * i + j
     low = values[at] + g * (values[at + 1] - values[at])
     high = values[at + WIDTH] + g * (values[at + WIDTH + 1] - values[at + WIDTH])
-    peak: _Value = (1.0 + friction) * (low + f * (high - low))
+    peak: _Value = (1.0 + mu) * (low + f * (high - low))
     return peak
 
 

@@ -71,7 +71,7 @@ class Prediction:
     ) -> None:
         self.problem = problem
         self.contact_model = contact_model
-        self.scale = scale
+        self.scale: Scale = scale
         self.laws = laws
         self._given_forces = forces
         self._given_wear = wear

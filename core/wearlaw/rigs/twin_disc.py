@@ -212,7 +212,8 @@ class TwinDisc(Rig):
             half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
             max_pressure = hertz.max_pressure(per_width, half_width)
         check_sizes({"half width": half_width, "max pressure": max_pressure}, arrays["friction_coefficient"])
-        shape, same = arrays["creepage"].shape, self._same
+        shape = arrays["creepage"].shape
+        same: dict[str, Any] = self._same
         if shape:
             same = {name: np.broadcast_to(value, shape) for name, value in same.items()}
         return Problem(

@@ -71,7 +71,7 @@ def _results(model: Model, part: slice | int) -> tuple[Array, Array]:
         return rate, np.zeros_like(rate)
     assert isinstance(model, ContactModel)
     of = {"line": _of_line, "ellipse": _of_ellipse}
-    found = [of[geometry](model, part) for geometry in model.geometries()]
+    found = [of[geometry](model, part) for geometry in model.geometries() if geometry in of]
     return np.concatenate([value for value, _ in found]), np.concatenate([allowed for _, allowed in found])
 
 

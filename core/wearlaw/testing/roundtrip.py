@@ -97,4 +97,4 @@ def _arguments(model: Model) -> list[Any]:
         ),
         "ellipse": random_ellipses(4),
     }
-    return [problems[geometry] for geometry in model.geometries()]
+    return [problems[geometry] for geometry in model.geometries() if geometry in problems]

@@ -73,7 +73,9 @@ def _computed(model: Model) -> Array:
         return model.rate(random_contacts(POINTS), model.numbers)
     assert isinstance(model, ContactModel)
     problems: dict[Geometry, Any] = {"line": random_lines(POINTS), "ellipse": random_ellipses(POINTS)}
-    return np.stack([model.solve(problems[geometry]).tangential_force for geometry in model.geometries()])
+    return np.stack(
+        [model.solve(one).tangential_force for shape, one in problems.items() if shape in model.geometries()]
+    )
 
 
 def units_of_conditions_do_not_matter(model: Model) -> None:
@@ -88,8 +90,7 @@ def units_of_conditions_do_not_matter(model: Model) -> None:
         _compare(_contacts(), lambda given: model.rate(Contact.from_arrays(**given), model.numbers), OF_CONTACTS)
         return
     assert isinstance(model, ContactModel)
-    for geometry in model.geometries():
-        rig, loads, creepages = GIVEN[geometry]
+    for rig, loads, creepages in (given for geometry, given in GIVEN.items() if geometry in model.geometries()):
         random = np.random.default_rng(7)
         rolling = {name: random.integers(-2000, 2000, POINTS) * step for name, step in creepages.items()}
         for load, (low, high) in loads.items():
