@@ -64,8 +64,8 @@ class Fastsim(wl.LineContactModel):
 
     slip: Literal["local", "scaled"] = "local"
     """Slip on an ellipse. "local": the slip of the theory. "scaled": the same times one factor for the patch, so that
-    it dissipates Tγ with spin too. The factor helps with the elliptic bound; with the parabolic bound the unscaled cells
-    are nearer to the full theory."""
+    it dissipates Tγ with spin too. The factor helps with the elliptic bound; the cells of the parabolic bound are
+    nearer to the full theory without it."""
 
     interpolation: wl.kalker.Interpolation = "scaled"
     """How the model reads the table of Kalker's coefficients on an ellipse, as in `wl.kalker.coefficients`. "contact":
