@@ -15,14 +15,14 @@ from wearlaw_exact._kernel import excess_dissipation
 class Exact(wl.LineContactModel):
     """Carter's exact solution for like materials: a stick zone [-a, -a+2c] at the leading edge, slip behind it.
 
-    With k = μ/R the half-length of the stick zone is c = a - ξ/k; where it would be negative, at and above the
-    saturation creepage ξ_sat = μa/R, the whole patch slips. In the slip zone the traction is μp, and
+    With k = μ/R the half-length of the stick zone is c = a - ξ/k. At and above the saturation creepage ξ_sat = μa/R,
+    where c would not be positive, the whole patch slips. In the slip zone the traction is μp, and
     s = k √((x+a-c)² - c²), which for full slip becomes s = ξ + kx.
 
     Notes
     -----
-    Tassini et al. (2010) print the slip of their eq. (7) as ξ + kx in the whole slip zone also for partial slip,
-    and (x+a+c) in place of (x+a-c) in their eq. (8). The first is offered as ``slip="as_printed"``.
+    Tassini et al. (2010) print the slip in their eq. (7) as ξ + kx in the whole slip zone, in partial slip too, and
+    (x+a+c) in place of (x+a-c) in their eq. (8). ``slip="as_printed"`` gives their eq. (7).
     """
 
     name: ClassVar[str] = "exact"
@@ -33,7 +33,7 @@ class Exact(wl.LineContactModel):
 
     slip: Literal["consistent", "as_printed"] = "consistent"
     """"consistent": the slip that follows from the tractions. "as_printed": eq. (7) of Tassini et al. (2010),
-    which jumps where slip begins and dissipates more energy than Tγ; to reproduce the paper."""
+    which jumps where slip begins and dissipates more energy than Tγ; use it to reproduce the paper."""
 
     @property
     def exemptions(self) -> Mapping[wl.Claim, str]:
@@ -51,13 +51,13 @@ class Exact(wl.LineContactModel):
         a, inverse_k = problem.half_width, _inverse_k(problem)
         k, length = 1.0 / inverse_k, _slip_length(problem, inverse_k)
         before, behind = nodes.from_trailing, nodes.from_leading  # a - x and x + a
-        into = length - before  # x + a - 2c, the distance from where slip begins
+        into = length - before  # x + a - 2c, the distance from the start of the slip zone
         slipping = into > 0.0
         pressure = problem.max_pressure * np.sqrt(before * behind) / a
         bound = problem.friction_coefficient * pressure
-        # μp - (c/a) μp0 √(1-((x+a-c)/c)²) as √A - √B = (A-B)/(√A + √B), which loses no digits and is never negative.
+        # μp - (c/a) μp0 √(1-((x+a-c)/c)²) as √A - √B = (A-B)/(√A + √B): no digits are lost, and it is never negative.
         roots = np.sqrt(before) + np.sqrt(np.maximum(-into, 0.0))
-        growth = length * np.sqrt(behind) / np.maximum(roots, 1e-150)  # zero only at the trailing edge of what sticks
+        growth = length * np.sqrt(behind) / np.maximum(roots, 1e-150)  # zero only at the trailing edge
         stuck = problem.friction_coefficient * problem.max_pressure / a * growth
         everywhere = problem.creepage + k * nodes.x
         if self.slip == "as_printed":

@@ -4,9 +4,9 @@ With d = ξ E*/(2 μ p0) = ξR/(μa), h = min(d, 1) and t from -1 to 1 over the 
 
     q s = μp0 (μa/R) h f(t),  f(t) = (A + h t) √(1-t²),  A = max(2-d, d).
 
-f rises from zero to one maximum and falls to zero again, so that it exceeds a level between two roots. With v the
-distance of t from the end next to a root, f² = v (2-v) (B + g v)², where B = A + h and g = -h at the trailing end and
-B = A - h and g = h at the other. Next to d = 1 the latter grows like a cube.
+f rises from zero to one maximum and falls to zero again, so it exceeds a level between two roots. With v the distance
+of t from the end next to a root, f² = v (2-v) (B + g v)², where B = A + h and g = -h at the trailing end, and B = A - h
+and g = h at the other. Near d = 1 the latter f² grows like a cube.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from wearlaw import Array
 CLOSE = 2e-3
 """Step of Halley's method, over the distances from both ends of its range, after which a root is good enough.
 
-The next error is of the order of its cube, 1e-8; and since f is at its level in a root, the integral above the level
-only feels the square of that.
+The next error is of the order of its cube, 1e-8. At a root f equals the level, so the integral above the level only
+depends on the square of that error.
 """
 
 STEPS = 60
-"""Steps at most; two to four are needed, next to d = 1 more, since the first guess is far off a cube."""
+"""Most steps; two to four are enough, except near d = 1, where the first guess is far off a cube."""
 
 Number = TypeVar("Number", float, Array)
 
@@ -40,7 +40,7 @@ def _change(base: Number, growth: Number, square: Number, v: Number) -> Number:
     value = circle * line * line - square
     first = line * (slope * line + 2.0 * rise)
     half_second = growth * rise + line * (2.0 * growth * slope - line)
-    return value * first / (first * first - value * half_second + 1e-300)  # at the maximum itself all of it is zero
+    return value * first / (first * first - value * half_second + 1e-300)  # all terms are zero at the maximum itself
 
 
 def _roots(base: Array, growth: Array, top: Array, square: Array, v: Array) -> Array:
@@ -70,7 +70,7 @@ def _excess_arrays(
     shape, reduced, level = reduced.shape, reduced.ravel(), level.ravel()
     excess = np.zeros(reduced.shape)
     zone, mean = np.minimum(reduced, 1.0), np.maximum(2.0 - reduced, reduced)
-    near = np.flatnonzero(level < zone * (mean + zone))  # which f stays below
+    near = np.flatnonzero(level < zone * (mean + zone))  # f stays below any higher level
     zone, mean, height = zone[near], mean[near], level[near] / zone[near]
     crest = 2.0 * zone / (np.sqrt(mean * mean + 8.0 * zone * zone) + mean)
     square, peak = height * height, mean + zone * crest
@@ -95,7 +95,7 @@ def _excess_arrays(
 def excess_dissipation(
     creepage: float, friction: float, max_pressure: float, half_width: float, modulus: float, threshold: float
 ) -> float:
-    """Return ∫ max(q s - threshold, 0) dx [N/m], of values in SI."""
+    """Return ∫ max(q s - threshold, 0) dx [N/m] from values in SI."""
     saturation = 2.0 * friction * max_pressure / modulus
     scale, reduced = friction * max_pressure * saturation, creepage / saturation
     level = threshold / scale
@@ -110,7 +110,7 @@ def excess_dissipation(
         return 0.0
     guess = left / (1.0 + math.sqrt(1.0 - left))
     v, top, u, summit = guess * (1.0 - crest), 1.0 - crest, guess * (1.0 + crest), 1.0 + crest
-    for _ in range(STEPS):  # both roots at once, which processors overlap
+    for _ in range(STEPS):  # both roots at once: processors overlap them
         next_v = v - _change(mean + zone, -zone, square, v)
         next_u = u - _change(mean - zone, zone, square, u)
         next_v = min(max(next_v, 0.25 * v), 0.5 * (v + top))

@@ -14,27 +14,27 @@ from wearlaw_fastsim import _solution
 from wearlaw_fastsim._kernel import elliptic_excess, parabolic_excess
 
 ON_ELLIPSE = ("march", "strips", "slip", "interpolation")
-"""Settings that do not matter on a line."""
+"""Settings that have no effect on a line."""
 
 
 class Fastsim(wl.LineContactModel):
     """FASTSIM: displacement proportional to traction, u = L q.
 
-    On a line, from the leading edge the traction grows by ξ/L per length until it meets the bound μ p2, which it then
-    follows with the slip s = ξ - L d(μ p2)/dx. In two dimensions, with constant creepage, the march from cell to
-    cell has this closed form, since the bound is concave.
+    On a line the traction grows from the leading edge by ξ/L per length until it meets the bound μ p2. From there it
+    follows the bound with the slip s = ξ - L d(μ p2)/dx. In two dimensions, with constant creepage, the march from cell
+    to cell has this closed form, since the bound is concave.
 
-    On an ellipse there are Kalker's three flexibilities, and the patch is cut into strips along the rolling direction,
+    On an ellipse the model has Kalker's three flexibilities and cuts the patch into strips along the rolling direction,
     which do not feel each other. From its leading edge the traction of a strip grows by
-    dq/dx = (ξ/L1 - φy/L3, η/L2 - φx/L3) until it meets the bound; where it slips, it keeps to the bound and turns
-    towards that vector. The slip is what the growth of the traction leaves over, times (L1, L2). With spin the energy
-    that it dissipates differs from Tγ = ξFx + ηFy + φMz.
+    dq/dx = (ξ/L1 - φy/L3, η/L2 - φx/L3) until it meets the bound. In slip it follows the bound and turns towards that
+    vector. The slip is the part of that vector that the traction does not take up, times (L1, L2). With spin the energy
+    that the slip dissipates differs from Tγ = ξFx + ηFy + φMz.
 
-    `pressure` is always Hertz's; the parabola is the bound of the traction only.
+    `pressure` is always Hertz's; the parabola bounds the traction only.
 
     Notes
     -----
-    Prefer this for wear, and for forces where there is spin: it resolves the patch, at any creepage. It can't meet the
+    Prefer this for wear, and for forces with spin: it resolves the patch, at any creepage. It can't meet the
     moment of the linear theory nor, with spin, Tγ, because its flexibilities are chosen to meet Kalker's forces. The
     theory of elliptic contact in the documentation has tables of its errors.
     """
@@ -53,23 +53,23 @@ class Fastsim(wl.LineContactModel):
     the limit of Kalker's coefficient for a long ellipse. On an ellipse the flexibilities are always Kalker's three."""
 
     march: Literal["adaptive", "uniform"] = "adaptive"
-    """Nodes on an ellipse. "adaptive": few in the stick zone, the others where it slips, with formulas of second order
-    between them. "uniform": cells of equal length along each strip, as Kalker marched."""
+    """Nodes on an ellipse. "adaptive": few in the stick zone and the others in the slip zone, with formulas of second
+    order between them. "uniform": cells of equal length along each strip, as in Kalker's march."""
 
     strips: Annotated[int, Field(ge=2, le=1000, strict=True)] = 10
-    """Strips of an ellipse; the nodes along a strip are in proportion, as many cells where the march is uniform.
-    On 10 strips forces are off by 0.4 % of μN, the energy of the cells and USFD by 0.4 %, and KTH, which jumps, by 8 %,
-    root mean square over a/b from 1/10 to 10; single points are ten times further off. The documentation of wheels on
-    rails has a table."""
+    """Number of strips of an ellipse. The number of nodes along a strip is proportional to it; a uniform march has as
+    many cells as strips. On 10 strips forces are off by 0.4 % of μN, the energy of the cells and USFD by 0.4 %, and
+    KTH, which jumps, by 8 %, root mean square over a/b from 1/10 to 10; single points are ten times further off. The
+    documentation of wheels on rails has a table."""
 
     slip: Literal["local", "scaled"] = "local"
-    """Slip on an ellipse. "local": that of the theory. "scaled": the same times one factor for the patch, so that what
-    it dissipates is Tγ also with spin; the factor helps with the elliptic bound, while the cells of the parabolic one
-    are nearer to the full theory as they are."""
+    """Slip on an ellipse. "local": the slip of the theory. "scaled": the same times one factor for the patch, so that
+    it dissipates Tγ with spin too. The factor helps with the elliptic bound; the cells of the parabolic bound are
+    nearer to the full theory without it."""
 
     interpolation: wl.kalker.Interpolation = "scaled"
-    """How the table of Kalker's coefficients is read on an ellipse, as in `wl.kalker.coefficients`. "contact": as the
-    program CONTACT does, for comparisons with it."""
+    """How the model reads the table of Kalker's coefficients on an ellipse, as in `wl.kalker.coefficients`. "contact":
+    as the program CONTACT does, for comparisons with it."""
 
     @property
     def exemptions(self) -> Mapping[wl.Claim, str]:
@@ -85,11 +85,11 @@ class Fastsim(wl.LineContactModel):
 
     @property
     def square_roots_at(self) -> Literal["patch"]:
-        """Nothing behaves like a square root where slip begins."""
+        """The whole patch: fields are smooth where slip begins."""
         return "patch"
 
     def __repr_args__(self) -> Any:
-        """Give the settings to show: those that matter on an ellipse only where they are not the default."""
+        """Yield the settings to show; those for an ellipse only if they differ from the default."""
         for name, value in super().__repr_args__():
             if name not in ON_ELLIPSE or value != type(self).model_fields[name].default:
                 yield name, value
@@ -132,7 +132,7 @@ class Fastsim(wl.LineContactModel):
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 
     def slip_length(self, problem: wl.Problem) -> Array:
-        """Return the distance from where the traction meets its bound to the trailing edge."""
+        """Return the distance from the point where the traction meets its bound to the trailing edge."""
         d = self._reduced_creepage(problem)
         if self.bound == "parabolic":
             return 2.0 * problem.half_width * np.minimum(d, 1.0)
@@ -147,7 +147,7 @@ class Fastsim(wl.LineContactModel):
         if self.bound == "parabolic":
             bound = friction * self._bound_centre(problem) * inside / a**2
         else:
-            root = np.sqrt(np.maximum(inside, 1e-200 * a**2))  # at the very edge q·s keeps its finite limit
+            root = np.sqrt(np.maximum(inside, 1e-200 * a**2))  # so that q·s keeps its finite limit at the very edge
             bound = friction * problem.max_pressure * root / a
             slope = slope * a / root
         stuck = problem.creepage / self._flexibility(problem) * nodes.from_leading
@@ -203,7 +203,7 @@ class Fastsim(wl.LineContactModel):
         return problem.max_pressure
 
     def _bound_slope(self, problem: wl.Problem) -> Array:
-        """Return the slope of the bound's shape in x/a, as slip: L μp2(0)/a, for the parabola twice that."""
+        """Return the slope of the bound's shape in x/a as a slip: L μp2(0)/a, and twice that for the parabola."""
         slope = self._flexibility(problem) * problem.friction_coefficient * self._bound_centre(problem)
         return (2.0 if self.bound == "parabolic" else 1.0) * slope / problem.half_width
 

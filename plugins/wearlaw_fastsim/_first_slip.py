@@ -1,6 +1,6 @@
-"""Where a strip of FASTSIM on an ellipse first slips.
+"""The point where a strip of FASTSIM on an ellipse first slips.
 
-A strip at y has the half length a_y = a √(1 - y²/b²) and the greatest bound g_y. Lengths are given over a_y, tractions
+A strip at y has the half length a_y = a √(1 - y²/b²) and the greatest bound g_y. Lengths are over a_y, and tractions
 over g_y: U = 1 + X from the leading edge, V = 1 - X from the trailing edge. From the leading edge the traction grows
 as U (P, R + S V), with dq/dX = (P, R - 2 S X); it slips where it first meets the bound U V (parabola) or √(U V)
 (ellipse).
@@ -16,7 +16,7 @@ from wearlaw import Array
 
 
 class Growth(NamedTuple):
-    """How the traction of strips grows in stick, over g_y and per a_y; arrays of one shape."""
+    """Growth of the traction of strips in stick, over g_y and per a_y, as arrays of one shape."""
 
     along: Array
     """P = (ξ/L1 - φy/L3) a_y/g_y."""
@@ -26,19 +26,19 @@ class Growth(NamedTuple):
     """S = φ/(2 L3) a_y²/g_y."""
 
     def lateral_rate(self, x: Array) -> Array:
-        """Return the lateral part of dq/dX, whose longitudinal part is P."""
+        """Return the lateral part of dq/dX; the longitudinal part is P."""
         return self.across - 2.0 * self.turning * x
 
 
 def first_slip(growth: Growth, elliptic: bool) -> Array:
-    """Return tan² β/2 = V/U where a strip first slips: infinite at its leading edge, 0 where it never does."""
+    """Return tan² β/2 = V/U where a strip first slips: infinite at its leading edge, 0 if it never slips."""
     return _elliptic(growth) if elliptic else _parabolic(growth)
 
 
 def _parabolic(growth: Growth) -> Array:
-    """Return V/U at the root of V² = P² + (R + S V)² in [0, 2], of which there is one, or infinity without one.
+    """Return V/U at the root of V² = P² + (R + S V)² in [0, 2], or infinity if there is none; there is at most one.
 
-    With D² = P² + R² - S²P² it is (RS + D)/(1 - S²) = (P² + R²)/(D - RS): the form that does not cancel.
+    With D² = P² + R² - S²P² the root is (RS + D)/(1 - S²) = (P² + R²)/(D - RS); use the form that does not cancel.
     """
     p, r, s = growth
     square, cross = p * p + r * r, r * s
@@ -56,7 +56,7 @@ def _elliptic(growth: Growth) -> Array:
     """Return V/U at the largest root V of U (P² + (R + S V)²) = V below 2.
 
     Z = 2/U = 1 + V/U is the largest root of Z³ - 3 m Z² + 2 n Z - l, with 3 m = 1 + P² + T², n = T c, l = c²,
-    T = R + c, c = 2 S. With Z = m (1 + z) it is z³ - 3 p z - 2 q, which has three real roots or one.
+    T = R + c, c = 2 S. With Z = m (1 + z) the cubic is z³ - 3 p z - 2 q, which has three real roots or one.
     """
     c = 2.0 * growth.turning
     t = growth.across + c
@@ -76,7 +76,7 @@ def _elliptic(growth: Growth) -> Array:
 def _without_rounding(growth: Growth, w: Array) -> Array:
     """Return w = V/U after a step of Newton's method for w = P² + (R + 2 S w/(1+w))².
 
-    It removes the rounding in w = Z - 1 where little creepage makes that small.
+    The step removes the rounding in w = Z - 1, which is small at small creepage.
     """
     lateral = growth.across + 2.0 * growth.turning * (w / (1.0 + w))
     slope = 1.0 - 4.0 * growth.turning * lateral / (1.0 + w) ** 2

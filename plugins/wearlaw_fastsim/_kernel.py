@@ -2,10 +2,10 @@
 
 With d = ξ/g, where g = L μp2(0)/a × 2 (parabola) or × 1 (ellipse) is the slope of the bound times L, and v = (a - x)/a:
 
-parabola: q s = μp2(0) g P(v), P(v) = v (2-v) (1+d-v), over v < 2 min(d, 1). P rises from zero to one maximum, and from
-there falls towards its next zero z = min(2, 1+d). With v counted from 0 or from z, P is v (z-v) (B + g v).
+parabola: q s = μp2(0) g P(v), P(v) = v (2-v) (1+d-v), over v < 2 min(d, 1). P rises from zero to one maximum and then
+falls towards its next zero z = min(2, 1+d). With v counted from 0 or from z, P is v (z-v) (B + g v).
 ellipse: q s = μp2(0) g (d sin ψ + cos ψ) over ψ < 2 atan d, where x = a cos ψ: symmetric about its maximum √(1+d²)
-at ψ = atan d, and not below 1 anywhere in the slip zone.
+at ψ = atan d, and at least 1 everywhere in the slip zone.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from wearlaw import Array
 Number = TypeVar("Number", float, Array)
 
 CLOSE = 2e-3
-"""Step of Halley's method after which a root is good enough; `wearlaw_exact._kernel.CLOSE` says why."""
+"""Step of Halley's method after which a root is good enough; see `wearlaw_exact._kernel.CLOSE` for the reason."""
 
 STEPS = 60
-"""Steps at most; two to four are needed, next to d = 1 more."""
+"""Most steps; two to four are enough, except near d = 1."""
 
 
 def _change(base: Number, growth: float, zero: Number, level: Number, v: Number) -> Number:
@@ -33,7 +33,7 @@ def _change(base: Number, growth: float, zero: Number, level: Number, v: Number)
     value = arch * line - level
     first = slope * line + growth * arch
     half_second = growth * slope - line
-    return value * first / (first * first - value * half_second + 1e-300)  # at the maximum itself all of it is zero
+    return value * first / (first * first - value * half_second + 1e-300)  # all terms are zero at the maximum itself
 
 
 def _root(base: Array, growth: float, zero: Array, level: Array, top: Array, share: Array) -> Array:
@@ -72,7 +72,7 @@ def _parabolic_arrays(
 
 @wl.kernel(_parabolic_arrays)
 def parabolic_excess(creepage: float, slope: float, centre: float, half_width: float, threshold: float) -> float:
-    """Return ∫ max(q s - threshold, 0) dx [N/m] for the parabola, of g, μp2(0) and other values in SI."""
+    """Return ∫ max(q s - threshold, 0) dx [N/m] for the parabola from g, μp2(0) and other values in SI."""
     reduced, level = creepage / slope, threshold / (slope * centre)
     end, more = 2.0 * min(reduced, 1.0), 1.0 + reduced
     top = 2.0 * more / (2.0 + more + math.sqrt(reduced * reduced + 3.0))
@@ -84,7 +84,7 @@ def parabolic_excess(creepage: float, slope: float, centre: float, half_width: f
     share = left / (1.0 + math.sqrt(max(1.0 - left, 0.0)))
     v, summit = top * share, zero - top
     u = summit * share
-    for _ in range(STEPS):  # both roots at once, which processors overlap
+    for _ in range(STEPS):  # both roots at once: processors overlap them
         next_v = v - _change(other, -1.0, zero, level, v)
         next_u = u - _change(other - zero, 1.0, zero, level, u)
         next_v = min(max(next_v, 0.25 * v), 0.5 * (v + top))
@@ -114,7 +114,7 @@ def _elliptic_arrays(
 
 @wl.kernel(_elliptic_arrays)
 def elliptic_excess(creepage: float, slope: float, centre: float, half_width: float, threshold: float) -> float:
-    """Return ∫ max(q s - threshold, 0) dx [N/m] for the ellipse, of g, μp2(0) and other values in SI."""
+    """Return ∫ max(q s - threshold, 0) dx [N/m] for the ellipse from g, μp2(0) and other values in SI."""
     reduced, level = creepage / slope, threshold / (slope * centre)
     scale = creepage * centre * half_width
     square = 1.0 + reduced * reduced

@@ -1,17 +1,17 @@
 """FASTSIM on an ellipse as published: the march of J. J. Kalker, Vehicle System Dynamics 11 (1982) 1-13.
 
-The patch is cut into strips of equal width along the rolling direction, each at the y of its middle, and every strip
-into the same number of cells from its own leading to its own trailing edge. From end to end of a cell the traction
-grows by the exact integral of the linear w = (ξ/L1 - φy/L3, η/L2 - φx/L3), and is clipped radially to the bound at the
-cell's end. What the clip takes off, over the cell's length, is the mean slip of the cell, (L1, L2) times it.
+The march cuts the patch into strips of equal width along the rolling direction, each at the y of its middle. It divides
+every strip into the same number of cells from its own leading to its own trailing edge. From end to end of a cell the
+traction grows by the exact integral of the linear w = (ξ/L1 - φy/L3, η/L2 - φx/L3). At the end of the cell the traction
+is clipped radially to the bound. The clipped part over the cell's length, times (L1, L2), is the mean slip of the cell.
 
-A cell shows means: the slip, and of traction and bound the mean of both ends. So |q| ≤ bound, since the bound is
+A cell holds means: the mean slip, and the means of traction and bound at both ends. So |q| ≤ bound, since the bound is
 concave; forces are sums by the trapezoidal rule; and without spin ∑ q·s dA = ξFx + ηFy holds to rounding. In the number
 of cells of a strip the error of forces is of order 2 without spin, or 3/2 with the elliptic bound, which begins and
-ends like a square root; and of order 1 with spin, where the direction of the traction turns. Where w is next to zero
-spin may turn it by more than a right angle within a cell, whose means then gain energy (`drop_gains`).
+ends like a square root. With spin it is of order 1, as the direction of the traction turns. Where w is close to zero,
+spin may turn it by more than a right angle within a cell, and the means of that cell then gain energy (`drop_gains`).
 
-All arrays march at half the traction, whose sum from both ends of a cell is the mean.
+All arrays hold half the traction, so that the sum from both ends of a cell is the mean.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from wearlaw import Array
 from wearlaw_fastsim._march_loops import WIDTH, along, compiled_march, strip
 
 BLOCK = 12800
-"""Strips of a block in NumPy: its arrays stay in the cache, and are long enough for the calls not to count."""
+"""Strips of a block in NumPy: its arrays fit in the cache, and are long enough for the calls to cost little."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,9 +45,9 @@ class Ellipses:
     longitudinal_flexibility, lateral_flexibility, spin_flexibility : ndarray
         L1, L2 and L3 [m³/N].
     bound_centre : ndarray
-        Bound of the traction in the centre of the patch, μ p2(0) [Pa].
+        Bound of the traction at the centre of the patch, μ p2(0) [Pa].
     elliptic : bool
-        Whether the bound is a half-ellipsoid; else it is a paraboloid.
+        Whether the bound is a half-ellipsoid; otherwise it is a paraboloid.
     """
 
     a: Array
@@ -78,7 +78,7 @@ class Ellipses:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cells:
-    """What a march finds, as SI arrays of shape (points, cells of a strip, strips).
+    """The result of a march, as SI arrays of shape (points, cells of a strip, strips).
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class Cells:
 
     @classmethod
     def empty(cls, points: int, cells: int, strips: int, *, compiled: bool) -> Self:
-        """Return cells to march into, again and again, in the order in memory that a march fills fastest."""
+        """Return cells for marches to fill, in the memory order that a march fills fastest."""
         names = [field.name for field in dataclasses.fields(cls)]
         if compiled:
             return cls(**{name: np.empty((points, cells, strips)) for name in names})
@@ -124,9 +124,9 @@ def strip_centres(strips: int) -> Array:
 
 
 def march(ellipses: Ellipses, cells: Cells, *, compiled: bool) -> None:
-    """March over every strip of ellipses and fill the cells, in NumPy or compiled by numba, the same to rounding.
+    """March over every strip of ellipses and fill the cells, in NumPy or compiled by numba; both agree to rounding.
 
-    More than `WIDTH` strips always take NumPy.
+    Patches of more than `WIDTH` strips always use NumPy.
     """
     if compiled and cells.x.shape[2] <= WIDTH:
         compiled_march(np.stack(ellipses.arrays, axis=1), ellipses.elliptic, *cells.arrays)
@@ -136,12 +136,12 @@ def march(ellipses: Ellipses, cells: Cells, *, compiled: bool) -> None:
     buffers = np.empty((8, min(rows, points), strips))
     for first in range(0, points, rows):
         part = slice(first, min(first + rows, points))
-        with np.errstate(divide="ignore", invalid="ignore"):  # where nothing has grown
+        with np.errstate(divide="ignore", invalid="ignore"):  # where the traction has not grown
             _march_block(ellipses.part(part), cells.part(part), buffers[:, : part.stop - first])
 
 
 def drop_gains(cells: Cells) -> None:
-    """Set the slip to zero in cells with q·s < 0, as a wear law cannot take them; some in a million with spin."""
+    """Set the slip to zero in cells with q·s < 0, which wear laws cannot take: some in a million with spin."""
     gains = cells.traction_x * cells.slip_x + cells.traction_y * cells.slip_y < 0.0
     cells.slip_x[gains] = cells.slip_y[gains] = 0.0
 

@@ -1,4 +1,4 @@
-"""The march of `_march` in loops that numba compiles, and what one strip and one cell are, for NumPy too."""
+"""The march of `_march` in loops that numba compiles, and formulas of one strip and one cell that NumPy shares."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import wearlaw as wl
 from wearlaw import Array
 
 WIDTH = 1000
-"""Most strips of a compiled march; not a power of two, so that their rows do not share cache lines' places."""
+"""Most strips of a compiled march; not a power of two, so that the rows do not compete for the same cache lines."""
 
 Y, HALF_LENGTH, GROW_X, GROW_Y, TURN, BOUND, TO_SLIP_X, TO_SLIP_Y, SLIP_Y = (WIDTH * row for row in range(1, 10))
-"""Where the rows begin, as constants, from which a compiler sees that they do not overlap."""
+"""Starts of the rows, as constants that let a compiler see that the rows do not overlap."""
 
 SIGNATURE = f"void(float64[:, ::1], boolean, {', '.join(['float64[:, :, ::1]'] * 6)})"
 
@@ -22,10 +22,10 @@ Number = TypeVar("Number", float, Array)
 
 
 def strip(ellipse: Any, elliptic: bool, v: Number, s: Number, count: int) -> tuple[Number, ...]:
-    """Return what is the same for all cells of the strip at y = b v, s = √(1-v²), of the quantities of an ellipse.
+    """Return values shared by all cells of the strip at y = b v, s = √(1-v²), from the quantities of an ellipse.
 
-    Half the strip's length, half the growth of the traction in a cell along x, along y at x = 0 and by x over the half
-    length, half the bound at x = 0, and slip over half the traction clipped off.
+    They are half the strip's length; half the growth of the traction in a cell along x, along y at x = 0, and along y
+    by x over the half length; half the bound at x = 0; and slip over half the clipped traction, along x and y.
     """
     a, b, creepage_x, creepage_y = ellipse[0], ellipse[1], ellipse[2], ellipse[3]
     spin, flexibility_x, flexibility_y, flexibility_spin = ellipse[4], ellipse[5], ellipse[6], ellipse[7]
@@ -44,7 +44,7 @@ def strip(ellipse: Any, elliptic: bool, v: Number, s: Number, count: int) -> tup
 
 
 def along(k: int, count: int, elliptic: bool) -> tuple[float, float]:
-    """Return x over the half length in the middle of a cell, and the bound at its end over that at x = 0."""
+    """Return x over the half length in the middle of a cell, and the bound at its end over the bound at x = 0."""
     end = 4.0 * (k + 1) * (count - k - 1) / (count * count)
     return (2 * k + 1 - count) / count, math.sqrt(end) if elliptic else end
 
@@ -60,7 +60,7 @@ def compiled_march(
     slip_y: Array,
     bound: Array,
 ) -> None:
-    """Fill the cells of ellipses, of shape (points, quantities), one after the other; `WIDTH` strips at most."""
+    """Fill the cells of ellipses, (points, quantities), one after the other; at most `WIDTH` strips."""
     points, count, strips = x.shape
     rows = np.empty(10 * WIDTH)
     for p in range(points):
@@ -90,7 +90,7 @@ def _march_rows(
     slip_y: Array,
     bound: Array,
 ) -> None:
-    """March along the strips of a patch; in two loops, as compilers give up on loops that write too many arrays."""
+    """March along the strips of a patch, in two loops: compilers give up on loops that write too many arrays."""
     before, count = 0.0, x.shape[0]
     for k in range(count):
         middle, end = along(k, count, elliptic)

@@ -1,4 +1,4 @@
-"""FASTSIM on an ellipse: from the contact problem to the strips and back to a record of the framework."""
+"""FASTSIM on an ellipse: from the contact problem to the strips, and from their fields to a `Contact`."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from wearlaw_fastsim import _march, _strips
 from wearlaw_fastsim._march import Cells, Ellipses, drop_gains, march, strip_centres
 
 STICK_NODES_PER_STRIP, SLIP_NODES_PER_STRIP = 0.4, 1.0
-"""Nodes along a strip over the number of strips: errors along strips and across them are then of one size."""
+"""Nodes along a strip over the number of strips: these make errors along and across strips about equal."""
 
 CELLS = 16
-"""Cells that take about as long as an operating point does that `accelerated` counts."""
+"""Cells that take about as long as one operating point in the count of `accelerated`."""
 
 
 def ellipses(problem: wl.Problem, elliptic: bool, interpolation: wl.kalker.Interpolation = "scaled") -> Ellipses:
-    """Return what the simplified theory needs of a problem with one batch axis; with Kalker's three flexibilities.
+    """Return the patches of a problem with one batch axis, with Kalker's three flexibilities.
 
     L1 = 8a/(3 C11 G), L2 = 8a/(3 C22 G), L3 = π a √(a/b)/(4 C23 G) (Kalker 1982).
     """
@@ -40,7 +40,7 @@ def ellipses(problem: wl.Problem, elliptic: bool, interpolation: wl.kalker.Inter
 
 
 def adaptive(problem: wl.Problem, patches: Ellipses, count: int) -> wl.Contact:
-    """Return the contact on `count` strips with nodes where they are needed."""
+    """Return the contact on `count` strips with adaptive nodes."""
     return _on_strips(problem, patches, count, _strips.layout_on(patches, *_strips.even_strips(count)))
 
 
@@ -61,14 +61,14 @@ def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, layout: _stri
     along = max(round(STICK_NODES_PER_STRIP * count), 4), max(round(SLIP_NODES_PER_STRIP * count), 8)
     found = _strips.strips(patches, layout, *along)
     rolls_freely = (flat.longitudinal_creepage == 0.0) & (flat.lateral_creepage == 0.0) & (flat.spin == 0.0)
-    if rolls_freely.any():  # nodes of no length at the trailing edge slip
+    if rolls_freely.any():  # otherwise nodes of zero length at the trailing edge slip
         for field in (found.traction_x, found.traction_y, found.slip_x, found.slip_y):
             field[rolls_freely] = 0.0
     contact = wl.Contact.from_strips(
         flat,
         _strips.forces(layout, found),
         x=found.x,
-        y=layout.y.T,  # in memory as the nodes are, strip by strip
+        y=layout.y.T,  # in the memory order of the nodes, strip by strip
         length=found.length,
         strip_width=layout.width.T,
         traction=(found.traction_x, found.traction_y),

@@ -1,8 +1,8 @@
-"""FASTSIM on an ellipse, strip by strip, with the nodes where they are needed: few where it sticks.
+"""FASTSIM on an ellipse, strip by strip, with few nodes in stick and more in slip.
 
 A strip sticks from its leading edge to a point that a polynomial gives, and slips from there to its trailing edge.
-With spin a few strips stick once more, where w·q̂ falls below the slope of the bound, w = dq/dx in stick; theirs are
-the same nodes, shared out to their zones.
+With spin a few strips stick once more, where w·q̂ falls below the slope of the bound, with w = dq/dx in stick. These
+strips have as many nodes as the others, divided among their zones.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ class StripFields:
     Attributes
     ----------
     x : ndarray
-        From the leading edge, x < 0, to the trailing edge [m].
+        Position from the leading edge, x < 0, to the trailing edge [m].
     length : ndarray
-        Length along x that a node stands for, its weight in integrals [m].
+        Length along x that a node represents, its weight in integrals [m].
     traction_x, traction_y : ndarray
         Traction [Pa].
     slip_x, slip_y : ndarray
@@ -47,9 +47,9 @@ class StripFields:
 
 
 def even_strips(count: int) -> tuple[Array, Array]:
-    """Return y/b of strips even in the angle of y = b cos β, and the widths over b that they stand for.
+    """Return y/b of strips even in the angle of y = b cos β, and the widths over b that they represent.
 
-    It is Gauss's quadrature with Chebyshev polynomials of the second kind: exact for the area, and of a high order for
+    This is Gauss's quadrature with Chebyshev polynomials of the second kind: exact for the area, and of high order for
     forces, since they are smooth and periodic in the angle. Source: M. Abramowitz and I. A. Stegun, Handbook of
     Mathematical Functions (1964), 25.4.40.
     """
@@ -77,7 +77,7 @@ class Layout(NamedTuple):
 
 
 def layout_on(ellipses: Ellipses, y_share: Array, width_share: Array) -> Layout:
-    """Return strips of ellipses at y = b y_share, |y_share| < 1, that stand for widths of b width_share."""
+    """Return strips of ellipses at y = b y_share, |y_share| < 1, that represent widths of b width_share."""
     root = np.sqrt((1.0 - y_share) * (1.0 + y_share))
     greatest = np.multiply.outer(root if ellipses.elliptic else root * root, ellipses.bound_centre)
     y, width, half_length = (
@@ -88,10 +88,10 @@ def layout_on(ellipses: Ellipses, y_share: Array, width_share: Array) -> Layout:
 
 
 def given_layout(problem: wl.Problem, elliptic: bool) -> Layout:
-    """Return the strips of a problem whose pressure is given, of one batch axis.
+    """Return the strips of a problem with a given pressure and one batch axis.
 
-    The elliptic bound is μp. The parabolic one is proportional to p², and bears the same load; on an ellipse under
-    Hertz's pressure that is the paraboloid.
+    The elliptic bound is μp. The parabolic bound is proportional to p² and carries the same load; on an ellipse under
+    Hertz's pressure it is the paraboloid.
     """
     given = problem.strips
     assert given is not None
@@ -107,8 +107,8 @@ def given_layout(problem: wl.Problem, elliptic: bool) -> Layout:
 def strips(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_nodes: int) -> StripFields:
     """Return the fields of strips.
 
-    Each has `stick_nodes` before it first slips, and `slip_nodes` from there on.
-    The last axis counts the strips, but the first in memory is that of the nodes.
+    Each strip has `stick_nodes` nodes before it first slips and `slip_nodes` from there on. The last axis is the
+    axis of the strips, but in memory the axis of the nodes comes first.
     """
     rows = _rows(ellipses, layout)
     compiled = wl.accelerated(rows[0].size * (stick_nodes + slip_nodes) // NODES)
@@ -120,7 +120,7 @@ def strips(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_nodes: int
 def forces(layout: Layout, fields: StripFields) -> wl.CreepForces:
     """Return the forces and the moment that strips transmit."""
     names = ("length", "x", "traction_x", "traction_y")
-    length, x, q_x, q_y = (np.moveaxis(getattr(fields, name), 0, -1) for name in names)  # as they are in memory
+    length, x, q_x, q_y = (np.moveaxis(getattr(fields, name), 0, -1) for name in names)  # in memory order
     along, across = np.einsum("kjp,kjp->jp", length, q_x), np.einsum("kjp,kjp->jp", length, q_y)
     turning = np.einsum("kjp,kjp,kjp->jp", length, x, q_y) + layout.y * along
     longitudinal, lateral, moment = ((layout.width * part).sum(axis=0) for part in (along, across, turning))

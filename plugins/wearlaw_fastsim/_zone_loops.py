@@ -1,7 +1,7 @@
-"""The nodes of the zones of `_zones`: what one node is, for NumPy too, and loops over all of them that numba compiles.
+"""The nodes of the zones of `_zones`: formulas of one node that NumPy shares, and loops over nodes that numba compiles.
 
-Strips are rows of one array: along, across and turning, how the traction grows, as in `Growth`; the half length [m] and
-the greatest bound [Pa]; and the longitudinal and lateral slip over the excess. Nodes are the fields of `Zone`.
+Strips are rows of one array: along, across and turning, the growth of the traction as in `Growth`; the half length [m]
+and the greatest bound [Pa]; and the longitudinal and lateral slip over the excess. Nodes are the fields of `Zone`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import wearlaw as wl
 from wearlaw import Array
 
 BELOW = 1.0 - 8.0 * float(np.finfo(np.float64).eps)
-"""Factor that keeps the magnitude of a traction below its bound, whatever is rounded."""
+"""Factor that keeps the magnitude of a traction below its bound despite rounding."""
 
 TINY = 1e-300
 """Keeps divisors from zero."""
@@ -28,7 +28,7 @@ def root(value: Number) -> Number:
 
 
 def place(elliptic: bool, tangent: Number) -> tuple[Number, Number, Number]:
-    """Return the distance from the leading edge, the sine of the angle and the bound, where half has this tangent."""
+    """Return the distance from the leading edge, the sine of the angle and the bound, from tan of half the angle."""
     u = 2.0 / (1.0 + tangent * tangent)
     sine = tangent * u
     return u, sine, sine if elliptic else sine * sine
@@ -37,7 +37,7 @@ def place(elliptic: bool, tangent: Number) -> tuple[Number, Number, Number]:
 def stuck(
     along: Number, across: Number, turning: Number, x: Number, y: Number, before: Number, u: Number
 ) -> tuple[Number, Number]:
-    """Return the traction at a distance u from the leading edge, of strips that stick since it was (x, y) before."""
+    """Return the traction at a distance u from the leading edge, in strips that stick since it was (x, y) before."""
     since = u - before
     return x + since * along, y + since * (across - turning * (u + before - 2.0))
 
@@ -62,9 +62,9 @@ def lagging(
 ) -> tuple[Number, Number]:
     """Return -κ of a step from node to node, and w across at the place that the traction lags behind at its end.
 
-    The lag, over the step, is the mean of the way to the end, weighted with exp(-κ) of that way and 1/bound. For a
-    bound that is linear in κ over the step it is r + (1 - 2 r) (skew/κ), where r = 1/κ - 1/(exp κ - 1) is
-    (6+κ)/(12+4κ+κ²) within 0.011, and skew is the rise of the bound over the sum at both ends.
+    The lag, over the step, is the mean distance to the end, weighted with exp(-κ) of that distance and 1/bound. For a
+    bound that is linear in κ over the step the lag is r + (1 - 2 r) (skew/κ), where r = 1/κ - 1/(exp κ - 1) is
+    (6+κ)/(12+4κ+κ²) within 0.011, and skew is the rise of the bound over the sum of the bounds at both ends.
     """
     middle = across - turning * (u + to_u - 2.0)
     kappa = left * root(along * along + middle * middle)
@@ -74,7 +74,7 @@ def lagging(
 
 
 def turn(along: Number, across: Number, decay: Number) -> tuple[Number, Number, Number]:
-    """Return what a step takes of a vector at half the angle: along x of x, across of y, and of the other one."""
+    """Return the factors of a step on a vector at half the angle: of x along x, of y across, and of the other one."""
     over = (0.5 - 0.5 * decay) / root(along * along + across * across + TINY)
     stays, turns = 0.5 + 0.5 * decay, over * along
     return stays + turns, stays - turns, over * across
@@ -90,7 +90,7 @@ def slipping(
     half_x: Number,
     half_y: Number,
 ) -> tuple[Number, Number, Number]:
-    """Return the direction of the traction, of a vector at half its angle, and the excess."""
+    """Return the direction of the traction, from a vector at half its angle, and the excess."""
     over, x = BELOW / (half_x * half_x + half_y * half_y + TINY), u - 1.0
     q_x, q_y = (half_x - half_y) * (half_x + half_y) * over, 2.0 * half_x * half_y * over
     growing = along * q_x + (across - 2.0 * turning * x) * q_y
@@ -104,9 +104,9 @@ ROWS, NODES = "float64[:, ::1]", "float64[:, :, ::1]"
 def stick_loop(
     elliptic: bool, strips: Array, start: Array, share: Array, weight: Array, first: int, nodes: Array
 ) -> None:
-    """Fill the nodes from a first one on, of zones that stick.
+    """Fill the nodes of zones that stick, from the node `first` on.
 
-    They `start` at a distance from the leading edge, over a length, with a traction.
+    `start` holds the distance of the zones from the leading edge, their length, and the traction where they start.
     """
     along, across, turning, half_length, greatest = strips[0], strips[1], strips[2], strips[3], strips[4]
     before, span, from_x, from_y = start[0], start[1], start[2], start[3]
@@ -130,7 +130,7 @@ def stick_loop(
 
 @wl.compiled_loop(f"void(boolean, {', '.join([ROWS] * 5)})")
 def lag_loop(elliptic: bool, strips: Array, tangent: Array, left: Array, kappa: Array, lagged: Array) -> None:
-    """Fill -κ and w across of the steps from node to node."""
+    """Fill in -κ and w across for the steps from node to node."""
     along, across, turning = strips[0], strips[1], strips[2]
     for k in range(len(kappa)):
         here, there, left_here, left_there = tangent[k], tangent[k + 1], left[k], left[k + 1]
@@ -155,9 +155,9 @@ def slip_loop(
     first: int,
     nodes: Array,
 ) -> None:
-    """Fill the nodes from a first one on, of zones that slip; in three loops, as compilers give up on larger ones.
+    """Fill the nodes of zones that slip, from the node `first` on, in three loops: compilers give up on larger ones.
 
-    They `start` with a vector at half the angle of the traction, which goes along, over an angle.
+    `start` holds a vector at half the angle of the traction, which the loops advance, and the angle of the zones.
     """
     along, across, turning, half_length, greatest = strips[0], strips[1], strips[2], strips[3], strips[4]
     to_slip_x, to_slip_y, half_x, half_y, span = strips[5], strips[6], start[0], start[1], start[2]

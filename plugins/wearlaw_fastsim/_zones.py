@@ -1,7 +1,7 @@
-"""The zones of a strip of FASTSIM on an ellipse: where it sticks, slips and perhaps sticks and slips again.
+"""The zones of a strip of FASTSIM on an ellipse: it sticks, slips, and may stick and slip again.
 
 Lengths are over the half length a_y of a strip and tractions over its greatest bound, as in `_first_slip`. The angle β
-is counted from the trailing edge, x = cos β.
+starts at the trailing edge, x = cos β.
 
 Where a strip slips, |q| is the bound g, and the direction q̂ obeys dq̂/dx = (1 - q̂ q̂ᵀ) w/g, where w = dq/dx in stick: it
 turns towards w at the rate |w|/g per length. While w keeps its direction, half the angle θ of q̂ is a linear problem:
@@ -9,7 +9,7 @@ as a complex number, h ~ exp(iθ/2) becomes
 
     (1 + exp(-κ))/2 h + (1 - exp(-κ))/2 (w/|w|) h*,  κ = ∫ |w|/g dx,  q̂ = h²/|h|².
 
-With spin w turns; a step of the march takes it at the place that q̂ lags behind it, so that the error is of second order
+With spin w turns. A step of the march takes w at the place that q̂ lags behind it, so that the error is of second order
 in the step however large κ is. Without spin the march is exact.
 """
 
@@ -25,10 +25,10 @@ from wearlaw_fastsim import _zone_loops as loops
 from wearlaw_fastsim._first_slip import Growth, first_slip
 
 LEAST_ANGLE = 1e-90
-"""Slip zone of a strip without creepage [rad]: the powers of it that are needed are not zero."""
+"""Slip zone of a strip without creepage [rad]; the powers of it in the formulas do not underflow to zero."""
 
 NODES = 4
-"""Nodes that take about as long as an operating point does that `accelerated` counts."""
+"""Nodes that take about as long as one operating point in the count of `accelerated`."""
 
 
 class Zone(NamedTuple):
@@ -42,13 +42,13 @@ class Zone(NamedTuple):
     slip_x: Array
     slip_y: Array
     excess: Array
-    """w·q̂ - dg/dx, what the bound takes off the growth of the traction: zero in stick."""
+    """w·q̂ - dg/dx, the growth of the traction that the bound takes off; zero in stick."""
 
 
 class Point(NamedTuple):
     """A point of each strip: its angle, its distance from the leading edge, and the traction there.
 
-    Where a strip slips from it, any vector along the traction does.
+    If the strip slips from this point, any vector along the traction will do.
     """
 
     angle: Array
@@ -63,9 +63,9 @@ class Strips(NamedTuple):
     Attributes
     ----------
     rows : ndarray, (7, ...)
-        What they are, as in `_zone_loops`.
+        The strips, as in `_zone_loops`.
     elliptic : bool
-        Whether the bound is an ellipse; else it is a parabola.
+        Whether the bound is an ellipse; otherwise it is a parabola.
     compiled : bool
         Whether numba compiles the loops over the nodes.
     """
@@ -76,12 +76,12 @@ class Strips(NamedTuple):
 
     @property
     def growth(self) -> Growth:
-        """How the traction grows in stick."""
+        """Growth of the traction in stick."""
         return Growth(*self.rows[:3])
 
 
 def stick_and_slip(strips: Strips, stick_nodes: int, slip_nodes: int) -> Zone:
-    """Return the nodes of strips: those before they first slip, and the rest, where a few strips stick once more.
+    """Return the nodes of strips: those before they first slip, then the rest, in which a few strips stick once more.
 
     The nodes are Gauss's: in x where a strip sticks, since q is a polynomial there, and in the angle where it slips,
     in which both bounds and q·s are smooth.
@@ -102,7 +102,7 @@ def stick_and_slip(strips: Strips, stick_nodes: int, slip_nodes: int) -> Zone:
 
 
 def _empty(count: int, shape: tuple[int, ...]) -> Array:
-    """Return the fields of so many nodes of strips, to fill."""
+    """Return empty fields for a number of nodes of strips."""
     return np.empty((len(Zone._fields), count, *shape))
 
 
@@ -123,7 +123,7 @@ def _bound(elliptic: bool, sine: Array) -> Array:
 
 
 def _stick(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) -> None:
-    """Fill some of the nodes: strips that stick from a point on, up to the end's distance from the leading edge."""
+    """Fill some of the nodes of strips that stick from a point up to a distance from the leading edge."""
     zone = Zone(*nodes[:, part])
     share, weight = _gauss(len(zone.x))
     span = end - start.u
@@ -144,14 +144,14 @@ def _stick(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) 
 
 
 def _slip(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) -> None:
-    """Fill some of the nodes: strips that slip from a point on, up to the angle of the end."""
+    """Fill some of the nodes of strips that slip from a point up to an angle."""
     zone = Zone(*nodes[:, part])
     share, weight = _gauss(len(zone.x))
     span = start.angle - end
     angle = np.multiply.outer(np.append(1.0, 1.0 - share), span)
     angle += end
     tangent = np.tan(0.5 * angle)
-    left = angle if strips.elliptic else np.log(tangent)  # ∫ dX over the bound, from there on, and a constant
+    left = angle if strips.elliptic else np.log(tangent)  # ∫ dX over the bound from this point on, up to a constant
     half = _half_angle(start)
     if strips.compiled:
         rows, tangent = _flat(strips.rows), _flat(tangent)
@@ -185,12 +185,12 @@ def _slip(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) -
 
 
 def _flat(array: Array, axes: int = 1) -> Array:
-    """Return an array with its first axes and one for all strips."""
+    """Return an array that keeps its first axes and has one axis for all strips."""
     return array.reshape(*array.shape[:axes], -1)
 
 
 def _half_angle(start: Point) -> Array:
-    """Return a vector at half the angle of the traction, or along x where there is none."""
+    """Return a vector at half the angle of the traction, or along x if there is no traction."""
     long = np.sqrt(start.x * start.x + start.y * start.y) + np.abs(start.x)
     short = start.y / (long + loops.TINY)
     ahead = start.x >= 0.0
@@ -230,7 +230,7 @@ def _where_it_sticks(zone: Zone, elliptic: bool) -> Point:
 
 
 def _where_it_slips(strips: Strips, start: Point, count: int) -> Point:
-    """Return where strips that stick from the start on meet their bound: on ever finer grids of `count` steps."""
+    """Return where strips that stick from the start on meet their bound, by ever finer grids of `count` steps."""
     near, far = start.angle, np.zeros_like(start.angle)
     strip = np.arange(near.size)
 

@@ -22,8 +22,8 @@ class Polach(wl.CreepForceModel):
         F = (2/π) μN [k_A ε/(1 + (k_A ε)²) + arctan(k_S ε)],  ε = π G ab C s_C/(4 μN),
         Fx = F ξ/s_C,  Fy = F η/s_C + F_S φ/s_C,
 
-    where s_C² = ξ² + η_C², and η_C is η + φa, the creepage at the leading edge, where that is the larger in
-    magnitude, or else η. The part of the spin is
+    where s_C² = ξ² + η_C², and η_C is the larger in magnitude of η and η + φa, the creepage at the leading edge. The
+    part of the spin is
 
         F_S = -(9/16) a μN K K_M,  K = 1 + 6.3 (1 - exp(-a/b)),
         K_M = ε_S (δ³/3 - δ²/2 + 1/6) - √((1 - δ²)³)/3,  δ = (ε_S² - 1)/(ε_S² + 1),
@@ -31,20 +31,20 @@ class Polach(wl.CreepForceModel):
 
     which is F_S = G ab √(ab) C23 |η_C|/(1 + ε_S²)².
 
-    The reduction factors k_S ≤ k_A ≤ 1 are for contacts that are less stiff than clean smooth ones. Polach's typical
-    values are k_A = 1 and k_S = 0.4 on dry rails, 0.3 and 0.1 on wet ones, together with friction that falls with the
-    creep speed, `wl.FallingFriction`. They do not act on the part of the spin. Below k_S = 0.13 k_A the force is not
-    monotone in the creepage.
+    The reduction factors k_S ≤ k_A ≤ 1 are for contacts less stiff than clean smooth ones. Polach's typical values are
+    k_A = 1 and k_S = 0.4 on dry rails, 0.3 and 0.1 on wet ones, together with friction that falls with the creep speed,
+    `wl.FallingFriction`. The factors do not act on the part of the spin. Below k_S = 0.13 k_A the force is not monotone
+    in the creepage.
 
-    Polach leaves the moment out, so that spin alone would dissipate nothing, and spin against a lateral creepage could
-    give a negative Tγ. Here Mz is that of the linear theory, reduced like the forces: -F_S η/s_C from the lateral
+    Polach leaves the moment out: spin alone would dissipate nothing, and spin against a lateral creepage could give a
+    negative Tγ. Here Mz is the moment of the linear theory, reduced like the forces: -F_S η/s_C from the lateral
     creepage, and G ab ab C33 φ times F/(G ab C s_C), with C = C22, from the spin. Tγ is then a sum of squares.
 
     Notes
     -----
     Prefer this at the limit of adhesion, on wet or dirty track, for which there are values of k_A and k_S. It can't
-    stand in for `fastsim` where the contact spins, because one term takes the spin, from the creepage at the leading
-    edge: it misses most on long patches where spin works against the lateral creepage. Pure creepages meet Kalker's
+    stand in for `fastsim` where the contact spins, because one term covers the spin, from the creepage at the leading
+    edge: it is furthest off on long patches where spin works against the lateral creepage. Pure creepages meet Kalker's
     linear theory where they are small; in combinations C stands in for C11 and C22, and ξ weakens the part of the spin.
     The theory of elliptic contact in the documentation has tables of its errors.
     """
@@ -111,7 +111,7 @@ class Polach(wl.CreepForceModel):
 
 
 def _ratio(value: Array, over: Array) -> Array:
-    """Return a quotient; any finite number does where nothing moves, since it is then multiplied by zero."""
+    """Return a quotient, or zero where nothing moves: any finite number would do, as it is multiplied by zero."""
     ratio: Array = np.divide(value, over, out=np.zeros_like(over), where=over > 0)
     return ratio
 

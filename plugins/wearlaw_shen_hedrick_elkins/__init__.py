@@ -17,7 +17,8 @@ class ShenHedrickElkins(wl.CreepForceModel):
 
         F/(μN) = u - u²/3 + u³/27 for u ≤ 3, and 1 above,
 
-    has the direction of (F'x, F'y): it is 1 - (1 - u/3)³, Johnson and Vermeulen's form with Kalker's coefficients.
+    in the direction of (F'x, F'y). The cubic is 1 - (1 - u/3)³: Johnson and Vermeulen's form, with Kalker's
+    coefficients.
 
     Mz is M'z times the same factor, F/(μN u), so that Tγ is a sum of squares, G ab (C11 ξ² + C22 η² + ab C33 φ²), times
     that factor.
@@ -25,9 +26,9 @@ class ShenHedrickElkins(wl.CreepForceModel):
     Notes
     -----
     Prefer this for vehicle dynamics on the tread: with little spin its forces are on average nearer to the half-space
-    theory than those of `polach`. It can't take much spin, because it counts it as if all of the patch stuck: under a
-    large spin alone the true Fy falls to zero, but this one rises to μN, and where spin works against a lateral
-    creepage the linear forces cancel where the true ones do not. Mz is a guess wherever the patch slips. The theory of
+    theory than those of `polach`. It can't take much spin, because it counts spin as if all of the patch stuck. Under a
+    large spin alone the true Fy falls to zero, but this one rises to μN. Where spin works against a lateral creepage,
+    the linear forces cancel, but the true ones do not. Mz is a guess wherever the patch slips. The theory of
     elliptic contact in the documentation has tables of its errors.
     """
 

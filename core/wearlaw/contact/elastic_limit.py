@@ -2,28 +2,28 @@
 
 The stresses are those of an elastic half-space under Hertz's pressure and this traction along the rolling direction:
 
-- Where T = μN, the whole patch slips, and q = μp.
-- In partial slip q = μ[p - (c/a) p'], with p' the pressure of a patch of the same shape and pressure p0, c/a times as
-  large, that touches the leading edge and sticks. On a line this is Carter's solution, with T/μN = 1 - (c/a)²; on an
-  ellipse it is that of Vermeulen and Johnson, with T/μN = 1 - (c/a)³.
+- If T = μN, the whole patch slips, and q = μp.
+- In partial slip q = μ[p - (c/a) p'], where p' is the pressure of a patch of the same shape and pressure p0, c/a times
+  as large, that touches the leading edge. That patch is the stick zone. On a line this is Carter's solution, with
+  T/μN = 1 - (c/a)²; on an ellipse it is the solution of Vermeulen and Johnson, with T/μN = 1 - (c/a)³.
 
-Traction from spin is left out, and a lateral force is counted as if it were longitudinal.
+The theory leaves out traction from spin, and counts a lateral force as if it were longitudinal.
 
-*First yield* is the pressure at which the most stressed point of a body reaches its yield criterion, in whichever
-direction the traction acts on it. The *shakedown limit* is the pressure at which τzx, the shear stress in the rolling
+*First yield* is the pressure at which the most stressed point of a body reaches its yield criterion, whichever way the
+traction acts on the body. The *shakedown limit* is the pressure at which τzx, the shear stress in the rolling
 direction, reaches the yield stress in shear. On a line no residual stress can oppose τzx, so beyond that limit the
 material flows forward with every passage; between first yield and shakedown it flows until residual stresses keep it
 elastic. In full slip on a line the limit is 4k without friction, and k/μ from μ = 0.37 on (Johnson's map). Melan's
 theorem proves it safe by Tresca's criterion in full slip; by von Mises's criterion, and in partial slip, the pressure
-that is proved safe is up to 10 % lower. On an ellipse it is such a bound where the surface decides, from T/N = 0.3 on;
-with less traction it is an estimate, and for a/b above 2 too high, since other stresses decide there.
+that is proved safe is up to 10 % lower. On an ellipse it is such a bound where the surface decides, from T/N = 0.3 on.
+With less traction it is an estimate, and too high for a/b above 2, where other stresses decide.
 
 Notes
 -----
-A semi-elliptic load is a sum over directions of loads that vary along one direction only, each of which makes plane
+A semi-elliptic load is a sum over directions of loads that vary along one direction only. Each of them makes plane
 strain and antiplane shear in the half-space (the inverse Radon transform of the load). With ζ = ξ/w + iz/w, w the half
-width of the ellipse across the direction ξ, such a load is the real part of F = [2 - ζ ln((ζ+1)/(ζ-1))]/2, over π and
-summed over the directions that divide the ellipse evenly. On a line there is one direction, and F = √(1-ζ²) + iζ, which
+width of the ellipse across the direction ξ, such a load is the real part of F = [2 - ζ ln((ζ+1)/(ζ-1))]/2, divided by π
+and summed over directions that divide the ellipse evenly. On a line there is one direction, and F = √(1-ζ²) + iζ, which
 is McEwen's solution. With P + iQ = F and z downwards, a pressure P and a traction P along ξ make
 
     σξ = -P - z ∂P/∂z,   σz = -P + z ∂P/∂z,   τξz = z ∂P/∂ξ,
@@ -57,31 +57,31 @@ Criterion: TypeAlias = Literal["von_mises", "tresca"]
 _Value = TypeVar("_Value", float, Array)
 
 FRICTIONS = 64
-"""Steps of μ/(1+μ) from 0 to 1, in which the stresses are a straight line and their peak is convex."""
+"""Steps of μ/(1+μ) from 0 to 1; stresses are linear in this variable, and their peak is convex."""
 
 SLIPS = 32
 """Steps of √(1 - c/a) from stick to full slip."""
 
 WIDTH = SLIPS + 2
-"""Entries in a row of a table, of which the last is there twice."""
+"""Entries in a row of a table; the last entry is stored twice."""
 
 TINY = 1e-12
-"""A friction coefficient that stands for none."""
+"""A friction coefficient that stands for zero."""
 
 PER_OCTAVE = 2.0
-"""Axis ratios to an octave for which stresses are computed; those between are interpolated."""
+"""Axis ratios per octave in the tables; ratios between them are interpolated."""
 
 OCTAVES = 5.0
-"""Octaves to either side of the circle; a more slender ellipse counts as one of 1/32 or 32."""
+"""Octaves to either side of the circle; a more slender ellipse counts as one with a/b of 1/32 or 32."""
 
 DIRECTIONS = 48
-"""Directions of loads into which an ellipse is divided, in a quarter of it."""
+"""Directions of loads in a quarter of an ellipse."""
 
 SURFACE = 1e-12
 """Depth over the smaller semi-axis that stands for the surface, where the formulas are singular at the edges."""
 
 BLOCK = 1 << 16
-"""Operating points that are looked at together."""
+"""Operating points in a block."""
 
 
 def first_yield(
@@ -100,25 +100,25 @@ def first_yield(
     shear_yield_stress : array_like of float
         Yield stress in shear, k [Pa]: Y/√3 of the yield stress Y in tension by von Mises's criterion, Y/2 by Tresca's.
     traction_coefficient : array_like of float
-        The traction that is transmitted, T/N [-].
+        The transmitted traction, T/N [-].
     friction_coefficient : array_like of float, optional
-        μ [-]; where it is above T/N, the patch slips in part. Without it the whole patch slips.
+        μ [-]; if it exceeds T/N, the patch slips in part. Without it the whole patch slips.
     poisson_ratio : float
         ν of the body [-].
     axis_ratio : array_like of float
         a/b of the patch [-], a in the rolling direction; 0 for a line.
     criterion : {"von_mises", "tresca"}
-        When the material yields.
+        The yield criterion.
 
     Raises
     ------
     InputError
-        If the criterion is not known.
+        If the criterion is unknown.
 
     Notes
     -----
-    Interpolated in tables: within 0.15 % where the whole patch of a line slips, else at most 3.5 % too low and 2 % too
-    high, for a/b from 1/20 to 20, T/N up to 1 and T/μN from 0.05 on.
+    Interpolated in tables: within 0.15 % if the whole patch of a line slips, otherwise at most 3.5 % too low and 2 %
+    too high, for a/b from 1/20 to 20, T/N up to 1 and T/μN from 0.05 on.
     """
     if criterion not in ("von_mises", "tresca"):
         raise InputError(f'criterion: must be "von_mises" or "tresca", got {criterion!r}')
@@ -143,8 +143,9 @@ def shakedown_limit(
 
     Notes
     -----
-    For perfectly plastic material that yields under the shear stress k, whatever Poisson's ratio. Interpolated in
-    tables: within 0.15 % where the whole patch of a line slips, else within 3.5 %, in the same range as `first_yield`.
+    The limit holds for perfectly plastic material that yields under the shear stress k, whatever its Poisson's ratio.
+    Interpolated in tables: within 0.15 % if the whole patch of a line slips, otherwise within 3.5 %, in the same range
+    as `first_yield`.
     """
     shear = _peak_of("forward", 0.0, traction_coefficient, friction_coefficient, axis_ratio)
     limit: Array = np.asarray(shear_yield_stress, dtype=np.float64) / shear
@@ -152,19 +153,19 @@ def shakedown_limit(
 
 
 class Overload(NamedTuple):
-    """An operating point beyond first yield; the greater of two is the one that a warning should name."""
+    """An operating point beyond first yield; a warning should name the greater of two."""
 
     beyond_shakedown: bool
-    """Whether it is beyond the shakedown limit too."""
+    """Whether the point is beyond the shakedown limit too."""
     ratio: float
-    """The maximum pressure over the limit that is named, the shakedown limit if it is beyond it."""
+    """The maximum pressure over the shakedown limit if the point is beyond it, otherwise over first yield."""
     max_pressure: float
     """Hertz's maximum pressure, p0 [Pa]."""
     traction_coefficient: float
-    """The traction that is transmitted, T/N [-]."""
+    """The transmitted traction, T/N [-]."""
 
     def warn(self, stacklevel: int) -> None:
-        """Warn of it; `stacklevel` 1 is the caller."""
+        """Warn of this point; `stacklevel` 1 is the caller."""
         pressure, limit = 1e-6 * self.max_pressure, 1e-6 * self.max_pressure / self.ratio
         passed, result = (
             ("the shakedown limit", "the material flows with every passage")
@@ -186,20 +187,20 @@ def overload(
     friction_coefficient: Array,
     axis_ratio: Array | None,
 ) -> Overload | None:
-    """Return the operating point that is furthest beyond the limits of a body, or None if all are elastic.
+    """Return the operating point furthest beyond the limits of a body, or None if all points are elastic.
 
     Parameters
     ----------
     bodies : iterable of pairs of float
         Yield stress in shear [Pa] and Poisson's ratio of each body.
     max_pressure, traction_coefficient, friction_coefficient, axis_ratio : ndarray
-        Of one shape, and not negative; an `axis_ratio` of None is a line.
+        Arrays of one shape, not negative; an `axis_ratio` of None is a line.
     """
     arrays = [max_pressure, traction_coefficient, friction_coefficient, *([] if axis_ratio is None else [axis_ratio])]
     scalar = axis_ratio is None and max_pressure.ndim == 0
     worst = None
     for k, nu in bodies:
-        if scalar:  # in floats, a tenth of the time of arrays
+        if scalar:  # floats take a tenth of the time of arrays
             found = _overload(k, nu, float(max_pressure), float(traction_coefficient), float(friction_coefficient))
         else:
             found = _overload_among(k, nu, [array.reshape(-1) for array in arrays])
@@ -209,7 +210,7 @@ def overload(
 
 
 def _overload_among(k: float, nu: float, arrays: list[Array]) -> Overload | None:
-    """Return `overload` of one body, of arrays with one axis."""
+    """Return `overload` of one body for arrays with one axis."""
     worst = None
     for start in range(0, arrays[0].size, BLOCK):
         p0, t, mu, *ratio = (array[start : start + BLOCK] for array in arrays)
@@ -218,7 +219,7 @@ def _overload_among(k: float, nu: float, arrays: list[Array]) -> Overload | None
         for measure in ("forward", "von_mises"):
             load = p0 * _peak(measure, nu, t, mu, *ratio) / k
             at = int(load.argmax())
-            if load[at] > 1.0:  # beyond shakedown, first yield need not be looked at
+            if load[at] > 1.0:  # beyond shakedown there is no need to check first yield
                 found = Overload(measure == "forward", float(load[at]), float(p0[at]), float(t[at]))
                 worst = found if worst is None else max(worst, found)
                 break
@@ -226,7 +227,7 @@ def _overload_among(k: float, nu: float, arrays: list[Array]) -> Overload | None
 
 
 def _surely_elastic(k: float, nu: float, max_pressure: float, traction: float, friction: float) -> bool:
-    """Return whether a body on a line stays elastic however much of the patch slips, which takes little time to say."""
+    """Return whether a body on a line stays elastic however much of the patch slips; a quick check."""
     friction = max(friction, traction)
     most = _table("von_mises", nu, 0.0).most[int(FRICTIONS * friction / (1.0 + friction))]
     return max_pressure * (1.0 + friction) * most <= k
@@ -245,7 +246,7 @@ def _overload(k: float, nu: float, max_pressure: float, traction: float, frictio
 
 
 def _peak_of(measure: str, nu: float, traction: ArrayLike, friction: ArrayLike | None, axis_ratio: ArrayLike) -> Array:
-    """Return `_peak` of arguments that broadcast, of which friction may be missing."""
+    """Return `_peak` of arguments that broadcast; friction may be None."""
     t = np.abs(np.asarray(traction, dtype=np.float64))
     mu = t if friction is None else np.asarray(friction, dtype=np.float64)
     t, mu, ratio = np.broadcast_arrays(t, mu, np.asarray(axis_ratio, dtype=np.float64))
@@ -257,7 +258,7 @@ def _peak_of(measure: str, nu: float, traction: ArrayLike, friction: ArrayLike |
 
 
 def _peak(measure: str, nu: float, traction: Array, friction: Array, axis_ratio: Array | None = None) -> Array:
-    """Return the greatest shear stress that decides over p0 [-], of arrays of one shape with one axis."""
+    """Return the greatest value of the deciding shear stress over p0 [-], for arrays of one shape with one axis."""
     if axis_ratio is None:
         return _on_line(measure, nu, traction, friction)
     places = PER_OCTAVE * np.clip(np.log2(axis_ratio), -OCTAVES, OCTAVES)
@@ -279,7 +280,7 @@ def _on_line(measure: str, nu: float, traction: _Value, friction: _Value) -> _Va
 
 
 def _interpolated(table: _Table, traction: _Value, friction: _Value, power: float) -> _Value:
-    """Return the value of a table at T/N and μ, times 1 + μ; of floats or of arrays, by the same formula.
+    """Return the value of a table at T/N and μ, times 1 + μ; floats and arrays take the same formula.
 
     T/μN = 1 - (c/a)^(1/power), and the table has steps of √(1 - c/a).
     """
@@ -310,13 +311,13 @@ def _places(value: Array) -> Any:
 class _Table(NamedTuple):
     """Greatest shear stresses over p0 (1 + μ) [-], row by row: one row for each μ/(1+μ), ending with full slip.
 
-    The last row and the last column are there twice, for points on the end of the table.
+    The last row and the last column are stored twice, for points at the end of the table.
     """
 
     array: Array
     floats: list[float]
     most: list[float]
-    """The greatest of each row and the next."""
+    """Greatest value in each row and the next."""
 
 
 @lru_cache(maxsize=256)
@@ -337,7 +338,7 @@ def _table(measure: str, nu: float, axis_ratio: float) -> _Table:
 
 
 def _points(depth: float) -> tuple[Array, Array]:
-    """Return x/a and z/a of points in the plane y = 0 among which the greatest stresses are: the surface, and below.
+    """Return x/a and z/a of the points to search for the greatest stresses, on and below the surface at y = 0.
 
     On the surface they are where the stick zones end, at which traction peaks, and as many again ahead.
     """
@@ -349,7 +350,7 @@ def _points(depth: float) -> tuple[Array, Array]:
 
 
 def _stresses(x: Array, z: Array, nu: float, axis_ratio: float) -> tuple[Array, Array]:
-    """Return σx, σy, σz and τzx over p0 (4, points) under pressure, and under an equal traction along x.
+    """Return σx, σy, σz and τzx over p0, (4, points), under pressure, and under an equal traction along x.
 
     Parameters
     ----------
@@ -379,7 +380,7 @@ def _stresses(x: Array, z: Array, nu: float, axis_ratio: float) -> tuple[Array, 
         p, q, along, down = load.real, load.imag, slope.real, -slope.imag
     sin2 = 1.0 - cos**2
 
-    # Of a load along ξ: its stresses in the frame (ξ, η, z), then turned to x and y. Parts odd in y cancel.
+    # The stresses of a load along ξ in the frame (ξ, η, z), turned to x and y. Parts odd in y cancel.
     def turned(xi: Array, eta: Array, shear: Array | float = 0.0) -> tuple[Array, Array]:
         return (xi * cos**2 + eta * sin2 - 2.0 * shear) @ weight, (xi * sin2 + eta * cos**2 + 2.0 * shear) @ weight
 
@@ -426,4 +427,4 @@ def _forward(pressed: Array, sheared: Array, share: Array) -> Array:
 
 
 MEASURES = {"von_mises": _von_mises, "tresca": _tresca, "forward": _forward}
-"""What decides, of stresses σx, σy, σz, τzx (4, points) at shares (n, 1) of the traction: shear stress (n, points)."""
+"""The deciding shear stress, (n, points), from σx, σy, σz, τzx, (4, points), at shares, (n, 1), of the traction."""

@@ -56,7 +56,7 @@ class Body:
 
     @cached_property
     def strength(self) -> tuple[float, float] | None:
-        """Yield stress in shear [Pa] and Poisson's ratio of the material; None if it is not known when it yields."""
+        """Yield stress in shear [Pa] and Poisson's ratio of the material; None if the yield stress is unknown."""
         stress = self.material.shear_yield_stress
         return None if stress is None else (scalar_si(stress, "Pa"), self.material.poisson_ratio)
 
@@ -159,10 +159,10 @@ class Problem:
     geometry : {"line", "ellipse", "strips"}
         The shape of the patch.
     a : ndarray
-        Half the patch's length in the rolling direction [m], of an ellipse its semi-axis. Of strips, semi-axis of the
-        ellipse that stands for the patch in Kalker's coefficients.
+        Half the patch's length in the rolling direction [m]; the semi-axis of an ellipse. For strips, the semi-axis of
+        the ellipse that stands for the patch in Kalker's coefficients.
     b : ndarray
-        Half the patch's width across the rolling direction [m], of an ellipse its semi-axis. Of strips as for a.
+        Half the patch's width across the rolling direction [m]; the semi-axis of an ellipse. For strips as for a.
     normal_force : ndarray
         Normal force, N [N].
     max_pressure : ndarray
@@ -245,7 +245,7 @@ class Problem:
         creepage : Quantity or str
             ξ, a ratio or in percent.
         rolling_speed : Quantity or str
-            V [m/s]; it matters to laws that read the slip speed.
+            V [m/s]; only laws that read the slip speed depend on it.
         density : Quantity or str
             Density of the body whose wear is predicted, ρ [kg/m³].
 
@@ -328,7 +328,7 @@ class Problem:
         spin : Quantity or str
             φ [1/m].
         rolling_speed : Quantity or str
-            V [m/s]; it matters to laws that read the slip speed.
+            V [m/s]; only laws that read the slip speed depend on it.
         density : Quantity or str
             Density of the body whose wear is predicted, ρ [kg/m³].
 
@@ -365,12 +365,12 @@ class Problem:
 
     @classmethod
     def of_strips(cls, strips: Strips, *, shear_modulus: Array, poisson_ratio: Array, **fields: Any) -> Self:
-        """Return the problem of a patch of strips whose pressure is given, of SI arrays of one shape.
+        """Return the problem of a patch of strips with a given pressure, from SI arrays of one shape.
 
         Parameters
         ----------
         strips : Strips
-            The strips, of the batch shape and an axis of strips.
+            The strips, (batch, strips).
         shear_modulus, poisson_ratio : ndarray
             G [Pa] and ν [-].
         **fields
@@ -431,7 +431,7 @@ class Problem:
 
     @property
     def patch_area(self) -> Array:
-        """Area of the patch, A [m²], of a line 4ab, of an ellipse πab, of strips their sum."""
+        """Area of the patch, A [m²]: 4ab for a line, πab for an ellipse, the sum of the areas of strips."""
         if self.strips is not None:
             area: Array = self.strips.area.sum(axis=-1)
             return area
@@ -439,7 +439,7 @@ class Problem:
 
     @property
     def rigid_slip(self) -> Array:
-        """Root mean square of the rigid slip over the patch [-], of an ellipse √(ξ² + η² + φ²(a² + b²)/4)."""
+        """Root mean square of the rigid slip over the patch [-]; for an ellipse √(ξ² + η² + φ²(a² + b²)/4)."""
         if self.geometry == "line":
             return np.abs(self.longitudinal_creepage)
         if self.strips is not None:
@@ -449,7 +449,7 @@ class Problem:
         return slip
 
     def _rigid_slip_of_strips(self, strips: Strips) -> Array:
-        """Return the root mean square of (ξ - φy, η - φx), where the mean of x² over a strip is a²/3."""
+        """Return the root mean square of (ξ - φy, η - φx); the mean of x² over a strip is a²/3."""
         spin = self.spin[..., None]
         along = (self.longitudinal_creepage[..., None] - spin * strips.y) ** 2
         across = self.lateral_creepage[..., None] ** 2 + spin**2 * strips.half_length**2 / 3.0

@@ -1,4 +1,4 @@
-"""What stages of a pipeline must fit each other in; errors and warnings say what to do instead."""
+"""Checks that the stages of a pipeline fit each other; errors and warnings say what to do instead."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def law_among(laws: tuple[WearLaw, ...], model: ContactModel) -> WearLaw:
 
 
 def check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
-    """Refuse a law of the whole patch on a contact that is resolved into cells."""
+    """Raise an error if a law of the whole patch follows a contact resolved into cells."""
     if law.scale == "patch" and scale != "patch":
         raise CompositionError(
             f"wear law '{law.name}' is stated for the means of the whole patch, but contact model '{model.name}'"
@@ -34,7 +34,7 @@ def check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
 
 
 def check_geometry(rig: Model, model: ContactModel, geometry: Geometry | None) -> None:
-    """Refuse a contact model that does not solve contacts of the geometry of a rig; None where that is not known."""
+    """Raise an error if a contact model does not solve the geometry of a rig; None if the geometry is not known."""
     if geometry is not None and geometry not in model.geometries():
         able = [name for name, one in loader.contact_models().items() if geometry in one.geometries()]
         raise CompositionError(
@@ -46,11 +46,11 @@ def check_geometry(rig: Model, model: ContactModel, geometry: Geometry | None) -
 def warn_of_calibration(
     geometry: Geometry | None, model: ContactModel, scale: Scale, law: WearLaw, stacklevel: int = 3
 ) -> None:
-    """Warn of parameters that were fitted for another contact; `stacklevel` 1 is this function."""
+    """Warn if the law's parameters were fitted for another contact; `stacklevel` 1 is this function."""
     calibration = law.calibration
     if calibration is None:
         return
-    geometry = geometry or calibration.geometry  # unknown before there is a problem: see `warn_of_geometry`
+    geometry = geometry or calibration.geometry  # may be unknown until there is a problem: see `warn_of_geometry`
     if calibration.covers(model, scale, geometry):
         return
     if calibration.geometry != geometry:
@@ -73,14 +73,14 @@ def warn_of_calibration(
 def warn_of_geometry(
     declared: Geometry | None, model: ContactModel, scale: Scale, law: WearLaw, geometry: Geometry, stacklevel: int
 ) -> None:
-    """Warn of parameters fitted for another shape of patch, where the rig has not declared that of its problems."""
+    """Warn of parameters fitted for another shape of patch if the rig has not declared the shape of its own."""
     calibration = law.calibration
     if declared is None and calibration is not None and calibration.geometry != geometry:
         warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
 
 
 def check_one_patch(problem: Problem, rig: Model, application: str) -> None:
-    """Refuse several patches at an operating point for an application that takes one."""
+    """Raise an error if an application takes one patch at each operating point and the rig makes several."""
     if problem.dims:
         raise CompositionError(
             f"{application}: needs one patch at each operating point; rig '{rig.name}' makes several, along"
@@ -89,7 +89,7 @@ def check_one_patch(problem: Problem, rig: Model, application: str) -> None:
 
 
 def check_traction(model: ContactModel, problem: Problem) -> None:
-    """Refuse a measured traction for a contact model that has no use for it."""
+    """Raise an error if the conditions give a measured traction that the contact model does not use."""
     if problem.traction_coefficient is not None and not model.uses_measured_traction:
         raise ConditionsError(
             f"traction_coefficient: contact model '{model.name}' computes the traction itself; leave"

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from wearlaw.pipeline.pipeline import Pipeline
 
 SMALLEST = 1e-30
-"""The least creepage that is searched; what is below counts as none."""
+"""Smallest creepage of the search; a smaller one counts as zero."""
 
 TRIED = np.geomspace(1e-5, 1.0, 40, endpoint=False)
-"""Creepages of an elliptic contact at which it is looked at whether the traction rises throughout."""
+"""Creepages at which the search checks whether the traction of an elliptic contact keeps rising."""
 
 ROUNDED = 1e-12
-"""Sums over some thousand nodes are rounded by so much of the friction force."""
+"""Rounding error of a sum over some thousand nodes, as a share of the friction force."""
 
 
 def creepage_for(
@@ -39,10 +39,10 @@ def creepage_for(
     traction_coefficient: ArrayLike | None = None,
     **conditions: Any,
 ) -> Quantity:
-    """Return the longitudinal creepage at which a contact transmits a traction [-], of its sign.
+    """Return the longitudinal creepage at which a contact transmits a traction [-], with the sign of the traction.
 
-    It is the longitudinal creepage of the problem, of the broadcast shape. `Rig.creepage` names the condition that sets
-    it; all else in the problem stays as the rig makes it where that condition is zero.
+    The result is the longitudinal creepage of the problem and has the broadcast shape. `Rig.creepage` names the
+    condition that sets it. The rest of the problem stays as the rig makes it with that condition at zero.
 
     Parameters
     ----------
@@ -53,14 +53,14 @@ def creepage_for(
     traction_coefficient : array_like of float, optional
         T/N [-], in place of `tangential_force`.
     **conditions
-        All conditions of the rig but the longitudinal creepage: for discs the load and the friction coefficient, for a
-        wheel on a rail also lateral creepage and spin, if there are any.
+        All conditions of the rig except the longitudinal creepage: for discs the load and the friction coefficient, for
+        a wheel on a rail also any lateral creepage and spin.
 
     Raises
     ------
     ConditionsError
-        If no creepage, or more than one, transmits so much: at full slip and above; with lateral creepage above what
-        friction leaves for the longitudinal direction; or if friction falls with the creep speed.
+        If no creepage, or more than one, transmits the traction: at full slip and above; with lateral creepage, above
+        what friction leaves for the longitudinal direction; or if friction falls with the creep speed.
     CompositionError
         If the rig has no condition for the creepage.
     """
@@ -82,7 +82,7 @@ def creepage_for(
     due, sign = np.abs(wanted), np.copysign(1.0, wanted)
 
     def lacking(log_creepage: Array, point: Array) -> Array:
-        """Return by how much T/N falls short, for points as floats, as `find_root` hands them on."""
+        """Return by how much T/N falls short; `find_root` passes the indices of the points as floats."""
         index = point.astype(np.intp)
         at = flat[index].replaced(longitudinal_creepage=sign[index] * np.exp(log_creepage))
         return due[index] - sign[index] * integrate_forces(predict.contact_model, at).longitudinal / at.normal_force
@@ -99,7 +99,7 @@ def creepage_for(
         raise _beyond_reach(predict, due, due - short, np.flatnonzero(short >= 0.0)[0], shape)
     _refuse_several(tried, flat.friction_coefficient, wanted, shape)
     creepage = np.zeros(due.size)
-    rounded = np.where(due == 0.0, ROUNDED * flat.friction_coefficient, 0.0)  # a force of zero is rounded on nodes
+    rounded = np.where(due == 0.0, ROUNDED * flat.friction_coefficient, 0.0)  # a sum over nodes rounds a force of zero
     search = np.flatnonzero(at_start > rounded)
     if search.size:
         root = elementwise.find_root(lacking, (start[search], np.zeros(search.size)), args=(points[search],))
@@ -124,14 +124,14 @@ def _at_rest(predict: Pipeline[...], conditions: Mapping[str, Any]) -> Problem:
 
 
 def _refuse_several(tried: Array, friction: Array, wanted: Array, shape: tuple[int, ...]) -> None:
-    """Refuse tractions [-] that a contact transmits at several creepages, or exceeds without any.
+    """Raise an error if a contact transmits a traction [-] at several creepages, or exceeds it without creepage.
 
     Parameters
     ----------
     tried : ndarray, (creepages, points)
-        By how much T/N falls short at creepages in ascending order, of which the first is as good as none.
+        By how much T/N falls short at creepages in ascending order; the first creepage is practically zero.
     friction, wanted : ndarray, (points,)
-        μ and the tractions that are looked for, with their signs.
+        μ and the wanted tractions with their signs.
     shape : tuple of int
         The shape of the result.
     """
@@ -166,7 +166,7 @@ def _finite(traction_coefficient: object) -> Array:
 
 
 def _where(values: Array, first: int, shape: tuple[int, ...]) -> str:
-    """Return a value and, among several, its place."""
+    """Return a value and, if it is one of several, its index."""
     where = f" at index {[int(i) for i in np.unravel_index(first, shape)]}" if shape else ""
     return f"{values[first]:.6g}{where}"
 

@@ -1,4 +1,4 @@
-"""What a reader of results must know besides them."""
+"""Notes that a reader needs beside the results."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from wearlaw.errors import WearlawWarning
 
 @dataclass
 class Notes:
-    """Collects what a reader of the results must know, once each."""
+    """Collects notes for the reader of the results, each once."""
 
     texts: list[str] = field(default_factory=list)
 
     def add(self, text: str) -> None:
-        """Add a note that is not there yet."""
+        """Add a note unless it is there already."""
         if text not in self.texts:
             self.texts.append(text)
 

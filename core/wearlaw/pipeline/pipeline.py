@@ -1,6 +1,6 @@
-"""What a user composes: a `Rig`, which poses contact problems, and the `Pipeline` that begins with it.
+"""The `Rig`, which poses contact problems, and the `Pipeline` that a user composes from it.
 
-The order is rig | contact model | patch mean, where it is needed, | wear law.
+The order is rig | contact model | patch mean, if needed, | wear law.
 """
 
 from __future__ import annotations
@@ -39,20 +39,20 @@ from wearlaw.settings.configuration import Configuration
 ORDER = 'the order is rig | wl.contact_model("exact") | wl.patch_mean(), where it is needed, | wl.wear_law("usfd")'
 
 LINE = 100
-"""Characters of a pipeline that is shown on one line; a longer one has a line for each part."""
+"""Longest pipeline shown on one line, in characters; a longer one has a line for each part."""
 
 
 P = ParamSpec("P")
 
 TINY = float(np.sqrt(np.finfo(np.float64).tiny))
-"""The least length or pressure in SI whose square is a float of full precision."""
+"""Smallest length or pressure in SI whose square is a float of full precision."""
 
 LEAST_FRICTION = 1e-12
-"""The least friction coefficient; below it creepage over that of full slip overflows in formulas of fourth order."""
+"""The smallest friction coefficient; below it formulas of fourth order in creepage over that of full slip overflow."""
 
 
 class Poses(Protocol[P]):
-    """What type checkers see of a rig: the conditions that it takes."""
+    """A rig as type checkers see it: the conditions that it takes."""
 
     def problem(self, *args: P.args, **conditions: P.kwargs) -> Problem:
         """Return the problem that the conditions pose."""
@@ -60,30 +60,31 @@ class Poses(Protocol[P]):
 
 
 class Rig(Model):
-    """Two bodies that roll on each other under given conditions.
+    """Base class for rigs: two bodies that roll on each other under given conditions.
 
-    A rig of your own implements `problem`, with the conditions as keyword arguments. Its fields are what stays the same
-    from test to test.
+    A rig of your own implements `problem`, with the conditions as keyword arguments. Its fields hold everything that
+    stays the same from test to test.
     """
 
     kind: ClassVar[str] = "rig"
 
     geometry: ClassVar[Geometry | None] = None
-    """The shape of the patch, by which a contact model that cannot solve it is refused at once; None where only the
-    problem tells."""
+    """The shape of the patch. A contact model that cannot solve it raises an error at once. None if the shape is known
+    only from the problem."""
 
     creepage: ClassVar[str] = "creepage"
-    """The condition that is the creepage: `creepage_for` looks for it, and the tables of a case run along it."""
+    """Name of the condition that sets the creepage: `creepage_for` solves for it, and the tables of a case run along
+    it."""
 
     example: ClassVar[Mapping[str, Any]] = {}
-    """Conditions of one test, to try the rig with, such as {"mass": "20 kg", "creepage": "1 %"}."""
+    """Conditions of one test to try the rig with, such as {"mass": "20 kg", "creepage": "1 %"}."""
 
     example_fields: ClassVar[Mapping[str, Any]] = {}
-    """Values of the fields without a default, to try the rig with."""
+    """Values of the fields without a default to try the rig with."""
 
     @classmethod
     def subject(cls) -> str:
-        """Return what messages call this rig."""
+        """Return the name of this rig in messages."""
         return cls.__name__
 
     @abstractmethod
@@ -91,58 +92,59 @@ class Rig(Model):
         """Return the contact problem that the conditions pose; arrays broadcast against each other."""
 
     def balanced(self, problem: Problem, forces: Callable[[Problem], CreepForces]) -> Problem:  # noqa: ARG002
-        """Return the problem with loads that balance the forces which its contact transmits.
+        """Return the problem with loads that balance the forces transmitted by its contact.
 
         On a flange, for example, the normal force depends on the lateral force. A rig whose loads do not depend on the
-        forces leaves this as it is.
+        forces does not override this method.
 
         Parameters
         ----------
         problem : Problem
-            What `problem` returned.
+            The result of `problem`.
         forces : callable
-            Solves a problem with the contact model of the pipeline, and returns the forces.
+            Solves a problem with the contact model of the pipeline and returns the forces.
         """
         return problem
 
     @property
     def bodies(self) -> Mapping[str, Body]:
-        """The two bodies by name, of which the first is the one whose wear is predicted; {} where they are unknown."""
+        """The two bodies by name; wear is predicted for the first body. {} if the bodies are unknown."""
         return {}
 
     @classmethod
     def conditions(cls) -> tuple[str, ...]:
         """Return the names of the conditions that `problem` takes.
 
-        If it takes `**conditions`, their names are not known, and () is returned; override this to name them.
+        If `problem` takes `**conditions`, their names are not known, and the result is (); override this method to name
+        them.
         """
         parameters = list(inspect.signature(cls.problem).parameters.values())[1:]
         return () if any(one.kind is one.VAR_KEYWORD for one in parameters) else tuple(one.name for one in parameters)
 
     @classmethod
     def needed(cls) -> tuple[str, ...]:
-        """Return the names of the conditions that must always be given: those of `problem` without a default."""
+        """Return the names of the required conditions: the arguments of `problem` without a default."""
         known = cls.conditions()
         parameters = inspect.signature(cls.problem).parameters.values()
         return tuple(one.name for one in parameters if one.default is one.empty and one.name in known)
 
     @classmethod
     def presets(cls) -> Mapping[str, Callable[..., Rig]]:
-        """Return functions that make known rigs of this class, by name; their arguments are what may be overridden.
+        """Return functions that make known rigs of this class, by name; their arguments override the preset's values.
 
-        Case files name them, as in ``preset = "suros"``. The arguments are checked by their annotations.
+        Case files name the presets, as in ``preset = "suros"``. wearlaw checks the arguments by their annotations.
         """
         return {}
 
     def checked_problem(self, conditions: Mapping[str, Any]) -> Problem:
-        """Return `problem` of the conditions, or raise an error that says whether they or the rig are wrong.
+        """Return `problem` of the conditions, or raise an error that says whether the conditions or the rig are wrong.
 
         Raises
         ------
         ConditionsError
             If a condition is missing or unknown.
         ModelError
-            If the rig fails, or returns no problem.
+            If the rig fails or does not return a problem.
         """
         try:
             with Blame(self):
@@ -157,7 +159,7 @@ class Rig(Model):
         return problem if problem.bodies else problem.replaced(bodies=self.bodies)
 
     def _masked(self, problem: Problem) -> Problem:
-        """Return the problem with NaN in the place of patches that do not exist."""
+        """Return the problem with NaN for patches that do not exist."""
         exists = problem.exists
         if type(exists) is not np.ndarray or exists.dtype != np.bool_ or exists.shape != problem.batch_shape:
             raise ModelError(
@@ -168,7 +170,7 @@ class Rig(Model):
         return masked.replaced(exists=exists)
 
     def check_names(self, conditions: Mapping[str, Any]) -> None:
-        """Check the names of conditions; a rig whose `conditions` are not known takes any.
+        """Check the names of conditions; a rig whose `conditions` are not known takes any name.
 
         Raises
         ------
@@ -197,11 +199,11 @@ class Rig(Model):
 
 
 RigField = Annotated[Rig, *RIG]
-"""A field that takes a rig, its name, or a table of its fields with its name as `type` or that of a `preset`."""
+"""A field that takes a rig, its name, or a table of its fields with its name as `type` or the name of a `preset`."""
 
 
 def check_sizes(sizes: dict[str, Array], friction_coefficient: Array) -> None:
-    """Refuse loads and sizes [SI] so far from any contact that floats overflow or lose their precision."""
+    """Raise an error for loads and sizes [SI] so extreme that floats overflow or lose their precision."""
     for name, value in sizes.items():
         low, high = extremes(value)
         if not (low > TINY and high < 1.0 / TINY):
@@ -218,27 +220,27 @@ class PatchMean(Configuration):
     """The stage that replaces a resolved contact by its patch means."""
 
     stage: Literal["patch_mean"] = "patch_mean"
-    """Its name, by which files tell stages apart."""
+    """Name of the stage in files."""
 
     def __repr__(self) -> str:
         return "patch_mean()"
 
-    if not TYPE_CHECKING:  # checkers reject this order by themselves
+    if not TYPE_CHECKING:  # type checkers reject this order anyway
 
         def __or__(self, other: object) -> object:
             raise CompositionError(f"wl.patch_mean() cannot start a pipeline; {ORDER}")
 
 
 def patch_mean() -> PatchMean:
-    """Return the stage that replaces a resolved contact by its patch means, for laws that are stated for them."""
+    """Return the stage that replaces a resolved contact by its patch means, for laws stated for patch means."""
     return PatchMean()
 
 
 class Pipeline(Configuration, Generic[P]):
-    """A rig and a contact model, followed by stages and a wear law: predicts the contact, and with a law the wear.
+    """A rig, a contact model, and stages and a wear law if given; predicts the contact and, with a law, the wear.
 
-    A pipeline is frozen: it prints, compares, hashes, pickles, and serialises with
-    ``model_dump_json()`` to what ``Pipeline.model_validate_json(...)`` reads.
+    A pipeline is frozen and can be printed, compared, hashed and pickled. ``model_dump_json()`` writes it as JSON, and
+    ``Pipeline.model_validate_json(...)`` reads it back.
     """
 
     rig: RigField
@@ -246,9 +248,9 @@ class Pipeline(Configuration, Generic[P]):
     contact_model: ContactModelField
     """The theory of the tangential contact."""
     stages: tuple[PatchMean, ...] = ()
-    """What changes the contact before a law sees it."""
+    """Stages that change the contact before the law sees it."""
     laws: tuple[WearLawField, ...] = ()
-    """The law of wear; empty where only the contact is predicted."""
+    """The wear law; empty if the pipeline predicts the contact alone."""
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -270,7 +272,7 @@ class Pipeline(Configuration, Generic[P]):
 
     @property
     def wear_law(self) -> WearLaw:
-        """The law of wear.
+        """The wear law.
 
         Raises
         ------
@@ -280,7 +282,7 @@ class Pipeline(Configuration, Generic[P]):
         return law_among(self.laws, self.contact_model)
 
     def with_law(self, law: WearLaw) -> Pipeline[P]:
-        """Return the pipeline with this law in place of its own, without a warning of what it was fitted for."""
+        """Return the pipeline with this law in place of its own, without a warning about the law's calibration."""
         return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages, laws=(law,))
 
     def __repr__(self) -> str:
@@ -301,25 +303,25 @@ class Pipeline(Configuration, Generic[P]):
         return pipeline
 
     def __call__(self, *positional: P.args, **conditions: P.kwargs) -> Prediction:
-        """Return the contact and the wear under the given conditions; see the `problem` of the rig for these."""
+        """Return the contact and the wear under the given conditions; see the rig's `problem` for the conditions."""
         if positional:
             raise ConditionsError(f"{positional[0]!r}: is given without a name; write creepage=..., for example")
         return self.predict(self.posed(conditions), stacklevel=3)
 
     def posed(self, conditions: Mapping[str, Any], of_one_patch: str = "") -> Problem:
-        """Return the problem that the rig makes of conditions, with loads that balance the forces.
+        """Return the rig's problem for these conditions, with loads that balance the forces.
 
         Parameters
         ----------
         conditions : mapping
             As for the `problem` of the rig.
         of_one_patch : str
-            What needs a contact of one patch at each operating point, such as "fit".
+            Name of the application that needs one patch at each operating point, such as "fit".
 
         Raises
         ------
         CompositionError
-            If there must be one patch, and the rig makes several.
+            If the application needs one patch and the rig makes several.
         """
         rig, problem = self.rig, self.rig.checked_problem(conditions)
         if of_one_patch:
@@ -339,16 +341,16 @@ class Pipeline(Configuration, Generic[P]):
         on_block: Callable[[int], None] | None = None,
         stacklevel: int = 2,
     ) -> Prediction:
-        """Return the contact and the wear for a contact problem that the rig has made.
+        """Return the contact and the wear for a contact problem made by the rig.
 
         Parameters
         ----------
         problem : Problem
             From the `problem` of the rig.
         on_block : callable, optional
-            Called with the number of operating points done after each block of them, to show progress.
+            Called after each block with the number of its operating points, to show progress.
         stacklevel : int
-            Which caller warnings name; 2 is the caller of this method.
+            The caller that warnings name; 2 is the caller of this method.
         """
         if self.rig.geometry not in (None, problem.geometry):
             raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
@@ -360,11 +362,11 @@ class Pipeline(Configuration, Generic[P]):
         return found
 
     def range_watch(self) -> RangeWatch:
-        """Return what sees whether operating points stay elastic, and in the range of the law, if there is one."""
+        """Return a watch that sees whether operating points stay elastic and within the range of the law, if any."""
         return RangeWatch(self.laws[0] if self.laws else None)
 
     def watched(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None = None) -> Prediction:
-        """Return what `predict` does, without its warnings; `watch` sees the operating points."""
+        """Return the result of `predict` without its warnings; `watch` sees the operating points."""
         model, scale = self.contact_model, self.scale
         if problem.geometry == "line":
             check_traction(model, problem)

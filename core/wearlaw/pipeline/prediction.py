@@ -1,4 +1,4 @@
-"""What a pipeline returns: quantities with units, computed from SI totals when asked for."""
+"""The result of a pipeline: quantities with units, computed from SI totals on access."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ SHOWN: Mapping[Geometry, tuple[str, ...]] = {
     "ellipse": (*FORCES, "semi_axis_a", "semi_axis_b", "max_pressure"),
     "strips": (*FORCES, "patch_area", "max_pressure"),
 }
-"""What a prediction prints of itself, besides its wear rate."""
+"""Variables that a prediction prints besides its wear rate."""
 
 
 class Prediction:
@@ -45,7 +45,7 @@ class Prediction:
 
     Every property has the shape of the broadcast conditions; for one operating point it is a scalar. Forces have the
     signs of the creepages that cause them: body 1, a wheel, exerts them on body 2, a rail. Properties of the wear raise
-    a `CompositionError` where the pipeline has no wear law, and so do those of another shape of patch.
+    a `CompositionError` if the pipeline has no wear law, and so do properties of another shape of patch.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class Prediction:
     scale : {"patch", "cells"}
         Whether the law saw the means of the patch or its cells.
     laws : tuple of WearLaw
-        The law of wear; empty where only the contact was predicted.
+        The wear law; empty if only the contact was predicted.
     """
 
     def __init__(
@@ -105,8 +105,8 @@ class Prediction:
     def wear_index(self) -> Quantity:
         """Wear index, Tγ [N], ξFx + ηFy + φMz: the energy dissipated per metre rolled.
 
-        It is what the creepages feed in (Tassini et al. 2010, eq. 5). What the nodes of the patch dissipate is
-        `cell_wear_index`.
+        This is the energy that the creepages feed in (Tassini et al. 2010, eq. 5). The energy that the nodes of the
+        patch dissipate is `cell_wear_index`.
         """
         return from_si(self._wear_index, "N")
 
@@ -114,7 +114,7 @@ class Prediction:
     def cell_wear_index(self) -> Quantity:
         """Energy dissipated per metre rolled, summed over the nodes of the patch, ∑ q·s dA [N].
 
-        It is what local wear laws see. In the simplified theory with spin it differs from `wear_index`.
+        Local wear laws see this energy. In the simplified theory with spin it differs from `wear_index`.
         """
         return from_si(self._slip.cell_wear_index, "N")
 
@@ -122,8 +122,8 @@ class Prediction:
     def averaged_wear_index(self) -> Quantity:
         """The averaged wear index of Tassini et al. 2010, section 3.2.3 [N].
 
-        Mean slip of the slipping part of the patch times the sum of the tractions. It exceeds the energy that is
-        dissipated wherever part of the patch sticks; `wear_index` is the one that is consistent with it.
+        The mean slip of the slipping part of the patch times the sum of the tractions. It exceeds the dissipated energy
+        wherever part of the patch sticks; `wear_index` is consistent with the dissipated energy.
         """
         slip = self._slip
         slipping = np.divide(
@@ -141,7 +141,7 @@ class Prediction:
 
     @property
     def normal_force(self) -> Quantity:
-        """Normal force, N [N], of a line on its whole width."""
+        """Normal force, N [N]; on a line, over its whole width."""
         return from_si(self.problem.normal_force, "kN")
 
     @property
@@ -151,7 +151,7 @@ class Prediction:
 
     @property
     def creepage(self) -> Quantity:
-        """Longitudinal creepage, ξ [-], positive where body 1 is the faster one."""
+        """Longitudinal creepage, ξ [-], positive if body 1 is the faster one."""
         return from_si(self.problem.longitudinal_creepage, "%")
 
     @property
@@ -184,7 +184,7 @@ class Prediction:
 
     @property
     def patch_area(self) -> Quantity:
-        """Area of the patch, A [m²], the sum of its nodes' areas: of Hertz's patches 2a × track width, or πab."""
+        """Area of the patch, A [m²], the sum of its nodes' areas; in Hertz's theory 2a × track width, or πab."""
         return from_si(self._patch_area, "mm^2")
 
     @property
@@ -199,7 +199,7 @@ class Prediction:
 
     @cached_property
     def contact(self) -> Contact:
-        """The solved contact as SI arrays, on nodes that suit the wear law, or that the contact model chose."""
+        """The solved contact as SI arrays, on nodes that suit the wear law or that the contact model chose."""
         model, scale = self.contact_model, self.scale
         if self._solved is not None:
             return integrate.seen_by_law(model, self._solved.unflattened(self.problem), scale)
@@ -210,13 +210,13 @@ class Prediction:
 
     @cached_property
     def profile(self) -> xarray.Dataset:
-        """Pressure, traction, traction bound, slip and the wear rate along the patch of a line, with units."""
+        """Pressure, traction, traction bound, slip and wear rate along the patch of a line, with units."""
         if not self.laws:
             return self._profile({})
         return self._profile({"wear_rate": (self._law.checked_rate(self._cells()), WEAR_RATE)})
 
     def _cells(self) -> Contact:
-        """Return the contact of the patches that exist, on uniform cells where the model can give them."""
+        """Return the contact of the existing patches, on uniform cells if the model can give them."""
         model, problem = self.contact_model, self.problem
         problem.needs("line", "profile")
         if self.scale == "cells" and isinstance(model, LineContactModel):
@@ -243,29 +243,29 @@ class Prediction:
         """Return the depth lost and the distance slid across an elliptic patch, over y.
 
         A point of the wheel's tread is in contact once in each revolution, so the depth that it loses per metre rolled
-        is ∫ rate dx / (ρ 2πR). A point of the rail is in contact once in each passage of a wheel; what it loses is
-        given per passage.
+        is ∫ rate dx / (ρ 2πR). A point of the rail is in contact once in each passage of a wheel, so its loss is given
+        per passage.
 
         Parameters
         ----------
         body : str
             Its name in the rig, such as "wheel" or "rail".
         strips : int, optional
-            How many strips of equal width, for a smoother profile; by default those of the contact model, which cost
-            nothing more. A contact model that cannot choose its strips keeps its own.
+            Number of strips of equal width; more make a smoother profile. The default is the contact model's strips,
+            at no extra cost. A contact model that cannot choose its strips keeps its own.
 
         Returns
         -------
         xarray.Dataset
-            `depth` and `sliding_distance` over the coordinate `y`, for the wheel per metre rolled, for the rail per
-            passage, with units in attrs; with several operating points there is an axis for each of the batch's.
+            `depth` and `sliding_distance` over the coordinate `y`, per metre rolled for the wheel and per passage for
+            the rail, with units in attrs. With several operating points it also has the axes of the batch.
 
         Raises
         ------
         InputError
             If the rig has no such body.
         CompositionError
-            If the contact is not resolved across the patch, or is a line.
+            If the contact is a line or is not resolved across the patch.
         """
         model, problem = self.contact_model, self.problem
         radius, density = np.asarray(problem.body(body).rolling_radius), self._density(body)
@@ -295,21 +295,21 @@ class Prediction:
     def wear_rate(self) -> Quantity:
         """Mass lost per metre rolled and contact area, mean over the patch [kg/m/m²].
 
-        Of body 1, where the law gives a volume and the densities of the bodies differ.
+        If the law gives a volume and the densities of the bodies differ, the mass is that of body 1.
         """
         return from_si(self._wear.wear_rate, WEAR_RATE)
 
     @cached_property
     def wear_rate_error(self) -> Quantity:
-        """Estimate of the numerical error in `wear_rate` [kg/m/m²]; slow on an ellipse, which is solved again."""
+        """Estimate of the numerical error in `wear_rate` [kg/m/m²]; slow on an ellipse, which it solves again."""
         model, law, scale = self.contact_model, self._law, self.scale
         return from_si(integrate.wear_rate_error(model, law, self.problem, scale, self._wear), WEAR_RATE)
 
     def depth_per_distance(self, body: str) -> Quantity:
         """Return the depth that a body's surface loses per distance rolled, mean over the patch's width [m/m].
 
-        A point of the surface is in contact once in each revolution. On a line that is for 2a of each πD rolled, so
-        the depth is (wear rate / density) · 2a / (πD); the depth across an ellipse is in `wear_profile`.
+        A point of the surface is in contact once in each revolution. On a line it is in contact for 2a of each πD
+        rolled, so the depth is (wear rate / density) · 2a / (πD). For the depth across an ellipse see `wear_profile`.
 
         Parameters
         ----------
@@ -330,11 +330,11 @@ class Prediction:
 
     @property
     def mass_per_distance(self) -> Quantity:
-        """Mass that a body loses per metre rolled [kg/m]; of body 1, as the wear rate."""
+        """Mass that a body loses per metre rolled [kg/m]; of body 1, like `wear_rate`."""
         return from_si(self._wear.wear_rate * self._patch_area, "ug/m")
 
     def mass_lost(self, over: QuantityLike, body: str) -> Quantity:
-        """Return the mass that a body loses over a distance rolled [kg]; a rail loses it all along.
+        """Return the mass that a body loses over a distance rolled [kg]; a rail loses it along the whole distance.
 
         Parameters
         ----------
@@ -361,7 +361,7 @@ class Prediction:
 
     @cached_property
     def _force(self) -> Array:
-        """The tangential force [N], on an ellipse its magnitude."""
+        """Tangential force [N]; its magnitude on an ellipse."""
         return self._forces.longitudinal if self.problem.geometry == "line" else self._forces.tangential
 
     @cached_property
@@ -374,7 +374,7 @@ class Prediction:
 
     @property
     def _solved(self) -> Contact | None:
-        """The contact that was solved for the wear, with one batch axis, where it was kept."""
+        """The contact solved for the wear, with one batch axis; None if it was not kept."""
         return None if self._given_wear is None else self._given_wear.contact
 
     @cached_property
@@ -385,8 +385,8 @@ class Prediction:
 
     @cached_property
     def _wear(self) -> WearTotals:
-        """The outcome of the wear law, or a `CompositionError` where there is none."""
-        self._law  # noqa: B018  raises where there is none
+        """The totals of the wear law; a `CompositionError` if the pipeline has none."""
+        self._law  # noqa: B018  raises if there is none
         assert self._given_wear is not None
         return self._given_wear
 
@@ -397,7 +397,7 @@ class Prediction:
         return self._rate(body) / self._density(body)
 
     def _rate(self, body: str) -> Array:
-        """Return the wear rate of a body, which a law of volume gives in proportion to its density."""
+        """Return the wear rate of a body; with a law of volume it is proportional to the body's density."""
         density = np.full_like(self.problem.density, self._density(body))
         if np.array_equal(density, self.problem.density):
             return self._wear.wear_rate
@@ -422,7 +422,7 @@ class Prediction:
 
 
 def unsolved(problem: Problem, contact_model: ContactModel, scale: Scale, laws: tuple[WearLaw, ...]) -> Prediction:
-    """Return a prediction of zeros, which has every name and unit that the solved one has, at no cost."""
+    """Return a prediction of zeros, with all names and units of the solved one, at no cost."""
     none, one = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
     forces = CreepForces(longitudinal=none, lateral=none, spin_moment=none)
     wear = WearTotals(wear_rate=none, wear_rate_error=none, patch_area=one)
@@ -449,12 +449,12 @@ def _dataset(coordinates: Mapping[str, Any], variables: Mapping[str, Any]) -> xa
 
 
 def _batch_dims(axes: int, named: tuple[str, ...]) -> list[str]:
-    """Return names of the axes of a batch, of which the rig may have named the last ones."""
+    """Return names for the axes of a batch; the rig may have named the last ones."""
     return [*(f"point_{axis}" for axis in range(axes - len(named))), *named]
 
 
 def _brief(quantity: Quantity) -> str:
-    """Return a scalar as it is, an array as its range."""
+    """Format a scalar as it is and an array as its range."""
     if np.ndim(quantity.magnitude) == 0:
         return repr(quantity)
     return f"{quantity.min()!r} to {quantity.max()!r}"

@@ -1,4 +1,4 @@
-"""Watching whether operating points stay elastic, and in the range that a wear law is stated for."""
+"""Checks whether operating points stay elastic and within the range of a wear law."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class RangeWatch:
     Attributes
     ----------
     overload : Overload or None
-        The one that is furthest beyond first yield.
+        The operating point furthest beyond first yield.
     """
 
     def __init__(self, law: WearLaw | None) -> None:
@@ -40,7 +40,7 @@ class RangeWatch:
         self.overload: Overload | None = None
 
     def see(self, points: int, mean_over_patch: Callable[[str], Array]) -> None:
-        """Take note of so many operating points; `mean_over_patch` gives a variable of `Contact` as its mean in SI."""
+        """Record a number of operating points; `mean_over_patch` returns the mean of a variable of `Contact` in SI."""
         self.points += points
         for name, (low, high) in self.range.items():
             values = mean_over_patch(name)
@@ -53,17 +53,17 @@ class RangeWatch:
                 seen.outside += int(np.count_nonzero(values > high))
 
     def see_block(self, part: Problem, columns: Columns) -> None:
-        """Take note of a block of operating points, with forces [N] and areas [m²] in columns."""
+        """Record a block of operating points, with forces [N] and areas [m²] in columns."""
         self.see(part.size, partial(mean_over_patch, part, columns))
         self.see_overload(overload_of(part, tangential_force(part, columns)))
 
     def see_overload(self, overload: Overload | None) -> None:
-        """Take note of the operating point of some that is furthest beyond first yield."""
+        """Record an operating point beyond first yield if none so far lies further beyond."""
         if overload is not None:
             self.overload = overload if self.overload is None else max(self.overload, overload)
 
     def warn(self, stacklevel: int) -> None:
-        """Warn of what has been seen; `stacklevel` 1 is the caller."""
+        """Warn of points beyond first yield or out of range; `stacklevel` 1 is the caller."""
         if self.overload is not None:
             self.overload.warn(stacklevel + 1)
         for name, seen in self.seen.items():
@@ -80,16 +80,16 @@ class RangeWatch:
 
 
 class _Seen:
-    """What has been seen of one variable."""
+    """Extremes of one variable, and the number of points out of range."""
 
     def __init__(self) -> None:
         self.lowest, self.highest, self.outside = np.inf, -np.inf, 0
 
 
 def mean_over_patch(problem: Problem, columns: Columns, variable: str) -> Array:
-    """Return a variable of `Contact` as its mean over the patch, from forces [N] and areas [m²] in columns.
+    """Return the mean of a variable of `Contact` over the patch, from forces [N] and areas [m²] in columns.
 
-    The slip is the rigid one, as in `Contact.of_patch`.
+    The slip is the rigid slip, as in `Contact.of_patch`.
     """
     match variable:
         case "slip":
@@ -116,7 +116,7 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
     ----------
     problem : Problem
     tangential_force : ndarray
-        Its magnitude [N], of the batch shape; NaN where there is no patch.
+        Magnitude of the tangential force [N], of the batch shape; NaN where there is no patch.
     """
     strengths = {body.strength for body in problem.bodies.values() if body.strength is not None}
     if not strengths:
@@ -134,7 +134,7 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
 
 def tangential_force(problem: Problem, columns: Columns) -> Array:
     """Return the magnitude of the tangential force [N]."""
-    if problem.geometry == "line":  # of which forces across take a tenth of the time of a prediction
+    if problem.geometry == "line":  # zero lateral forces would add a tenth to the time of a prediction
         return np.abs(columns["longitudinal"])
     return CreepForces.of(columns).tangential
 

@@ -1,4 +1,4 @@
-"""Which variables results, tables and figures show."""
+"""The variables that results, tables and figures show."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ OF_CONTACT = (
     "stick_ratio",
     "mean_slip",
 )
-"""Variables that differ from contact model to contact model, but not from law to law; no prediction has all of them."""
+"""Variables that depend on the contact model but not on the wear law; no prediction has all of them."""
 
 OF_POINT = (
     "half_width",
@@ -38,7 +38,7 @@ OF_POINT = (
     "creepage",
     "friction_coefficient",
 )
-"""Variables of the operating point alone; no prediction has all of them."""
+"""Variables that depend on the operating point alone; no prediction has all of them."""
 
 
 OF_OTHERS: Mapping[Geometry, frozenset[str]] = {
@@ -46,11 +46,11 @@ OF_OTHERS: Mapping[Geometry, frozenset[str]] = {
     "ellipse": frozenset({"averaged_wear_index", "creepage"}),
     "strips": frozenset({"averaged_wear_index", "creepage"}),
 }
-"""Variables that results of a shape of patch leave out, as another one says the same, or they say nothing."""
+"""Variables that results leave out for a shape of patch because they repeat another one or say nothing."""
 
 
 def offered(prediction: Prediction, variables: Iterable[str]) -> tuple[str, ...]:
-    """Return those variables that results of a prediction show."""
+    """Return the variables that the results of a prediction show."""
     others = OF_OTHERS[prediction.problem.geometry]
     return tuple(name for name in variables if name not in others and _has(prediction, name))
 

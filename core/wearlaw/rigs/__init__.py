@@ -1,4 +1,4 @@
-"""The rigs that ship with wearlaw, and a study of one; they are a plugin like any other."""
+"""The rigs that ship with wearlaw and a study of one of them, as a plugin like any other."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The test rig: materials, discs, and the way from the conditions of a test to a contact problem."""
+"""The twin-disc rig: its discs, and the contact problem that the conditions of a test pose."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class TwinDiscConditions(TypedDict, total=False):
     max_pressure : Quantity or str
         Hertz's maximum pressure, p0 [Pa].
     creepage : Quantity or str
-        Creepage, ξ [-], positive where disc 1 is the faster one, of magnitude at most 1.
+        Creepage, ξ [-], positive if disc 1 is the faster one, of magnitude at most 1.
     friction_coefficient : array_like of float, or FallingFriction
         Friction coefficient, μ [-].
     traction_coefficient : array_like of float
@@ -74,7 +74,7 @@ class Disc(Configuration):
     diameter: Annotated[Quantity, Unit("mm", infinite=True)]
     """Diameter, D [m]; infinite for a flat body."""
     material: MaterialField
-    """What it is made of; a file may also give the name of an installed material."""
+    """Material of the disc; a file may also give the name of an installed material."""
 
     if TYPE_CHECKING:
 
@@ -84,9 +84,9 @@ class Disc(Configuration):
 class TwinDisc(Rig):
     """Two discs with parallel axes, pressed together and rolling with slip.
 
-    Disc 1 is the wheel disc, whose wear is predicted; positive creepage means that it is the faster one. The
-    discs' elastic constants enter through E* alone: the coupling of normal and tangential displacement between
-    unlike materials is neglected.
+    Disc 1 is the wheel disc, whose wear is predicted; with positive creepage it is the faster one. The discs' elastic
+    constants enter through E* alone: the rig neglects the coupling of normal and tangential displacement between unlike
+    materials.
     """
 
     name: ClassVar[str] = "twin_disc"
@@ -142,15 +142,15 @@ class TwinDisc(Rig):
         Parameters
         ----------
         diameter, material
-            Of both discs, unless `disc_1` or `disc_2` gives that disc whole.
+            Diameter and material of both discs; `disc_1` or `disc_2` replaces them for that disc.
         disc_1, disc_2 : Disc, optional
             A disc in place of the standard one.
         track_width : Quantity or str
             Width of the running track [m].
         rotational_speed : Quantity or str
-            Speed of disc 1 [rad/s], from which the rolling speed follows.
+            Speed of disc 1 [rad/s], which sets the rolling speed.
         rolling_speed : Quantity or str, optional
-            Rolling speed V [m/s] in place of the one that follows from `rotational_speed`.
+            Rolling speed V [m/s], in place of `rotational_speed`.
 
         Notes
         -----
@@ -171,12 +171,12 @@ class TwinDisc(Rig):
 
     @classmethod
     def conditions(cls) -> tuple[str, ...]:
-        """Return the names of the conditions, of which some exclude each other."""
+        """Return the names of the conditions, some of which exclude each other."""
         return TWIN_DISC.names
 
     @classmethod
     def needed(cls) -> tuple[str, ...]:
-        """Return the names of the conditions that must be given, besides one of the loads."""
+        """Return the names of the required conditions, besides one of the loads."""
         return tuple(TWIN_DISC.examples)
 
     @classmethod
@@ -201,13 +201,13 @@ class TwinDisc(Rig):
         Raises
         ------
         ConditionsError
-            If conditions are missing, unknown, contradictory or do not broadcast.
+            If conditions are missing, unknown or contradictory, or do not broadcast.
         UnitError
             If a condition lacks its unit or is out of bounds.
         """
         constants = self._constants
         arrays = condition_arrays(conditions, TWIN_DISC, lambda a: constants["rolling_speed"] * np.abs(a["creepage"]))
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` refuses the result
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` rejects the result
             per_width = self._normal_force_per_width(arrays)
             half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
             max_pressure = hertz.max_pressure(per_width, half_width)
@@ -251,7 +251,7 @@ class TwinDisc(Rig):
 
     @cached_property
     def _constants(self) -> dict[str, Any]:
-        """What the rig itself sets, as SI scalars."""
+        """Constants of the rig, as SI scalars."""
         discs = (self.disc_1, self.disc_2)
         radii = (0.5 * scalar_si(disc.diameter, "m") for disc in discs)
         (e_1, nu_1), (e_2, nu_2) = (

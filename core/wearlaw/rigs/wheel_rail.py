@@ -1,4 +1,4 @@
-"""A wheel on a rail, and the way from its conditions to a contact problem."""
+"""A wheel on a rail, and the contact problem that its conditions pose."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ class WheelRailConditions(TypedDict, total=False):
     max_pressure : Quantity or str
         Hertz's maximum pressure, p0 [Pa].
     longitudinal_creepage : Quantity or str
-        Longitudinal creepage, ξ [-], of magnitude at most 1; positive where the wheel is braked.
+        Longitudinal creepage, ξ [-], of magnitude at most 1; positive if the wheel is braked.
     lateral_creepage : Quantity or str
-        Lateral creepage, η [-], of magnitude at most 1; zero where it is not given.
+        Lateral creepage, η [-], of magnitude at most 1; zero if not given.
     spin : Quantity or str
-        Spin, φ [1/m]; zero where it is not given.
+        Spin, φ [1/m]; zero if not given.
     friction_coefficient : array_like of float, or FallingFriction
         Friction coefficient, μ [-].
     """
@@ -63,7 +63,7 @@ WHEEL_RAIL = ConditionTable(
 
 
 class _Patch(NamedTuple):
-    """What is the same at all operating points, in SI: the patch under a load of 1 N, and constants."""
+    """Values shared by all operating points, in SI: the patch under a load of 1 N, and constants."""
 
     a: float
     b: float
@@ -73,11 +73,11 @@ class _Patch(NamedTuple):
 
 
 class WheelRail(Rig):
-    """A wheel that rolls on a straight rail and touches it in a point, which the load makes an ellipse.
+    """A wheel that rolls on a straight rail and touches it in a point, which the load widens to an ellipse.
 
-    Radii of curvature are positive where a body is convex, infinite where it is flat, negative where it is concave.
-    The planes of the lateral radii stand upright and across the rail, those of the rolling radii along it. Wheel and
-    rail are of the same material.
+    Radii of curvature are positive for a convex body, infinite for a flat one and negative for a concave one. The
+    planes of the lateral radii stand upright and across the rail, the planes of the rolling radii along it. Wheel and
+    rail have the same material.
     """
 
     name: ClassVar[str] = "wheel_rail"
@@ -101,11 +101,11 @@ class WheelRail(Rig):
     wheel_radius: Length
     """Rolling radius of the wheel [m]."""
     rail_head_radius: Radius
-    """Lateral radius of the rail head where it is touched [m]."""
+    """Lateral radius of the rail head at the contact point [m]."""
     wheel_profile_radius: Radius = Field(default="inf mm", validate_default=True)
-    """Lateral radius of the wheel's profile where it touches [m]; infinite for a cone, negative for a worn hollow."""
+    """Lateral radius of the wheel profile at the contact point [m]; infinite for a cone, negative for a worn hollow."""
     material: MaterialField
-    """What wheel and rail are made of; a file may also give the name of an installed material."""
+    """Material of wheel and rail; a file may also give the name of an installed material."""
     rolling_speed: Speed
     """Rolling speed, V [m/s]."""
 
@@ -148,12 +148,12 @@ class WheelRail(Rig):
 
     @classmethod
     def conditions(cls) -> tuple[str, ...]:
-        """Return the names of the conditions, of which some exclude each other."""
+        """Return the names of the conditions, some of which exclude each other."""
         return WHEEL_RAIL.names
 
     @classmethod
     def needed(cls) -> tuple[str, ...]:
-        """Return the names of the conditions that must be given, besides one of the loads."""
+        """Return the names of the required conditions, besides one of the loads."""
         return tuple(WHEEL_RAIL.examples)
 
     def problem(self, **conditions: Unpack[WheelRailConditions]) -> Problem:
@@ -164,16 +164,16 @@ class WheelRail(Rig):
         normal_force, max_pressure : Quantity or str
             The load, exactly one of them: N [N] or p0 [Pa].
         longitudinal_creepage, lateral_creepage : Quantity or str
-            ξ and η, ratios or in percent, of magnitude at most 1; η is zero where it is not given.
+            ξ and η, ratios or in percent, of magnitude at most 1; η is zero if not given.
         spin : Quantity or str
-            φ [1/m]; zero where it is not given.
+            φ [1/m]; zero if not given.
         friction_coefficient : array_like of float, or FallingFriction
             μ [-].
 
         Raises
         ------
         ConditionsError
-            If conditions are missing, unknown, contradictory or do not broadcast.
+            If conditions are missing, unknown or contradictory, or do not broadcast.
         UnitError
             If a condition lacks its unit or is out of bounds.
         """
@@ -183,7 +183,7 @@ class WheelRail(Rig):
             WHEEL_RAIL,
             lambda a: patch.rolling_speed * np.hypot(a["longitudinal_creepage"], a["lateral_creepage"]),
         )
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` refuses the result
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` rejects the result
             if "max_pressure" in arrays:
                 pressure = arrays.pop("max_pressure")
                 arrays["normal_force"] = (pressure / patch.max_pressure) ** 3

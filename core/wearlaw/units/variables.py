@@ -1,4 +1,4 @@
-"""The table of variables: symbol, unit, name and bounds of each quantity that conditions, results and files have."""
+"""The table of variables: symbol, unit, name and bounds of each quantity in conditions, results and files."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ class Variable:
     Attributes
     ----------
     unit : str
-        The unit in which results, files and figures show it; "" for a plain number.
+        Unit in results, files and figures; "" for a plain number.
     name : str
-        Its name on an axis of a figure or at the head of a column.
+        Name on the axis of a figure or at the head of a column.
     symbol : str
-        Its symbol in formulas, where it has one.
+        Symbol in formulas, if it has one.
     sign : {"positive", "not negative", "any"}
-        The sign of its values.
+        Sign of the values.
     limit : float
-        Its largest magnitude [SI].
+        Largest magnitude [SI].
     """
 
     unit: str
@@ -38,7 +38,7 @@ class Variable:
 
     @cached_property
     def expected(self) -> Unit:
-        """The unit and the bounds of an argument."""
+        """Unit and bounds of an argument."""
         return Unit("" if self.unit == "%" else self.unit, positive=self.sign == "positive", limit=self.limit)
 
 
@@ -91,30 +91,30 @@ VARIABLES: Mapping[str, Variable] = {
     "wear_rate_error": Variable(WEAR_RATE, "wear rate error", "", "not negative"),
     "wear_rate_uncertainty": Variable(WEAR_RATE, "wear rate uncertainty"),
 }
-"""Each variable by the name that the code gives it."""
+"""The variables by their names in code."""
 
 GIVEN = (
     *("a", "b", "area", "track_width", "relative_radius", "shear_modulus", "density", "rolling_speed"),
     *("frictional_heat", "wear_rate_uncertainty"),
 )
-"""Variables that are given and never among results."""
+"""Variables that are inputs only, never results."""
 
 UNITS: Mapping[str, str] = {name: one.unit for name, one in VARIABLES.items() if name not in GIVEN}
-"""The unit in which results show each variable."""
+"""Unit of each variable in results."""
 
 
 def name_of(variable: str) -> str:
-    """Return the name of a variable for readers; a condition of another rig keeps the name that the rig gives it."""
+    """Return the readable name of a variable; a condition that only its rig knows keeps the rig's name."""
     known = VARIABLES.get(variable)
     return known.name if known else variable.replace("_", " ")
 
 
 def label(*variables: str, units: Mapping[str, str] = UNITS) -> str:
-    """Return the names of variables of one unit, with the unit, as in "creepage [%]"."""
+    """Return the names of variables that share a unit, with the unit, as in "creepage [%]"."""
     unit = units[variables[0]].replace("ug", "µg").replace("um", "µm").replace("mm^2", "mm²").replace("*", "·")
     return f"{', '.join(name_of(variable) for variable in variables)} [{unit or '-'}]"
 
 
 def expected(*names: str) -> dict[str, Unit]:
-    """Return the units and bounds of arguments by name."""
+    """Return the units and bounds of arguments, by name."""
     return {name: VARIABLES[name].expected for name in names}
