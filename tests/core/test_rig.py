@@ -221,3 +221,17 @@ def said_by(rig: wl.TwinDisc, pressure: Any, **conditions: Any) -> list[tuple[st
         (rig | wl.contact_model("exact"))(max_pressure=load, **conditions)
     assert all(one.category is wl.PlasticityWarning for one in caught)
     return [re.search(r"beyond (.*), (\d+) MPa", str(one.message)).groups() for one in caught]  # type: ignore[union-attr,misc]
+
+
+def test_on_an_ellipse_the_limits_are_those_of_its_shape() -> None:
+    rails = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="60 mm", material=wl.steel(), rolling_speed="20 m/s")
+    contact = rails | wl.contact_model("fastsim")
+    given: Any = {"normal_force": "40 kN", "longitudinal_creepage": "0.3 %", "friction_coefficient": 0.3}
+    with pytest.warns(wl.PlasticityWarning, match="beyond first yield") as caught:
+        r = contact(**given)
+    traction = r.traction_coefficient.magnitude
+    ratio = float(r.semi_axis_a.magnitude / r.semi_axis_b.magnitude)
+    limit = wl.elastic_limit.first_yield(541.3e6, traction, 0.3, poisson_ratio=0.28, axis_ratio=ratio)
+    line = wl.elastic_limit.first_yield(541.3e6, traction, 0.3, poisson_ratio=0.28)
+    assert abs(float(limit) - float(line)) > 20e6
+    assert f"yield, {1e-6 * float(limit):.4g} MPa: " in str(caught[0].message)
