@@ -7,8 +7,6 @@ strips have as many nodes as the others, divided among their zones.
 
 from __future__ import annotations
 
-import dataclasses
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -19,8 +17,7 @@ from wearlaw_fastsim._march import Ellipses
 from wearlaw_fastsim._zones import NODES, Strips, stick_and_slip
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StripFields:
+class StripFields(NamedTuple):
     """Solution along strips, as SI arrays of shape (points, nodes of a strip, strips).
 
     Attributes
@@ -112,15 +109,14 @@ def strips(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_nodes: int
     """
     rows = _rows(ellipses, layout)
     compiled = wl.accelerated(rows[0].size * (stick_nodes + slip_nodes) // NODES)
-    *fields, _ = stick_and_slip(Strips(rows, ellipses.elliptic, compiled), stick_nodes, slip_nodes)
-    names = (field.name for field in dataclasses.fields(StripFields))
-    return StripFields(**{name: np.moveaxis(field, -1, 0) for name, field in zip(names, fields, strict=True)})
+    zone = stick_and_slip(Strips(rows, ellipses.elliptic, compiled), stick_nodes, slip_nodes)
+    return StripFields(*(getattr(zone, name).transpose(2, 0, 1) for name in StripFields._fields))
 
 
 def forces(layout: Layout, fields: StripFields) -> wl.CreepForces:
     """Return the forces and the moment that strips transmit."""
-    names = ("length", "x", "traction_x", "traction_y")
-    length, x, q_x, q_y = (np.moveaxis(getattr(fields, name), 0, -1) for name in names)  # in memory order
+    arrays = fields.length, fields.x, fields.traction_x, fields.traction_y
+    length, x, q_x, q_y = (array.transpose(1, 2, 0) for array in arrays)  # in memory order
     along, across = np.einsum("kjp,kjp->jp", length, q_x), np.einsum("kjp,kjp->jp", length, q_y)
     turning = np.einsum("kjp,kjp,kjp->jp", length, x, q_y) + layout.y * along
     longitudinal, lateral, moment = ((layout.width * part).sum(axis=0) for part in (along, across, turning))

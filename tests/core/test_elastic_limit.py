@@ -317,18 +317,23 @@ def test_a_criterion_that_is_not_known_is_refused() -> None:
         first_yield(1.0, 0.1, poisson_ratio=0.3, criterion="rankine")  # type: ignore[arg-type]
 
 
-def test_an_overload_is_the_same_of_one_point_and_of_many() -> None:
+@pytest.mark.parametrize("shape", ["line", "ellipse"])
+def test_an_overload_is_the_same_of_one_point_and_of_many(shape: str) -> None:
     random = np.random.default_rng(3)
     p0, mu = random.uniform(5e8, 2.5e9, 300), random.uniform(0.05, 0.6, 300)
     t = mu * random.uniform(0.0, 1.0, 300)
+    ratio = None if shape == "line" else np.append(2.0 ** random.uniform(-2.0, 2.0, 298), [0.01, 40.0])
     bodies = [(K, 0.28), (0.9 * K, 0.4)]
-    points = [tuple(np.asarray(one) for one in point) for point in zip(p0, t, mu, strict=True)]
-    alone = [overload(bodies, at_p0, at_t, at_mu, None) for at_p0, at_t, at_mu in points]
+    alone = [
+        overload(bodies, p0[i], t[i], mu[i, None], None if ratio is None else ratio[i])
+        for i in range(300)
+    ]
     worst = max(one for one in alone if one is not None)
-    assert overload(bodies, p0, t, mu, None) == pytest.approx(worst, rel=1e-14)
-    for one, at_p0, at_t, at_mu in zip(alone, p0, t, mu, strict=True):
-        yields = min(float(first_yield(k, at_t, at_mu, poisson_ratio=nu)) for k, nu in bodies)
-        shakes = min(float(shakedown_limit(k, at_t, at_mu)) for k, _ in bodies)
+    assert overload(bodies, p0, t, mu, ratio) == pytest.approx(worst, rel=1e-14)
+    ratios = np.zeros(300) if ratio is None else ratio
+    for one, at_p0, at_t, at_mu, of in zip(alone, p0, t, mu, ratios, strict=True):
+        yields = min(float(first_yield(k, at_t, at_mu, poisson_ratio=nu, axis_ratio=of)) for k, nu in bodies)
+        shakes = min(float(shakedown_limit(k, at_t, at_mu, axis_ratio=of)) for k, _ in bodies)
         assert (one is None) == (at_p0 <= yields)
         if one is not None:
             assert one.beyond_shakedown == (at_p0 > shakes)

@@ -198,6 +198,20 @@ def test_a_contact_is_solved_once_whatever_is_read_of_it(use_patch_mean: bool) -
         assert value[1, 0].magnitude == pytest.approx(getattr(alone, name).magnitude, rel=64 * EPS), name
 
 
+def test_the_slip_of_many_ellipses_is_kept_though_their_contacts_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("wearlaw.numerics.integrate.ELLIPSE_NODES", 2 * 140)  # blocks of two
+    creepage = np.linspace(0.01, 1.0, 11)
+    conditions = {**CONDITIONS, "longitudinal_creepage": Q(creepage, "%")}
+    Counted.solved.clear()
+    result = (RIG | Counted() | PER_ENERGY)(**conditions)
+    found = {name: getattr(result, name).magnitude for name in ("mean_slip", "stick_ratio", "cell_wear_index")}
+    assert Counted.solved == [1, 2, 2, 2, 2, 2, 1]  # the first counts the nodes
+    for i in range(11):
+        alone = (RIG | Counted() | PER_ENERGY)(**{**CONDITIONS, "longitudinal_creepage": Q(creepage[i], "%")})
+        for name, values in found.items():
+            assert values[i] == pytest.approx(getattr(alone, name).magnitude, rel=64 * EPS), name
+
+
 def test_a_body_that_is_not_there_is_named() -> None:
     result = (RIG | FASTSIM | PER_ENERGY)(**CONDITIONS)
     for call in (lambda: result.wear_profile("disc_1"), lambda: result.mass_lost("1 km", "disc_1")):

@@ -257,7 +257,7 @@ def test_compiled_loops_are_the_same_as_numpy(elliptic: bool) -> None:
         wl.accelerate(on)
         found.append(strips_at(patches, shares, 4, 10))
     wl.accelerate(None)
-    for name in (field.name for field in dataclasses.fields(found[0])):
+    for name in found[0]._fields:
         plain, compiled = (getattr(fields, name) for fields in found)
         # rounding of some ten operations in each of the nodes, as where a patch is mirrored
         np.testing.assert_allclose(compiled, plain, rtol=0.0, atol=1000 * EPS * np.abs(plain).max(), err_msg=name)

@@ -39,8 +39,9 @@ SI units.
 
 from __future__ import annotations
 
+import math
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, TypeVar
 
@@ -73,6 +74,9 @@ PER_OCTAVE = 2.0
 
 OCTAVES = 5.0
 """Octaves to either side of the circle; a more slender ellipse counts as one with a/b of 1/32 or 32."""
+
+LAST_STEP = PER_OCTAVE * OCTAVES - 1.0
+"""Place of the last but one axis ratio in the tables."""
 
 DIRECTIONS = 48
 """Directions of loads in a quarter of an ellipse."""
@@ -196,30 +200,32 @@ def overload(
     max_pressure, traction_coefficient, friction_coefficient, axis_ratio : ndarray
         Arrays of one shape, not negative; an `axis_ratio` of None is a line.
     """
-    arrays = [max_pressure, traction_coefficient, friction_coefficient, *([] if axis_ratio is None else [axis_ratio])]
-    scalar = axis_ratio is None and max_pressure.ndim == 0
+    arrays: list[Any] = [max_pressure, traction_coefficient, friction_coefficient]
+    if axis_ratio is not None:
+        arrays.append(axis_ratio)
+    find: Callable[..., Overload | None] = _overload_among
+    if max_pressure.ndim == 0 or max_pressure.size == 1:  # floats take a tenth of the time of arrays
+        find, arrays = _overload, [array.item() for array in arrays]
     worst = None
     for k, nu in bodies:
-        if scalar:  # floats take a tenth of the time of arrays
-            found = _overload(k, nu, float(max_pressure), float(traction_coefficient), float(friction_coefficient))
-        else:
-            found = _overload_among(k, nu, [array.reshape(-1) for array in arrays])
+        found = find(k, nu, *arrays)
         if found is not None:
             worst = found if worst is None else max(worst, found)
     return worst
 
 
-def _overload_among(k: float, nu: float, arrays: list[Array]) -> Overload | None:
-    """Return `overload` of one body for arrays with one axis."""
+def _overload_among(k: float, nu: float, *arrays: Array) -> Overload | None:
+    """Return `overload` of one body at many operating points."""
     worst = None
-    for start in range(0, arrays[0].size, BLOCK):
-        p0, t, mu, *ratio = (array[start : start + BLOCK] for array in arrays)
+    flat = [array.reshape(-1) for array in arrays]
+    for start in range(0, flat[0].size, BLOCK):
+        p0, t, mu, *ratio = (array[start : start + BLOCK] for array in flat)
         if not ratio and _surely_elastic(k, nu, float(p0.max()), float(t.max()), float(mu.max())):
             continue
         for measure in ("forward", "von_mises"):
             load = p0 * _peak(measure, nu, t, mu, *ratio) / k
             at = int(load.argmax())
-            if load[at] > 1.0:  # beyond shakedown there is no need to check first yield
+            if load[at] > 1.0:
                 found = Overload(measure == "forward", float(load[at]), float(p0[at]), float(t[at]))
                 worst = found if worst is None else max(worst, found)
                 break
@@ -233,16 +239,17 @@ def _surely_elastic(k: float, nu: float, max_pressure: float, traction: float, f
     return max_pressure * (1.0 + friction) * most <= k
 
 
-def _overload(k: float, nu: float, max_pressure: float, traction: float, friction: float) -> Overload | None:
-    """Return `overload` of one body at one operating point on a line."""
-    if _surely_elastic(k, nu, max_pressure, traction, friction):
+def _overload(
+    k: float, nu: float, max_pressure: float, traction: float, friction: float, axis_ratio: float | None = None
+) -> Overload | None:
+    """Return `overload` of one body at one operating point."""
+    if axis_ratio is None and _surely_elastic(k, nu, max_pressure, traction, friction):
         return None
-    load = max_pressure * _on_line("von_mises", nu, traction, friction) / k
-    if load <= 1.0:
-        return None
-    forward = max_pressure * _on_line("forward", nu, traction, friction) / k
-    beyond = forward > 1.0
-    return Overload(beyond, forward if beyond else load, max_pressure, traction)
+    for measure in ("forward", "von_mises"):
+        load = max_pressure * _peak_at(measure, nu, traction, friction, axis_ratio) / k
+        if load > 1.0:  # beyond shakedown there is no need to check first yield
+            return Overload(measure == "forward", load, max_pressure, traction)
+    return None
 
 
 def _peak_of(measure: str, nu: float, traction: ArrayLike, friction: ArrayLike | None, axis_ratio: ArrayLike) -> Array:
@@ -262,16 +269,30 @@ def _peak(measure: str, nu: float, traction: Array, friction: Array, axis_ratio:
     if axis_ratio is None:
         return _on_line(measure, nu, traction, friction)
     places = PER_OCTAVE * np.clip(np.log2(axis_ratio), -OCTAVES, OCTAVES)
-    lows = np.minimum(np.floor(places), PER_OCTAVE * OCTAVES - 1)
+    lows = np.minimum(np.floor(places), LAST_STEP)
     peak: Array = np.empty(places.shape)
     for low in np.unique(lows):
         here = lows == low
-        at_low, at_high = (
-            _interpolated(_table(measure, nu, 2.0 ** (end / PER_OCTAVE)), traction[here], friction[here], 1.0 / 3.0)
-            for end in (low, low + 1.0)
-        )
-        peak[here] = at_low + (places[here] - low) * (at_high - at_low)
+        peak[here] = _between(measure, nu, low, places[here], traction[here], friction[here])
     return peak
+
+
+def _peak_at(measure: str, nu: float, traction: float, friction: float, axis_ratio: float | None) -> float:
+    """Return `_peak` at one operating point."""
+    if axis_ratio is None:
+        return _on_line(measure, nu, traction, friction)
+    place = PER_OCTAVE * min(max(math.log2(axis_ratio), -OCTAVES), OCTAVES)
+    return _between(measure, nu, min(math.floor(place), LAST_STEP), place, traction, friction)
+
+
+def _between(measure: str, nu: float, low: float, place: _Value, traction: _Value, friction: _Value) -> _Value:
+    """Return the value between the tables of two axis ratios, at places from `low` to `low` + 1."""
+    at_low, at_high = (
+        _interpolated(_table(measure, nu, 2.0 ** (end / PER_OCTAVE)), traction, friction, 1.0 / 3.0)
+        for end in (low, low + 1.0)
+    )
+    value: _Value = at_low + (place - low) * (at_high - at_low)
+    return value
 
 
 def _on_line(measure: str, nu: float, traction: _Value, friction: _Value) -> _Value:

@@ -520,6 +520,8 @@ class Problem:
 
     def flatten(self) -> Self:
         """Return the problem with a batch of one axis that holds the existing patches."""
+        if self.longitudinal_creepage.ndim == 1 and not self.dims and self.exists is None:
+            return self
         flat = self.mapped(_flat)
         if not flat.dims and flat.exists is None:
             return flat
@@ -544,14 +546,24 @@ class Problem:
 
     def mapped(self, function: Callable[[Array], Array]) -> Self:
         """Return the problem with a function applied to each of its arrays."""
-        fields: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
-        for name, value in fields.items():
-            if isinstance(value, np.ndarray | np.floating):
-                fields[name] = function(value)  # type: ignore[arg-type]  # a scalar of NumPy
-        if self.strips is not None:
-            fields["strips"] = self.strips.mapped(function)
-        fields["bodies"] = {name: body.mapped(function) for name, body in self.bodies.items()}
-        return type(self)(**fields)
+        fields: dict[str, Any] = {name: function(getattr(self, name)) for name in ARRAYS}
+        for name in OPTIONAL_ARRAYS:
+            array = getattr(self, name)
+            fields[name] = None if array is None else function(array)
+        return type(self)(
+            geometry=self.geometry,
+            **fields,
+            strips=None if self.strips is None else self.strips.mapped(function),
+            bodies={name: body.mapped(function) for name, body in self.bodies.items()},
+            dims=self.dims,
+        )
+
+
+OPTIONAL_ARRAYS = ("traction_coefficient", "exists")
+"""The arrays of a `Problem` that can be None."""
+
+ARRAYS = tuple(one.name for one in dataclasses.fields(Problem) if one.type == "Array")
+"""The other arrays of a `Problem`."""
 
 
 def _flat(array: Array) -> Array:

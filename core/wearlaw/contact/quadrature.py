@@ -80,6 +80,10 @@ class Zone:
         """Return the zones of some operating points."""
         return type(self)(self.patch[points], self.length[points], self.span[points], self.angle[points])
 
+    def flatten(self) -> Self:
+        """Return the zones with one axis."""
+        return type(self)(*(np.reshape(value, -1) for value in (self.patch, self.length, self.span, self.angle)))
+
     @classmethod
     def of(cls, half_width: Array, length: Array, over_patch: bool) -> Self:
         """Return the zone with a length; ψ is mapped over the whole patch or over the zone."""

@@ -43,7 +43,7 @@ def crossings(
     model : LineContactModel
         The contact model.
     problem : Problem
-        With a batch of one axis, (points,), and creepage ≥ 0.
+        With a batch of at most one axis and creepage ≥ 0.
     zone : Zone
         The slip zone.
     breakpoints : mapping of str to tuple of float or ndarray
@@ -51,43 +51,40 @@ def crossings(
 
     Returns
     -------
-    ndarray, (points, k)
+    ndarray, (batch, k)
         ψ of each crossing, exact to rounding; the zone's angle if there is no crossing. k is at most 2 × the number of
         breakpoints.
     """
-    points = problem.creepage.size
-    distances, columns = [np.empty((points, 0))], [np.empty((points, 0))]
+    shape = problem.batch_shape
+    distances, columns = [np.empty((*shape, 0))], []
     for name, values in breakpoints.items():
-        if not values:
-            continue
-        levels = np.empty((points, len(values)))
-        for column, value in enumerate(values):
-            levels[:, column : column + 1] = value
-        found = _in_closed_form(model, problem, name, levels)
-        if found is not None:
-            distances.append(found)
-        else:
-            searched = _Variable(model, problem, zone, name)
-            columns += [zone.angle[:, None] * _searched(searched, level[:, None]) for level in levels.T]
+        searched = None
+        for value in values:
+            level: Any = np.full(shape, value[:, 0] if np.ndim(value) else value) if shape else np.float64(value)
+            found = _in_closed_form(model, problem, name, level)
+            if found is not None:
+                distances.append(found)
+                continue
+            searched = searched or _Variable(model, problem, zone, name)
+            share = _searched(searched, level.reshape(-1, 1)).reshape(*shape, CROSSINGS)
+            columns.append(zone.angle[..., None] * share)
     columns.append(zone.angle_of(np.concatenate(distances, axis=-1)))
-    return np.sort(np.concatenate(columns, axis=-1), axis=-1)
+    return np.sort(np.concatenate(columns, axis=-1) if len(columns) > 1 else columns[0], axis=-1)
 
 
-def _in_closed_form(model: LineContactModel, problem: Problem, name: str, levels: Array) -> Array | None:
-    """Return the distances from the trailing edge at which a variable crosses levels (points, k), or None."""
-    points, count = levels.shape
+def _in_closed_form(model: LineContactModel, problem: Problem, name: str, level: Array) -> Array | None:
+    """Return the distances from the trailing edge at which a variable crosses a level (batch), or None."""
     if name == "slip_speed":
-        name, levels = "slip", levels / problem.rolling_speed[:, None]
-    each = problem if count == 1 else problem[np.repeat(np.arange(points), count)]
-    distance = model.crossings(each, cast(FieldVariable, name), levels.ravel())
-    return None if distance is None else distance.reshape(points, -1)
+        name, level = "slip", level / problem.rolling_speed
+    return model.crossings(problem, cast(FieldVariable, name), level)
 
 
 class _Variable:
     """The magnitude of one variable of the contact as a function of ψ/Ψ, sampled over the slip zone."""
 
     def __init__(self, model: LineContactModel, problem: Problem, zone: Zone, name: str) -> None:
-        self.model, self.problem, self.zone, self.name = model, problem, zone, name
+        self.model, self.name = model, name
+        self.problem, self.zone = problem.flatten(), zone.flatten()
         self.share = _sample_shares()
         points = np.arange(problem.creepage.size)
         self.samples = self._values(np.broadcast_to(self.share, (points.size, self.share.size)), points)

@@ -97,7 +97,10 @@ class WearTotals:
     patch_area : ndarray or None
         Area of the patch, the sum of its nodes' areas [m²]; None if it equals the area of the problem.
     contact : Contact or None
-        The model's solution, for a batch of one axis; only for an ellipse that fits into one block.
+        The model's solution if all points were solved at once, on nodes that cover the patch; of the batch shape or
+        with one batch axis.
+    slip : SlipTotals or None
+        The slip, if an ellipse has several blocks; their contacts are not kept.
     """
 
     wear_rate: Array
@@ -105,6 +108,7 @@ class WearTotals:
     forces: CreepForces | None = None
     patch_area: Array | None = None
     contact: Contact | None = None
+    slip: SlipTotals | None = None
 
 
 def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
@@ -137,18 +141,27 @@ def integrate_slip(
 
     def columns(part: Problem, _: slice) -> Columns:
         solved = solved_before or solver.solve(part)
-        contact = seen_by_law(model, solved, scale)
-        slip_area, patch_area = contact.slip_area, contact.patch_area
+        found = _slip_columns(seen_by_law(model, solved, scale), solved)
         if scale == "cells" and isinstance(model, LineContactModel) and part.geometry == "line":
-            slip_area, patch_area = model.slip_length(part.forward()) * part.track_width, part.patch_area
-        return {
-            "mean_slip": contact.mean_slip,
-            "slip_area": slip_area,
-            "patch_area": patch_area,
-            "cell_wear_index": solved.cell_wear_index,
-        }
+            found["slip_area"] = model.slip_length(part.forward()) * part.track_width
+            found["patch_area"] = part.patch_area
+        return found
 
-    return SlipTotals(**_by_block(solver, problem, columns))
+    if solved_before is None:
+        return SlipTotals(**_by_block(solver, problem, columns))
+    part = problem if solved_before.rolling_speed.shape == problem.batch_shape else problem.flatten()
+    found = solver.columns(part, ALL, columns)
+    return SlipTotals(**{name: problem.unflatten(values) for name, values in found.items()})
+
+
+def _slip_columns(seen: Contact, solved: Contact) -> Columns:
+    """Return the columns of `SlipTotals` of a contact as the law sees it, and as it was solved."""
+    return {
+        "mean_slip": seen.mean_slip,
+        "slip_area": seen.slip_area,
+        "patch_area": seen.patch_area,
+        "cell_wear_index": solved.cell_wear_index,
+    }
 
 
 def patch_area(model: ContactModel, problem: Problem, scale: Scale) -> Array:
@@ -200,24 +213,23 @@ def _over_ellipse(
     p: Numbers,
 ) -> WearTotals:
     solver = Solver(model)
-    solved: list[Contact] = []
     across = {name: value[..., None] if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
     def columns(part: Problem, points: slice) -> Columns:
         contact = solver.solve(part)
-        if part.size == problem.size:
-            solved.append(contact)
         seen = seen_by_law(model, contact, scale)
         area = seen.patch_area
         rate = seen.sum_over_nodes(solver.rate(law, seen, part, _at_points(across, points)) * seen.area) / area
-        return {"wear_rate": rate, "patch_area": area, **_columns(contact.forces)}
+        found = {"wear_rate": rate, "patch_area": area, **_columns(contact.forces)}
+        return found if part.size == problem.size else found | _slip_columns(seen, contact)
 
     found = _by_block(solver, problem, columns, on_block)
     return WearTotals(
         wear_rate=found["wear_rate"],
         forces=CreepForces.of(found),
         patch_area=found["patch_area"],
-        contact=solved[0] if solved else None,
+        contact=solver.solved,
+        slip=None if solver.solved else SlipTotals(**{name: found[name] for name in SlipTotals.__slots__}),
     )
 
 
@@ -233,30 +245,30 @@ def _over_line(
         ramps = law.ramps(p) if scale == "cells" else None
     closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
 
-    if closed and problem.batch_shape == ():  # compute scalars as scalars
-        with Blame(model):
-            found = closed_form(*closed, problem)
-        if found is not None:
-            check_columns(model, found, problem)
-            if on_block is not None:
-                on_block(problem, found)
-            return WearTotals(wear_rate=found["wear_rate"])
     solver = Solver(model)
 
     def columns(part: Problem, points: slice) -> Columns:
         found = closed and closed_form(*closed, part, points)
         return found or _from_nodes(solver, law, _at_points(p, points), part, scale)
 
+    known = isinstance(model, LineContactModel)
+    if known and scale == "cells" and problem.batch_shape == () and problem.exists is None:
+        found = solver.columns(problem, ALL, columns)  # scalars take less time than arrays of one number
+        if on_block is not None:
+            on_block(problem, found)
+        error = found.get("wear_rate_error")
+        return WearTotals(wear_rate=found["wear_rate"], wear_rate_error=error, contact=solver.solved)
     block = NODE_BLOCK
     if closed:
         block = COMPILED_BLOCK if accelerated(problem.creepage.size) else BLOCK
-    found = solver.by_block(problem, block, columns, on_block, isinstance(model, LineContactModel))
+    found = solver.by_block(problem, block, columns, on_block, known)
     forces = CreepForces.of(found) if "longitudinal" in found else None
     return WearTotals(
         wear_rate=found["wear_rate"],
         wear_rate_error=found.get("wear_rate_error"),
         forces=forces,
         patch_area=found.get("patch_area"),
+        contact=solver.solved,
     )
 
 
@@ -414,6 +426,8 @@ def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:
 def _from_nodes(solver: Solver, law: WearLaw, p: Numbers, problem: Problem, scale: Scale) -> Columns:
     """Return the mean of a law's rate at nodes."""
     model = solver.model
+    if scale == "cells" and isinstance(model, LineContactModel) and problem.batch_shape == ():
+        return _over_slip_zone(solver, model, law, p, problem)
 
     def columns(part: Problem, points: slice) -> Columns:
         own = _at_points(p, points)
@@ -436,17 +450,18 @@ def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Nu
     totals = solver.block_is_summed()
     if splits is None:
         return _over_panels(solver, law, p, problem, (stick, slip), None, totals)
-    needed = np.sum((splits > 0.0) & (splits < slip.angle[:, None]), axis=-1)
-    first = np.sum(splits <= 0.0, axis=-1)
-    counts = np.flatnonzero(np.bincount(needed))
+    inside = (splits > 0.0) & (splits < slip.angle[..., None])
+    needed = inside.sum(axis=-1)
+    most = int(needed.max())
+    if needed.min() == most:
+        own = splits[inside].reshape(*needed.shape, most)
+        return _over_panels(solver, law, p, problem, (stick, slip), own, totals)
     whole: Columns = {}
-    for count in counts:
-        points: Any = ALL if counts.size == 1 else np.flatnonzero(needed == count)
-        own_splits = np.take_along_axis(splits[points], first[points, None] + np.arange(count), axis=-1)
-        part, zones = (problem, (stick, slip)) if counts.size == 1 else (problem[points], (stick[points], slip[points]))
-        found = _over_panels(solver, law, _at_points(p, points), part, zones, own_splits, totals)
-        if counts.size == 1:
-            return found
+    for count in np.unique(needed):
+        points = np.flatnonzero(needed == count)
+        own = splits[points][inside[points]].reshape(points.size, count)
+        zones = stick[points], slip[points]
+        found = _over_panels(solver, law, _at_points(p, points), problem[points], zones, own, totals)
         for name, values in found.items():
             whole.setdefault(name, np.empty(problem.creepage.shape))[points] = values
     return whole

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -59,11 +60,22 @@ class Solver:
     Parameters
     ----------
     model : ContactModel
+
+    Attributes
+    ----------
+    solved : Contact or None
+        The contact of all points so far, if they were solved at once on nodes that cover the patch.
     """
 
     def __init__(self, model: ContactModel) -> None:
         self.model = model
         self._blocks = 0
+        self._times = 0
+        self.solved: Contact | None = None
+
+    def _keep(self, contact: Contact | None) -> None:
+        self._times += 1
+        self.solved = contact if self._times == 1 else None
 
     def by_block(
         self,
@@ -80,22 +92,25 @@ class Solver:
         ModelError
             If the model or the law fails, or a column is not one finite float64 for each operating point.
         """
-
-        def checked(part: Problem, points: slice) -> Columns:
-            with Blame(self.model):
-                found = columns(part, points)
-            check_columns(self.model, found, part)
-            return found
-
+        checked = partial(self.columns, columns=columns)
         found = by_block(problem.flatten(), block, checked, on_block, drop_force)
         return {name: problem.unflatten(values) for name, values in found.items()}
+
+    def columns(self, part: Problem, points: slice, columns: OfBlock) -> Columns:
+        """Return the checked columns of a function of one block; `points` is its slice of the whole problem."""
+        with Blame(self.model):
+            found = columns(part, points)
+        check_columns(self.model, found, part)
+        return found
 
     def solve(self, problem: Problem) -> Contact:
         """Return the contact on the model's own nodes."""
         with Blame(self.model):
             contact = self.model.solve(problem)
         self.check(contact, problem, totals=self.block_is_summed())
-        return contact if contact.problem is not None else contact.replaced(problem=problem)
+        contact = contact if contact.problem is not None else contact.replaced(problem=problem)
+        self._keep(contact)
+        return contact
 
     def at(self, problem: Problem, nodes: Nodes, *, totals: bool) -> Contact:
         """Return the contact on given nodes, for a model with closed-form fields.
@@ -106,6 +121,7 @@ class Solver:
         with Blame(self.model):
             contact = self.model.at(problem, nodes)
         self.check(contact, problem, totals=totals, areas=False)
+        self._keep(contact if totals else None)
         return contact
 
     def block_is_summed(self) -> bool:
@@ -244,13 +260,14 @@ def _rounding_of_traction(model: ContactModel) -> float:
 def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> None:
     """Compare sums over the nodes with the totals, within the model's declared accuracy."""
     ellipse = contact.on_strips
-    totals = np.stack([getattr(contact, name) for name in (TOTALS if ellipse else LINE_TOTALS)])
+    totals = sum(getattr(contact, name) for name in (TOTALS if ellipse else LINE_TOTALS))  # finite if each is
     vectors = (getattr(contact, name) for name in (VECTORS if ellipse else ()))
     if not all(math.isfinite(_product(values, values)) for values in (totals, *vectors)):
         check_finite(model, contact, problem)
     limit = np.maximum(problem.friction_coefficient * problem.normal_force, np.abs(contact.tangential_force))
-    area = contact.area
-    if contact.on_strips:
+    nodes = (*contact.rolling_speed.shape, -1)
+    area = contact.area.reshape(nodes)
+    if ellipse:
         declared, error = "elliptic_accuracy", SLACK * max(model.elliptic_accuracy, ROUNDINGS)
         sums = {
             "force_x": (contact.traction_x, limit),
@@ -265,9 +282,10 @@ def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> No
         if "energy_balance" not in model.exemptions and model.scale == "cells":
             sums["wear_index"] = contact.wear_index_density, limit * np.abs(problem.longitudinal_creepage)
     for name, (values, size) in {"normal_force": (contact.pressure, contact.normal_force), **sums}.items():
-        total, found = getattr(contact, name), contact.sum_over_nodes(values * area)
-        wrong = ~(np.abs(found - total) <= error * size)
-        if wrong.any():
+        total, found = getattr(contact, name), np.vecdot(values.reshape(nodes), area)
+        right = np.abs(found - total) <= error * size
+        if not right.all():
+            wrong = ~right
             check_finite(model, contact, problem)
             first = _first(wrong)
             raise _error(

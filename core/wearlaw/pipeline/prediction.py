@@ -370,11 +370,13 @@ class Prediction:
 
     @cached_property
     def _slip(self) -> SlipTotals:
+        if self._given_wear is not None and self._given_wear.slip is not None:
+            return self._given_wear.slip
         return integrate.integrate_slip(self.contact_model, self.problem, self.scale, self._solved)
 
     @property
     def _solved(self) -> Contact | None:
-        """The contact solved for the wear, with one batch axis; None if it was not kept."""
+        """The contact solved for the wear, of the batch shape or with one batch axis; None if it was not kept."""
         return None if self._given_wear is None else self._given_wear.contact
 
     @cached_property
