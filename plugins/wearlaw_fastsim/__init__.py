@@ -54,7 +54,8 @@ class Fastsim(wl.LineContactModel):
 
     march: Literal["adaptive", "uniform"] = "adaptive"
     """Nodes on an ellipse. "adaptive": few in the stick zone and the others in the slip zone, with formulas of second
-    order between them. "uniform": cells of equal length along each strip, as in Kalker's march."""
+    order between them. "uniform": cells of equal length along each strip, as in Kalker's march. On a patch of given
+    strips the nodes are always adaptive."""
 
     strips: Annotated[int, Field(ge=2, le=1000, strict=True)] = 10
     """Number of strips of an ellipse. The number of nodes along a strip is proportional to it; a uniform march has as
@@ -117,8 +118,6 @@ class Fastsim(wl.LineContactModel):
 
     def solve_strips(self, problem: wl.Problem) -> wl.Contact:
         """Return the contact on the strips of the problem, which do not feel each other."""
-        if self.march == "uniform":
-            raise wl.CompositionError("contact model 'fastsim' solves patches of strips with march='adaptive' only")
         patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
         contact = _solution.on_given_strips(problem, patches, self.strips)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact

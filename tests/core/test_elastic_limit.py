@@ -324,10 +324,7 @@ def test_an_overload_is_the_same_of_one_point_and_of_many(shape: str) -> None:
     t = mu * random.uniform(0.0, 1.0, 300)
     ratio = None if shape == "line" else np.append(2.0 ** random.uniform(-2.0, 2.0, 298), [0.01, 40.0])
     bodies = [(K, 0.28), (0.9 * K, 0.4)]
-    alone = [
-        overload(bodies, p0[i], t[i], mu[i, None], None if ratio is None else ratio[i])
-        for i in range(300)
-    ]
+    alone = [overload(bodies, p0[i], t[i], mu[i, None], None if ratio is None else ratio[i]) for i in range(300)]
     worst = max(one for one in alone if one is not None)
     assert overload(bodies, p0, t, mu, ratio) == pytest.approx(worst, rel=1e-14)
     ratios = np.zeros(300) if ratio is None else ratio

@@ -180,10 +180,15 @@ def test_models_that_do_not_solve_strips_say_so(model: str, said: str) -> None:
         Humps() | wl.contact_model(model)
 
 
+def test_given_strips_have_adaptive_nodes_whatever_the_march_on_ellipses() -> None:
+    conditions: Any = {"creepage": "1 %", "friction_coefficient": 0.3}
+    uniform, adaptive = (
+        (Humps() | wl.contact_model("fastsim", march=march))(**conditions) for march in ("uniform", "adaptive")
+    )
+    assert uniform.longitudinal_force == adaptive.longitudinal_force
+
+
 def test_what_strips_cannot_do_is_said() -> None:
-    predict: Any = Humps() | wl.contact_model("fastsim", march="uniform")
-    with pytest.raises(wl.CompositionError, match="solves patches of strips with march='adaptive' only"):
-        predict(creepage="1 %", friction_coefficient=0.3)
     with pytest.raises(wl.CompositionError, match="the pressure of strips is given"):
         two_humps(1e-3).with_normal_force(np.array([1e4]))
     found: Any = (Humps() | wl.contact_model("fastsim"))(creepage="1 %", friction_coefficient=0.3)

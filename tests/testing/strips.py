@@ -42,9 +42,8 @@ class Strips(wl.ContactModel):
         edges = np.concatenate([[-1.0], 0.5 * (shares[1:] + shares[:-1]), [1.0]])
         return self.at(problem, shares, np.diff(edges))
 
-    def at(self, problem: wl.Problem, shares: Any, widths: Any) -> wl.Contact:
-        """Return the contact on strips at y = `shares` × b, which stand for `widths` × b."""
-        a, b = problem.a[..., None, None], problem.b[..., None, None]
+    def at(self, problem: wl.Problem, shares: Any = None, widths: Any = None) -> wl.Contact:
+        """Return the contact on strips at y = `shares` × b that stand for `widths` × b, or on those of the problem."""
         known = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
         modulus = problem.shear_modulus
         along, across, turning = (
@@ -57,31 +56,42 @@ class Strips(wl.ContactModel):
         )
         creepages = (problem.longitudinal_creepage, problem.lateral_creepage, problem.spin)
         creep_x, creep_y, spin = (creepage[..., None, None] for creepage in creepages)
-        half_length = a * np.sqrt(1.0 - shares**2)
+        given = problem.strips
+        if given is None:
+            y, width = problem.b[..., None] * shares, problem.b[..., None] * widths
+            half_length = (problem.a[..., None] * np.sqrt(1.0 - shares**2))[..., None, :]
+            # The parabola with the load N of an ellipse has 2N/A in the centre.
+            centre = (2.0 * problem.normal_force / problem.patch_area)[..., None] * (1.0 - shares**2)
+        else:
+            y, width, half_length = given.y, given.width, given.half_length[..., None, :]
+            # The paraboloid of an ellipse is proportional to p². With the load N, ∫ c p² dx = 4/3 c a p0².
+            squares = given.max_pressure**2
+            load = (4.0 / 3.0 * given.half_length * given.width * squares).sum(axis=-1)
+            centre = squares * (problem.normal_force / load)[..., None]
         x = half_length * ((2.0 * np.arange(self.cells)[:, None] + 1.0) / self.cells - 1.0)
         step = 2.0 / self.cells * half_length
-        y = np.broadcast_to(b * shares, x.shape)
-        centre = 2.0 * problem.friction_coefficient * problem.normal_force / problem.patch_area
-        bound = centre[..., None, None] * np.maximum(1.0 - (x / a) ** 2 - shares**2, 0.0)
+        across_patch = np.broadcast_to(y[..., None, :], x.shape)
+        friction = problem.friction_coefficient[..., None, None]
+        bound = friction * centre[..., None, :] * np.maximum(1.0 - (x / half_length) ** 2, 0.0)
         grow = (
-            (creep_x / along - spin * y / turning) * step,
+            (creep_x / along - spin * across_patch / turning) * step,
             (creep_y / across - spin * (x - 0.5 * step) / turning) * step,
         )
         traction, clipped = self.marched(grow, bound)
         length = np.broadcast_to(step, x.shape)
         slip = along * clipped[0] / length, across * clipped[1] / length
-        area = length * b * widths
+        area = length * width[..., None, :]
         return wl.Contact.from_strips(
             problem,
             wl.CreepForces(
                 longitudinal=(traction[0] * area).sum(axis=(-2, -1)),
                 lateral=(traction[1] * area).sum(axis=(-2, -1)),
-                spin_moment=-((x * traction[1] + y * traction[0]) * area).sum(axis=(-2, -1)),
+                spin_moment=-((x * traction[1] + across_patch * traction[0]) * area).sum(axis=(-2, -1)),
             ),
             x=x,
-            y=problem.b[..., None] * shares,
+            y=y,
             length=length,
-            strip_width=problem.b[..., None] * widths,
+            strip_width=width,
             traction=traction,
             slip=slip,
             traction_bound=bound,
@@ -106,6 +116,17 @@ class Strips(wl.ContactModel):
             clipped[..., k - 1, :] += shared
         clipped[..., -1, :] += 0.5 * now  # at the trailing edge, where the bound is zero
         return traction, clipped
+
+
+def on_strips(model: Any) -> Any:
+    """Return the class of a model on the strips that a problem gives, and on no ellipse, made from a `Strips`."""
+
+    def solve_strips(self: Any, problem: wl.Problem) -> wl.Contact:
+        found: wl.Contact = self.at(problem)
+        return found
+
+    methods = {"solve_ellipse": wl.ContactModel.solve_ellipse, "solve_strips": solve_strips}
+    return type(f"{model.__name__}OnStrips", (model,), {**methods, "__module__": __name__, "__doc__": model.__doc__})
 
 
 class Means(wl.CreepForceModel):

@@ -46,6 +46,7 @@ RIGHT_RIGS: list[Any] = [wrong_rigs.Weight()]
 RIGHT_ON: dict[str, list[Any]] = {
     "line": [wl.contact_model("exact"), cells.Cells()],
     "ellipse": [strips.Strips()],
+    "strips": [strips.on_strips(strips.Strips)()],
 }
 """Right contact models by the shape that they solve.
 
@@ -58,11 +59,17 @@ def names_of(models: list[Any]) -> set[str]:
     return {check.name for model in models for check in checks(model)}
 
 
-BEGINS = {"line": "on a line: ", "ellipse": "on an ellipse: "}
+BEGINS = {"line": "on a line: ", "ellipse": "on an ellipse: ", "strips": "on strips: "}
 """How messages begin."""
 
 ON_EACH_SHAPE = set.intersection(*map(names_of, RIGHT_ON.values())) - names_of(RIGHT_LAWS) - {"exemptions_are_claims"}
 """Checks that run on each shape which a contact model solves."""
+
+WRONG |= {
+    strips.on_strips(mutant): check
+    for mutant, check in WRONG.items()
+    if issubclass(mutant, strips.Strips) and check in ON_EACH_SHAPE
+}
 
 
 def made(mutant: Any) -> Any:

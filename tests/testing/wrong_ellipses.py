@@ -14,7 +14,7 @@ from tests.testing.strips import Strips
 class Spoilt(Strips):
     """Base of models whose contact is right before they spoil it."""
 
-    def at(self, problem: wl.Problem, shares: Any, widths: Any) -> wl.Contact:
+    def at(self, problem: wl.Problem, shares: Any = None, widths: Any = None) -> wl.Contact:
         return self.spoilt(super().at(problem, shares, widths), problem)
 
     def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
@@ -132,11 +132,10 @@ class LeaksBetweenPoints(Spoilt):
         return times(contact, 1.0 - 1e-6 * (np.abs(problem.spin) < np.abs(problem.spin).max()))
 
 
-class TurnsTheProblem(Strips):
+class TurnsTheProblem(Spoilt):
     """Doubles the spin in place."""
 
-    def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
-        contact = super().solve_ellipse(problem)
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         np.multiply(problem.spin, 2.0, out=problem.spin)
         return contact
 

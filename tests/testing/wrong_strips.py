@@ -88,7 +88,50 @@ class OtherwiseForOnePoint(Spoilt):
         return times(contact, 1.0 - 1e-9 * (problem.size == 1))
 
 
+class WeakerWithCreepage(Spoilt):
+    """Loses up to a hundredth as the longitudinal creepage grows."""
+
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
+        creepage = np.abs(problem.longitudinal_creepage)
+        return times(contact, 1.0 - 0.01 * creepage / (creepage + 1e-3))
+
+
+class MoreThanFriction(Spoilt):
+    """Reaches 1.05 μN."""
+
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
+        return times(contact, np.full(problem.batch_shape, 1.05))
+
+
+class JumpsNearFriction(Spoilt):
+    """Loses a tenth until it reaches 0.9 μN."""
+
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
+        share = contact.tangential_force / (problem.friction_coefficient * problem.normal_force)
+        return times(contact, np.where(share > 0.9, 1.0, 0.9))
+
+
+class JumpsWhereAllSlips(Spoilt):
+    """Loses a hundredth until all tractions are at their bound."""
+
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
+        below = contact.traction < (1.0 - 1e-12) * contact.traction_bound
+        return times(contact, np.where(below.any(axis=(-2, -1)), 0.99, 1.0))
+
+
+class KnowsMillimetresOnStrips(Spoilt):
+    """Long patches transmit a thousandth less."""
+
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
+        return times(contact, 1.0 - 1e-3 * problem.a / (problem.a + 1e-3))
+
+
 CAUGHT: dict[Any, str] = {
+    WeakerWithCreepage: "force_grows_with_creepage",
+    MoreThanFriction: "force_stays_below_friction",
+    JumpsNearFriction: "forces_are_continuous",
+    JumpsWhereAllSlips: "full_slip_is_met_from_both_sides",
+    KnowsMillimetresOnStrips: "contacts_are_similar",
     LosesEnergyOfTranslation: "slip_dissipates_the_energy_fed_in",
     LosesEnergyOnAnyStrips: "refined_nodes_improve_the_sums",
     ForcesAreNoSumOnAnyStrips: "refined_nodes_improve_the_sums",

@@ -91,8 +91,14 @@ def contact_carries_the_conditions(model: ContactModel, shape: Shape) -> None:
 
 def _differing(problem: Problem, other: Problem) -> list[str]:
     """Return the fields in which two problems differ."""
-    names = [field.name for field in dataclasses.fields(problem)]
-    return [name for name in names if not np.array_equal(getattr(problem, name), getattr(other, name))]
+    return [name for name, value in _values(problem).items() if not np.array_equal(value, _values(other)[name])]
+
+
+def _values(problem: Problem) -> dict[str, object]:
+    """Return the fields of a problem, and of its strips if it has any."""
+    records = [problem] if problem.strips is None else [problem, problem.strips]
+    fields = [(record, field.name) for record in records for field in dataclasses.fields(record)]
+    return {name: getattr(record, name) for record, name in fields if name != "strips"}
 
 
 @on_each_shape

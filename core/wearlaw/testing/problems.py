@@ -13,12 +13,18 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact import kalker
 from wearlaw.contact.material import steel
-from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.problem import CreepForces, Problem, Strips
 from wearlaw.rigs.twin_disc import TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
 
 SATURATION = (3.0, 32.0 / (3.0 * np.pi))
 """Reduced creepages at which a theory of ellipses may saturate."""
+
+STRIP_AT = np.linspace(-0.95, 0.95, 20)
+"""Positions y/b of the strips of a patch."""
+
+STRIP_WIDTH = np.full(20, 0.1)
+"""Widths of the strips over b."""
 
 ELASTIC = steel(shear_yield_stress=None)
 """Steel of unknown strength, of whose plastic flow nothing warns."""
@@ -28,6 +34,28 @@ TWIN_DISC = TwinDisc.suros(material=ELASTIC)
 
 WHEEL_RAIL = WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=ELASTIC, rolling_speed="30 m/s")
 """A new wheel on straight track."""
+
+
+def in_strips(problem: Problem) -> Problem:
+    """Return an elliptic problem cut into strips, each longer and under less pressure the further they lie on one side.
+
+    The load is that of the ellipse, and it stands for the patch in Kalker's coefficients.
+    """
+    y, width = (share * problem.b[..., None] for share in (STRIP_AT, STRIP_WIDTH))
+    root = np.sqrt(1.0 - STRIP_AT**2)
+    half_length = problem.a[..., None] * root * (1.0 + 0.2 * STRIP_AT)
+    shape = np.broadcast_to(root * (1.0 - 0.3 * STRIP_AT), y.shape)
+    load = (0.5 * np.pi * half_length * width * shape).sum(axis=-1)
+    max_pressure = shape * (problem.normal_force / load)[..., None]
+    fields = ("friction_coefficient", "longitudinal_creepage", "lateral_creepage", "spin", "rolling_speed", "density")
+    return Problem.of_strips(
+        Strips(y=y, width=width, half_length=half_length, max_pressure=max_pressure),
+        shear_modulus=problem.shear_modulus,
+        poisson_ratio=problem.poisson_ratio,
+        a=problem.a,
+        b=problem.b,
+        **{name: getattr(problem, name) for name in fields},
+    )
 
 
 def friction_limit(problem: Problem) -> Array:

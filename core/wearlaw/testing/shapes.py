@@ -1,6 +1,6 @@
-"""The two shapes of a contact patch, as the checks see them: what to draw, what saturates, and how exact a model is.
+"""The shapes of a contact patch, as the checks see them: what to draw, what saturates, and how exact a model is.
 
-A check that says the same of both shapes takes the model and a shape, and is marked `on_each_shape`.
+A check that says the same of all shapes takes the model and a shape, and is marked `on_each_shape`.
 
 Tolerances on a line: a position is exact to the rounding of the half-width a, so an integral over a slip zone is exact
 to rounding over the zone's share of the patch. Models with nodes of their own, whose sums are only as exact as their
@@ -10,6 +10,7 @@ cells, declare that as `accuracy`. On an ellipse, sums over nodes on strips are 
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
@@ -30,6 +31,7 @@ from wearlaw.testing.problems import (
     at_magnitude,
     creeping,
     friction_limit,
+    in_strips,
     lever,
     parts_of_power,
     random_ellipses,
@@ -372,8 +374,46 @@ class Ellipse(Shape):
         return size
 
 
-LINE, ELLIPSE = Line(), Ellipse()
-SHAPES: tuple[Shape, ...] = (LINE, ELLIPSE)
+class Patch(Ellipse):
+    """A patch of strips with a given pressure, fuller on one side than an ellipse and shorter on the other."""
+
+    geometry = "strips"
+    where = "on strips"
+    problems = Ellipse.problems.map(in_strips)
+    pairs = Ellipse.pairs.map(lambda pair: (in_strips(pair[0]), in_strips(pair[1])))
+    similar = Ellipse.similar.map(lambda pair: (in_strips(pair[0]), in_strips(pair[1])))
+    batches = Ellipse.batches.map(in_strips)
+
+    def random(self, points: int) -> Problem:
+        """Return patches of many shapes."""
+        return in_strips(random_ellipses(points))
+
+    def inside(self, problem: Problem, contact: Contact) -> NDArray[np.bool_]:
+        """Return where |x| is half the length of the strip at most."""
+        strips = problem.strips
+        assert strips is not None
+        within: NDArray[np.bool_] = np.abs(contact.x) <= strips.half_length[..., None, :] * (1.0 + SAME)
+        return within & (contact.y == strips.y[..., None, :])
+
+    def longer(self, problem: Problem, factor: float) -> Problem:
+        """Return the problem with strips of another length."""
+        strips = problem.strips
+        assert strips is not None
+        longer = dataclasses.replace(strips, half_length=strips.half_length * factor)
+        return problem.replaced(a=problem.a * factor, strips=longer, normal_force=longer.normal_force.sum(axis=-1))
+
+    def path(self, model: ContactModel) -> Path:
+        """Return the path of ellipses; the forces of a few strips jump more than those of many."""
+        path = super().path(model)
+        return path._replace(problem=in_strips(path.problem))
+
+    def to_refine(self) -> Iterator[Problem]:
+        """Yield patches one at a time, since the nodes may be many."""
+        return map(in_strips, super().to_refine())
+
+
+LINE, ELLIPSE, PATCH = Line(), Ellipse(), Patch()
+SHAPES: tuple[Shape, ...] = (LINE, ELLIPSE, PATCH)
 
 
 def _at_factors(problem: Problem, factors: list[list[float]]) -> Problem:

@@ -21,9 +21,10 @@ from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.testing.examples import SAME, assert_close
-from wearlaw.testing.problems import TWIN_DISC, WHEEL_RAIL, random_ellipses, random_lines
+from wearlaw.testing.problems import TWIN_DISC, WHEEL_RAIL
 from wearlaw.testing.rig_checks import values_of, varied
 from wearlaw.testing.sampling import EPS, random_contacts
+from wearlaw.testing.shapes import SHAPES
 from wearlaw.units.quantities import Q
 from wearlaw.units.registry import application_registry
 
@@ -72,9 +73,8 @@ def _computed(model: Model) -> Array:
     if isinstance(model, WearLaw):
         return model.rate(random_contacts(POINTS), model.numbers)
     assert isinstance(model, ContactModel)
-    problems: dict[Geometry, Any] = {"line": random_lines(POINTS), "ellipse": random_ellipses(POINTS)}
     return np.stack(
-        [model.solve(one).tangential_force for shape, one in problems.items() if shape in model.geometries()]
+        [model.solve(shape.random(POINTS)).tangential_force for shape in SHAPES if shape.geometry in model.geometries()]
     )
 
 
