@@ -51,7 +51,7 @@ from wearlaw.study.grid import Condition, Grid
 from wearlaw.study.measured import MeasuredTests, check_rig, known_variables
 from wearlaw.study.uncertain_point import Condition as UncertainCondition
 from wearlaw.study.uncertain_point import UncertainPoint
-from wearlaw.units.variables import name_of
+from wearlaw.units.variables import meaning_of
 
 ModelT = TypeVar("ModelT", bound=Model)
 
@@ -303,7 +303,7 @@ def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
     for field, annotation in kinds.items():
         one = TypeAdapter(annotation).json_schema(ref_template="#/$defs/{model}")
         definitions.update(one.pop("$defs", {}))
-        properties = {name: {**one, "description": name_of(name)} for name in rig.conditions()}
+        properties = {name: {**one, "description": meaning_of(name)} for name in rig.conditions()}
         if field == "uncertainty":
             properties["laws"] = definitions["UncertainPoint"]["properties"]["laws"]
         table = {"properties": properties, "required": list(rig.needed()), "additionalProperties": False}
