@@ -217,7 +217,7 @@ def estimates_in_words() -> str:
             hits.append(np.abs(few[law] - fine[law]) <= few[f"{law} error"])
         covered[law] = math.floor(100.0 * float(np.mean(hits)))
     return (
-        f"On {STRIPS[0]} strips `wear_rate_error` is at least as large as the error at {covered['usfd']} % of the"
+        f"On {STRIPS[0]} strips, `wear_rate_error` is at least as large as the error at {covered['usfd']} % of the"
         f" points for USFD, and at {covered['kth']} % for KTH."
     )
 
@@ -257,14 +257,14 @@ def points_in_words() -> str:
     """Return the sentence about the number of points."""
     drawn = sum(DRAWS)
     return (
-        f"Root mean squares are those of {drawn} points drawn at random; the largest, lowest and highest errors are"
-        f" those of these and of {table()['ratio'].size - drawn} points that a search for large errors found."
+        f"Root mean squares are over {drawn} points drawn at random. The largest, lowest and highest errors are over"
+        f" these and {table()['ratio'].size - drawn} points that a search for large errors found."
     )
 
 
 def range_in_words() -> str:
     """Return the sentence about the greatest creepage and spin."""
-    return f"In the cases above that is {100.0 * UNIT:.1f} % and {UNIT / SIZE:.1f} /m."
+    return f"which is {100.0 * UNIT:.1f} % and {UNIT / SIZE:.1f} /m in the cases above."
 
 
 def grids_in_words() -> str:
@@ -272,8 +272,8 @@ def grids_in_words() -> str:
     fine, coarse = table(), table(CELLS[-2])
     step = np.hypot(fine["fx"] - coarse["fx"], fine["fy"] - coarse["fy"])
     return (
-        f"Extrapolated from {CELLS[0]} and {CELLS[1]} elements, its forces differ by at most"
-        f" {percent(step.max(), 1):.1f} % of μN, root mean square {percent(rms(step), 1):.1f} %."
+        f"Extrapolated from {CELLS[0]} and {CELLS[1]} elements instead, its forces differ by at most"
+        f" {percent(step.max(), 1):.1f} % of μN, root mean square {percent(rms(step), 1):.1f} %"
     )
 
 
