@@ -386,7 +386,7 @@ class Prediction:
     @cached_property
     def _wear(self) -> WearTotals:
         """The totals of the wear law; a `CompositionError` if the pipeline has none."""
-        self._law  # noqa: B018  raises if there is none
+        self._law  # noqa: B018  raises without a law
         assert self._given_wear is not None
         return self._given_wear
 
