@@ -1,4 +1,4 @@
-"""What a fit refuses, and what it warns of."""
+"""Errors and warnings of fits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Contacts that CONTACT solved: Carter's problem, and what its FASTSIM gives; see the files for source and licence."""
+"""Contacts solved by CONTACT: Carter's problem, and its own FASTSIM; see the files for source and licence."""
 
 from __future__ import annotations
 
