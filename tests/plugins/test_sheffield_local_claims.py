@@ -106,7 +106,7 @@ def test_kth_on_cells_near_the_threshold_depends_on_the_rolling_speed(bench: Ben
 
 @pytest.mark.validates(
     "limits",
-    "KTH on cells and on the means agree in full slip below 0.2 m/s only",
+    "KTH on cells agrees with KTH on the means only in full slip below 0.2 m/s",
     source="tanh-sinh quadrature, written anew for the tests",
     held_to="the digits that the report shows",
 )
