@@ -68,7 +68,7 @@ def _from_above(axes: Axes) -> None:
 
 
 def _rigid_slip(axes: Axes, title: str, slip: Any) -> None:
-    """Draw the rigid slip over the patch; its longitudinal part points to the left where it is positive."""
+    """Draw the rigid slip over the patch; a positive longitudinal part points to the left."""
     x, y = (part.ravel() for part in np.meshgrid(np.linspace(-1.0, 1.0, 7), np.linspace(-0.72, 0.72, 5)))
     inside = x**2 + (y / 0.75) ** 2 < 0.75
     along, across = slip(x[inside], y[inside])

@@ -28,9 +28,9 @@ MODELS = {
     "`polach`": wl.contact_model("polach"),
 }
 SIZE, MODULUS, LIMIT = 6e-3, 82e9, 3e4
-"""√(ab) [m], G [Pa] and μN [N]; what is reduced does not depend on them."""
+"""√(ab) [m], G [Pa] and μN [N]; reduced quantities do not depend on them."""
 UNIT = LIMIT / (MODULUS * SIZE**2)
-"""Creepage of one when reduced, μN/(G ab)."""
+"""The creepage whose reduced value is one, μN/(G ab)."""
 SPINS = {"none": "none", "small": "up to half the creepage", "any": "any"}
 RATIOS = {2.0: "1/2 to 2", 10.0: "1/10 to 10"}
 Rows = list[tuple[str, ...]]
@@ -39,9 +39,9 @@ SEARCHED = {
     "parabolic": (10.0, 0.00151343, -0.71545735, 0.89000629),
     "elliptic": (10.0, 0.0017335, -0.45156278, 0.69655385),
 }
-"""a/b, ξ, η and φ, reduced, at which a search found the largest errors of forces on 10 strips."""
+"""a/b and reduced ξ, η and φ at which a search found the largest errors of forces on 10 strips."""
 STRIPS, MANY_STRIPS, POINTS_OF_STRIPS = (10, 20, 40), 80, 500
-"""Strips whose errors are measured beside many of them, and the number of points."""
+"""Numbers of strips that are compared with many strips, and the number of points."""
 
 
 class Errors(NamedTuple):
@@ -70,7 +70,7 @@ def ellipses(ratio: Array, xi: Array, eta: Array, phi: Array) -> wl.Problem:
 
 
 def errors(found: dict[str, Array], model: wl.ContactModel) -> Errors:
-    """Return how far a model is from the reference, point by point."""
+    """Return the errors of a model at each point."""
     contact = model.solve(ellipses(*(found[name] for name in ("ratio", "xi", "eta", "phi"))))
     moment = contact.moment_z / (LIMIT * SIZE) - found["mz"]
     force = np.hypot(contact.force_x / LIMIT - found["fx"], contact.force_y / LIMIT - found["fy"])
@@ -79,7 +79,7 @@ def errors(found: dict[str, Array], model: wl.ContactModel) -> Errors:
 
 
 def classes(found: dict[str, Array]) -> dict[tuple[str, float], NDArray[np.bool_]]:
-    """Return which points have which spin, and an axis ratio up to which."""
+    """Return masks of the points by spin and by the largest axis ratio."""
     slender, spin = np.maximum(found["ratio"], 1.0 / found["ratio"]), np.abs(found["phi"])
     small = spin <= 0.5 * np.hypot(found["xi"], found["eta"])
     spins = {"none": spin == 0.0, "small": (spin > 0.0) & small, "any": spin > 0.0}
@@ -92,7 +92,7 @@ def rms(error: Array) -> float:
 
 
 def percent(value: float, digits: int) -> float:
-    """Return a share in percent, rounded away from zero; what is an integer but for rounding stays."""
+    """Return a share in percent, rounded away from zero, except for integers with a rounding error."""
     return math.copysign(math.ceil(abs(value) * 100.0 * 10**digits - 1e-9) / 10**digits, value)
 
 
@@ -108,7 +108,7 @@ def span(error: Array, random: NDArray[np.bool_]) -> str:
 
 
 def slopes() -> Rows:
-    """Return by how much FASTSIM's moment misses the linear theory where everything sticks."""
+    """Return the error of FASTSIM's moment beside the linear theory if the whole patch sticks."""
     ratio, little = np.array(SLOPES), np.full(len(SLOPES), 1e-7)
     rows = []
     for eta, phi in ((little, 0.0 * little), (0.0 * little, little)):
@@ -147,7 +147,7 @@ def wheels(count: int) -> wl.Problem:
 
 
 def on_strips(problem: wl.Problem, bound: str, strips: int) -> dict[str, Array]:
-    """Return what FASTSIM gives with so many strips: forces over μN, Mz over μN√(ab), energy [N] and wear rates."""
+    """Return FASTSIM's results with a number of strips: forces over μN, Mz over μN√(ab), energy [N] and wear rates."""
     rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="20 m/s")
     model = wl.contact_model("fastsim", bound=bound, strips=strips)
     forces = model.creep_forces(problem)
@@ -168,13 +168,13 @@ def on_strips(problem: wl.Problem, bound: str, strips: int) -> dict[str, Array]:
 
 @functools.cache
 def of_strips(bound: str) -> dict[int, dict[str, Array]]:
-    """Return what FASTSIM gives with each number of strips, and with many."""
+    """Return FASTSIM's results with each number of strips in `STRIPS`, and with many."""
     problem = wheels(POINTS_OF_STRIPS)
     return {strips: on_strips(problem, bound, strips) for strips in (*STRIPS, MANY_STRIPS)}
 
 
 def strips() -> Rows:
-    """Return by how much FASTSIM on few strips differs from itself on many."""
+    """Return the difference between FASTSIM on few strips and on many."""
     rows: Rows = [("bound", "strips", "forces", "Mz", "energy of the cells", "USFD", "KTH")]
     for bound in ("parabolic", "elliptic"):
         fine = of_strips(bound)[MANY_STRIPS]
@@ -217,7 +217,7 @@ def estimates_in_words() -> str:
             hits.append(np.abs(few[law] - fine[law]) <= few[f"{law} error"])
         covered[law] = math.floor(100.0 * float(np.mean(hits)))
     return (
-        f"On {STRIPS[0]} strips `wear_rate_error` is at least as large as the error at {covered['usfd']} % of the"
+        f"On {STRIPS[0]} strips, `wear_rate_error` is at least as large as the error at {covered['usfd']} % of the"
         f" points for USFD, and at {covered['kth']} % for KTH."
     )
 
@@ -257,14 +257,14 @@ def points_in_words() -> str:
     """Return the sentence about the number of points."""
     drawn = sum(DRAWS)
     return (
-        f"Root mean squares are those of {drawn} points drawn at random; the largest, lowest and highest errors are"
-        f" those of these and of {table()['ratio'].size - drawn} points that a search for large errors found."
+        f"Root mean squares are over {drawn} points drawn at random. The largest, lowest and highest errors are over"
+        f" these and {table()['ratio'].size - drawn} points that a search for large errors found."
     )
 
 
 def range_in_words() -> str:
     """Return the sentence about the greatest creepage and spin."""
-    return f"In the cases above that is {100.0 * UNIT:.1f} % and {UNIT / SIZE:.1f} /m."
+    return f"which is {100.0 * UNIT:.1f} % and {UNIT / SIZE:.1f} /m in the cases above."
 
 
 def grids_in_words() -> str:
@@ -272,8 +272,8 @@ def grids_in_words() -> str:
     fine, coarse = table(), table(CELLS[-2])
     step = np.hypot(fine["fx"] - coarse["fx"], fine["fy"] - coarse["fy"])
     return (
-        f"Extrapolated from {CELLS[0]} and {CELLS[1]} elements, its forces differ by at most"
-        f" {percent(step.max(), 1):.1f} % of μN, root mean square {percent(rms(step), 1):.1f} %."
+        f"Extrapolated from {CELLS[0]} and {CELLS[1]} elements instead, its forces differ by at most"
+        f" {percent(step.max(), 1):.1f} % of μN, root mean square {percent(rms(step), 1):.1f} %"
     )
 
 

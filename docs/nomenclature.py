@@ -1,4 +1,4 @@
-"""Writes the table of the nomenclature from what the classes say of their own fields and properties."""
+"""Writes the table of the nomenclature from the docstrings of the classes and the table of variables."""
 
 import csv
 import inspect
@@ -16,7 +16,7 @@ from wearlaw.rigs.twin_disc import TwinDiscConditions
 from wearlaw.rigs.wheel_rail import WheelRailConditions
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.settings.parameters import numbers
-from wearlaw.units.variables import UNITS, label
+from wearlaw.units.variables import UNITS, VARIABLES, label
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
@@ -46,7 +46,7 @@ class Documented(NamedTuple):
 
 
 def documented() -> Iterator[Documented]:
-    """Give all fields and properties that are numbers, and raise a ValueError for one without a unit in brackets."""
+    """Yield all fields and properties that are numbers; raise a ValueError for one without a unit in brackets."""
     for cls in CLASSES:
         for name, text in (*attributes(cls), *properties(cls)):
             yield read(name, SHOWN_AS.get(cls.__name__, cls.__name__), text)
@@ -69,7 +69,7 @@ def falling_friction() -> wl.FallingFriction:
 
 
 def shipped_models() -> Iterator[wl.WearLaw | wl.ContactModel]:
-    """Give the models that come with wearlaw, with their defaults, the laws with numbers in place of names."""
+    """Yield the models that ship with wearlaw, with their defaults, and laws with numbers in place of names."""
     found = installed()
     for name, model in found.contact_models.items().items():
         if found.contact_models.origin(name).distribution == "wearlaw":
@@ -80,20 +80,20 @@ def shipped_models() -> Iterator[wl.WearLaw | wl.ContactModel]:
 
 
 def attributes(cls: type) -> Iterator[tuple[str, str]]:
-    """Give name and text of what stands under "Attributes" in the docstring of a class, where it is a number."""
+    """Yield name and text of each number under "Attributes" in the docstring of a class."""
     _, _, section = (inspect.getdoc(cls) or "").partition("Attributes\n----------\n")
     for found in ATTRIBUTE.finditer(section):
         yield found["name"], found["text"]
 
 
 def own(cls: type) -> dict[str, Any]:
-    """Return what a class defines, with what it inherits from classes that are not documented themselves."""
+    """Return the members that a class defines, or inherits from classes that are not in `CLASSES`."""
     bases = takewhile(lambda base: base is cls or base not in CLASSES, cls.__mro__)
     return {name: member for base in reversed([*bases]) for name, member in vars(base).items()}
 
 
 def properties(cls: type) -> Iterator[tuple[str, str]]:
-    """Give name and docstring of public properties that are numbers, and of methods that return a quantity."""
+    """Yield name and docstring of public properties that are numbers, and of methods that return a quantity."""
     for name, member in own(cls).items():
         function = member.fget if isinstance(member, property) else getattr(member, "func", member)
         returned = getattr(function, "__annotations__", {}).get("return")
@@ -104,14 +104,14 @@ def properties(cls: type) -> Iterator[tuple[str, str]]:
 
 
 def fields(record: wl.Configuration) -> Iterator[tuple[wl.Configuration, str]]:
-    """Give the fields that are numbers, each with the record that holds it: the given one, or one inside it."""
+    """Yield the fields that are numbers, each with the record that holds it: the given one, or one inside it."""
     for path in numbers(record):
         *outer, name = path.split(".")
         yield reduce(getattr, outer, record), name
 
 
 def read(name: str, where: str, text: str) -> Documented:
-    """Return what a docstring says of a quantity."""
+    """Return the symbol, unit and meaning that a docstring gives for a quantity."""
     found = DOCUMENTED.match(" ".join(text.split()))
     if found is None:
         raise ValueError(f"{where}.{name}: no unit in brackets, or no full stop behind it, in the docstring {text!r}")
@@ -120,20 +120,29 @@ def read(name: str, where: str, text: str) -> Documented:
 
 
 def table() -> str:
-    """Return the table as CSV: a row for each name, symbol and unit, with the shortest, most general meaning."""
+    """Return the nomenclature as CSV: a row for each name, symbol and unit."""
     rows: dict[tuple[str, str, str], list[Documented]] = {}
     for one in documented():
         rows.setdefault((one.name, one.symbol, one.unit), []).append(one)
+    for name in VARIABLES.keys() - {one for one, *_ in rows}:
+        unit = label(name, units={name: VARIABLES[name].unit}).rpartition("[")[2].rstrip("]")
+        rows[name, VARIABLES[name].symbol, unit] = []
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(HEAD)
     for (name, symbol, unit), places in sorted(rows.items()):
         used_in = ", ".join(dict.fromkeys(f"`{place.where}`" for place in places))
         shown = label(name) if name in UNITS else ""
-        writer.writerow(
-            (symbol, f"`{name}`", min((place.meaning for place in places), key=len), f"[{unit}]", shown, used_in)
-        )
+        writer.writerow((symbol, f"`{name}`", meaning(name, symbol, places), f"[{unit}]", shown, used_in))
     return file.getvalue()
+
+
+def meaning(name: str, symbol: str, places: list[Documented]) -> str:
+    """Return the meaning in the table of variables, or else, as for another symbol, the shortest in docstrings."""
+    variable = VARIABLES.get(name)
+    if variable and symbol in ("", variable.symbol):
+        return variable.meaning
+    return min((place.meaning for place in places), key=len)
 
 
 def write() -> None:

@@ -30,7 +30,7 @@ GALLERY = Path(__file__).parent / "gallery"
 BENCHMARKS = Path(__file__).parent / "accuracy.csv"
 REFERENCE = Path(__file__).parents[1] / "tests" / "data" / "hertz3d_reference.csv"
 OF_STUDY = ("figure_03", "figure_04", "figure_05", "figure_06", "figure_08", "figure_10", "wear_against_load")
-"""Those figures of the shipped study that pages show."""
+"""The figures of the shipped study that pages show."""
 BOUNDS = ("elliptic", "parabolic")
 FORCES = ("Fx", "Fy")
 
@@ -57,12 +57,12 @@ def draw() -> None:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a picture; matplotlib writes its own version into it, without which pixels cannot be compared."""
+    """Write a picture with matplotlib's version in it, because pixels compare only within one version."""
     figure.savefig(path, dpi=110)
 
 
 def photograph(page: Path) -> None:
-    """Draw how a report looks in a browser, with the mouse over a curve."""
+    """Take a screenshot of a report in a browser, with the mouse over a curve."""
     from selenium import webdriver
     from selenium.webdriver import ActionChains
     from selenium.webdriver.chrome.service import Service
@@ -83,7 +83,7 @@ def photograph(page: Path) -> None:
 
 
 def cost_against_error() -> Figure:
-    """Return the time of a point against the error there, a line for each method of the benchmarks."""
+    """Return the time per point against the error, a line for each method of the benchmarks."""
     with BENCHMARKS.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     with mpl.rc_context(STYLE):

@@ -1,4 +1,4 @@
-"""Makes pages that need no network, with formulas as MathML, and tells the command line in its own words."""
+"""Sphinx extension: pages that need no network, formulas as MathML, and the command line's own help."""
 
 import re
 from pathlib import Path
@@ -13,11 +13,11 @@ from sphinx.errors import ExtensionError
 from wearlaw.cli import main
 
 LOADED = re.compile(r'<(?:script|img|link|iframe)\b[^>]*\b(?:src|href)="(?:https?:)?//[^"]*"')
-"""What a browser loads from the network by itself, unlike the target of a link."""
+"""Addresses that a browser loads by itself, unlike the target of a link."""
 
 
 def mathml(translator: Any, node: nodes.math | nodes.math_block) -> None:
-    """Write a formula in a language of browsers, where Sphinx would load MathJax from the network."""
+    """Write a formula as MathML, which browsers draw themselves; Sphinx would load MathJax from the network."""
     block = isinstance(node, nodes.math_block)
     formula = tex2mathml(node.astext(), as_block=block)
     translator.body.append(f'<div style="margin: 1em 0; overflow-x: auto">{formula}</div>' if block else formula)
@@ -25,7 +25,7 @@ def mathml(translator: Any, node: nodes.math | nodes.math_block) -> None:
 
 
 class CommandLine(Directive):
-    """A section for each command, with what its --help prints."""
+    """A section for each command, with the output of its --help."""
 
     def run(self) -> list[nodes.Node]:
         program = click.Context(main, info_name="wearlaw")
@@ -39,7 +39,7 @@ class CommandLine(Directive):
 
 
 def check_offline(app: Any, exception: Exception | None) -> None:
-    """Refuse pages that would look otherwise without a network."""
+    """Raise an error for pages that would look different without a network."""
     loaded = {found for page in Path(app.outdir).rglob("*.html") for found in LOADED.findall(page.read_text("utf-8"))}
     if loaded and exception is None:
         raise ExtensionError(f"pages need the network: {', '.join(sorted(loaded))}")

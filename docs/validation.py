@@ -1,4 +1,4 @@
-"""Writes the tables of the page about validation from what the tests say of themselves, in their mark `validates`."""
+"""Writes the tables of the validation page from the `validates` marks of the tests."""
 
 import csv
 import importlib
@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "docs" / "validation"
 HEAD = ("claim", "held to", "independent source", "test")
 TEXTS = {"source", "held_to"}
-"""What a mark says in words; its other keywords are the numbers that its test receives."""
+"""Keywords of a mark that are text; the others are numbers that its test receives."""
 
 
 class Validation(NamedTuple):
@@ -30,12 +30,12 @@ class Validation(NamedTuple):
 
 
 def numbers(mark: Any) -> dict[str, Any]:
-    """Return the numbers of a mark, of which the test receives each as the argument of its name."""
+    """Return the numbers of a mark by name; the test receives each as an argument."""
     return {name: value for name, value in mark.kwargs.items() if name not in TEXTS}
 
 
 def read(mark: Any, path: str, test: str) -> Validation:
-    """Return what a mark says, and raise a ValueError for a digit that is not one of its numbers, which could drift."""
+    """Return the claim of a mark; raise a ValueError for a digit in its text, which could drift from its numbers."""
     topic, claim = mark.args
     held_to = mark.kwargs["held_to"]
     if any(re.search(r"\b[0-9]", text) for text, *_ in Formatter().parse(held_to)):
@@ -45,12 +45,12 @@ def read(mark: Any, path: str, test: str) -> Validation:
 
 
 def shown(text: str, given: dict[str, Any]) -> str:
-    """Return a text with its numbers as the documentation writes them: 5 % and 1e-9."""
+    """Return a text with its numbers in the style of the documentation: 5 % and 1e-9."""
     return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<=e[+-])0(?=\d)", "", text.format(**given)))
 
 
 def validations() -> Iterator[Validation]:
-    """Give the claims in the order of the test files, those of no folder first, and in these in that of the tests."""
+    """Yield the claims in the order of the test files, files outside folders first, and of the tests in them."""
     for file in sorted((ROOT / "tests").rglob("test_*.py"), key=lambda path: (len(path.parts), path)):
         if "@pytest.mark.validates(" not in file.read_text(encoding="utf-8"):
             continue
@@ -62,7 +62,7 @@ def validations() -> Iterator[Validation]:
 
 
 def tables() -> dict[str, str]:
-    """Return for each topic its table as CSV; the name of a test is shown as the sentence that it is."""
+    """Return the table of each topic as CSV; the name of a test is shown as a sentence."""
     rows = defaultdict(list)
     for one in validations():
         name = one.test.removeprefix("test_").replace("_", " ")

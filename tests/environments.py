@@ -62,7 +62,7 @@ class Environment:
         _run(*pip, *arguments, cwd=self.folder)
 
     def run(self, *arguments: str, cwd: Path | None = None, variables: Variables | None = None) -> str:
-        """Run Python with arguments, away from the checkout, and return what it prints."""
+        """Run Python with arguments, away from the checkout, and return its output."""
         return _run(self.python, *arguments, cwd=cwd or self.folder, variables=variables).stdout
 
     def wearlaw(self, *arguments: str, cwd: Path | None = None, variables: Variables | None = None) -> Done:

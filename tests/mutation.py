@@ -1,4 +1,4 @@
-"""Mutation testing: break a module in every small way, and see whether its tests fail; see `mutation.md`.
+"""Mutation testing: make one small change at a time in a module, and see whether its tests fail; see `mutation.md`.
 
 The mutations are those of cosmic-ray, and two more: a quantity in a text such as "47 mm" grows by one per cent, and a
 call for its effect alone, or a raise, is left out. No file is changed: each mutant is compiled in a process of its own,
@@ -84,7 +84,7 @@ PYTEST = [
 ]
 
 FACTOR, LEAST = 4.0, 20.0
-"""A mutant is killed if its tests take so many times as long as without it, and at least so many seconds."""
+"""A mutant is killed if its tests take this many times as long as without it, and at least this many seconds."""
 
 
 class _NumberInText:
@@ -179,7 +179,7 @@ def in_a_fork(work: Callable[[], int], limit: float) -> int | None:
 
 
 def run_unchanged(path: Path, tests: list[str]) -> float:
-    """Run the tests, import what they imported and the mutants do not change, and return how long they took [s]."""
+    """Run the tests, import the modules that they used and no mutant changes, and return their time [s]."""
     shared = SHARED if (ROOT / "core") in path.parents else SHARED | {"wearlaw"}
     start = time.monotonic()
     with tempfile.NamedTemporaryFile("r", encoding="utf-8") as names:

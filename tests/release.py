@@ -78,7 +78,7 @@ def git(root: Path, *arguments: str) -> str:
 
 
 def main(root: Path = ROOT) -> int:
-    """Print all that keeps the project from being released, or what a person has still to do."""
+    """Print everything that blocks a release, or else the steps left to a person."""
     found = list(inconsistencies(root)) or list(obstacles(root))
     print("\n".join([f"{version(root)} cannot be released:", *found] if found else [TO_DO.format(version(root))]))
     return 1 if found else 0

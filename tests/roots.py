@@ -1,4 +1,4 @@
-"""Brent's method as scipy has it, with the type of what it returns here."""
+"""Scipy's Brent method, with the return type used here."""
 
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ class Block:
 
     @property
     def code(self) -> str:
-        """The text without what it prints in a shell."""
+        """The text without its shell output."""
         return "\n".join(re.findall(r"^\$ .*$", self.text, re.MULTILINE)) if self.kind == "console" else self.text
 
 

@@ -22,7 +22,7 @@ def text_of(path: str) -> str:
 
 
 def known_commands() -> str:
-    """Return what the README and `.ci/run` run, as one writes it with the environment in .venv."""
+    """Return the commands of the README and `.ci/run`, as typed with the environment in .venv."""
     ci = text_of(".ci/run").replace('"$python"', ".venv/bin/python").replace(" --quiet", "")
     return text_of("README.md") + re.sub(r'"\$bin/([\w-]+)"', r".venv/bin/\1", ci)
 

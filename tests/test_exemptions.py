@@ -1,4 +1,4 @@
-"""The invariants that a contact model does not keep, and what it does instead."""
+"""The invariants that a contact model does not keep, and its actual behaviour."""
 
 from __future__ import annotations
 

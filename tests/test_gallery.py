@@ -1,4 +1,4 @@
-"""The gallery: its scripts run as they are, draw what they say, and stand on its page."""
+"""The gallery: its scripts run, draw the promised figures, and are on its page."""
 
 from __future__ import annotations
 

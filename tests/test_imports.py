@@ -92,7 +92,7 @@ def test_no_files_import_each_other_in_a_circle(graph: dict[str, set[str]]) -> N
 
 
 def deferred(source: str) -> Iterator[str]:
-    """Yield what a source imports inside functions."""
+    """Yield the imports inside functions of a source."""
     functions = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
     for node in {inner: None for function in functions for inner in ast.walk(function)}:
         if isinstance(node, ast.Import):

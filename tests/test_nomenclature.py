@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import dataclasses
 from collections import defaultdict
 from collections.abc import Iterable
@@ -143,6 +144,18 @@ def test_the_table_of_variables_has_the_documented_dimensions_and_symbols(docume
             assert one_of(variable.unit).is_compatible_with(one_of(units[name])), name
         if variable.symbol and any(name == known for known, _ in symbols):
             assert (name, variable.symbol) in symbols
+
+
+def test_a_docstring_begins_with_the_meaning_in_the_table_of_variables(documented: list[Documented]) -> None:
+    for name, variable in VARIABLES.items():
+        said = [one.meaning for one in documented if one.name == name]
+        assert name in IN_NO_CLASS or any(text.startswith(variable.meaning) for text in said), (variable.meaning, said)
+
+
+def test_every_variable_is_in_the_nomenclature_with_its_meaning_in_the_table_of_variables() -> None:
+    rows = list(csv.DictReader(nomenclature.TABLE.read_text(encoding="utf-8").splitlines()))
+    shown = {(row["name"].strip("`"), row["meaning"]) for row in rows}
+    assert {(name, one.meaning) for name, one in VARIABLES.items()} <= shown
 
 
 def test_every_variable_with_a_symbol_in_the_table_has_one_in_its_documentation(documented: list[Documented]) -> None:

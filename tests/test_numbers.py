@@ -129,7 +129,7 @@ def test_the_global_column_is_the_law_of_the_mean_wear_index(percent: float) -> 
 
 @pytest.mark.validates(
     "paper",
-    "The quadrature that the creepage table is held to",
+    "The quadrature behind the creepage table",
     source="QUADPACK in another variable",
     held_to="{within:g}, relative",
     within=1e-13,

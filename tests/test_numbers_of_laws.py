@@ -73,7 +73,7 @@ def test_brr_predicts_the_section_loss_of_table_1(wear_index: float, section: fl
 
 @pytest.mark.validates(
     "wear-laws",
-    "The mass that BRR means: 6.165 Tγ, 616.5 and 29.35 Tγ - 3798 µg/m",
+    "The mass that follows from BRR: 6.165 Tγ, 616.5 and 29.35 Tγ - 3798 µg/m",
     source="ρ π times Table 1 of Tassini et al. 2010, by hand to four digits",
     held_to="{within:g}, relative (the four digits)",
     within=0.0003,

@@ -1,4 +1,4 @@
-"""The pictures of the documentation: what they show, and what the pages say of it."""
+"""The pictures of the documentation, and the sentences about them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The steel of the Sheffield twin-disc tests, and the study that is made with them, as a wearlaw plugin."""
+"""The steel of the Sheffield twin-disc tests, and the study of Tassini et al. built on them, as a wearlaw plugin."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def wearlaw_tests() -> dict[str, str]:
 
 @wl.hookimpl
 def wearlaw_sections() -> dict[str, Callable[[wl.Study], wl.Section]]:
-    """Return the tables of the paper, its claims put to the test, and the fit of its Table 4."""
+    """Return the sections with the paper's tables, the check of its claims, and the fit of its Table 4."""
     return {f"tassini2010_{name}": partial(_section, name) for name in ("tables", "claims", "table_4")}
 
 

@@ -1,4 +1,4 @@
-"""The conditions of the paper's simulations, and predictions under them."""
+"""The conditions of the paper's simulations, and predictions for them."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ TESTED = (0.2, 20.0)
 """The creepages of the public tests [%]."""
 
 PARTIAL = np.array([0.1, 0.5, 1.0])
-"""Creepages in partial slip at which numbers are given [%]."""
+"""Creepages in partial slip for which the claims list numbers [%]."""
 
 WINDOW = 350.0 / 6.2934
-"""Where the window of severe wear ends in the paper's Figure 6c, 350 N on its patch of 6.2934 mm² [N/mm²]."""
+"""Upper end of the severe wear window in the paper's Figure 6c: 350 N on its patch of 6.2934 mm² [N/mm²]."""
 
 Speed = Literal["disc_1", "mean"]
 
@@ -46,11 +46,11 @@ def discs_of(study: wl.Study) -> wl.TwinDisc:
     Raises
     ------
     InputError
-        If it is none of two discs.
+        If the rig is not a `TwinDisc`.
     """
     rig = study.case.rig
     if not isinstance(rig, wl.TwinDisc):
-        raise wl.InputError(f"rig: must be a twin_disc, as that of the paper, not a {rig.name}")
+        raise wl.InputError(f"rig: must be a twin_disc, like the paper's, not a {rig.name}")
     return rig
 
 
@@ -73,26 +73,27 @@ class Bench:
         Raises
         ------
         InputError
-            If the study is of another rig, has no such sweep, several loads in it, or not all wear regimes up to 25 %
-            creepage.
+            If the study has another rig or no such sweep, or if the sweep has several loads or friction coefficients,
+            or if it does not reach catastrophic wear by 25 % creepage.
         """
         rig = discs_of(study)
         sweep = study.sweep("creepage")
         loads, frictions = sweep["normal_force_per_width"], np.unique(sweep["friction_coefficient"])
         if np.unique(loads).size > 1 or frictions.size > 1:
-            raise wl.InputError("sweeps.creepage: must have one load and one friction_coefficient; give a single one")
+            raise wl.InputError("sweeps.creepage: must have one load and one friction_coefficient; give one of each")
         bench = cls(rig, Q(float(loads.values.flat[0]), loads.attrs["units"]), float(frictions[0]))
         _, catastrophic = bench.usfd_borders
         if not (bench.full_slip < HIGHEST and bench.wear_index[-1] > catastrophic):
             raise wl.InputError(
-                f"sweeps.creepage: at its load, the wear index reaches {bench.wear_index[-1]:.4g} N at {HIGHEST:g} %"
-                f" creepage, and catastrophic wear, which the claims are also about, begins at {catastrophic:.4g} N"
+                f"sweeps.creepage: at this load the wear index reaches only {bench.wear_index[-1]:.4g} N at"
+                f" {HIGHEST:g} % creepage, but some claims are about catastrophic wear, which begins at"
+                f" {catastrophic:.4g} N; change the load or the friction_coefficient"
             )
         return bench
 
     @cached_property
     def creepage(self) -> Array:
-        """Creepages [%], at most 0.02 % apart; the kinks of the patch means in full slip are among them."""
+        """Creepages [%], at most 0.02 % apart, including those where the patch means have kinks in full slip."""
         regular = np.append(np.geomspace(1e-3, 1.0, 401), np.linspace(1.0, HIGHEST, 1201))
         kinks = np.array([self.full_slip, *(100.0 * border / self.full_force for border in self.usfd_borders)])
         return np.union1d(regular, [TESTED[0], *kinks[kinks < HIGHEST]])
@@ -106,7 +107,7 @@ class Bench:
     ) -> wl.Prediction:
         """Return the prediction at creepages [%] and the load of the bench, or at other loads per width.
 
-        The law may have parameters that were fitted for another contact.
+        The law's parameters may have been fitted for another contact model.
         """
         contact = wl.contact_model(model) if isinstance(model, str) else model
         problem = self.rig.problem(
@@ -120,11 +121,11 @@ class Bench:
             )
 
     def rate(self, model: wl.ContactModel | str, law: wl.WearLaw, creepage: Array | None = None) -> Array:
-        """Return the wear rate [µg/m/mm²] at creepages [%], by default those of the bench."""
+        """Return the wear rate [µg/m/mm²] at creepages [%], by default the bench's own."""
         return _rate(self.predict(model, law, self.creepage if creepage is None else creepage))
 
     def force(self, model: wl.ContactModel | str, creepage: Array | None = None) -> Array:
-        """Return the tangential force over that of full slip, T/(μN), at creepages [%]."""
+        """Return the tangential force relative to full slip, T/(μN), at creepages [%]."""
         contact = self.predict(model, wl.wear_law("usfd"), self.creepage if creepage is None else creepage)
         return np.asarray(contact.traction_coefficient.to("").magnitude) / self.friction_coefficient
 
@@ -133,7 +134,7 @@ class Bench:
         return _rate(self.predict(model, law, 1.0, Q(loads, "kN/m")))
 
     def rate_at_index(self, law: wl.WearLaw, wear_index: Array) -> Array:
-        """Return the wear rate [µg/m/mm²] of a law of Tγ at given Tγ [N], whichever creepage that is."""
+        """Return the wear rate [µg/m/mm²] at given Tγ [N] of a law that depends on Tγ alone."""
         traction = wear_index / (self.problem.normal_force * self.problem.creepage)
         with _quietly():
             return _rate(
@@ -188,12 +189,12 @@ class Bench:
 
     @cached_property
     def tested(self) -> NDArray[np.bool_]:
-        """The creepages within the range of the tests."""
+        """Which creepages are within the range of the tests."""
         return (self.creepage >= TESTED[0]) & (self.creepage <= TESTED[1])
 
     @cached_property
     def problem(self) -> wl.Problem:
-        """The contact under the load of the bench, at 1 % creepage."""
+        """The contact problem at the load of the bench and 1 % creepage."""
         return self.rig.problem(
             normal_force_per_width=self.normal_force_per_width,
             creepage=Q(1, "%"),
@@ -212,23 +213,23 @@ class Bench:
 
     @cached_property
     def usfd_borders(self) -> tuple[float, float]:
-        """The wear indices Tγ [N] where severe and where catastrophic wear begins, for the global USFD law."""
+        """The wear indices Tγ [N] where severe and catastrophic wear begin in the global USFD law."""
         mild, severe = borders("usfd", "wear_index_density")
         return mild * 1e-6 * self.patch_area, severe * 1e-6 * self.patch_area
 
     @cached_property
     def window(self) -> float:
-        """The wear index [N] at which the paper's window of severe wear ends, 350 N on the patch of the paper."""
+        """The wear index [N] at the upper end of the paper's severe wear window: 350 N on the paper's patch."""
         return WINDOW * self.patch_area
 
     def between(self, lowest: float, highest: float) -> NDArray[np.bool_]:
-        """Return which creepages have a wear index [N] in a range, its ends included."""
+        """Return which creepages have a wear index [N] within a closed range."""
         rounding = 1e-9
         return (self.wear_index >= lowest * (1.0 - rounding)) & (self.wear_index <= highest * (1.0 + rounding))
 
 
 def _quietly() -> warnings.catch_warnings[None]:
-    """Return a context without the warnings of wearlaw, which are what the claims are about."""
+    """Return a context that silences wearlaw's warnings: the claims report what these would say."""
     return warnings.catch_warnings(action="ignore", category=wl.WearlawWarning)
 
 

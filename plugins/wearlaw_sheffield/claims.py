@@ -1,4 +1,4 @@
-"""The claims of Tassini et al. (2010), each computed and put to the test."""
+"""The claims of Tassini et al. (2010), each checked by computation."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from wearlaw_sheffield.wording import WORDS
 TESTS = "lewis2004"
 
 INTRODUCTION = """\
-{count} claims of sections 3 to 6 of the paper, computed for the rig of this case with {load:.5g~P} and a friction \
+{count} claims from sections 3 to 6 of the paper, checked for the rig of this case at {load:.5g~P} and a friction \
 coefficient of {friction:g}."""
 
 NOT_CHECKABLE = """\
-No table of the measured wear rates is public. What the paper says of them is put to the test with USFD on the patch \
-means in their place, to which USFD was fitted, or cannot be decided. The comparison with full-scale tests, which it \
-cites, is not checked."""
+The measured wear rates have not been published as numbers. In claims about them, USFD on the patch means stands in \
+for the measurements, since it was fitted to them; claims that need the measurements themselves cannot be decided. The \
+comparison with full-scale tests, which the paper cites, is not checked."""
 
 
 def section(study: wl.Study) -> wl.Section:
@@ -33,7 +33,7 @@ def section(study: wl.Study) -> wl.Section:
     text = INTRODUCTION.format(
         count=len(claims), load=bench.normal_force_per_width, friction=bench.friction_coefficient
     )
-    words = f"{WORDS} The public tests are those of {tests.source}."
+    words = f"{WORDS} The published tests are from {tests.source}."
     return wl.Section(
         "Claims of the paper, checked",
         "\n\n".join((text, words, NOT_CHECKABLE)),

@@ -1,4 +1,4 @@
-"""What the paper claims of the contact models: tractions, slip and the wear index."""
+"""The paper's claims about the contact models: tractions, slip and the wear index."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def contact_claims(bench: Bench, tests: tuple[Array, Array]) -> tuple[wl.Checked
 
 
 def elliptic_bound_in_full_slip(bench: Bench) -> wl.CheckedClaim:
-    """Compare FASTSIM with the elliptic bound with the exact theory in full slip: T, USFD and KTH on the cells."""
+    """Compare FASTSIM with the elliptic bound to the exact theory in full slip: T, and USFD and KTH on cells."""
     x = bench.creepage[(bench.creepage >= bench.full_slip) & (bench.creepage <= TESTED[1])]
     elliptic = wl.contact_model("fastsim", bound="elliptic")
 
@@ -51,38 +51,40 @@ def elliptic_bound_in_full_slip(bench: Bench) -> wl.CheckedClaim:
         at_both(bool((np.abs(share) < SAME).all()) for share in kth.values()),
     ]
     return wl.CheckedClaim(
-        statement="With the elliptic bound, the simplified theory gives exactly the exact theory's results in full"
-        " slip.",
+        statement="With the elliptic bound, the simplified theory gives exactly the same results as the exact theory in"
+        " full slip.",
         where="Section 3.2.3",
-        criterion=f"The same T, USFD and KTH on the cells from full slip, {bench.full_slip:.2f} %, to {TESTED[1]:g} %"
-        f" creepage; in part if that is so for T from {FULL_SLIP_TESTS:g} % on, where the tests slip fully.",
+        criterion="T, and USFD and KTH on cells, are the same from the onset of full slip,"
+        f" {bench.full_slip:.2f} % creepage, to {TESTED[1]:g} %. Holds in part if this is true of T from"
+        f" {FULL_SLIP_TESTS:g} % on, where the tests are in full slip.",
         found=f"T differs by {percent(force[0])} at {x[0]:.2f} %, where the exact theory reaches full slip, by less"
-        f" than {100 * SAME:g} % from {same_from:.2f} % on, and by {percent(force[-1])} at {x[-1]:g} %. The elliptic"
-        " bound never saturates fully, since it rises infinitely steeply at the leading edge.\n\n"
-        f"USFD on the cells differs by {percent(usfd[0])} at {x[0]:.2f} %, and from {FULL_SLIP_TESTS:g} % on by"
-        f" {percent(usfd_most)} at most, at {usfd_at:.1f} %. KTH on the cells differs by"
-        f" {percent(next(iter(kth.values()))[0])} at {x[0]:.2f} %; at {x[-1]:g} %, where some cells pass its threshold"
-        f" of slip speed, by {listed}.",
+        f" than {100 * SAME:g} % from {same_from:.2f} % on, and by {percent(force[-1])} at {x[-1]:g} %. With the"
+        " elliptic bound the patch never slips fully, because the bound rises infinitely steeply at the leading"
+        " edge.\n\n"
+        f"USFD on cells differs by {percent(usfd[0])} at {x[0]:.2f} %, and by at most {percent(usfd_most)} from"
+        f" {FULL_SLIP_TESTS:g} % on, at {usfd_at:.1f} %. KTH on cells differs by"
+        f" {percent(next(iter(kth.values()))[0])} at {x[0]:.2f} %; at {x[-1]:g} %, where some cells exceed its slip"
+        f" speed threshold, by {listed}.",
         verdict=verdict(parts),
     )
 
 
 def elliptic_bound_in_partial_slip(bench: Bench) -> wl.CheckedClaim:
-    """Compare T of FASTSIM with the elliptic bound with that of the exact theory in partial slip."""
+    """Compare T of FASTSIM with the elliptic bound to T of the exact theory in partial slip."""
     x = bench.creepage[bench.creepage < bench.full_slip]
     elliptic = wl.contact_model("fastsim", bound="elliptic")
     most, at = largest(bench.force(elliptic, x) / bench.force("exact", x) - 1.0, x)
     return wl.CheckedClaim(
         statement="With the elliptic bound, the difference in partial slip is relatively small.",
         where="Section 3.2.3",
-        criterion="Similar T at every creepage below full slip.",
-        found=f"T differs by {percent(most)} at most, at {at:.2f} % creepage.",
+        criterion="T is similar at every creepage below full slip.",
+        found=f"T differs by at most {percent(most)}, at {at:.2f} % creepage.",
         verdict=verdict([abs(most) < SIMILAR]),
     )
 
 
 def averaged_wear_index(bench: Bench) -> wl.CheckedClaim:
-    """Compare the averaged wear index with the energy that is dissipated."""
+    """Compare the averaged wear index with the dissipated energy."""
     ratios = {}
     for model in ("exact", "fastsim"):
         contact = bench.predict(model, wl.wear_law("usfd"), PARTIAL)
@@ -91,18 +93,18 @@ def averaged_wear_index(bench: Bench) -> wl.CheckedClaim:
         f"{model}: {', '.join(f'{ratio:.3g}' for ratio in values)} times Tγ" for model, values in ratios.items()
     )
     return wl.CheckedClaim(
-        statement="The averaged W.I. of a local solution, mean slip of the slipping cells times summed traction, is"
-        " not entirely comparable with the global Tγ.",
+        statement="The averaged W.I. of a local solution, the mean slip of the slipping cells times the total traction,"
+        " is not entirely comparable with the global Tγ.",
         where="Section 3.2.3",
-        criterion=f"Not similar at {', '.join(f'{x:g}' for x in PARTIAL)} % creepage.",
-        found=f"At these it is, {numbers}. The cells dissipate Tγ, so wear is computed from q·s of each cell, not from"
-        " the average.",
+        criterion=f"The two are not similar at {', '.join(f'{x:g}' for x in PARTIAL)} % creepage.",
+        found=f"Averaged W.I. at these creepages, {numbers}. The cells together dissipate Tγ, so wearlaw computes wear"
+        " from q·s in each cell, not from the average.",
         verdict=verdict(bool((np.abs(values - 1.0) > SIMILAR).all()) for values in ratios.values()),
     )
 
 
 def same_force(bench: Bench) -> wl.CheckedClaim:
-    """Compare the tangential forces of both theories, with either flexibility and with the best one."""
+    """Compare the tangential forces of the two theories, with either flexibility and with the best one."""
     said, parts = [], []
     for flexibility, formula in FLEXIBILITIES.items():
         fastsim = wl.contact_model("fastsim", flexibility=flexibility)
@@ -110,8 +112,8 @@ def same_force(bench: Bench) -> wl.CheckedClaim:
         relative = bench.force(fastsim, PARTIAL) / bench.force("exact", PARTIAL) - 1.0
         listed = ", ".join(f"{percent(share)} at {x:g} %" for share, x in zip(relative, PARTIAL, strict=True))
         said.append(
-            f"L = {formula}: FASTSIM differs by {percent(most)} of μN at most, at {at:.2f} % creepage; in percent of"
-            f" the exact T, {listed}; equal from the full slip of both on."
+            f"L = {formula}: FASTSIM differs by at most {percent(most)} of μN, at {at:.2f} % creepage; in percent of"
+            f" the exact T, by {listed}. The forces are equal once both slip fully."
         )
         parts.append(abs(most) < SAME)
     least, saturation = closest_force()
@@ -119,8 +121,8 @@ def same_force(bench: Bench) -> wl.CheckedClaim:
     return wl.CheckedClaim(
         statement="The exact and the simplified theory give the same tangential force.",
         where="Section 5.1.2, Figure 5",
-        criterion="The same in percent of μN at every creepage, with some flexibility L; the paper does not print its"
-        " own.",
+        criterion="With some flexibility L the forces are the same at every creepage, in percent of μN. The paper does"
+        " not print its own L.",
         found="\n\n".join(
             (
                 *said,
@@ -133,9 +135,9 @@ def same_force(bench: Bench) -> wl.CheckedClaim:
 
 
 def closest_force() -> tuple[float, float]:
-    """Return how near FASTSIM's T/(μN) comes to the exact one for any L, and ξ_f/ξ_sat of that L.
+    """Return how close FASTSIM's T/(μN) can get to the exact one with any L, and the ξ_f/ξ_sat of that L.
 
-    The largest difference between 1 - (1-d/r)³ and 1 - (1-d)², each at most 1, over d = ξ/ξ_sat, least over
+    The largest difference between 1 - (1-d/r)³ and 1 - (1-d)², each at most 1, over d = ξ/ξ_sat, minimised over
     r = ξ_f/ξ_sat.
     """
     d, r = np.linspace(0.0, 1.5, 1501), np.linspace(1.0, 1.5, 501)[:, None]
@@ -148,19 +150,19 @@ def friction_is_mean_of_full_slip(bench: Bench, tests: tuple[Array, Array]) -> w
     """Compare μ with the mean traction coefficient of the tests in full slip."""
     mean, spread, count = _full_slip(tests)
     return wl.CheckedClaim(
-        statement="The friction coefficient 0.46 is the average of the measured traction in full slip, so that the"
-        " model is an average of the tests there.",
+        statement="The friction coefficient of 0.46 is the average of the measured traction in full slip, so that the"
+        " model represents an average of the tests there.",
         where="Sections 5.1 and 5.1.2",
-        criterion=f"Mean T/N of the tests from {FULL_SLIP_TESTS:g} % creepage on and μ of the study, equal to two"
+        criterion=f"The mean T/N of the tests from {FULL_SLIP_TESTS:g} % creepage on equals the study's μ to two"
         " digits.",
-        found=f"The mean T/N of the {count} tests from {FULL_SLIP_TESTS:g} % creepage is {mean:.3f}, with a standard"
-        f" deviation of {spread:.3f}; the study computes with {bench.friction_coefficient:g}.",
+        found=f"The mean T/N of the {count} tests from {FULL_SLIP_TESTS:g} % creepage on is {mean:.3f}, with a standard"
+        f" deviation of {spread:.3f}; the study uses {bench.friction_coefficient:g}.",
         verdict=verdict([round(mean, 2) == 0.46 == bench.friction_coefficient]),
     )
 
 
 def force_differs_at_low_creepage(bench: Bench, tests: tuple[Array, Array]) -> wl.CheckedClaim:
-    """Compare measured and computed traction at the tests in partial slip."""
+    """Compare measured and computed traction in the tests in partial slip."""
     creepage, measured = (column[tests[0] < bench.full_slip] for column in tests)
     computed = bench.friction_coefficient * bench.force("exact", creepage)
     mean, spread, _ = _full_slip(tests)
@@ -169,8 +171,8 @@ def force_differs_at_low_creepage(bench: Bench, tests: tuple[Array, Array]) -> w
     return wl.CheckedClaim(
         statement="At low creepage the measured and the computed tangential force differ.",
         where="Section 5.1.2, Figure 5",
-        criterion="At every test in partial slip, by more than the tests in full slip scatter.",
-        found=f"Measured T/N against that of the exact theory: {listed}. The tests in full slip scatter by"
+        criterion="In every test in partial slip they differ by more than the scatter of the tests in full slip.",
+        found=f"T/N measured against the exact theory: {listed}. The tests in full slip scatter by"
         f" {100 * spread / mean:.1f} %.",
         verdict=verdict([bool((np.abs(measured / computed - 1.0) > spread / mean).all())]),
     )

@@ -1,4 +1,4 @@
-"""Figures of the paper in another form: with eq. (7) as printed, with other averages, with the measured Tγ."""
+"""Variants of the paper's figures: with eq. (7) as printed, with other averages, with the measured Tγ."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from wearlaw_sheffield.law_claims import measured_wear_index
 from wearlaw_sheffield.local_claims import local_models
 
 PROFILE = 0.5
-"""The creepage in partial slip at which the case shows Figures 3 and 4 [%]; the paper does not state its own."""
+"""The creepage in partial slip of Figures 3 and 4 in the case [%]; the paper does not state its own."""
 
 MILD = 0.2
-"""The window of mild wear, 70 N, in parts of that of severe wear, 350 N."""
+"""The window of mild wear, 70 N, as a fraction of the window of severe wear, 350 N."""
 
 MODELS = {"global": "patch means", "exact": "exact theory", "fastsim": "FASTSIM"}
 
@@ -27,7 +27,7 @@ def figures(bench: Bench, tests: tuple[Array, Array]) -> tuple[wl.FigureData, ..
 
 
 def slip_along_patch(bench: Bench) -> wl.FigureData:
-    """Return Figure 4 with both slips of the exact theory."""
+    """Return Figure 4 with both versions of the exact theory's slip."""
     curves, x = [], np.zeros(0)
     for number, (words, model) in enumerate(local_models().items()):
         profile = bench.predict(model, wl.wear_law("usfd"), PROFILE).profile
@@ -41,13 +41,13 @@ def slip_along_patch(bench: Bench) -> wl.FigureData:
         name="figure_04_as_printed",
         title="Figure 4 with equation 7 as printed",
         panels=(panel,),
-        caption=f"At {PROFILE:g} % creepage. With the slip as printed in the paper, ξ + kx over the whole slip zone,"
-        " slip jumps where it begins.",
+        caption=f"At {PROFILE:g} % creepage. With eq. (7) as printed, ξ + kx over the whole slip zone, the slip jumps"
+        " where the zone begins.",
     )
 
 
 def averages(bench: Bench) -> wl.FigureData:
-    """Return USFD with its original parameters in mild wear, with three pairs of averages on the axes."""
+    """Return USFD with its original parameters in mild wear, for three pairs of averages on the axes."""
     end = MILD * bench.window
     shown: dict[str, list[wl.Curve]] = {"patch": [], "mixed": [], "zone": []}
     for number, (model, words) in enumerate(MODELS.items()):
@@ -61,9 +61,9 @@ def averages(bench: Bench) -> wl.FigureData:
             inside = x <= end
             shown[kind].append(wl.Curve(words, x[inside], y[inside], colour=number, dash=number))
     titles = {
-        "mixed": ("slip zone's mean of s on x, patch mean on y", "averaged W.I. [N]"),
-        "zone": ("means over the slip zone on both", "averaged W.I. [N]"),
-        "patch": ("means over the patch on both", "W.I., Tγ [N]"),
+        "mixed": ("x: mean slip of the slip zone; y: patch mean", "averaged W.I. [N]"),
+        "zone": ("means over the slip zone on both axes", "averaged W.I. [N]"),
+        "patch": ("means over the patch on both axes", "W.I., Tγ [N]"),
     }
     return wl.FigureData(
         name="figure_08_averages",
@@ -72,16 +72,16 @@ def averages(bench: Bench) -> wl.FigureData:
             wl.Panel(wl.PlotAxis(x), wl.PlotAxis(WEAR), tuple(shown[kind]), title)
             for kind, (title, x) in titles.items()
         ),
-        caption="USFD with its original parameters. In partial slip the averaged W.I. of section 3.2.3 has the mean"
-        " slip of the slip zone, while the wear rate is a mean over the patch: the first panel, as Figures 7 and 8,"
-        " mixes the two averages. The others have one on both axes. The paper does not say over what it averages the"
-        " rate, but calls the local results of mild wear very similar to the global ones. In full slip all averages are"
-        " the same.",
+        caption="USFD with its original parameters. In partial slip the averaged W.I. of section 3.2.3 uses the mean"
+        " slip of the slip zone, while the wear rate is a mean over the patch: the first panel, like Figures 7 and 8,"
+        " mixes the two averages. The other panels use one average on both axes. The paper does not say over which area"
+        " it averages the rate, but calls the local results in mild wear very similar to the global ones. In full slip"
+        " all averages are the same.",
     )
 
 
 def measured_index(bench: Bench, tests: tuple[Array, Array]) -> wl.FigureData:
-    """Return Figure 9 with USFD at the measured Tγ in the place of the measured wear."""
+    """Return Figure 9 with USFD at the measured Tγ in place of the measured wear."""
     law = wl.wear_law("usfd")
     inside = bench.creepage <= TESTED[1]
     rates = bench.rate_at_index(law, measured_wear_index(bench, tests))
@@ -91,6 +91,6 @@ def measured_index(bench: Bench, tests: tuple[Array, Array]) -> wl.FigureData:
         name="figure_09_measured",
         title="Figure 9 with USFD at the measured Tγ",
         panels=(wl.Panel(wl.PlotAxis("creepage [%]"), wl.PlotAxis(WEAR), (curve, points)),),
-        caption="The measured wear rates are not public. USFD at the measured Tγ stands for them: on the axis of W.I."
-        " these points are on the curve, on that of creepage they are not.",
+        caption="The measured wear rates have not been published as numbers, so USFD at the measured Tγ stands in for"
+        " them. Plotted against W.I. these points lie on the curve; plotted against creepage they do not.",
     )

@@ -1,4 +1,4 @@
-"""What the paper claims of the three laws beside each other, all on the patch means."""
+"""The paper's claims that compare the three laws with each other, all on the patch means."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ from wearlaw_sheffield.bench import PARTIAL, TESTED, Bench, borders
 from wearlaw_sheffield.wording import GOOD, SAME, SIMILAR, first_crossing, percent, verdict
 
 LOWEST = 5.0
-"""The lowest wear index [N] at which KTH is set against W.I.; towards zero two powers of creepage part."""
+"""The lowest wear index [N] at which the claims compare KTH with W.I.; towards zero they grow with different powers of
+the creepage."""
 
 NEARER = 700.0
-"""The wear index [N] above which the paper sees BRR come closer to the tests."""
+"""The wear index [N] above which, says the paper, BRR gets closer to the tests."""
 
 HIGH_SLIP = 15.0
-"""The lowest creepage of a test at a high slip level, where wear is catastrophic [%]."""
+"""The lowest creepage of the tests at high slip, where wear is catastrophic [%]."""
 
 KTH_K = {"low": "the low end", "mid": "the middle", "high": "the high end"}
-"""Where in its published range the coefficient k of KTH is taken."""
+"""Positions of the coefficient k of KTH in its published range, in words."""
 
 
 def law_claims(bench: Bench, tests: tuple[Array, Array]) -> tuple[wl.CheckedClaim, ...]:
@@ -63,9 +64,10 @@ def _severe(bench: Bench) -> NDArray[np.bool_]:
 
 
 def _least_place(bench: Bench) -> float:
-    """Return the least place of k in its ranges, 0 the low and 1 the high end, with KTH above USFD in severe wear.
+    """Return the smallest position of k in its ranges, from 0 to 1, that puts KTH above USFD throughout severe wear.
 
-    KTH is proportional to k, so that its rate is linear in the place. It is above 1 if no place does.
+    The rate of KTH is proportional to k, so it is linear in the position. The result exceeds 1 if no k in the ranges is
+    large enough.
     """
     severe = _severe(bench)
     low, high, usfd = _kth(bench, "low")[severe], _kth(bench, "high")[severe], _usfd(bench)[severe]
@@ -73,7 +75,7 @@ def _least_place(bench: Bench) -> float:
 
 
 def _k_at(place: float) -> str:
-    """Return k below the lower slip speed at a place in its range, in words."""
+    """Return, in words, the k for low slip speeds at a position in its range."""
     low, high = (
         dict(dict(wl.wear_law("kth", coefficient=k).explicit())["coefficient"])["low_speed"] for k in ("low", "high")
     )
@@ -81,13 +83,13 @@ def _k_at(place: float) -> str:
 
 
 def _kth_at(bench: Bench, place: float) -> Array:
-    """Return KTH [µg/m/mm²] with k at a place in its ranges."""
+    """Return the wear rate of KTH [µg/m/mm²] with k at a position in its ranges."""
     low, high = _kth(bench, "low"), _kth(bench, "high")
     return np.asarray(low + place * (high - low))
 
 
 def close_in_mild(bench: Bench) -> wl.CheckedClaim:
-    """Compare BRR and KTH with USFD in mild wear, KTH also with the least k that severe wear asks for."""
+    """Compare BRR and KTH with USFD in mild wear, KTH also with the smallest k that the claim on severe wear needs."""
     mild, border, place = _mild(bench), bench.usfd_borders[0], _least_place(bench)
     usfd, index = _usfd(bench), bench.wear_index
     most = usfd[mild].max()
@@ -104,27 +106,28 @@ def close_in_mild(bench: Bench) -> wl.CheckedClaim:
 
     ratio = (brr / usfd)[mild]
     said = [
-        f"BRR is {ratio.min():.3f} to {ratio.max():.3f} times USFD up to {border:.1f} N, {100 * on_plot(brr):.1f} % of"
-        " the plot at most."
+        f"BRR is {ratio.min():.3f} to {ratio.max():.3f} times USFD up to {border:.1f} N, and differs by at most"
+        f" {100 * on_plot(brr):.1f} % of the plot."
     ]
     admissible = min(place, 1.0)
     rates = {f"k at {words}": _kth(bench, k) for k, words in KTH_K.items()}
     rates |= {
-        f"k = {_k_at(admissible)}, the least with which KTH is above USFD in severe wear": _kth_at(bench, admissible)
+        f"k = {_k_at(admissible)}, the smallest that puts KTH above USFD in severe wear": _kth_at(bench, admissible)
     }
     for words, rate in rates.items():
         said.append(
-            f"KTH with {words}: {times(rate, LOWEST, 2 * LOWEST, border)};"
-            f" {100 * on_plot(rate):.1f} % of the plot at most."
+            f"KTH with {words}: {times(rate, LOWEST, 2 * LOWEST, border)}; it differs by at most"
+            f" {100 * on_plot(rate):.1f} % of the plot."
         )
     said.append(
-        f"Below {LOWEST:g} N they part without bound, since KTH falls with the creepage and USFD with its square."
+        f"Below {LOWEST:g} N their ratio grows without bound, because KTH is proportional to the creepage and USFD to"
+        " its square."
     )
     return wl.CheckedClaim(
         statement="In mild wear all three laws reproduce the measured wear well.",
         where="Section 5.1.1, Figure 6b",
-        criterion="BRR and KTH are a good approximation of USFD, which was fitted to the tests, in percent of the plot;"
-        " KTH with some k within its ranges that also bears out the next claim.",
+        criterion="BRR and KTH are good approximations of USFD, which was fitted to the tests, in percent of the plot;"
+        " KTH with some k in its ranges for which the next claim holds too.",
         found="\n\n".join(said),
         verdict=verdict([on_plot(brr) < GOOD, place <= 1.0 and on_plot(_kth_at(bench, admissible)) < GOOD]),
     )
@@ -138,9 +141,9 @@ def above_in_severe(bench: Bench) -> wl.CheckedClaim:
     law = wl.wear_law("brr")
     (border,) = law.jumps(law.numbers)["wear_index"]
     before = ratio[index < border]
-    at_jump = f" {before.max():.3g} times before its jump at {border:g} N," if before.size else ""
+    at_jump = f" {before.max():.3g} times just before its jump at {border:g} N," if before.size else ""
     said = [
-        f"From {index[0]:.1f} to {index[-1]:.0f} N, BRR is {ratio[0]:.3g} times USFD at first,{at_jump} and"
+        f"Between {index[0]:.1f} and {index[-1]:.0f} N, BRR is {ratio[0]:.3g} times USFD at first,{at_jump} and"
         f" {ratio[-1]:.3g} times at the end."
     ]
     for k, words in KTH_K.items():
@@ -148,18 +151,18 @@ def above_in_severe(bench: Bench) -> wl.CheckedClaim:
         crossing = first_crossing(index, kth, usfd)
         changes = "" if crossing is None else f"; they cross at {crossing:.1f} N"
         said.append(
-            f"KTH, k at {words}: {kth[0] / usfd[0]:.3g} times USFD at {index[0]:.1f} N and {kth[-1] / usfd[-1]:.3g}"
+            f"KTH with k at {words}: {kth[0] / usfd[0]:.3g} times USFD at {index[0]:.1f} N and {kth[-1] / usfd[-1]:.3g}"
             f" times at {index[-1]:.0f} N{changes}."
         )
     if place <= 1.0:
-        said.append(f"KTH is above USFD throughout from k = {_k_at(place)} on.")
+        said.append(f"KTH is above USFD throughout if k is at least {_k_at(place)}.")
     else:
-        said.append("KTH is above USFD throughout for no k of its range.")
+        said.append("No k in its range puts KTH above USFD throughout.")
     return wl.CheckedClaim(
         statement="In severe wear USFD is an average of the tests, and both BRR and KTH overestimate the wear.",
         where="Section 5.1.1, Figure 6c",
         criterion="BRR and KTH are above USFD, which was fitted to the tests, throughout severe wear in the window of"
-        " the figure; KTH with some k within its ranges.",
+        " the figure; KTH with some k in its ranges.",
         found="\n\n".join(said),
         verdict=verdict([bool(ratio.min() > 1.0), place <= 1.0]),
     )
@@ -177,8 +180,8 @@ def brr_comes_closer(bench: Bench) -> wl.CheckedClaim:
         statement="In catastrophic wear BRR still overestimates the wear, but seems to get closer to the tests above"
         f" {NEARER:g} N.",
         where="Section 5.1.1, Figure 6a",
-        criterion=f"At {NEARER:g} N BRR is above USFD, which was fitted to the tests, by less than a factor of 2 and"
-        " than where catastrophic wear begins.",
+        criterion=f"At {NEARER:g} N BRR is above USFD, which was fitted to the tests, but less than twice as high, and"
+        " closer to it than where catastrophic wear begins.",
         found=f"BRR is {ratio[0]:.3g} times USFD at {index[0]:.0f} N and {later:.3g} times at {within:.0f} N; up to"
         f" {index[-1]:.0f} N they {where}.",
         verdict=verdict([1.0 < later < min(2.0, ratio[0])]),
@@ -190,17 +193,17 @@ def brr_plateau_is_shorter(bench: Bench) -> wl.CheckedClaim:
     mild, severe = borders("brr", "wear_index")
     begin, end = bench.usfd_borders
     return wl.CheckedClaim(
-        statement="The main difference of BRR from USFD is that its severe regime is shorter, so that it gives more"
-        " wear at high W.I.",
+        statement="The main difference between BRR and USFD is that BRR has a shorter severe regime and so predicts"
+        " more wear at high W.I.",
         where="Section 6",
-        criterion="The range of W.I. with a constant rate is shorter.",
-        found=f"The rate is constant from {mild:g} to {severe:g} N in BRR, from {begin:.1f} to {end:.0f} N in USFD.",
+        criterion="BRR has a constant rate over a shorter range of W.I. than USFD.",
+        found=f"The rate is constant from {mild:g} to {severe:g} N in BRR and from {begin:.1f} to {end:.0f} N in USFD.",
         verdict=verdict([severe - mild < end - begin]),
     )
 
 
 def kth_proportional(bench: Bench) -> wl.CheckedClaim:
-    """Look at KTH over the wear index in each regime of USFD, up to 20 % creepage."""
+    """Check the ratio of KTH to the wear index in each regime of USFD, up to 20 % creepage."""
     begin, end = bench.usfd_borders
     share = _kth(bench) / bench.wear_index
     share = share / share[np.searchsorted(bench.creepage, bench.full_slip)]
@@ -216,22 +219,22 @@ def kth_proportional(bench: Bench) -> wl.CheckedClaim:
     return wl.CheckedClaim(
         statement="KTH keeps roughly the same proportionality between W.I. and wear rate within each wear regime.",
         where="Section 5.1.1",
-        criterion=f"A similar rate over W.I. everywhere in a regime of USFD, from {LOWEST:g} N to {TESTED[1]:g} %"
-        " creepage; in part if that is so in some regimes.",
-        found=f"The rate over W.I., in parts of that at full slip: {'; '.join(said)}. Full slip begins at"
-        f" {border:.1f} N; at {LOWEST:g} N the rate over W.I. is {at_lowest:.3g} times as much, since in partial slip"
-        " W.I. grows with the square of the creepage and KTH with the creepage, as section 6 of the paper says itself.",
+        criterion="The ratio of the rate to W.I. is similar throughout each regime of USFD, from"
+        f" {LOWEST:g} N to {TESTED[1]:g} % creepage. Holds in part if this is true of some regimes.",
+        found=f"The ratio of the rate to W.I., relative to its value at full slip: {'; '.join(said)}. Full slip begins"
+        f" at {border:.1f} N; at {LOWEST:g} N the ratio is {at_lowest:.3g} times as large, because in partial slip W.I."
+        " grows with the square of the creepage and KTH with the creepage itself, as section 6 of the paper says too.",
         verdict=verdict(parts),
     )
 
 
 def _exponent(bench: Bench, rate: Array) -> Array:
-    """Return the power of the creepage with which a rate grows, d ln(rate) / d ln ξ."""
+    """Return the exponent with which a rate grows with the creepage, d ln(rate) / d ln ξ."""
     return np.asarray(np.gradient(np.log(rate), np.log(bench.creepage)))
 
 
 def kth_linear(bench: Bench) -> wl.CheckedClaim:
-    """Look at the power with which global KTH grows in partial slip."""
+    """Check the exponent of global KTH in partial slip."""
     exponent = _exponent(bench, _kth(bench))[bench.creepage < bench.full_slip]
     return wl.CheckedClaim(
         statement="In partial slip KTH is linear in the creepage.",
@@ -243,7 +246,7 @@ def kth_linear(bench: Bench) -> wl.CheckedClaim:
 
 
 def usfd_quadratic(bench: Bench) -> wl.CheckedClaim:
-    """Look at the power with which global USFD grows in partial slip."""
+    """Check the exponent of global USFD in partial slip."""
     partial = bench.creepage < bench.full_slip
     exponent, creepage = _exponent(bench, _usfd(bench))[partial], bench.creepage[partial]
     close = np.abs(exponent / 2.0 - 1.0) < SIMILAR
@@ -252,29 +255,29 @@ def usfd_quadratic(bench: Bench) -> wl.CheckedClaim:
     return wl.CheckedClaim(
         statement="In partial slip USFD grows with the square of the creepage.",
         where="Section 6, Figure 10",
-        criterion="The exponent d ln(rate)/d ln ξ is similar to 2 at every creepage below full slip; in part if that is"
-        " so up to a part of it.",
-        found=f"d ln(rate)/d ln ξ is {listed}, since T bends: it is similar to 2 up to {square_to:.2f} % of the"
-        f" {bench.full_slip:.2f} % of partial slip, and falls towards 1 at its end.",
+        criterion="The exponent d ln(rate)/d ln ξ is similar to 2 at every creepage below full slip. Holds in part if"
+        " it is similar to 2 up to some lower creepage.",
+        found=f"d ln(rate)/d ln ξ is {listed}, because T grows less than linearly. It is similar to 2 up to"
+        f" {square_to:.2f} % creepage and falls towards 1 at {bench.full_slip:.2f} %, where partial slip ends.",
         verdict=verdict([bool(close.all()), bool(close[0])]),
     )
 
 
 def brr_like_usfd(bench: Bench) -> wl.CheckedClaim:
-    """Compare the growth of BRR with that of USFD in partial slip."""
+    """Compare how BRR and USFD grow in partial slip."""
     partial = bench.creepage < bench.full_slip
     ratio = (_brr(bench) / _usfd(bench))[partial]
     return wl.CheckedClaim(
-        statement="Against creepage BRR behaves similarly to USFD.",
+        statement="Plotted against creepage, BRR behaves similarly to USFD.",
         where="Section 6",
-        criterion="In partial slip, which Figure 10 shows, their ratio is the same at every creepage.",
+        criterion="In partial slip, the range of Figure 10, their ratio is the same at every creepage.",
         found=f"BRR is {ratio.min():.4g} to {ratio.max():.4g} times USFD.",
         verdict=verdict([bool(ratio.max() / ratio.min() - 1.0 < SAME)]),
     )
 
 
 def straight_in_full_slip(bench: Bench) -> wl.CheckedClaim:
-    """Compare USFD and KTH in full slip with straight lines between the ends of each regime."""
+    """Compare USFD and KTH in full slip to straight lines between the ends of each regime."""
     begin, end = bench.usfd_borders
     lower, _ = borders("kth", "slip_speed")
     regimes = {
@@ -295,9 +298,10 @@ def straight_in_full_slip(bench: Bench) -> wl.CheckedClaim:
     return wl.CheckedClaim(
         statement="In full slip USFD and KTH are linear in the creepage.",
         where="Section 6",
-        criterion="In each regime the rate is the same as that on a straight line, in percent of its highest rate.",
+        criterion="In each regime the rate lies on a straight line, to within what counts as the same, in percent of"
+        " its highest rate.",
         found=f"Slopes in µg/m/mm² per % of creepage: {listed}. No rate is off its line by more than"
-        f" {percent(worst).lstrip('+')} of the largest.",
+        f" {percent(worst).lstrip('+')} of the highest rate.",
         verdict=verdict([worst < SAME]),
     )
 
@@ -309,7 +313,7 @@ def measured_wear_index(bench: Bench, tests: tuple[Array, Array]) -> Array:
 
 
 def tests_part_over_creepage(bench: Bench, tests: tuple[Array, Array]) -> wl.CheckedClaim:
-    """Compare USFD at the measured Tγ of the tests with USFD at the modelled one."""
+    """Compare USFD at the measured Tγ of the tests with USFD at the modelled Tγ."""
     creepage, law = tests[0], wl.wear_law("usfd")
     measured = bench.rate_at_index(law, measured_wear_index(bench, tests))
     modelled = bench.rate("global", law, creepage)
@@ -318,36 +322,36 @@ def tests_part_over_creepage(bench: Bench, tests: tuple[Array, Array]) -> wl.Che
     rows = zip(creepage, measured, modelled, strict=True)
     listed = ", ".join(f"{m:.4g} against {c:.4g} at {x:g} %" for x, m, c in rows)
     return wl.CheckedClaim(
-        statement="Against creepage the measured and the computed wear no longer overlap, particularly at high slip,"
-        " since the contact model gives another W.I. than the tests; against W.I. they overlap.",
+        statement="Plotted against creepage, the measured and the computed wear no longer overlap, particularly at high"
+        " slip, because the contact model's W.I. differs from the tests'; plotted against W.I., they overlap.",
         where="Section 6, Figure 9",
-        criterion="Where wear is catastrophic, USFD at the measured Tγ, which stands for the measured wear, is not"
-        " similar to USFD at the modelled Tγ; and by more than at lower creepage.",
-        found=f"USFD at the measured Tγ against USFD at the modelled one, in µg/m/mm²: {listed}.",
+        criterion="Where wear is catastrophic, USFD at the measured Tγ, which stands in for the measured wear, is not"
+        " similar to USFD at the modelled Tγ, and the difference is larger than at lower creepage.",
+        found=f"USFD at the measured Tγ against USFD at the modelled Tγ, in µg/m/mm²: {listed}.",
         verdict=verdict([part, part and bool(np.abs(apart[high]).min() > np.abs(apart[~high]).max())]),
     )
 
 
 def real_slip(bench: Bench, tests: tuple[Array, Array]) -> wl.CheckedClaim:
-    """Find the slip with which the model would give the measured Tγ."""
+    """Find the creepages at which the model would give the measured Tγ."""
     wanted = np.interp(measured_wear_index(bench, tests), bench.wear_index, bench.creepage)
     listed = ", ".join(f"{real:.3g} % at {x:g} %" for real, x in zip(wanted, tests[0], strict=True))
     return wl.CheckedClaim(
-        statement="The difference can simply be due to a real slip that is not the prescribed one.",
+        statement="The difference may simply come from a real slip that differs from the prescribed one.",
         where="Section 6",
-        criterion="Measured slip of the discs, which no public table has.",
-        found=f"The model gives the measured Tγ at other creepages than the prescribed ones: {listed}. A friction that"
-        " differs from test to test explains the same.",
+        criterion="Needs the measured slip of the discs, which has not been published.",
+        found=f"The model gives the measured Tγ at creepages other than those prescribed: {listed}. Friction that"
+        " varies from test to test would explain the difference just as well.",
         verdict="cannot be decided",
     )
 
 
 def usfd_meets_measured_wear() -> wl.CheckedClaim:
-    """Say what needs wear rates that are not public."""
+    """Return the claim that needs the unpublished wear rates."""
     return wl.CheckedClaim(
-        statement="USFD is the law that reproduces the measured wear best, and in severe wear an average of it.",
+        statement="USFD reproduces the measured wear best, and averages it in severe wear.",
         where="Section 5.1.1, Figure 6",
-        criterion="Measured wear rates, which no public table has.",
-        found="No number: the paper shows the measured rates in figures only.",
+        criterion="Needs the measured wear rates, which have not been published as numbers.",
+        found="No number: the paper shows the measured rates only in figures.",
         verdict="cannot be decided",
     )

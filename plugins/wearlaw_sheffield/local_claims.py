@@ -1,4 +1,4 @@
-"""What the paper claims of the laws on the cells of a local solution, beside the patch means."""
+"""The paper's claims that compare the laws on the cells of a local solution with the laws on the patch means."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from wearlaw_sheffield.bench import HIGHEST, TESTED, Bench, borders
 from wearlaw_sheffield.wording import GOOD, SAME, SIMILAR, at_both, largest, percent, verdict
 
 GIVEN = np.array([0.2, 0.5, 1.0, 10.0, 20.0])
-"""Creepages at which rates on cells are compared in words [%]."""
+"""Creepages for which the claims list rates on cells [%]."""
 
 LOADS = np.geomspace(74.14, 14829.0, 1500)
 """Loads of the paper's second simulation [kN/m]."""
 
 PAPER_LOAD = 2300.0
-"""The load at which the paper sees the pressure threshold of KTH [kN/m]."""
+"""The load at which the paper places the pressure threshold of KTH [kN/m]."""
 
 THEORY = {"exact": "the exact theory", "fastsim": "FASTSIM"}
 
@@ -47,7 +47,7 @@ def exact(slip: str) -> wl.ContactModel:
 
 
 def local_models() -> dict[str, wl.ContactModel]:
-    """Return the contact models that resolve the patch, by what they are."""
+    """Return the contact models that resolve the patch, by their names in words."""
     return {
         "the exact theory": exact("consistent"),
         "the exact theory with eq. (7) as printed": exact("as_printed"),
@@ -56,14 +56,14 @@ def local_models() -> dict[str, wl.ContactModel]:
 
 
 def _apart(one: Array, other: Array, x: Array) -> str:
-    """Return in words how far two rates are apart at some creepages, at most and in percent."""
+    """Return, in words, the largest absolute and relative difference between two rates over some creepages."""
     most, at = largest(one - other, x)
     share, there = largest(one / other - 1.0, x)
-    return f"{abs(most):.2f} µg/m/mm² at most, at {at:.2f} %, and {percent(share)} at most, at {there:.2f} %"
+    return f"at most {abs(most):.2f} µg/m/mm², at {at:.2f} %, and at most {percent(share)}, at {there:.2f} %"
 
 
 def _at_given(one: Array, other: Array) -> str:
-    """Return in words how far rates at the creepages `GIVEN` are apart, in percent."""
+    """Return, in words, the relative differences between two rates at the creepages `GIVEN`."""
     return ", ".join(f"{percent(float(share))} at {x:g} %" for share, x in zip(one / other - 1.0, GIVEN, strict=True))
 
 
@@ -103,9 +103,9 @@ def kth_same_on_both_theories(bench: Bench) -> wl.CheckedClaim:
     return wl.CheckedClaim(
         statement="The local KTH is the same with the exact and the simplified theory.",
         where="Section 5.1.2, Figure 7",
-        criterion="The same in percent of the plot, whose highest KTH rate is that of the patch means at"
-        f" {TESTED[1]:g} % creepage, with each slip and each L, as long as no cell passes a threshold of KTH; beyond,"
-        " similar rates with either V.",
+        criterion="With each slip and each L, the rates are the same in percent of the plot, whose highest KTH rate is"
+        f" that of the patch means at {TESTED[1]:g} % creepage, as long as no cell exceeds a threshold of KTH. Beyond"
+        " that, they are similar with either V.",
         found="\n\n".join(found),
         verdict=verdict(parts),
     )
@@ -139,16 +139,17 @@ def kth_local_like_global(bench: Bench) -> wl.CheckedClaim:
     most_by_load, load = largest(by_load, LOADS)
     (threshold,) = borders("kth", "pressure")
     by_mean, by_highest = _loads_at_pressure(bench, threshold)
-    where = f", where cells in the middle are above {threshold / 1e9:g} GPa and the mean pressure is not"
+    where = f", where cells in the middle are above {threshold / 1e9:g} GPa but the mean pressure is not"
     found.append(
-        f"Not part of the claim: over the load, at 1 % creepage, it differs by {percent(most_by_load)} at most, at"
-        f" {load:.0f} kN/m{where if by_highest <= load < by_mean else ''}."
+        f"Not part of the claim: over the range of loads, at 1 % creepage, they differ by at most"
+        f" {percent(most_by_load)}, at {load:.0f} kN/m{where if by_highest <= load < by_mean else ''}."
     )
     return wl.CheckedClaim(
         statement="The local KTH gives very similar results to the global KTH.",
         where="Sections 5.1.2 and 6",
-        criterion="Similar in percent of the plot of mild wear, where rates are lowest, on the exact theory with each"
-        " slip, as long as no cell passes a threshold of KTH; beyond, similar rates with either V.",
+        criterion="On the exact theory with each slip, the results are similar in percent of the plot of mild wear,"
+        " where rates are lowest, as long as no cell exceeds a threshold of KTH. Beyond that, the rates are similar"
+        " with either V.",
         found="\n\n".join(found),
         verdict=verdict(parts),
     )
@@ -167,19 +168,20 @@ def usfd_good_in_mild_and_severe(bench: Bench) -> wl.CheckedClaim:
         parts += [bool(good.all()), bool(good.any())]
         most, at = largest(local - mean, x)
         text = (
-            f"On {words}: {percent(float(shares.min()))} to {percent(float(shares.max()))};"
-            f" {100 * abs(most) / mean.max():.1f} % of the plot at most, {most:+.1f} µg/m/mm² at {at:.2f} %"
+            f"On {words}: {percent(float(shares.min()))} to {percent(float(shares.max()))}, and at most"
+            f" {100 * abs(most) / mean.max():.1f} % of the plot, {most:+.1f} µg/m/mm² at {at:.2f} %"
         )
         too_high = x[(local > mean) & ~good]
         if too_high.size:
-            text += f", and too high from {too_high[0]:.1f} % on, where some cells wear catastrophically"
+            text += f"; too high from {too_high[0]:.1f} % on, where some cells wear catastrophically"
         found.append(f"{text}.")
     return wl.CheckedClaim(
         statement="The local USFD with its global parameters still gives a good approximation of wear in mild and"
         " severe wear, with the exact and the simplified theory.",
         where="Section 5.1.2, Figure 7",
-        criterion="A good approximation of USFD on the patch means, which was fitted to the tests, in percent of the"
-        f" plot, from {TESTED[0]:g} % creepage to the end of the paper's window of severe wear, {bench.window:.0f} N.",
+        criterion="The local USFD is a good approximation of USFD on the patch means, which was fitted to the tests, in"
+        f" percent of the plot, from {TESTED[0]:g} % creepage to the end of the paper's severe wear window,"
+        f" {bench.window:.0f} N.",
         found="\n\n".join(found),
         verdict=verdict(parts),
     )
@@ -202,8 +204,9 @@ def usfd_too_high_in_catastrophic(bench: Bench) -> wl.CheckedClaim:
         statement="In catastrophic wear the local USFD, with its global parameters, overestimates wear, especially with"
         " the simplified theory.",
         where="Section 5.1.2, Figures 7 and 8",
-        criterion="FASTSIM above the exact theory and that above the patch means at every creepage.",
-        found=f"In µg/m/mm², and against the patch means: {listed}.",
+        criterion="At every creepage, FASTSIM gives more wear than the exact theory, and the exact theory more than the"
+        " patch means.",
+        found=f"In µg/m/mm², and relative to the patch means: {listed}.",
         verdict=verdict([bool((fastsim > exact_rate).all()), bool((exact_rate > mean).all())]),
     )
 
@@ -255,9 +258,10 @@ def pressure_threshold(bench: Bench) -> wl.CheckedClaim:
     return wl.CheckedClaim(
         statement=f"The normal pressure of 2.1 GPa corresponds to a normal force of {PAPER_LOAD:g} kN/m.",
         where="Section 5.2",
-        criterion="A similar load at which the mean pressure is 2.1 GPa.",
+        criterion="The mean pressure is 2.1 GPa at a similar load.",
         found=f"The mean pressure is {threshold / 1e9:g} GPa at {mean:.0f} kN/m, {percent(mean / PAPER_LOAD - 1.0)}"
-        f" from the paper's value; the maximum pressure at {highest:.0f} kN/m. The paper's is a mean pressure.",
+        f" from the paper's value; the maximum pressure reaches it at {highest:.0f} kN/m. So the paper means the mean"
+        " pressure.",
         verdict=verdict([abs(mean / PAPER_LOAD - 1.0) < SIMILAR]),
     )
 
@@ -284,14 +288,15 @@ def thresholds_beyond_tests(bench: Bench) -> wl.CheckedClaim:
         " not be observed.",
         where="Section 5.2",
         criterion=f"At {TESTED[1]:g} % creepage the highest slip speed is below {lower:g} m/s and the highest pressure"
-        f" below {threshold / 1e9:g} GPa, with either V; on the patch means, which the paper speaks of, and on cells.",
+        f" below {threshold / 1e9:g} GPa, with either V, both on the patch means, which the paper refers to, and on"
+        " cells.",
         found="\n\n".join(found),
         verdict=verdict(parts),
     )
 
 
 def gap_in_catastrophic(bench: Bench) -> wl.CheckedClaim:
-    """Look at where USFD with its global parameters on cells is farthest from USFD on the patch means."""
+    """Find where USFD with its global parameters on cells differs most from USFD on the patch means."""
     law, x = wl.wear_law("usfd"), bench.creepage
     catastrophic, earlier = bench.between(bench.usfd_borders[1], np.inf), bench.between(-np.inf, bench.usfd_borders[0])
     mean = bench.rate("global", law)
@@ -304,16 +309,15 @@ def gap_in_catastrophic(bench: Bench) -> wl.CheckedClaim:
             bool((np.diff(gap[catastrophic]) > 0.0).all()),
         ]
         found.append(
-            f"On {words} the gap peaks with {most:.0f} µg/m/mm² near {at:.1f} %, where catastrophic wear begins on the"
-            f" patch means, and shrinks to {gap[-1]:.0f} at {x[-1]:g} %; in mild wear it is"
-            f" {np.abs(gap[earlier]).max():.1f} at most."
+            f"On {words} the gap peaks at {most:.0f} µg/m/mm² near {at:.1f} %, where catastrophic wear begins on the"
+            f" patch means, and shrinks to {gap[-1]:.0f} at {x[-1]:g} %; in mild wear it is at most"
+            f" {np.abs(gap[earlier]).max():.1f}."
         )
     return wl.CheckedClaim(
-        statement="There is a gap between the implementations of USFD, particularly for high W.I. values in"
-        " catastrophic wear.",
+        statement="There is a gap between the implementations of USFD, particularly at high W.I. in catastrophic wear.",
         where="Section 5.2, Figure 8",
-        criterion="Throughout catastrophic wear the gap exceeds that of mild wear, and it grows with W.I.; in part if"
-        " one of these is so.",
+        criterion="Throughout catastrophic wear the gap is larger than in mild wear, and it grows with W.I. Holds in"
+        " part if one of these is true.",
         found="\n\n".join(found),
         verdict=verdict(parts),
     )
@@ -338,7 +342,7 @@ def corrected_like_global(bench: Bench) -> wl.CheckedClaim:
             most, at = largest(gap[inside], x[inside])
             share = abs(most) / mean[inside].max()
             parts.append(share < SIMILAR)
-            said.append(f"{panel} by {100 * share:.1f} % of the plot at most, {most:+.1f} µg/m/mm² at {at:.2f} %")
+            said.append(f"{panel}, at most {100 * share:.1f} % of the plot, {most:+.1f} µg/m/mm² at {at:.2f} %")
         shares = gap / mean
         spans = []
         for low, high in ((TESTED[0], 14.0), (14.0, 19.0), (19.0, HIGHEST)):
@@ -350,14 +354,14 @@ def corrected_like_global(bench: Bench) -> wl.CheckedClaim:
         )
         found.append(
             f"On {words}: {'; '.join(said)}. The root mean square of the difference falls from {before:.0f} to"
-            f" {after:.0f} µg/m/mm². Point by point it differs by {', '.join(spans)} creepage, most at the kink where"
+            f" {after:.0f} µg/m/mm². Point by point they differ by {', '.join(spans)} creepage, most at the kink where"
             " catastrophic wear begins on the patch means."
         )
     return wl.CheckedClaim(
         statement="With the corrected parameters of Table 4 the plots of the local and the global USFD overlap.",
         where="Section 5.2, Table 4, Figure 8",
-        criterion=f"Overlapping in percent of the plot in both panels of Figure 8, up to and from {split:.0f} N, on"
-        " either theory; in part if in some of them.",
+        criterion=f"They overlap in percent of the plot in both panels of Figure 8, up to {split:.0f} N and from there"
+        " on, on either theory. Holds in part if they overlap in some of these.",
         found="\n\n".join(found),
         verdict=verdict(parts),
     )

@@ -1,4 +1,4 @@
-"""Table 4 of Tassini et al. (2010) as a fit: parameters of USFD for cells, whose patch mean follows the global law."""
+"""Table 4 of Tassini et al. (2010) as a fit: parameters of USFD on cells that make its mean follow the global law."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from wearlaw_sheffield.tables import USFD_UNITS, number, shown_unit, usfd_parame
 from wearlaw_sheffield.wording import SIMILAR, percent, verdict
 
 FREE = ("q_s", "m_c", "tr_sc")
-"""What the paper changed; m_m it kept."""
+"""The parameters that the paper changed; it kept m_m."""
 
 HIGHEST = (18.0, 20.5, 22.0, 25.0)
 """Creepages up to which parameters are fitted [%]; `SHOWN` is the one of the first table and the figures."""
@@ -24,10 +24,10 @@ HIGHEST = (18.0, 20.5, 22.0, 25.0)
 SHOWN = 20.5
 
 POINTS = 200
-"""Creepages of a fit, evenly spaced."""
+"""Number of creepages in a fit, evenly spaced."""
 
 STARTS = 0
-"""Starting points of a fit besides the published set, which is near enough."""
+"""Number of starting points of a fit besides the published set, which is near enough."""
 
 Norm = Literal["absolute", "relative"]
 
@@ -37,25 +37,24 @@ NORMS: tuple[Norm, ...] = ("absolute", "relative")
 THEORY = {"exact": "exact theory", "fastsim": "simplified theory"}
 
 TEXT = """\
-The paper found the corrected parameters of Table 4 by making USFD on cells give what it gives on the patch means. It \
-states neither the range of creepage nor the measure of the difference. Here q_s, m_c and tr_sc are fitted by least \
-squares to the rates of the global law at {points} evenly spaced creepages up to {shown:g} %, by absolute differences; \
-m_m stays. Each fit starts from the paper's set. There is no noise, so the residual is what three parameters cannot \
-do: near the border of catastrophic wear, where the middle of the patch is beyond it and the mean is not, no set for \
-cells gives the kink of the global law.
+The paper chose the corrected parameters of Table 4 so that USFD on cells gives the same results as on the patch \
+means. It states neither the range of creepage nor the measure of the difference. Here q_s, m_c and tr_sc are fitted \
+by least squares of absolute differences to the rates of the global law, at {points} evenly spaced creepages up to \
+{shown:g} %; m_m keeps its value. Each fit starts from the paper's set. There is no noise, so the residual shows the \
+limits of three parameters: near the onset of catastrophic wear, where the middle of the patch is past it and the mean \
+is not, no set for cells reproduces the kink of the global law.
 
 {residuals}
 
 The other tables repeat the fit for other ranges and with relative differences. {spread} Such a set belongs to its \
-contact model, bound of the traction, geometry, load, friction and range of creepage; it is no property of the \
-steels."""
+contact model, traction bound, geometry, load, friction and range of creepage; it is not a property of the steels."""
 
 
 @dataclass(frozen=True)
 class Fitted:
-    """A fit, with the root mean square of its residuals and of those of the paper's set at the same creepages.
+    """A fit, with the root mean square of its residuals and of the paper's set's residuals at the same creepages.
 
-    Residuals are in µg/m/mm², or as ln(local/global), which is about the relative difference.
+    Residuals are in µg/m/mm², or ln(local/global), which is close to the relative difference.
     """
 
     model: str
@@ -103,7 +102,7 @@ def fitted(bench: Bench, model: str, highest: float, norm: Norm) -> Fitted:
         source="USFD on the patch means",
     )
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)  # the study itself has warned
+        warnings.simplefilter("ignore", wl.WearlawWarning)  # the study itself has already warned
         predict = bench.rig | wl.contact_model(model) | published
         found = wl.fit(predict, tests, free=FREE, scatter=norm, bootstrap=0, starts=STARTS)
     values = {name: number(found.parameters[name], USFD_UNITS[name]) for name in FREE}
@@ -124,18 +123,18 @@ def _residuals(local: Array, target: Array, norm: Norm) -> Array:
 
 
 def _in_words(bench: Bench, model: str, law: wl.WearLaw) -> str:
-    """Return how far a fitted law and the paper's set are from the global law."""
+    """Return, in words, how far a fitted law and the paper's set are from the global law."""
     tested = bench.creepage >= TESTED[0]
     target = bench.rate("global", wl.wear_law("usfd"))
     said = []
     for name, one in (("the fit", law), ("the paper's set", wl.wear_law("usfd", fitted_for=model))):
         share = (bench.rate(model, one) / target - 1.0)[tested]
         said.append(f"{name} differs by {percent(float(share.min()))} to {percent(float(share.max()))}")
-    return f"From {TESTED[0]:g} to {bench.creepage[-1]:g} % creepage, with the {THEORY[model]}, {', '.join(said)}."
+    return f"With the {THEORY[model]}, from {TESTED[0]:g} to {bench.creepage[-1]:g} % creepage, {' and '.join(said)}."
 
 
 def _spread(fits: list[Fitted], model: str) -> str:
-    """Return between which values each parameter lies in all fits."""
+    """Return, in words, the range of each parameter over all fits."""
     said = []
     for name in FREE:
         values = [one.parameters[name] for one in fits if one.model == model]
@@ -156,16 +155,16 @@ def follows_from_a_fit(fits: list[Fitted]) -> wl.CheckedClaim:
         )
         parts += [near > 0, near == len(of_model)]
         found.append(
-            f"For the {words} {near} of {len(of_model)} fits are similar. The nearest, of {nearest.norm} differences up"
+            f"For the {words} {near} of {len(of_model)} fits are similar. The closest, by {nearest.norm} differences up"
             f" to {nearest.highest:g} %, gives {listed}; no parameter differs by more than {100 * min(apart):.1f} %."
-            f" The farthest differs by {100 * max(apart):.0f} % in a parameter."
+            f" In the farthest, one parameter differs by {100 * max(apart):.0f} %."
         )
     return wl.CheckedClaim(
-        statement="The corrected parameters are those with which the local USFD gives the results of the global one.",
+        statement="The corrected parameters are those that make the local USFD reproduce the global one.",
         where="Section 5.2, Table 4",
-        criterion="All parameters similar to those of a least-squares fit. The paper states neither range nor measure,"
-        f" so that fits up to {', '.join(f'{highest:g}' for highest in HIGHEST)} % creepage, each by absolute and by"
-        " relative differences, are compared; in part if some of them are similar.",
+        criterion="All parameters are similar to those of a least-squares fit. The paper states neither range nor"
+        f" measure, so the fits go up to {', '.join(f'{highest:g}' for highest in HIGHEST)} % creepage, each by"
+        " absolute and by relative differences. Holds in part if some of the fits are similar.",
         found="\n\n".join(found),
         verdict=verdict(parts),
     )
@@ -182,7 +181,7 @@ def side_by_side(shown: dict[str, Fitted]) -> pd.DataFrame:
 
 
 def sensitivity(fits: list[Fitted], norm: Norm) -> pd.DataFrame:
-    """Return all fits of a kind of differences, a row each."""
+    """Return all fits by one measure of the difference, a row each."""
     unit = "[µg/m/mm²]" if norm == "absolute" else "of ln(local/global) [-]"
     rows = [
         {
@@ -199,7 +198,7 @@ def sensitivity(fits: list[Fitted], norm: Norm) -> pd.DataFrame:
 
 
 def residual_figure(bench: Bench, shown: dict[str, Fitted], norm: Norm) -> wl.FigureData:
-    """Return the differences from the global law over the creepage, of the fit and of the paper's set."""
+    """Return the differences from the global law over creepage, for the fit and for the paper's set."""
     inside = bench.creepage >= TESTED[0]
     x, target = bench.creepage[inside], bench.rate("global", wl.wear_law("usfd"))[inside]
 
@@ -225,6 +224,7 @@ def residual_figure(bench: Bench, shown: dict[str, Fitted], norm: Norm) -> wl.Fi
         name=f"table_4_residuals_{norm}",
         title=f"{'Difference' if norm == 'absolute' else 'Relative difference'} of the local USFD from the global one",
         panels=panels,
-        caption=f"USFD on cells with the corrected parameters of Table 4, and with parameters fitted up to {SHOWN:g} %"
-        f" creepage by absolute differences, minus USFD on the patch means, at {bench.normal_force_per_width:.5g~P}.",
+        caption="USFD on cells minus USFD on the patch means, with the corrected parameters of Table 4 and with"
+        f" parameters fitted up to {SHOWN:g} % creepage by absolute differences, at"
+        f" {bench.normal_force_per_width:.5g~P}.",
     )

@@ -1,4 +1,4 @@
-"""Tables 1 to 4 of Tassini et al. (2010), made from the fields of the laws."""
+"""Tables 1 to 4 of Tassini et al. (2010), generated from the fields of the laws."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ import wearlaw as wl
 from wearlaw_sheffield.bench import discs_of
 
 TEXT = """\
-The tables are made from the laws as they compute, not typed in again.
+The tables are generated from the laws in use, not typed in again.
 
-In Table 2 the paper prints "ṡ ≥ 0.2" in the first row below 2.1 GPa, where ṡ < 0.2 m/s is meant; it gives ranges for \
-the coefficient k, of which the predictions show both ends and the middle. The rows leave p = 2.1 GPa open; here it \
-belongs to the upper row. The equations of Table 1 do not meet at {border:g} N: the rate jumps there by a factor of \
-{jump:.2f}, and is kept as published. The hardness H is not printed; {hardness} follows from 2.1 GPa = 0.8 H.
+In Table 2 the paper prints "ṡ ≥ 0.2" in the first row below 2.1 GPa, but must mean ṡ < 0.2 m/s. It gives ranges for \
+the coefficient k; the predictions show both ends and the middle. The rows leave p = 2.1 GPa open; here it belongs to \
+the upper row. The equations of Table 1 do not meet at {border:g} N: the rate jumps there by a factor of {jump:.2f}, \
+and wearlaw keeps it as published. The paper does not print the hardness H; {hardness} follows from 2.1 GPa = 0.8 H.
 
-Errata of the equations, all kept to here: eq. (1) needs a factor of 4, a² = 4PR/(πE*), with Johnson's E*; eqs. (4) \
-and (10) need a minus sign before ∂u/∂x, or the stick zone would slip with twice the creepage; eq. (7) lacks a term of \
-the slip in partial slip, without which slip jumps where it begins and dissipates {ratio:.1f} times Tγ at \
-0.1 % creepage; eq. (8) needs (x+a-c) in place of (x+a+c)."""
+Errata in the equations, all corrected here: eq. (1) needs a factor of 4, a² = 4PR/(πE*), with Johnson's E*; eqs. (4) \
+and (10) need a minus sign before ∂u/∂x, or the stick zone would slip with twice the creepage; eq. (7) lacks a term in \
+partial slip, without which slip jumps where it begins and dissipates {ratio:.1f} times Tγ at 0.1 % creepage; eq. (8) \
+needs (x+a-c) in place of (x+a+c)."""
 
 
 def section(study: wl.Study) -> wl.Section:
@@ -37,7 +37,7 @@ def section(study: wl.Study) -> wl.Section:
 
 
 def brr_jump() -> dict[str, float]:
-    """Return where BRR jumps [N], and its rate behind over the rate before."""
+    """Return where BRR jumps [N], and the ratio of its rates after and before the jump."""
     brr = dict(wl.wear_law("brr"))
     border = number(brr["severe_limit"], "N")
     behind = number(brr["severe_slope"], "mm^3/km/N") * border - number(brr["severe_offset"], "mm^3/km")
@@ -45,12 +45,12 @@ def brr_jump() -> dict[str, float]:
 
 
 def number(quantity: wl.Quantity, unit: str) -> float:
-    """Return the magnitude in a unit, without the rounding of the conversion."""
+    """Return the magnitude in a unit, free of the rounding error of the conversion."""
     return float(f"{quantity.to(unit).magnitude:.12g}")
 
 
 def table_1() -> pd.DataFrame:
-    """Return the regimes of BRR: the lost section in mm² per km is each expression, with Tγ in N and D in mm."""
+    """Return the regimes of BRR: expressions for the lost section in mm² per km, with Tγ in N and D in mm."""
     brr = dict(wl.wear_law("brr"))
     mild, severe = (f"{number(brr[name], 'N'):g}" for name in ("mild_limit", "severe_limit"))
     slope, steep = (f"{number(brr[name], 'mm^3/km/N'):g}" for name in ("mild_slope", "severe_slope"))
@@ -120,7 +120,7 @@ def table_4() -> pd.DataFrame:
 
 
 def printed_slip(rig: wl.TwinDisc) -> float:
-    """Return the energy that the slip of eq. (7) as printed dissipates over Tγ, at 1500 MPa and 0.1 % creepage."""
+    """Return the energy dissipated by the slip of eq. (7) as printed, over Tγ, at 1500 MPa and 0.1 % creepage."""
     problem = rig.problem(max_pressure="1500 MPa", creepage="0.1 %", friction_coefficient=0.46)
     contact = wl.contact_model("exact", slip="as_printed").solve(problem)
     dissipated = contact.mean(contact.wear_index_density) * problem.patch_area

@@ -1,4 +1,4 @@
-"""What the paper's words are taken to mean, and how verdicts and numbers are written."""
+"""Tolerances for the paper's words, and helpers that find verdicts and write numbers."""
 
 from __future__ import annotations
 
@@ -10,31 +10,32 @@ import wearlaw as wl
 from wearlaw import Array
 
 SAME = 0.02
-"""Results that a plot shows as one differ by less than this share."""
+"""Largest relative difference between results that are called the same, which coincide in a plot."""
 
 SIMILAR = 0.10
-"""Results that are called similar or overlapping differ by less than this share."""
+"""Largest relative difference between results that are called similar or overlapping."""
 
 GOOD = 0.20
-"""A good approximation, or a law that reproduces wear well, differs by less than this share."""
+"""Largest relative difference of a good approximation, or of a law that reproduces wear well."""
 
 WORDS = f"""\
-The paper states no tolerances, so each claim below has a criterion. Results are the same if they differ by less than \
-{100 * SAME:g} %, similar or overlapping by less than {100 * SIMILAR:g} %, and a good approximation by less than \
-{100 * GOOD:g} %. Where the paper judges by a figure, a difference is in percent of the highest rate that the window \
-of the figure shows, "of the plot"; relative differences, in percent of the second result, stand beside it. Windows \
-are the paper's: W.I. up to 70 N, from 50 to 350 N, and creepages up to the 20 % of the tests; section 5.2 goes to 25 %.
+The paper states no tolerances, so each claim below has a criterion. Results are called the same if they differ by \
+less than {100 * SAME:g} %, similar or overlapping if by less than {100 * SIMILAR:g} %, and a good approximation if by \
+less than {100 * GOOD:g} %. Where the paper judges by a figure, differences are given in percent of the highest rate \
+in the window of the figure ("of the plot"), along with relative differences in percent of the second result. The \
+windows are the paper's: W.I. up to 70 N, W.I. from 50 to 350 N, and creepages up to 20 %, as in the tests; section \
+5.2 goes to 25 %.
 
-A claim holds in part if it holds for some of its variants or in part of the range. It cannot be decided if it depends \
-on something that the paper does not give. Four things are such: the coefficient k of KTH, which has ranges, so that a \
-claim holds if it does for some k within them; the slip, for which the exact theory is computed with the slip that \
-follows from the tractions and with eq. (7) as printed; the flexibility L of FASTSIM; and the rolling speed V, on \
-which the slip speed depends, and with it where KTH has its thresholds. V is taken as the surface speed of disc 1 and \
-as the mean surface speed, where disc 1 keeps its speed and drives."""
+A claim holds in part if it holds for some of its variants or in part of the range. It cannot be decided if the answer \
+depends on something that the paper does not give. There are four such things. The coefficient k of KTH has ranges; a \
+claim holds if it holds for some k in them. The slip of the exact theory is computed both from the tractions and from \
+eq. (7) as printed. The paper does not print the flexibility L of FASTSIM. Nor does it print the rolling speed V, \
+which sets the slip speed and thus where KTH reaches its thresholds. V is taken as the surface speed of disc 1 and as \
+the mean surface speed, where disc 1 keeps its speed and drives."""
 
 
 def verdict(parts: Iterable[bool | None]) -> wl.Verdict:
-    """Return the verdict on a claim whose parts hold, do not, or cannot be decided (None)."""
+    """Return the verdict on a claim from its parts: each holds, does not hold, or cannot be decided (None)."""
     found = list(parts)
     if all(found):
         return "holds"
@@ -44,7 +45,7 @@ def verdict(parts: Iterable[bool | None]) -> wl.Verdict:
 
 
 def at_both(parts: Iterable[bool]) -> bool | None:
-    """Return whether something holds at every one of several rolling speeds, or None if that depends on the speed."""
+    """Return whether something holds at every rolling speed, or None if that depends on the speed."""
     found = set(parts)
     return found.pop() if len(found) == 1 else None
 
@@ -57,13 +58,13 @@ def percent(share: float) -> str:
 
 
 def largest(relative: Array, x: Array) -> tuple[float, float]:
-    """Return the entry of largest magnitude and where it is."""
+    """Return the entry of largest magnitude, and the x where it occurs."""
     i = int(np.abs(relative).argmax())
     return float(relative[i]), float(x[i])
 
 
 def first_crossing(x: Array, one: Array, other: Array) -> float | None:
-    """Return where `one - other` first loses the sign that it begins with, by linear interpolation; None if nowhere."""
+    """Return where `one - other` first changes sign, by linear interpolation, or None if it never does."""
     difference = one - other
     beyond = np.flatnonzero(difference * difference[0] < 0)
     if beyond.size == 0:

@@ -1,4 +1,4 @@
-"""Print what it costs to check contacts as they are solved: `python -m tests.benchmarks.checks [--strict]`.
+"""Print the cost of checking contacts as they are solved: `python -m tests.benchmarks.checks [--strict]`.
 
 Sweeps run with the checks, whose own seconds are counted: a sweep's time differs by more than they take from one run
 to the next.

@@ -89,7 +89,7 @@ def write_plugins(folder: Path, count: int) -> None:
 
 
 def run(code: str, folder: Path) -> str:
-    """Return what a fresh process prints that has the plugins on its path."""
+    """Return the output of a fresh process with the plugins on its path."""
     path = os.pathsep.join(filter(None, (str(folder), os.environ.get("PYTHONPATH"))))
     compiled = {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": str(folder / "compiled")}
     environment = {**os.environ, **THREADS, **compiled, "PYTHONPATH": path}

@@ -1,4 +1,4 @@
-"""Print what a bootstrap costs beside one that refits its replicates one by one: `python -m tests.benchmarks.fit`.
+"""Print the cost of a bootstrap, beside one that refits its replicates one by one: `python -m tests.benchmarks.fit`.
 
 Both start from the best fit, draw the same kind of residuals, and run in one process; CPU time is counted.
 """

@@ -53,7 +53,7 @@ def print_gates(gates: list[Gate]) -> None:
 
 
 def write(folder: Path, rows: list[Row], gates: list[Gate]) -> None:
-    """Write what the documentation shows."""
+    """Write the results that the documentation shows."""
     with (folder / "accuracy.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["method", "cells", "µs a point", "rms relative error", "largest relative error"])
@@ -67,7 +67,7 @@ def write(folder: Path, rows: list[Row], gates: list[Gate]) -> None:
 
 
 def machine() -> str:
-    """Return what the times were measured on."""
+    """Return the machine and versions of the measurements."""
     parts = [_processor(), f"Python {platform.python_version()}", f"NumPy {version('numpy')}"]
     if "numba" in modes():
         parts.append(f"numba {version('numba')}")

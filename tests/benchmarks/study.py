@@ -1,4 +1,4 @@
-"""Print what the shipped study costs, from the command to the report: `python tests/benchmarks/study.py`."""
+"""Print the cost of the shipped study, from the command to the report: `python tests/benchmarks/study.py`."""
 
 from __future__ import annotations
 

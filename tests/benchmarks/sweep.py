@@ -1,4 +1,4 @@
-"""Print what a sweep gains on two processes, and what the worked example takes: `python -m tests.benchmarks.sweep`.
+"""Print the gain of a sweep on two processes, and the time of the worked example: `python -m tests.benchmarks.sweep`.
 
 The gain is the time of a sweep in one process over that on two that are warm. It says something where the machine is
 otherwise idle, which is looked at before each. `--strict` fails if it is too small, `--write` renews the picture.

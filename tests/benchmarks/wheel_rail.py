@@ -44,7 +44,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--strict", action="store_true", help="fail if a gate is missed")
     parser.add_argument("--rounds", type=int, default=ROUNDS)
     options = parser.parse_args(arguments)
-    # The workload goes beyond what the law was fitted to.
+    # The workload exceeds the law's range.
     warnings.simplefilter("ignore", wl.WearlawWarning)
     print(f"{report.machine()}\n{WORKLOAD}")
     gates = marches(options.rounds)
@@ -56,7 +56,7 @@ def main(arguments: list[str]) -> int:
 
 
 def marches(rounds: int) -> list[Gate]:
-    """Return the gates of the marches beside C, and print what a cell costs in smaller and larger blocks."""
+    """Return the gates of the marches against C, and print the cost of a cell in smaller and larger blocks."""
     if not compilers():
         print("no C compiler: the march in C is left out")
         return []

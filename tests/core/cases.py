@@ -1,4 +1,4 @@
-"""Small cases, models that only tests know, and the command line, shared by the tests of what uses them."""
+"""Small cases, models for tests, and the command line, shared by several tests."""
 
 from __future__ import annotations
 
@@ -151,7 +151,7 @@ def files(folder: Path) -> set[str]:
 
 
 def tree(folder: Path) -> dict[str, bytes]:
-    """Return all files below a folder, hidden ones too, with what they hold; folders hold nothing."""
+    """Return the contents of all files below a folder, hidden ones too; a folder's own is empty."""
     return {str(path.relative_to(folder)): path.read_bytes() if path.is_file() else b"" for path in folder.rglob("*")}
 
 

@@ -21,7 +21,7 @@ RIG_NOTE = "note: the rig is taken to be SUROS, 47 mm steel discs and a track of
 
 
 def rates() -> Any:
-    """Return what the tests would measure without scatter."""
+    """Return the measurements of tests without scatter."""
     predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact")
     return predict(max_pressure="1500 MPa", creepage=Q(CREEPAGE, "%"), friction_coefficient=0.46).wear_rate.magnitude
 

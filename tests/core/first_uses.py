@@ -58,7 +58,7 @@ USES: dict[str, Callable[[], str]] = {
 
 
 def results(names: list[str]) -> list[str]:
-    """Return what the uses of these names give or raise, each in a thread of its own, all started at once."""
+    """Return the results or errors of using these names, each in a thread of its own, all started at once."""
     together = Barrier(len(names))
 
     def use(name: str) -> str:

@@ -44,7 +44,7 @@ class Wear(NamedTuple):
 
 
 def integrate_wear(model: wl.ContactModel, law: wl.WearLaw, problem: wl.Problem, scale: wl.Scale) -> Wear:
-    """Return the wear, with what is computed when it is asked for."""
+    """Return the wear, including the totals that are computed on demand."""
     wear = integrate.integrate_wear(model, law, problem, scale)
     forces = integrate_forces(model, problem) if wear.forces is None else wear.forces
     error = integrate.wear_rate_error(model, law, problem, scale, wear)

@@ -1,4 +1,4 @@
-"""Figures, panels and curves by their names, and figures of small cases, for the tests of what figures show."""
+"""Figures, panels and curves by their names, and figures of small cases, for the tests of figures."""
 
 from __future__ import annotations
 

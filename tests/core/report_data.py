@@ -1,4 +1,4 @@
-"""A small study with figures and a section made by hand, for the tests of what shows them."""
+"""A small study with figures and a section made by hand, for the tests of reports and tables."""
 
 from __future__ import annotations
 

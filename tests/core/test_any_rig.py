@@ -193,12 +193,12 @@ class Odd(wl.CreepForceModel):
 @pytest.mark.parametrize(
     ("falls", "traction", "said"),
     [
-        (False, 0.1, "of 0.1 cannot be found: the contact transmits more without longitudinal creepage"),
-        (False, [[0.2, 0.1]], r"of 0.1 at index \[0, 1\] cannot be found: the contact transmits more without"),
-        (False, -0.1, "of 0.1 belongs to no creepage"),
-        (True, 0.2, "of 0.2 cannot be found: several creepages transmit it, since the traction falls again as"),
-        (True, -0.2, "of -0.2 cannot be found: several creepages"),
-        (True, 0.31, "of 0.31 belongs to no creepage: with contact model 'odd' it stays below 0.3, at"),
+        (False, 0.1, "of 0.1: without longitudinal creepage the contact transmits more already"),
+        (False, [[0.2, 0.1]], r"of 0.1 at index \[0, 1\]: without longitudinal creepage the contact transmits more"),
+        (False, -0.1, "no creepage transmits a traction coefficient of 0.1"),
+        (True, 0.2, "of 0.2: several creepages do, because the traction falls again as"),
+        (True, -0.2, "of -0.2: several creepages"),
+        (True, 0.31, "of 0.31: with contact model 'odd' it stays below 0.3 "),
     ],
 )
 def test_a_traction_of_no_single_creepage_is_refused(falls: bool, traction: Any, said: str) -> None:
@@ -216,7 +216,7 @@ def test_a_traction_of_one_creepage_is_found_even_if_that_of_others_is_not() -> 
 
 def test_full_slip_on_a_rail_has_no_single_creepage() -> None:
     for traction in (0.3, -0.3, 0.4):
-        with pytest.raises(wl.ConditionsError, match=r"belongs to no creepage: .* stays below 0\.3, at full slip"):
+        with pytest.raises(wl.ConditionsError, match=r"no creepage transmits .* stays below 0\.3 \(full slip\)"):
             wl.creepage_for(FASTSIM, traction_coefficient=traction, **ON_ELLIPSE)
     # What friction leaves for the longitudinal direction where the lateral creepage is as large as can be.
     with pytest.raises(wl.ConditionsError, match=r"stays below 0\.2"):
@@ -232,9 +232,9 @@ class Sliding(Roller):
 
 def test_a_rig_without_a_condition_for_the_creepage_says_so() -> None:
     predict: Any = Sliding() | wl.contact_model("exact")
-    with pytest.raises(wl.CompositionError, match="rig 'sliding' has no condition 'slide', but mass, creepage"):
+    with pytest.raises(wl.CompositionError, match="rig 'sliding' has no condition 'slide', only mass, creepage"):
         wl.creepage_for(predict, traction_coefficient=0.1, mass="20 kg")
-    with pytest.raises(wl.ConditionsError, match="creepage: is what creepage_for looks for; leave it out"):
+    with pytest.raises(wl.ConditionsError, match="creepage: creepage_for returns it; leave it out"):
         wl.creepage_for(ROLLER, traction_coefficient=0.1, mass="20 kg", creepage="1 %")
 
 

@@ -17,6 +17,7 @@ from tests.core.cases import OWN_TESTS, STEEL, InstallModel, case, changed, load
 from wearlaw.models.labels import labels
 from wearlaw.plugins import loader
 from wearlaw.study.case import Case, case_schema, case_text, load_case, written
+from wearlaw.units.variables import VARIABLES
 
 
 def rewritten(read: Case) -> str:
@@ -145,6 +146,12 @@ def test_a_case_written_with_all_its_defaults_reads_back_as_the_same_case(
 @pytest.mark.parametrize("content", ACCEPTED.values(), ids=ACCEPTED)
 def test_the_schema_accepts_what_the_loader_accepts(validator: Any, content: cases.Table) -> None:
     validator.validate(content)
+
+
+def test_the_schema_describes_each_condition_by_its_meaning() -> None:
+    discs, *_ = case_schema()["allOf"]
+    conditions = discs["then"]["properties"]["sweeps"]["additionalProperties"]["properties"]
+    assert conditions["max_pressure"]["description"] == VARIABLES["max_pressure"].meaning == "Hertz's maximum pressure"
 
 
 def test_the_shipped_case_keeps_the_schema_and_reads_back_the_same(tmp_path: Path, validator: Any) -> None:

@@ -1,4 +1,4 @@
-"""Case files: what is refused and how that is said, by the loader and by the schema."""
+"""Case files: errors and their messages, from the loader and from the schema."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from wearlaw.testing import checks
 
 
 class SaidCheck:
-    """A check that fails with a message, or passes where there is none."""
+    """A check that fails with a message, or passes without one."""
 
     doc = "The rate is fine.\n\nAt every node."
 

@@ -187,7 +187,7 @@ def test_nothing_is_noted_where_there_is_nothing_to_know() -> None:
 
 
 def predicted(fit: wl.Fit, friction: float) -> wl.Array:
-    """Return what the fitted law predicts [kg/m/m²], by the public way."""
+    """Return the predictions of the fitted law [kg/m/m²], through the public interface."""
     assert isinstance(fit.predict, wl.Pipeline)
     conditions: dict[str, Any] = {"creepage": Q(CREEPAGE, "%"), "max_pressure": "1500 MPa"}
     return np.asarray(fit.predict(**conditions, friction_coefficient=friction).wear_rate.m_as("kg/m^3"))

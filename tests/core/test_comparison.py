@@ -1,4 +1,4 @@
-"""What comes of a comparison: tables and figures, also with rates of zero."""
+"""The results of a comparison: tables and figures, also with rates of zero."""
 
 from __future__ import annotations
 

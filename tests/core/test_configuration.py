@@ -1,4 +1,4 @@
-"""The frozen base of all settings: what it says of wrong fields, and what it survives."""
+"""The frozen base of all settings: its messages about wrong fields, copies, pickles and threads."""
 
 from __future__ import annotations
 

@@ -1,9 +1,7 @@
-"""The smallest and the largest entry, compiled or not."""
+"""The smallest and the largest entry, and checks that use them."""
 
 from __future__ import annotations
 
-import importlib.util
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -12,18 +10,6 @@ import pytest
 import wearlaw as wl
 from wearlaw import Q
 from wearlaw.arrays.extremes import extremes
-
-numba = pytest.param(
-    True, marks=pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="numba is not installed")
-)
-
-
-@pytest.fixture(params=[False, numba], ids=["NumPy", "compiled"], autouse=True)
-def acceleration(request: pytest.FixtureRequest) -> Iterator[None]:
-    wl.accelerate(request.param)
-    yield
-    wl.accelerate(None)
-
 
 TINIEST, LARGEST = float(np.finfo(np.float64).smallest_subnormal), float(np.finfo(np.float64).max)
 

@@ -1,4 +1,4 @@
-"""What a fit refuses, and what it warns of."""
+"""Errors and warnings of fits."""
 
 from __future__ import annotations
 
@@ -106,9 +106,7 @@ def test_settings_that_cannot_be_are_refused() -> None:
     refused("'m_m' is not free", predict, tests, ["q_s"], bounds={"m_m": ("1 ug/m/N", "2 ug/m/N")})
     refused("q_s: got 1.000 N", predict, tests, ["q_s"], bounds={"q_s": ("1 N", "2 N")})
     refused("q_s: got the bare number 1", predict, tests, ["q_s"], bounds={"q_s": (1.0, 2.0)})
-    refused(
-        "bounds: those of 'q_s' must be two values, low and high, got 5", predict, tests, ["q_s"], bounds={"q_s": 5}
-    )
+    refused("bounds: 'q_s' must have two values, low and high, got 5", predict, tests, ["q_s"], bounds={"q_s": 5})
     refused(r"bounds: give \{name: \(low, high\)\}, got 5", predict, tests, ["q_s"], bounds=5)
     refused("free: give names of parameters, .* got 5", predict, tests, 5)
     refused(

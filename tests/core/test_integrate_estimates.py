@@ -1,4 +1,4 @@
-"""What is said of the error of a mean where a law or a contact model declares nothing, and what is refused."""
+"""Error estimates of means for laws and contact models that declare nothing, and errors."""
 
 from __future__ import annotations
 

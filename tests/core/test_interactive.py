@@ -1,4 +1,4 @@
-"""Figures for plotly.js, by what they hand over; a browser draws them in test_report_browser.py."""
+"""The data that figures hand to plotly.js; a browser draws them in test_report_browser.py."""
 
 from __future__ import annotations
 

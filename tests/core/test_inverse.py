@@ -80,7 +80,7 @@ def test_conditions_and_tractions_broadcast() -> None:
 
 @pytest.mark.parametrize("traction", [0.46, 0.5, -0.46])
 def test_full_slip_has_no_single_creepage(traction: float) -> None:
-    with pytest.raises(wl.ConditionsError, match=r"belongs to no creepage: .* 'exact' it stays below 0\.46"):
+    with pytest.raises(wl.ConditionsError, match=r"no creepage transmits .* 'exact' it stays below 0\.46"):
         wl.creepage_for(RIG | wl.contact_model("exact"), traction_coefficient=traction, **LOAD)
 
 

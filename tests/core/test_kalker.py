@@ -136,7 +136,7 @@ def test_flexibilities_are_those_that_the_program_contact_prints(
 
 @pytest.mark.validates(
     "elliptic-contact",
-    "Where it is asked for, the table is interpolated as in CONTACT: linear in min(a/b, b/a), 1/C quadratic in ν",
+    "`interpolation=contact` interpolates in the table as CONTACT does: linear in min(a/b, b/a), 1/C quadratic in ν",
     source="CONTACT (Vollebregt), subroutine linrol; the asymptotes of Kalker 1990 outside the table",
     held_to="{within:.1e}, relative",
     within=20 * ROUNDING,

@@ -50,7 +50,7 @@ class Recorded:
         return run
 
     def takes(self, points: int) -> str:
-        """Return which copy an array of so many points takes."""
+        """Return the kernel that an array of this many points uses."""
         self.ran.clear()
         x = np.arange(float(points))
         assert (self.kernel(x, 2.0) == 2.0 * x).all()

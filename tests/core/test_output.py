@@ -1,4 +1,4 @@
-"""Writing results: what the files hold."""
+"""Writing results: the contents of the files."""
 
 from __future__ import annotations
 

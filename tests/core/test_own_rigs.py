@@ -59,7 +59,7 @@ class Roller(wl.Rig):
 
 
 class Returning(wl.Rig):
-    """A rig that returns, or raises, what it is told to."""
+    """A rig that returns or raises a given object."""
 
     name: ClassVar[str] = "returning"
     source: ClassVar[str] = "a test"

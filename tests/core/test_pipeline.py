@@ -106,9 +106,9 @@ def test_a_problem_of_the_other_kind_of_rig_is_refused() -> None:
     ellipse = RAILS.problem(**ON_RAILS)
     on_discs: Any = RIG | FASTSIM | KTH
     on_rails: Any = RAILS | FASTSIM | KTH
-    with pytest.raises(wl.WearlawError, match="Problem is not what a TwinDisc makes"):
+    with pytest.raises(wl.WearlawError, match="'ellipse', but a TwinDisc makes problems with the geometry 'line'"):
         on_discs.predict(ellipse)
-    with pytest.raises(wl.WearlawError, match="Problem is not what a WheelRail makes"):
+    with pytest.raises(wl.WearlawError, match="'line', but a WheelRail makes problems with the geometry 'ellipse'"):
         on_rails.predict(RIG.problem(**CONDITIONS))
 
 

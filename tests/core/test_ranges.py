@@ -1,4 +1,4 @@
-"""What is said of operating points that leave the range of a wear law."""
+"""Warnings about operating points outside the range of a wear law."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def problem(creepage: Any, **changes: Any) -> wl.Problem:
 
 
 def messages(watch: RangeWatch) -> list[str]:
-    """Return what a watch warns of."""
+    """Return the warnings of a watch."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         watch.warn(stacklevel=1)

@@ -1,4 +1,4 @@
-"""The report as a page: what it says, in which order, with nothing interpreted and nothing loaded."""
+"""The report as a page: its contents and their order, with texts escaped and nothing loaded from the network."""
 
 from __future__ import annotations
 

@@ -199,5 +199,5 @@ def test_nothing_is_left_when_the_writing_fails(folder: Path, monkeypatch: pytes
 
 
 def test_without_a_kind_all_are_named(folder: Path) -> None:
-    assert_refused(new_plugin("zobory"), "say what it provides: --wear-law, --contact-model or --rig", exit_code=2)
+    assert_refused(new_plugin("zobory"), "say what the plugin provides: --wear-law, --contact-model or", exit_code=2)
     assert files(folder) == set()

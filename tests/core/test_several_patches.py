@@ -201,7 +201,9 @@ def test_a_rig_balances_its_loads_around_the_contact() -> None:
 
 
 def test_the_creepage_that_loads_depend_on_is_not_looked_for() -> None:
-    with pytest.raises(wl.CompositionError, match="loads of rig 'flange' depend on the creepage"):
+    with pytest.raises(
+        wl.CompositionError, match="rig 'flange' balances its loads, which depend on the unknown creepage"
+    ):
         wl.creepage_for(
             Flange() | wl.contact_model("fastsim"),
             tangential_force="1 kN",

@@ -61,7 +61,7 @@ class ChangedStrips(Strips):
 
 
 def replace(**functions: Change) -> Change:
-    """Return what changes fields of a contact by functions of what they were."""
+    """Return a function that changes fields of a contact by functions of their values."""
     return lambda contact: dataclasses.replace(
         contact, **{name: function(getattr(contact, name).copy()) for name, function in functions.items()}
     )

@@ -1,4 +1,4 @@
-"""Running a case: what the datasets hold, against predictions made one by one."""
+"""Running a case: its datasets against predictions made one by one."""
 
 from __future__ import annotations
 

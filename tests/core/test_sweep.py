@@ -1,4 +1,4 @@
-"""Sweeps in one process: what comes out, tables of operating points, and what is refused."""
+"""Sweeps in one process: results, tables of operating points, and errors."""
 
 from __future__ import annotations
 

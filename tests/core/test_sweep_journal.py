@@ -1,4 +1,4 @@
-"""The records of what sweeps and runs have done: written whole, kept as they are, compared by all their digits."""
+"""The journals of sweeps and runs: written whole, never changed, compared by all their digits."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ MEANS = RAILS | wl.contact_model("polach") | LAW
 
 
 def offered(predict: wl.Pipeline[...], given: dict[str, Any], wrong: str = "none") -> tuple[str, list[str]]:
-    """Return the message about an output that does not exist, and what it offers."""
+    """Return the message about an unknown output, with the known ones."""
     with pytest.raises(wl.InputError, match=f"outputs: there is no '{wrong}'") as refusal:
         wl.sweep(predict, **given, outputs=[wrong])
     message, _, known = str(refusal.value).partition("There are: ")

@@ -1,4 +1,4 @@
-"""What uncertain predictions refuse, and what they warn of."""
+"""Errors and warnings of uncertain predictions."""
 
 from __future__ import annotations
 

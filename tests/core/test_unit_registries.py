@@ -22,7 +22,7 @@ T = TypeVar("T")
 
 
 def in_eight_threads(work: Callable[[], T]) -> list[T]:
-    """Return what each of eight threads gives, which all begin at once."""
+    """Return the results of eight threads that start at once."""
     together = Barrier(8)
 
     def begin(_: int) -> T:

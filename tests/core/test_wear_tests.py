@@ -1,4 +1,4 @@
-"""Wear tests as arrays: what they hold, how they are selected, and the conditions that they give a rig."""
+"""Wear tests as arrays: their contents, their selection, and their conditions for a rig."""
 
 from __future__ import annotations
 

@@ -85,9 +85,9 @@ def test_friction_can_fall_with_the_creep_speed() -> None:
 
 WRONG_RIGS: list[tuple[dict[str, Any], str]] = [
     ({"wheel_radius": Q(np.inf, "mm")}, "wheel_radius: must be finite"),
-    ({"rail_head_radius": Q(np.inf, "mm")}, "the bodies touch in a point only where the sum is positive"),
+    ({"rail_head_radius": Q(np.inf, "mm")}, "the bodies touch in a point only if the sum is positive"),
     ({"wheel_profile_radius": Q(-300, "mm")}, "sum to 0 1/m across the rail"),
-    ({"wheel_profile_radius": Q(-250, "mm")}, "a hollow must have a larger radius than what it embraces"),
+    ({"wheel_profile_radius": Q(-250, "mm")}, "a hollow must have a larger radius than the body inside it"),
     ({"rail_head_radius": Q(0, "mm")}, "a radius must not be zero"),
     ({"rail_head_radius": 300}, "rail_head_radius: got the bare number 300, which has no unit"),
     ({"rolling_speed": Q(0, "m/s")}, "rolling_speed: must be greater than zero"),

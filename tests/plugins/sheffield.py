@@ -1,4 +1,4 @@
-"""The paper of Tassini et al. (2010) by formulas and integrals of tests/reference.py, and what a claim says of it.
+"""The paper of Tassini et al. (2010) by the formulas and integrals of tests/reference.py, and helpers for its claims.
 
 A number in a claim is right if it is the expected one in the digits that it shows.
 """
@@ -115,7 +115,7 @@ def densities(model: str, creepage: Array, cells: int) -> Array:
 
 
 def paragraph(claim: wl.CheckedClaim, start: str) -> wl.CheckedClaim:
-    """Return a claim with that paragraph alone of what was found which begins so."""
+    """Return a claim with only the paragraph of its findings that begins with `start`."""
     (found,) = (text for text in claim.found.split("\n\n") if text.startswith(start))
     return dataclasses.replace(claim, found=found)
 
@@ -161,6 +161,6 @@ def mean_speed(creepage: float) -> float:
 
 
 def printed(text: str) -> Any:
-    """Return what a number that was rounded to its printed digits may have been."""
+    """Return the range of numbers that round to the printed digits."""
     decimals = len(text.partition(".")[2])
     return pytest.approx(float(text), abs=0.5 * 10.0**-decimals if decimals else 1e-14)

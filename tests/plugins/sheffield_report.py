@@ -1,8 +1,8 @@
-"""What the sections of the shipped study say, as it was last read over: `sheffield_report.txt`, beside this file.
+"""The text of the shipped study's sections, as last read over: `sheffield_report.txt`, beside this file.
 
-`python -m tests.plugins.sheffield_report` writes that file anew. A load or a diameter that is larger or smaller by 1e-8
-of itself gives the same sentences of claims, so rounding does not change them. Of the tables of fits three digits stand
-here, far fewer than their minimiser leaves open.
+`python -m tests.plugins.sheffield_report` renews that file. A load or a diameter that is larger or smaller by 1e-8
+of its value gives the same sentences of claims, so rounding does not change them. Tables of fits have three digits
+here, far fewer than the minimiser determines.
 """
 
 from __future__ import annotations

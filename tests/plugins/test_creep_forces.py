@@ -1,4 +1,4 @@
-"""The models that give creep forces without resolving the patch, in what they have in common."""
+"""Common properties of the models that give creep forces without resolving the patch."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ def whole(reduced: Array) -> Array:
 
 
 def apply(copy: str, reduced: Array, level: Array) -> Array:
-    """Return what a copy of the kernel gives in units where μ, p0, a and R are one, and E* = 2 p0 R/a is two."""
+    """Return the results of a copy of the kernel in units where μ, p0, a and R are one, and E* = 2 p0 R/a is two."""
     one = np.ones_like(reduced)
     return COPIES[copy](reduced, one, one, one, 2.0 * one, level)
 

@@ -63,7 +63,7 @@ def whole(bound: str, reduced: Array) -> Array:
 
 
 def apply(bound: str, copy: str, reduced: Array, level: Array) -> Array:
-    """Return what a copy of the kernel gives in units where g, μp2(0) and a are one."""
+    """Return the results of a copy of the kernel in units where g, μp2(0) and a are one."""
     return KERNELS[bound][copy](reduced, *[np.ones_like(reduced)] * 3, level)
 
 

@@ -1,4 +1,4 @@
-"""Contacts that CONTACT solved: Carter's problem, and what its FASTSIM gives; see the files for source and licence."""
+"""Contacts solved by CONTACT: Carter's problem, and its own FASTSIM; see the files for source and licence."""
 
 from __future__ import annotations
 
@@ -132,8 +132,8 @@ def test_the_creep_curve_of_a_locomotive_wheel_meets_the_fastsim_of_contact(high
 
 @pytest.mark.validates(
     "limits",
-    "By how much Mz of FASTSIM misses the linear theory at a/b from 0.1 to 10, where everything sticks: the"
-    " [table](theory-elliptic.md#what-it-meets-and-what-not)",
+    "The error of FASTSIM's Mz beside the linear theory, at a/b from 0.1 to 10, if the whole patch sticks: the"
+    " [table](theory-elliptic.md#agreement-with-other-theories)",
     source="integrals over the sticking ellipse by hand, from C22, C23 and C33 (Kalker 1990, Table E.3)",
     held_to="{within:g}, relative; every digit of the table",
     within=0.001,

@@ -80,5 +80,5 @@ def test_the_sections_refuse_another_rig() -> None:
         },
     }
     for section in ("tables", "claims", "table_4"):
-        with pytest.raises(wl.InputError, match="rig: must be a twin_disc, as that of the paper, not a wheel_rail"):
+        with pytest.raises(wl.InputError, match="rig: must be a twin_disc, like the paper's, not a wheel_rail"):
             run(Case(**{**fields, "sections": [f"tassini2010_{section}"]}))  # type: ignore[arg-type]

@@ -62,7 +62,7 @@ def test_the_shipped_case_has_the_figures_of_the_paper_in_its_order() -> None:
     assert round(0.2 * FORCE) == 682
     assert len(windows["figure_05"]) == len(windows["figure_08"]) == 2
     for name in ("figure_06", "figure_07", "figure_09"):
-        assert "measured wear rates, which are not public" in shipped.figures[name].caption
+        assert "measured wear rates, which have not been published" in shipped.figures[name].caption
 
 
 def test_the_sweep_of_the_shipped_case_reaches_beyond_where_brr_and_usfd_cross() -> None:

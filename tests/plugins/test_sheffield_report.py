@@ -1,12 +1,12 @@
-"""The sections of the report of Tassini et al. (2010) say what was last read over, word by word."""
+"""The sections of the report of Tassini et al. (2010) have the text that was last read over, word by word."""
 
 from __future__ import annotations
 
 from tests.plugins.sheffield_report import AGREED, report
 
 WHAT_TO_DO = """\
-The report does not say what tests/plugins/sheffield_report.txt says. If the new numbers and words are right, write the
-file anew, and read what changed: python -m tests.plugins.sheffield_report
+The report differs from tests/plugins/sheffield_report.txt. If the new numbers and words are right, renew the file and
+read the changes: python -m tests.plugins.sheffield_report
 """
 
 

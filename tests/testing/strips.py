@@ -156,5 +156,5 @@ class Means(wl.CreepForceModel):
         return wl.CreepForces(longitudinal=factor * along, lateral=factor * across, spin_moment=factor * turning)
 
     def factor(self, problem: wl.Problem, reduced: Any) -> Any:
-        """Return what the forces are multiplied by; `reduced` is the force of linear theory over μN."""
+        """Return the factor of the forces; `reduced` is the force of linear theory over μN."""
         return np.ones_like(reduced)

@@ -80,7 +80,7 @@ def made(mutant: Any) -> Any:
 
 @pytest.mark.validates(
     "invariants",
-    "The kit catches wrong models, each by the check that should",
+    "The kit catches wrong models, each by the right check",
     source="models that break one law each",
     held_to="every one is caught",
 )

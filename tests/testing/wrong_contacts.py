@@ -205,7 +205,7 @@ class WearIndexOffset(Wrapped):
 
 
 class WearIndexTwice(Wrapped):
-    """The wear index is twice what it is."""
+    """Doubles the wear index."""
 
     def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return dataclasses.replace(contact, wear_index=2.0 * contact.wear_index)

@@ -1,4 +1,4 @@
-"""Wear laws that are not what they say of themselves."""
+"""Wear laws with wrong declarations."""
 
 from __future__ import annotations
 
@@ -167,7 +167,7 @@ class FallsDespiteDeclaration(Linear):
 
 
 class UnknownVariable(Linear):
-    """Valid in a range of what there is not."""
+    """Has a range of an unknown variable."""
 
     @property
     def valid_range(self) -> dict[str, tuple[float, float]]:
@@ -201,7 +201,7 @@ class LosesFieldInJSON(LosesField):
 
 
 class FieldWithoutDocstring(Linear):
-    """A field that nothing is said of."""
+    """A field without a docstring."""
 
     extra: int = 1
 

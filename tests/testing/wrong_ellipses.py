@@ -189,7 +189,7 @@ class AlwaysWears(Spoilt):
 
 
 class ForgetsTheSpin(Spoilt):
-    """The wear index lacks what the spin feeds in."""
+    """The wear index lacks the energy from spin."""
 
     def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return contact.replaced(wear_index=contact.wear_index - problem.spin * contact.moment_z)

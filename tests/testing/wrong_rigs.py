@@ -157,7 +157,7 @@ class CreepageFromZero(Changed):
 
 
 class OffsetCreepage(Changed):
-    """A creepage where there is none."""
+    """Adds a creepage that was not given."""
 
     def changed(self, problem: Any) -> dict[str, Any]:
         return {"longitudinal_creepage": problem.creepage + 1e-6}
@@ -226,7 +226,7 @@ class FieldWithoutUnit(Weight):
 
 
 class TakesUnknownConditions(Weight):
-    """Leaves aside what it does not know."""
+    """Ignores unknown conditions."""
 
     def problem(self, *, mass: Any, creepage: Any, friction_coefficient: Any, **_: Any) -> wl.Problem:
         return super().problem(mass=mass, creepage=creepage, friction_coefficient=friction_coefficient)

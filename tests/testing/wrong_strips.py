@@ -82,7 +82,7 @@ class CountsMillionths(Spoilt):
 
 
 class OtherwiseForOnePoint(Spoilt):
-    """Solves one operating point by itself in another way."""
+    """Solves a single operating point differently."""
 
     def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return times(contact, 1.0 - 1e-9 * (problem.size == 1))

@@ -68,7 +68,7 @@ def expected() -> set[tuple[str, int]]:
 
 
 def complaints(checker: str) -> list[str]:
-    """Return what a checker should have said and did not, and the reverse."""
+    """Return the messages that a checker missed, and those that it should not have given."""
     found, due = CHECKERS[checker](), expected()
     missing = [f"{file}:{line}: {checker} finds no error where one is due" for file, line in sorted(due - set(found))]
     wrong = [f"{file}:{line}: {checker}: {found[file, line]}" for file, line in sorted(set(found) - due)]

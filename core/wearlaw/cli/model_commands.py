@@ -74,7 +74,7 @@ def new_plugin(name: str, kind: Kind | None, output: Path, licence: Licence) -> 
     wearlaw.wear_law("NAME") or wearlaw.rig("NAME") and in case files: lower-case letters, digits and underscores.
     """
     if kind is None:
-        raise click.UsageError("say what it provides: --wear-law, --contact-model or --rig")
+        raise click.UsageError("say what the plugin provides: --wear-law, --contact-model or --rig")
     folder = write_plugin(name, kind, output, licence)
     click.echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}.py. Next:")
     click.echo(f"  cd {shlex.quote(str(folder))}")

@@ -214,7 +214,7 @@ def compare(
     InputError
         If there is no predictor, two have the same name, or no test has a wear rate.
     ConditionsError
-        If the friction coefficient is unknown, or the conditions of the tests are not those of a predictor's rig.
+        If the friction coefficient is unknown, or a predictor's rig does not take the conditions of the tests.
 
     Notes
     -----

@@ -80,7 +80,7 @@ def fit(
         If a parameter is unknown, the tests do not determine it, there are too few tests, no fit is found, or a
         setting is invalid.
     ConditionsError
-        If the conditions of the tests are not those of the rig.
+        If the rig does not take the conditions of the tests.
 
     Notes
     -----

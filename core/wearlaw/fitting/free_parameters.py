@@ -164,14 +164,14 @@ def _ends(name: str, like: Quantity | float, positive: bool, given: tuple[Any, A
             (first / FACTOR, first * FACTOR) if positive else (first - FACTOR * abs(first), first + FACTOR * abs(first))
         )
     if not (isinstance(given, tuple | list) and len(given) == 2):
-        raise FitError(f"bounds: those of '{name}' must be two values, low and high, got {given!r}")
+        raise FitError(f"bounds: '{name}' must have two values, low and high, got {given!r}")
     try:
         low, high = (_end_in_si(name, like, end) for end in given)
     except UnitError as error:
         raise FitError(f"bounds: {error}") from None
     if not (low < high and (low > 0.0 or not positive)):
         rule = "greater than zero and in ascending order" if positive else "in ascending order"
-        raise FitError(f"bounds: those of '{name}' must be two values {rule}, got {given!r}")
+        raise FitError(f"bounds: '{name}' must have two values {rule}, got {given!r}")
     return low, high
 
 

@@ -74,7 +74,7 @@ class Observations:
         return (predicted - self.measured) / self.unit
 
     def in_shown_unit(self, predicted: Array) -> Array:
-        """Return the residuals (n,) for tables: those of absolute scatter in the unit of the measurement."""
+        """Return the residuals (n,) for tables, with absolute scatter in the unit of the measurement."""
         if self.scatter == "absolute":
             return in_unit(predicted - self.measured, UNITS[self.observable])
         return self.compare(predicted)

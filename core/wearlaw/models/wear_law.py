@@ -144,7 +144,7 @@ class WearLaw(Model):
     monotone_in: ClassVar[tuple[str, ...]] = ()
     """Variables of a `Contact` with which the rate never falls while the others stay the same."""
 
-    if not TYPE_CHECKING:  # checkers compare the methods with those of this class by themselves
+    if not TYPE_CHECKING:  # type checkers already compare the methods with this class
 
         @classmethod
         def __pydantic_init_subclass__(cls, **options: Any) -> None:

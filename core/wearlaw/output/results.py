@@ -29,7 +29,7 @@ FIGURES = "figures"
 REPORT = "report.html"
 TABLES = "tables"
 COPIES = 2
-"""Copies of a result in memory: as computed, and stacked with those of the other pairs."""
+"""Number of copies of a result in memory: the computed one, and one in the stack of all pairs."""
 ROW_IN_MEMORY, ROW_ON_DISK = 800, 400
 """Bytes of a row of the table of results in memory (measured) and as CSV."""
 METADATA: dict[FigureFormat, Any] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}

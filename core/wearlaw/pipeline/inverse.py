@@ -59,8 +59,9 @@ def creepage_for(
     Raises
     ------
     ConditionsError
-        If no creepage, or more than one, transmits the traction: at full slip and above; with lateral creepage, above
-        what friction leaves for the longitudinal direction; or if friction falls with the creep speed.
+        If no creepage, or more than one, transmits the traction. None does at full slip and above or, with lateral
+        creepage, above the share of friction left for the longitudinal direction. Several can if friction falls with
+        the creep speed.
     CompositionError
         If the rig has no condition for the creepage.
     """
@@ -68,8 +69,8 @@ def creepage_for(
         raise ConditionsError("give either tangential_force or traction_coefficient")
     if is_friction_law(conditions.get("friction_coefficient")):
         raise ConditionsError(
-            "friction_coefficient: must be a number here; where friction falls with the creep speed, two creepages can"
-            " transmit one force"
+            "friction_coefficient: must be a number here; with friction that falls with the creep speed, two creepages"
+            " can transmit the same force"
         )
     problem = _at_rest(predict, conditions)
     if tangential_force is None:
@@ -79,30 +80,31 @@ def creepage_for(
     shape = _broadcast(target.shape, problem.batch_shape)
     flat = problem.broadcast_to(shape).flatten()
     wanted = np.broadcast_to(target, shape).reshape(-1)
-    due, sign = np.abs(wanted), np.copysign(1.0, wanted)
+    size, sign = np.abs(wanted), np.copysign(1.0, wanted)
 
-    def lacking(log_creepage: Array, point: Array) -> Array:
+    def shortfall(log_creepage: Array, point: Array) -> Array:
         """Return by how much T/N falls short; `find_root` passes the indices of the points as floats."""
         index = point.astype(np.intp)
         at = flat[index].replaced(longitudinal_creepage=sign[index] * np.exp(log_creepage))
-        return due[index] - sign[index] * integrate_forces(predict.contact_model, at).longitudinal / at.normal_force
+        return size[index] - sign[index] * integrate_forces(predict.contact_model, at).longitudinal / at.normal_force
 
-    points = np.arange(due.size, dtype=np.float64)
-    start = np.full(due.size, np.log(SMALLEST))
-    at_start, short = lacking(start, points), lacking(np.zeros(due.size), points)
+    points = np.arange(size.size, dtype=np.float64)
+    start = np.full(size.size, np.log(SMALLEST))
+    at_start, short = shortfall(start, points), shortfall(np.zeros(size.size), points)
     tried = np.stack([at_start, short])
     if flat.geometry != "line":
-        between = [lacking(np.full(due.size, np.log(one)), points) for one in TRIED]
+        between = [shortfall(np.full(size.size, np.log(one)), points) for one in TRIED]
         tried = np.stack([at_start, *between, short])
         short = tried.min(axis=0) + ROUNDED * flat.friction_coefficient
     if (short >= 0.0).any():
-        raise _beyond_reach(predict, due, due - short, np.flatnonzero(short >= 0.0)[0], shape)
+        raise _beyond_reach(predict, size, size - short, np.flatnonzero(short >= 0.0)[0], shape)
     _refuse_several(tried, flat.friction_coefficient, wanted, shape)
-    creepage = np.zeros(due.size)
-    rounded = np.where(due == 0.0, ROUNDED * flat.friction_coefficient, 0.0)  # a sum over nodes rounds a force of zero
+    creepage = np.zeros(size.size)
+    # With a wanted force of zero, the sum over the nodes may be off by rounding.
+    rounded = np.where(size == 0.0, ROUNDED * flat.friction_coefficient, 0.0)
     search = np.flatnonzero(at_start > rounded)
     if search.size:
-        root = elementwise.find_root(lacking, (start[search], np.zeros(search.size)), args=(points[search],))
+        root = elementwise.find_root(shortfall, (start[search], np.zeros(search.size)), args=(points[search],))
         creepage[search] = np.exp(root.x)
     return from_si(np.copysign(creepage.reshape(shape), target), "%")
 
@@ -113,13 +115,16 @@ def _at_rest(predict: Pipeline[...], conditions: Mapping[str, Any]) -> Problem:
     known = rig.conditions()
     if known and rig.creepage not in known:
         raise CompositionError(
-            f"creepage_for: rig '{rig.name}' has no condition '{rig.creepage}', but {', '.join(known)}; its class"
+            f"creepage_for: rig '{rig.name}' has no condition '{rig.creepage}', only {', '.join(known)}; its class"
             " attribute `creepage` must name the one that sets the longitudinal creepage"
         )
     if rig.creepage in conditions:
-        raise ConditionsError(f"{rig.creepage}: is what creepage_for looks for; leave it out")
+        raise ConditionsError(f"{rig.creepage}: creepage_for returns it; leave it out")
     if type(rig).balanced is not Rig.balanced:
-        raise CompositionError(f"creepage_for: the loads of rig '{rig.name}' depend on the creepage that it looks for")
+        raise CompositionError(
+            f"creepage_for: rig '{rig.name}' balances its loads, which depend on the unknown creepage; sweep the"
+            " creepage instead"
+        )
     return predict.posed({**conditions, rig.creepage: from_si(0.0, "")}, of_one_patch="creepage_for")
 
 
@@ -138,12 +143,14 @@ def _refuse_several(tried: Array, friction: Array, wanted: Array, shape: tuple[i
     exceeded = tried[0] < -ROUNDED * friction
     crossed = np.abs(np.diff((tried > 0.0).astype(int), axis=0)).sum(axis=0) > 1
     for wrong, why in (
-        (exceeded, "the contact transmits more without longitudinal creepage"),
-        (crossed, "several creepages transmit it, since the traction falls again as the creepage grows"),
+        (exceeded, "without longitudinal creepage the contact transmits more already"),
+        (crossed, "several creepages do, because the traction falls again as the creepage grows"),
     ):
         if wrong.any():
             first = np.flatnonzero(wrong)[0]
-            raise ConditionsError(f"a traction coefficient of {_where(wanted, first, shape)} cannot be found: {why}")
+            raise ConditionsError(
+                f"no single creepage transmits a traction coefficient of {_where(wanted, first, shape)}: {why}"
+            )
 
 
 def _broadcast(traction: tuple[int, ...], conditions: tuple[int, ...]) -> tuple[int, ...]:
@@ -172,9 +179,9 @@ def _where(values: Array, first: int, shape: tuple[int, ...]) -> str:
 
 
 def _beyond_reach(
-    predict: Pipeline[...], due: Array, reached: Array, first: int, shape: tuple[int, ...]
+    predict: Pipeline[...], wanted: Array, reached: Array, first: int, shape: tuple[int, ...]
 ) -> ConditionsError:
     return ConditionsError(
-        f"a traction coefficient of {_where(due, first, shape)} belongs to no creepage: with contact model"
-        f" '{predict.contact_model.name}' it stays below {reached[first]:.6g}, at full slip; ask for less"
+        f"no creepage transmits a traction coefficient of {_where(wanted, first, shape)}: with contact model"
+        f" '{predict.contact_model.name}' it stays below {reached[first]:.6g} (full slip); give a smaller one"
     )

@@ -48,7 +48,7 @@ TINY = float(np.sqrt(np.finfo(np.float64).tiny))
 """Smallest length or pressure in SI whose square is a float of full precision."""
 
 LEAST_FRICTION = 1e-12
-"""The smallest friction coefficient; below it formulas of fourth order in creepage over that of full slip overflow."""
+"""The smallest friction coefficient; below it formulas of fourth order in creepage over full-slip creepage overflow."""
 
 
 class Poses(Protocol[P]):
@@ -353,7 +353,10 @@ class Pipeline(Configuration, Generic[P]):
             The caller that warnings name; 2 is the caller of this method.
         """
         if self.rig.geometry not in (None, problem.geometry):
-            raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
+            raise InputError(
+                f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"
+                f" the geometry '{self.rig.geometry}'; make it with the `problem` method of the rig"
+            )
         for law in self.laws:
             warn_of_geometry(self.rig.geometry, self.contact_model, self.scale, law, problem.geometry, stacklevel + 1)
         watch = self.range_watch()

@@ -21,7 +21,7 @@ from wearlaw.numerics.integrate import SlipTotals, WearTotals
 from wearlaw.numerics.solving import Solver
 from wearlaw.pipeline.composition import law_among
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
-from wearlaw.units.variables import UNITS
+from wearlaw.units.variables import UNITS, name_of
 
 if TYPE_CHECKING:
     import xarray
@@ -388,7 +388,7 @@ class Prediction:
     @cached_property
     def _wear(self) -> WearTotals:
         """The totals of the wear law; a `CompositionError` if the pipeline has none."""
-        self._law  # noqa: B018  raises if there is none
+        self._law  # noqa: B018  raises without a law
         assert self._given_wear is not None
         return self._given_wear
 
@@ -436,7 +436,7 @@ def unsolved(problem: Problem, contact_model: ContactModel, scale: Scale, laws: 
 def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str, named: tuple[str, ...]) -> xarray.Dataset:
     batch = _batch_dims(y.ndim - 1, named)
     dims = [*batch, "strip"] if batch else ["y"]
-    place = (dims, in_unit(y, "mm"), {"units": "mm", "long_name": "position across the patch"})
+    place = (dims, in_unit(y, "mm"), {"units": "mm", "long_name": name_of("y")})
     data = {
         name: (dims, in_unit(values, unit), {"units": unit, "long_name": f"{name.replace('_', ' ')} per {per}"})
         for name, (values, unit) in columns.items()

@@ -81,7 +81,7 @@ def counted(claims: Sequence[CheckedClaim]) -> str:
 
 
 def _of_many(verdict: Verdict, count: int) -> str:
-    """Return a verdict as the predicate of so many claims: "hold" and "do not hold" for several."""
+    """Return a verdict as a predicate: "holds" of one claim, "hold" and "do not hold" of several."""
     if count == 1:
         return verdict
     return verdict.replace("holds", "hold").replace("does", "do")

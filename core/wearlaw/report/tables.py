@@ -1,4 +1,4 @@
-"""The tables of a study: wear rates of its sweeps, its models and their parameters, and those of its sections.
+"""The tables of a study: wear rates of its sweeps, its models and their parameters, and the tables of its sections.
 
 Each can be written as CSV with all digits, and for LaTeX with the digits shown.
 """

@@ -129,8 +129,8 @@ class WheelRail(Rig):
         if across <= 0.0:
             raise ValueError(
                 f"rail_head_radius {self.rail_head_radius!r} and wheel_profile_radius {self.wheel_profile_radius!r}"
-                f" have curvatures that sum to {across:.4g} 1/m across the rail; the bodies touch in a point only where"
-                " the sum is positive: a hollow must have a larger radius than what it embraces"
+                f" have curvatures that sum to {across:.4g} 1/m across the rail; the bodies touch in a point only if"
+                " the sum is positive, so a hollow must have a larger radius than the body inside it"
             )
         return self
 

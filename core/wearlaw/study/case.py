@@ -51,7 +51,7 @@ from wearlaw.study.grid import Condition, Grid
 from wearlaw.study.measured import MeasuredTests, check_rig, known_variables
 from wearlaw.study.uncertain_point import Condition as UncertainCondition
 from wearlaw.study.uncertain_point import UncertainPoint
-from wearlaw.units.variables import name_of
+from wearlaw.units.variables import meaning_of
 
 ModelT = TypeVar("ModelT", bound=Model)
 
@@ -120,8 +120,8 @@ class Case(Configuration):
     sweeps: Annotated[dict[str, Grid], Field(min_length=1)]
     """Grids of operating points, each under a name."""
     profiles: dict[str, Grid] = Field(default_factory=dict)
-    """Single operating points at which the patch is shown, each under a name: stresses and slip along that of a line,
-    wear across that of an ellipse."""
+    """Single operating points at which the patch is shown, each under a name: stresses and slip along a line's patch,
+    wear across an ellipse."""
     uncertainty: dict[str, UncertainPoint] = Field(default_factory=dict)
     """Uncertain operating points, each under a name; for `wearlaw uncertainty`."""
     measured: MeasuredTests | None = None
@@ -134,7 +134,7 @@ class Case(Configuration):
     @model_validator(mode="before")
     @classmethod
     def _has_its_plugins(cls, fields: Any) -> Any:
-        """Check for missing plugins first, before something else fails for lack of them."""
+        """Check for missing plugins first, before something else fails without them."""
         if isinstance(fields, dict):
             needed = fields.get("plugins", {})
             if isinstance(needed, dict):
@@ -303,7 +303,7 @@ def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
     for field, annotation in kinds.items():
         one = TypeAdapter(annotation).json_schema(ref_template="#/$defs/{model}")
         definitions.update(one.pop("$defs", {}))
-        properties = {name: {**one, "description": name_of(name)} for name in rig.conditions()}
+        properties = {name: {**one, "description": meaning_of(name)} for name in rig.conditions()}
         if field == "uncertainty":
             properties["laws"] = definitions["UncertainPoint"]["properties"]["laws"]
         table = {"properties": properties, "required": list(rig.needed()), "additionalProperties": False}

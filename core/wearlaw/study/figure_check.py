@@ -63,7 +63,7 @@ class Contents:
     _known: dict[tuple[str, str], Variables] = field(default_factory=dict)
 
     def problems(self, figures: Mapping[str, FigureSpec]) -> Iterator[Fault]:
-        """Yield the faults of figures: what they ask for and the case does not have."""
+        """Yield the faults of figures: names in them that the case does not have."""
         for name, spec in figures.items():
             if not name.isidentifier():
                 yield Fault(("figures", name), "the name must be made of letters, digits and underscores")

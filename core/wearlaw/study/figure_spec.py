@@ -16,7 +16,7 @@ from wearlaw.units.quantities import Unit, from_si
 from wearlaw.units.variables import UNITS
 
 OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "creepage")
-"""Variables along the patch of a line contact; the creepage of the operating point is a level line."""
+"""Variables along the patch of a line contact; the creepage of the operating point is a horizontal line."""
 
 ACROSS = ("depth", "sliding_distance")
 """Variables across the patch of an elliptic contact, for one of the bodies."""

@@ -1,4 +1,4 @@
-"""The figures of a study: those of its case, or else one of each kind for each sweep and profile.
+"""The figures of a study: the figures of its case, or else one of each kind for each sweep and profile.
 
 Line styles stand for contact models. Colours stand for wear laws in figures of wear rates, for variables along the
 patch or where several are shown, and otherwise for contact models too. Bands show the published range of a law's

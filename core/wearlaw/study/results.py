@@ -13,17 +13,7 @@ from wearlaw.study.pairs import Pair
 
 @dataclass(frozen=True)
 class Results:
-    """The sweeps and profiles of a case.
-
-    Attributes
-    ----------
-    case : Case
-        The case that was run.
-    pairs : tuple of Pair
-        The pairs that were evaluated.
-    sweeps, profiles : dict of str to xarray.Dataset
-        The datasets by the names that the case gives them.
-    """
+    """The sweeps and profiles of a case; `Study` documents the attributes."""
 
     case: Case
     pairs: tuple[Pair, ...]

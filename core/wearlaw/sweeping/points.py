@@ -290,7 +290,7 @@ def _typed(column: Any) -> tuple[Any, str | None]:
 def _of_xarray(table: Any) -> tuple[list[Column], dict[str, Any]]:
     dims = [str(dim) for dim in table.dims]
     if len(dims) != 1:
-        raise DataError(f"table: must have one dimension, that of its rows, got {', '.join(dims) or 'none'}")
+        raise DataError(f"table: must have one dimension for its rows, got {', '.join(dims) or 'none'}")
     columns = [(str(head), *_variable(variable)) for head, variable in table.data_vars.items()]
     named = {dim: (dim, table.indexes[dim].to_numpy()) for dim in dims if dim in table.indexes}
     return columns, named

@@ -269,5 +269,5 @@ class _Members:
         if not at_once and time.monotonic() < self._checked + CHECKED_S:
             return []
         before, self._known, self._checked = self._known, self._client.nthreads(), time.monotonic()
-        gone = sorted(set(before) - set(self._known))
-        return [f"worker {address} left the cluster, and its blocks are evaluated again" for address in gone]
+        lost = sorted(set(before) - set(self._known))
+        return [f"worker {address} left the cluster, and its blocks are evaluated again" for address in lost]

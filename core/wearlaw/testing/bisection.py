@@ -32,8 +32,9 @@ n² h/2 of its value, which is below 1e-4 up to n = 600, and rounding of the val
 changes it by 8 · 16 EPS/h = 6e-5."""
 
 STEEP = 1e-4
-"""Share of the slope that counts as a kink: that of a smooth function whose logarithm has the slope n changes by n h/2
-over the last part, and that of one which turns over the share w of an e-fold by h/(2 w)."""
+"""Change of the slope, as a share, that counts as a kink. Over the last part, the slope of a smooth function whose
+logarithm has the slope n changes by n h/2, and the slope of a function that turns over the share w of an e-fold by
+h/(2 w)."""
 
 UNDERFLOW = 1e-200
 """Value below which a product of two factors may underflow, and lose its digits."""

@@ -76,7 +76,7 @@ def contact_is_finite(model: ContactModel, shape: Shape) -> None:
 
 @on_each_shape
 def contact_carries_the_conditions(model: ContactModel, shape: Shape) -> None:
-    """Rolling speed, density and normal force are those of the problem, and so is the problem that it keeps."""
+    """The contact keeps the problem, with its rolling speed, density and normal force."""
 
     def examine(problem: Problem) -> None:
         contact = model.solve(problem)
@@ -103,7 +103,7 @@ def _values(problem: Problem) -> dict[str, object]:
 
 @on_each_shape
 def nodes_cover_the_patch(model: ContactModel, shape: Shape) -> None:
-    """Nodes lie in the patch, none has a negative area, and their areas sum to that of the patch."""
+    """Nodes lie in the patch, none has a negative area, and their areas sum to the area of the patch."""
 
     def examine(problem: Problem) -> None:
         contact = model.solve(problem)

@@ -26,7 +26,7 @@ REFINEMENTS = 3
 """Number of refinements by a factor of two; they reduce a first-order error to an eighth."""
 
 STRIPS = 200
-"""Strips of equal width, whose sums of what is a parabola across the patch are off by 1/(2 `STRIPS`²) of it."""
+"""Number of strips of equal width; their sum of a parabola across the patch is off by the share 1/(2 `STRIPS`²)."""
 
 
 @on_each_shape
@@ -46,7 +46,7 @@ def slip_dissipates_the_energy_fed_in(model: ContactModel, shape: Shape) -> None
 def energy_balance_improves_with_refinement(model: LineContactModel) -> None:
     """On 16 times as many uniform cells the energy balance is 16 times as good, or exact.
 
-    The dissipation of a step that falls anywhere in a cell is of first order, that of a square root of order 3/2.
+    The error of the dissipation is of first order for a step anywhere in a cell, and of order 3/2 for a square root.
     """
     (problem,) = LINE.to_refine()
     coarse, fine = (
@@ -78,7 +78,7 @@ def _refinements(model: ContactModel) -> list[ContactModel]:
     models = [model]
     for _ in range(REFINEMENTS):
         finer = models[-1].refined()
-        assert finer is not None, "`refined` returns a model, but not of what it returned"
+        assert finer is not None, "`refined` returns a model whose own `refined` returns None"
         models.append(finer)
     return models
 

@@ -28,7 +28,7 @@ error falls as (3 + √8)^-2 for each node, to 3e-25."""
 
 
 def slip_lies_in_the_slip_zone(model: LineContactModel) -> None:
-    """The length of the slip zone is between zero and that of the patch, and there is no slip in front of it."""
+    """The slip zone is at most as long as the patch, and there is no slip in front of it."""
     problem = random_lines(POINTS)
     patch, length = 2.0 * problem.half_width, model.slip_length(problem)
     assert (length >= 0).all(), f"the slip zone has a negative length, {length.min()!r}"

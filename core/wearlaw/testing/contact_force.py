@@ -128,7 +128,7 @@ def wear_index_is_forces_times_creepages(model: ContactModel, shape: Shape) -> N
 
 @on_each_shape
 def forces_alone_are_those_of_the_contact(model: ContactModel, shape: Shape) -> None:
-    """`tangential_force` and `creep_forces` give what `solve` gives, with the sign of the creepage."""
+    """`tangential_force` and `creep_forces` give the forces of `solve`, with the sign of the creepage."""
 
     def examine(problem: Problem) -> None:
         found, due = shape.forces_alone(model, problem), model.solve(problem).forces

@@ -158,7 +158,7 @@ def _steps_into_full_slip(solved: Solved, full: Array, gap: float) -> dict[str, 
 
 
 AT_SMALL_CREEPAGES = st.tuples(LINE.problems, log_uniform(1e-9, 1e-4))
-"""Lines, and creepages over that of full slip."""
+"""Lines, and creepages relative to the creepage of full slip."""
 
 
 def initial_slope_is_that_of_the_half_space(model: ContactModel) -> None:
@@ -172,9 +172,9 @@ def initial_slope_is_that_of_the_half_space(model: ContactModel) -> None:
             for share in (1.0, 0.5)
         )
         due = 0.5 * np.pi * problem.effective_modulus * problem.half_width * problem.track_width
-        # T/ξ = T'(0) + c ξ + ..., so that half the creepage halves what is missing from T'(0): twice the difference
-        # is the remainder, but for the share ξR/(μa) of it that the next order has. With an error e of each T, the
-        # first is off by e, and twice the difference by 4 e.
+        # T/ξ = T'(0) + c ξ + ..., so that half the creepage halves the remainder: it is twice the difference, except
+        # for the next order, which is the share ξR/(μa) of it. With an error e of each T, the first quotient is off by
+        # e, and twice the difference by 4 e.
         remainder = 2.0 * (1.0 + reduced) * np.abs(whole - half)
         assert_close(whole, due, "the force over a small creepage", 5.0 * LINE.error_of_force(model), remainder)
 
@@ -184,9 +184,9 @@ def initial_slope_is_that_of_the_half_space(model: ContactModel) -> None:
 def initial_slopes_are_kalkers(model: ContactModel) -> None:
     """For small creepages Fx is G ab C11 ξ, and Fy is G ab C22 η and G ab √(ab) C23 φ.
 
-    The creepage is a millionth of what saturates, and the force as much nearer to linear than `SLOPE`. A march over
-    coarse cells ends the traction up to a cell too soon. That error is within its accuracy, and of first order: at
-    least 1.5 times less on nodes twice as fine.
+    The creepage is a millionth of the creepage at saturation, so that the force differs from the linear one by far less
+    than `SLOPE`. A march over coarse cells ends the traction up to a cell too soon. That error is within its accuracy,
+    and of first order: at least 1.5 times smaller on nodes twice as fine.
     """
     error = _slope_error(model)
     if error <= SLOPE:

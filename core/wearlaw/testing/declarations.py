@@ -1,4 +1,4 @@
-"""Checks of what a model says about itself: documentation, units, schema, names."""
+"""Checks of a model's description of itself: documentation, units, schema, names."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from wearlaw.testing.sampling import forward
 
 
 def model_is_documented(model: Model) -> None:
-    """The class has a name, a docstring of its own and a source; each field says what it is and in which unit."""
+    """The class has a name, a docstring of its own and a source; each field has a docstring with its unit."""
     cls = type(model)
     assert isinstance(getattr(cls, "name", None), str), "the class has no name"
     assert cls.name.isidentifier(), f"the name must be an identifier, got {cls.name!r}"

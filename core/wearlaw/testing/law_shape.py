@@ -24,7 +24,7 @@ def contacts_for(law: WearLaw) -> st.SearchStrategy[Contact]:
     return _contacts(1 if law.scale == "patch" else 5, tuple(crowded))
 
 
-@cache  # so that those of a law are drawn once
+@cache  # draws once for each law
 def _contacts(most_nodes: int, crowded: tuple[tuple[str, tuple[float, ...]], ...]) -> st.SearchStrategy[Contact]:
     return contacts(nodes=st.integers(1, most_nodes), crowded=dict(crowded))
 

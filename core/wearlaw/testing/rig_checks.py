@@ -44,8 +44,8 @@ def example_of(rig: Rig) -> Conditions:
     if not rig.example:
         conditions = ", ".join(f'"{name}": ...' for name in rig.conditions())
         raise InputError(
-            f"checks: rig '{rig.name}' has no conditions to try it with; write those of one test into the class"
-            f' {type(rig).__name__}, with units as text such as "1 %":\n  example = {{{conditions}}}'
+            f"checks: rig '{rig.name}' has no conditions to try it with; write the conditions of one test into the"
+            f' class {type(rig).__name__}, with units as text such as "1 %":\n  example = {{{conditions}}}'
         )
     return dict(rig.example)
 
@@ -146,7 +146,7 @@ def conditions_broadcast(rig: Rig) -> None:
 
 
 def conditions_are_declared(rig: Rig) -> None:
-    """`conditions()` names those of the example, and the one that `creepage` names; the example is one test."""
+    """`conditions()` has the names in the example and the one in `creepage`, and the example is one test."""
     declared = rig.conditions()
     for name in (*rig.example, rig.creepage):
         assert name in declared, f"`conditions()` does not name '{name}', only {', '.join(declared) or 'none'}"
@@ -279,7 +279,7 @@ def bodies_are_named(rig: Rig) -> None:
 
 
 def density_is_that_of_the_first_body(rig: Rig) -> None:
-    """The density of the problem is that of the first of `bodies`, whose wear is predicted."""
+    """The problem has the density of the first of `bodies`, whose wear is predicted."""
     for name, body in [*rig.bodies.items()][:1]:
         expected = np.asarray(scalar_si(body.material.density, "kg/m^3"))
         assert_close(_problem(rig).density, expected, f"the density of the problem, with {name} as the first body")

@@ -23,7 +23,7 @@ from wearlaw.units.quantities import Q
 
 START = "import pickle, runpy, sys; sys.path[:] = pickle.load(sys.stdin.buffer);"
 START += " runpy.run_path(sys.argv[1], run_name='__main__')"
-"""The program of the fresh process: it takes over `sys.path`, which what it reads and imports next needs."""
+"""The program of the fresh process: it takes over `sys.path`, which it needs to unpickle and import."""
 
 
 class RoundTrip:

@@ -230,9 +230,9 @@ class Line(Shape):
         )
 
     def path(self, model: ContactModel) -> Path:
-        """Return creepages from a hundredth of μa/R to ten times as much."""
+        """Return creepages from a hundredth to ten times μa/R."""
         problem = random_lines(2)
-        # Where a cell begins to slip, the sum of the slips is off by a share of what it is in full slip.
+        # Where a cell begins to slip, the sum of the slips is off by a share of its value in full slip.
         allowed = {"force_x": np.zeros(2), "mean_slip": model.accuracy * saturation(problem)}
         # Carter's force has a curvature of 2 at full slip, hence changes by 2 (3 ln 10/512/2)² = 1e-4 more in one half.
         return Path(problem, low=1e-2, high=10.0, intervals=512, allowed=allowed)
@@ -244,7 +244,7 @@ class Line(Shape):
         yield with_creepage(problem, np.linspace(0.1, 1.2, MANY) * saturation(problem))
 
     def error_of_sums(self, model: ContactModel) -> float:
-        """Return what the model declares."""
+        """Return the accuracy that the model declares."""
         return model.accuracy
 
     def error_of_areas(self, model: ContactModel) -> float:  # noqa: ARG002
@@ -268,7 +268,7 @@ class Line(Shape):
         slipping = contact.slip_area / contact.patch_area
         # Positions are exact to the rounding of a, so in a short slip zone q·s is that much less exact.
         rounding = SUM / np.maximum(slipping, SUM)
-        # A slip zone may be shorter than a cell: the error of sums over cells is a share of what full slip dissipates.
+        # A slip zone may be shorter than a cell: the error of sums over cells is a share of the power in full slip.
         whole = due if model.accuracy == QUADRATURE else sliding_power(problem)
         return rounding * np.abs(due) + model.accuracy * whole
 
@@ -325,14 +325,14 @@ class Ellipse(Shape):
         return problem.replaced(a=problem.a * factor)
 
     def path(self, model: ContactModel) -> Path:
-        """Return translations from 0.6 to 6 of what linear theory needs for μN, one of them without spin.
+        """Return translations from 0.6 to 6 times the one that gives μN in linear theory, one of them without spin.
 
         On nodes, with spin, strips may begin to slip elsewhere at once: then a force may jump by the accuracy times μN.
         """
         problem, high = random_ellipses(4)[[0, 1, 3]], 6.0
         error = 0.0 if model.scale == "patch" else model.elliptic_accuracy
         of_forces = error * (problem.spin != 0) * friction_limit(problem)
-        # Where a cell begins to slip, the sum of the slips is off by a share of what it is in full slip.
+        # Where a cell begins to slip, the sum of the slips is off by a share of its value in full slip.
         of_slip = error * translation(at_magnitude(problem, high))
         allowed = {"force_x": of_forces, "force_y": of_forces, "mean_slip": of_slip}
         # A force has a logarithmic slope that changes by up to 2 per e-fold: by 2 (ln 10/64/2)² = 6e-4 in one half.
@@ -344,7 +344,7 @@ class Ellipse(Shape):
         return (problem[index] for index in range(PATCHES))
 
     def error_of_sums(self, model: ContactModel) -> float:
-        """Return what the model declares, and rounding where one node holds the means."""
+        """Return the accuracy that the model declares, or rounding if one node holds the means."""
         return SAME if model.scale == "patch" else model.elliptic_accuracy
 
     def error_of_stick(self, model: ContactModel) -> float:
@@ -358,7 +358,7 @@ class Ellipse(Shape):
         contact: Contact,  # noqa: ARG002
         due: Array,
     ) -> Array:
-        """Return a share of what full slip dissipates, since a slip zone may be shorter than a cell."""
+        """Return a share of the power in full slip, since a slip zone may be shorter than a cell."""
         whole: Array = self.error_of_sums(model) * np.maximum(sliding_power(problem), due)
         return whole
 
@@ -369,7 +369,7 @@ class Ellipse(Shape):
         return {"longitudinal": size, "lateral": size, "spin_moment": moment}
 
     def size_of_power(self, problem: Problem, forces: CreepForces) -> Array:
-        """Return the power of full slip, or that of the forces where it is larger."""
+        """Return the power of full slip, or of the forces where theirs is larger."""
         size: Array = np.maximum(sliding_power(problem), parts_of_power(problem, forces))
         return size
 

@@ -155,8 +155,8 @@ def elliptic_problems(draw: st.DrawFn, crowded: tuple[float, ...] = SATURATION) 
     """Draw one operating point of two bodies of one material that touch in an ellipse.
 
     Axis ratios a/b go from 0.05 to 20, loads from p0/G = 1e-5 to 0.04. Half the creepages have a magnitude anywhere
-    from 1e-3 to 100 of what Kalker's linear theory needs for μN, half crowd at saturation; half have the direction of x
-    or y. Half the problems have a spin, of either sign, that by itself would need 1e-3 to 30 μN.
+    from 1e-3 to 100 times the creepage that gives μN in Kalker's linear theory, half crowd at saturation; half have the
+    direction of x or y. Half the problems have a spin, of either sign, that alone would need 1e-3 to 30 μN.
 
     Parameters
     ----------

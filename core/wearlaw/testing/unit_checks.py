@@ -128,7 +128,7 @@ def _contacts() -> Values:
 
 
 def _compare(values: Values, computed: Callable[[dict[str, Any]], Array], units: Mapping[str, tuple[str, str]]) -> None:
-    """Compare the result of values in SI with that of the same values in the customary units."""
+    """Compare the results of the same values in SI and in the customary units."""
 
     def given(changed: str = "", factor: float = 1.0) -> dict[str, Any]:
         return {name: Q(value * (factor if name == changed else 1.0), units[name][0]) for name, value in values.items()}

@@ -28,7 +28,7 @@ COLUMNS = {
 }
 """All numeric columns."""
 
-OTHER = Variable("", "", sign="any")
+OTHER = Variable("", "", "", sign="any")
 """A condition that is not in `COLUMNS`."""
 
 DERIVED = ("tangential_force", "frictional_heat")

@@ -16,7 +16,7 @@ class Rigid(wl.LineContactModel):
 
     @property
     def exemptions(self) -> Mapping[wl.Claim, str]:
-        """Return what the model does not claim."""
+        """Return the claims that the model does not make."""
         return {"initial_slope": "rigid bodies slip at any creepage"}
 
     def slip_length(self, problem: wl.Problem) -> wl.Array:
