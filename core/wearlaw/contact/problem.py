@@ -185,6 +185,8 @@ class Problem:
         Mass density of the body whose wear is predicted, ρ [kg/m³].
     traction_coefficient : ndarray or None
         Measured tangential over normal force, T/N [-], if the test gave one.
+    contact_angle : ndarray or None
+        Contact angle, δ [rad], of the surface to the axle; None if the surface is level at all operating points.
     strips : Strips or None
         The strips and their pressure, if the patch is neither a line nor an ellipse.
     bodies : mapping of str to Body
@@ -209,6 +211,7 @@ class Problem:
     rolling_speed: Array
     density: Array
     traction_coefficient: Array | None = None
+    contact_angle: Array | None = None
     strips: Strips | None = None
     bodies: Mapping[str, Body] = field(default_factory=dict)
     dims: tuple[str, ...] = ()

@@ -48,6 +48,7 @@ VARIABLES: Mapping[str, Variable] = {
     "longitudinal_creepage": Variable("%", "longitudinal creepage", "ξ", "any", 1.0),
     "lateral_creepage": Variable("%", "lateral creepage", "η", "any", 1.0),
     "spin": Variable("1/m", "spin", "φ", "any"),
+    "contact_angle": Variable("deg", "contact angle", "δ", "any"),
     "normal_force": Variable("kN", "normal force", "N"),
     "normal_force_per_width": Variable("kN/m", "normal force per width", "P"),
     "max_pressure": Variable("MPa", "maximum pressure", "p0"),
