@@ -151,8 +151,8 @@ class Problem:
     The arrays have one shape, the *batch*, with one entry for each operating point. `Problem.line` and
     `Problem.ellipse` make a problem from quantities. If bodies touch in several places, such as two wheels with up to
     three patches each, the rig adds axes to the batch, names them in `dims` and marks the existing patches in `exists`.
-    Unlike materials enter through the effective modulus and Kalker's mean of ν/G. The coupling of normal and tangential
-    displacement between unlike bodies is neglected.
+    Unlike materials enter through the effective modulus and Kalker's mean of ν/G. Contact models neglect the coupling
+    of normal and tangential displacement between unlike bodies, and wearlaw warns where it matters.
 
     Attributes
     ----------

@@ -107,8 +107,8 @@ def warn_of_unlike_materials(model: ContactModel, problem: Problem, stacklevel: 
     if share > MOST_COUPLING:
         warnings.warn(
             f"{' and '.join(problem.bodies)} are of unlike materials (Dundurs' β = {beta:.2g}), but contact model"
-            f" '{model.name}' assumes like ones. It neglects tractions above {100.0 * share:.0f} % of the friction bound over"
-            " half of the patch; check the result against data or a theory of unlike bodies",
+            f" '{model.name}' assumes like ones. It neglects tractions above {100.0 * share:.0f} % of the friction"
+            " bound over half of the patch; check the result against data or a theory of unlike bodies",
             RangeWarning,
             stacklevel=stacklevel,
         )
