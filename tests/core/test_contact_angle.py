@@ -236,6 +236,15 @@ def test_the_normal_depth_over_the_surface_is_the_mass_lost() -> None:
     assert lost == pytest.approx(found.mass_per_distance.to("kg/m").magnitude, rel=64 * EPS)
 
 
+def test_a_missing_patch_has_no_parts_of_a_depth() -> None:
+    two = problem(Q([70.0, 20.0], "deg")).replaced(dims=("patch",), exists=np.array([True, False]))
+    profile = (rig() | FASTSIM | PerEnergy()).predict(two).wear_profile("wheel")
+    alone = predicted(contact_angle="70 deg").wear_profile("wheel")
+    assert profile.depth_lateral.dims[0] == "patch"
+    assert profile.depth_lateral.values[0] == pytest.approx(alone.depth_lateral.values, rel=64 * EPS)
+    assert np.isnan(profile.depth_vertical.values[1]).all()
+
+
 def test_a_surface_without_an_angle_has_a_depth_only() -> None:
     assert set(predicted().wear_profile("rail")) == {"depth", "sliding_distance"}
 
