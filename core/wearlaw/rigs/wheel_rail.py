@@ -222,7 +222,8 @@ class WheelRail(Rig):
         patch, angle = self._patch, arrays.get("contact_angle")
         if angle is not None:
             _check_angle(angle, "contact_angle: ")
-            patch = self._patch_at(angle)
+            # An axis of stride 0 repeats one angle, for which one patch is enough.
+            patch = self._patch_at(angle[tuple(slice(None if stride else 1) for stride in angle.strides)])
         elif patch.spin:
             arrays["contact_angle"] = np.broadcast_to(self._angle, shape)
         if "contact_angle" in arrays and conditions.get("spin") is None:
