@@ -174,6 +174,14 @@ def test_a_law_that_declares_nothing_or_must_be_given_a_field_is_described(monke
     assert "slope (must be given) Wear rate over p s [m], of no meaning. declares: what depends on its fields" in must
 
 
+def test_a_rig_shows_which_fields_have_a_default() -> None:
+    shown = said(wl.WheelRail)
+    assert "wheel_radius (must be given)" in shown
+    assert "wheel_profile_radius = inf mm" in shown
+    assert "contact_angle = 0 deg" in shown
+    assert "rail_material = None" in shown
+
+
 @pytest.mark.parametrize("name", ["twin_disc", "wheel_rail", "weight"])
 def test_the_example_of_a_rig_is_a_script_that_runs(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     cases.installer(monkeypatch)(Weight)

@@ -44,6 +44,8 @@ class ConditionTable:
     ----------
     loads, creepages : tuple of str
         Exactly one load and the first creepage are required; other creepages are zero if not given.
+    others : tuple of str
+        Further conditions with a unit, left out of the arrays if not given.
     coefficients : tuple of str
         Plain numbers; the first is required.
     examples : mapping of str to str
@@ -54,11 +56,12 @@ class ConditionTable:
     creepages: tuple[str, ...]
     coefficients: tuple[str, ...]
     examples: Mapping[str, str]
+    others: tuple[str, ...] = ()
 
     @cached_property
     def units(self) -> dict[str, Unit]:
         """The conditions that have a unit."""
-        return expected(*self.loads, *self.creepages)
+        return expected(*self.loads, *self.creepages, *self.others)
 
     @cached_property
     def names(self) -> tuple[str, ...]:

@@ -29,10 +29,17 @@ def mean_poisson_ratio(
 ) -> float:
     """Return ν [-] of like bodies equivalent to unlike ones: ν/G = (ν1/G1 + ν2/G2)/2, where 1/G = (1/G1 + 1/G2)/2.
 
-    With these means, G/(1-ν) is the E* of the unlike bodies, because (1-ν²)/E = (1-ν)/(2G) for each body.
+    With these means, G/(1-ν) is the E* of the unlike bodies, because (1-ν²)/E = (1-ν)/(2G) for each body. The mean of
+    two like bodies has every digit of theirs.
     """
     softness_1, softness_2 = (1.0 + poisson_ratio_1) / youngs_modulus_1, (1.0 + poisson_ratio_2) / youngs_modulus_2
-    return (poisson_ratio_1 * softness_1 + poisson_ratio_2 * softness_2) / (softness_1 + softness_2)
+    both = softness_1 + softness_2
+    return poisson_ratio_1 * (softness_1 / both) + poisson_ratio_2 * (softness_2 / both)
+
+
+def mean_shear_modulus(shear_modulus_1: float, shear_modulus_2: float) -> float:
+    """Return G [Pa] of like bodies equivalent to unlike ones: 1/G = (1/G1 + 1/G2)/2, as in `mean_poisson_ratio`."""
+    return shear_modulus_1 * (2.0 * shear_modulus_2 / (shear_modulus_1 + shear_modulus_2))
 
 
 def half_width(normal_force_per_width: Array, radius: float | Array, modulus: float | Array) -> Array:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import Field
 
 from wearlaw.settings.configuration import Configuration
-from wearlaw.units.quantities import Density, QuantityLike, Stress
+from wearlaw.units.quantities import Density, QuantityLike, Stress, scalar_si
 
 
 class Material(Configuration):
@@ -63,3 +63,21 @@ def steel(
         density=density,
         shear_yield_stress=shear_yield_stress,
     )
+
+
+def dundurs_beta(material_1: Material, material_2: Material) -> float:
+    """Return Dundurs' β [-] of two bodies, from -1/2 to 1/2: how far normal and tangential displacement are coupled.
+
+    β = [(1-2ν1)/G1 - (1-2ν2)/G2] / [(1-ν1)/G1 + (1-ν2)/G2] / 2 is zero for like materials, and for two incompressible
+    ones.
+
+    Notes
+    -----
+    K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, section 5.4.
+    """
+    (soft_1, ratio_1), (soft_2, ratio_2) = (
+        ((1.0 + one.poisson_ratio) / scalar_si(one.youngs_modulus, "Pa"), one.poisson_ratio)
+        for one in (material_1, material_2)
+    )
+    difference = (1.0 - 2.0 * ratio_1) * soft_1 - (1.0 - 2.0 * ratio_2) * soft_2
+    return 0.5 * difference / ((1.0 - ratio_1) * soft_1 + (1.0 - ratio_2) * soft_2)

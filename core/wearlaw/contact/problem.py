@@ -151,8 +151,8 @@ class Problem:
     The arrays have one shape, the *batch*, with one entry for each operating point. `Problem.line` and
     `Problem.ellipse` make a problem from quantities. If bodies touch in several places, such as two wheels with up to
     three patches each, the rig adds axes to the batch, names them in `dims` and marks the existing patches in `exists`.
-    Unlike materials enter through the effective modulus and Kalker's mean of ν/G. The coupling of normal and tangential
-    displacement between unlike bodies is neglected.
+    Unlike materials enter through the effective modulus and Kalker's mean of ν/G. Contact models neglect the coupling
+    of normal and tangential displacement between unlike bodies, and wearlaw warns where it matters.
 
     Attributes
     ----------
@@ -185,6 +185,8 @@ class Problem:
         Mass density of the body whose wear is predicted, ρ [kg/m³].
     traction_coefficient : ndarray or None
         Measured tangential over normal force, T/N [-], if the test gave one.
+    contact_angle : ndarray or None
+        Contact angle, δ [rad], of the surface to the axle; None if the surface is level at all operating points.
     strips : Strips or None
         The strips and their pressure, if the patch is neither a line nor an ellipse.
     bodies : mapping of str to Body
@@ -209,6 +211,7 @@ class Problem:
     rolling_speed: Array
     density: Array
     traction_coefficient: Array | None = None
+    contact_angle: Array | None = None
     strips: Strips | None = None
     bodies: Mapping[str, Body] = field(default_factory=dict)
     dims: tuple[str, ...] = ()

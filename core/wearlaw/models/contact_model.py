@@ -105,6 +105,10 @@ class ContactModel(Model):
     uses_measured_traction: ClassVar[bool] = False
     """Whether the model can use a measured traction coefficient."""
 
+    assumes_like_materials: ClassVar[bool] = True
+    """Whether the model neglects the tractions that the pressure causes between unlike materials. wearlaw then warns
+    where they matter."""
+
     if not TYPE_CHECKING:
 
         def __new__(cls, *_: object, **__: object) -> Self:

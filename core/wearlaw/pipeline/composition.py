@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import warnings
 
+import numpy as np
+
+from wearlaw.contact.material import dundurs_beta
 from wearlaw.contact.problem import PATCHES, Geometry, Problem
-from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
+from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning
 from wearlaw.models.contact_model import ContactModel, Model, Scale
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
@@ -15,6 +18,16 @@ PEAKS = (
     " on an ellipse, so that cells see other loads at the same mean."
 )
 """Why parameters do not carry over from line to ellipse."""
+
+
+COUPLING = float(np.log(3.0) / np.pi)
+"""Traction that the pressure causes between unlike bodies at x = a/2, over βp; the outer half of the patch has more.
+
+In steady rolling without slip the traction of half-planes is βp/π ln((a+x)/(a-x)), which has no resultant.
+"""
+
+MOST_COUPLING = 0.1
+"""Largest share of μp that the traction at a/2 may have without a warning."""
 
 
 def law_among(laws: tuple[WearLaw, ...], model: ContactModel) -> WearLaw:
@@ -77,6 +90,28 @@ def warn_of_geometry(
     calibration = law.calibration
     if declared is None and calibration is not None and calibration.geometry != geometry:
         warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
+
+
+def warn_of_unlike_materials(model: ContactModel, problem: Problem, stacklevel: int) -> None:
+    """Warn if the coupling of unlike materials matters and the model neglects it; `stacklevel` 1 is this function.
+
+    It does not matter if the traction was measured.
+    """
+    if not problem.bodies or not model.assumes_like_materials or problem.traction_coefficient is not None:
+        return
+    first, *others = (body.material for body in problem.bodies.values())
+    beta = max((dundurs_beta(first, one) for one in others if one is not first), key=abs, default=0.0)
+    if beta == 0.0:
+        return
+    share = COUPLING * abs(beta) / float(np.nanmin(problem.friction_coefficient))
+    if share > MOST_COUPLING:
+        warnings.warn(
+            f"{' and '.join(problem.bodies)} are of unlike materials (Dundurs' β = {beta:.2g}), but contact model"
+            f" '{model.name}' assumes like ones. It neglects tractions above {100.0 * share:.0f} % of the friction"
+            " bound over half of the patch; check the result against data or a theory of unlike bodies",
+            RangeWarning,
+            stacklevel=stacklevel,
+        )
 
 
 def check_one_patch(problem: Problem, rig: Model, application: str) -> None:

@@ -30,6 +30,7 @@ from wearlaw.pipeline.composition import (
     law_among,
     warn_of_calibration,
     warn_of_geometry,
+    warn_of_unlike_materials,
 )
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.ranges import RangeWatch, overload_of
@@ -361,6 +362,7 @@ class Pipeline(Configuration, Generic[P]):
             warn_of_geometry(self.rig.geometry, self.contact_model, self.scale, law, problem.geometry, stacklevel + 1)
         watch = self.range_watch()
         found = self.watched(problem, watch, on_block)
+        warn_of_unlike_materials(self.contact_model, problem, stacklevel + 1)
         watch.warn(stacklevel)
         return found
 

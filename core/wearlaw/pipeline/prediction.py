@@ -258,7 +258,9 @@ class Prediction:
         -------
         xarray.Dataset
             `depth` and `sliding_distance` over the coordinate `y`, per metre rolled for the wheel and per passage for
-            the rail, with units in attrs. With several operating points it also has the axes of the batch.
+            the rail, with units in attrs. With several operating points it also has the axes of the batch. y and the
+            depth are tangential and normal to the surface. If the problem has a contact angle δ, `depth_vertical` and
+            `depth_lateral` are the parts of the depth along these directions, depth × cos δ and depth × abs(sin δ).
 
         Raises
         ------
@@ -288,7 +290,12 @@ class Prediction:
         once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
         units = ("um/km", "mm/m") if turns else ("nm", "um")
         per = "metre rolled" if turns else "passage of a wheel"
-        columns = {"depth": (wear / (density * once), units[0]), "sliding_distance": (slid / once, units[1])}
+        depth = wear / (density * once)
+        columns = {"depth": (depth, units[0]), "sliding_distance": (slid / once, units[1])}
+        if problem.contact_angle is not None:
+            angle = problem.contact_angle[..., None]
+            columns["depth_vertical"] = depth * np.cos(angle), units[0]
+            columns["depth_lateral"] = depth * np.abs(np.sin(angle)), units[0]
         return _across_patch(y, columns, per, problem.dims)
 
     @property
@@ -309,7 +316,8 @@ class Prediction:
         """Return the depth that a body's surface loses per distance rolled, mean over the patch's width [m/m].
 
         A point of the surface is in contact once in each revolution. On a line it is in contact for 2a of each πD
-        rolled, so the depth is (wear rate / density) · 2a / (πD). For the depth across an ellipse see `wear_profile`.
+        rolled, so the depth is (wear rate / density) · 2a / (πD). It is normal to the surface. For the depth across an
+        ellipse see `wear_profile`.
 
         Parameters
         ----------

@@ -86,7 +86,7 @@ class TwinDisc(Rig):
 
     Disc 1 is the wheel disc, whose wear is predicted; with positive creepage it is the faster one. The discs' elastic
     constants enter through E* alone: the rig neglects the coupling of normal and tangential displacement between unlike
-    materials.
+    materials. A `RangeWarning` says where it matters.
     """
 
     name: ClassVar[str] = "twin_disc"

@@ -7,17 +7,20 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Required, TypedDict, Unpack
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
+from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz, hertz_ellipse
 from wearlaw.contact.conditions import COEFFICIENTS, ConditionTable, FrictionLaw, condition_arrays
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Body, Geometry, Problem
+from wearlaw.errors import UnitError
 from wearlaw.pipeline.pipeline import Rig, check_sizes
 from wearlaw.plugins.fields import MaterialField
-from wearlaw.units.quantities import Length, Quantity, QuantityLike, Speed, Unit, scalar_si
+from wearlaw.units.quantities import Length, Quantity, QuantityLike, Speed, Unit, from_si, scalar_si
 
 Radius = Annotated[Quantity, Unit("mm", positive=False, infinite=True)]
+Angle = Annotated[Quantity, Unit("deg", positive=False)]
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -27,7 +30,8 @@ class WheelRailConditions(TypedDict, total=False):
     """The conditions of a wheel on a rail; arrays broadcast against each other.
 
     Exactly one of `normal_force` and `max_pressure` gives the load. Creepages are the velocity of the wheel minus that
-    of the rail, over V, as in CONTACT; a positive spin adds to a positive lateral creepage at the leading edge.
+    of the rail, over V, as in CONTACT; a positive spin adds to a positive lateral creepage at the leading edge. The
+    contact angle is positive where the surface falls towards y.
 
     Attributes
     ----------
@@ -40,7 +44,9 @@ class WheelRailConditions(TypedDict, total=False):
     lateral_creepage : Quantity or str
         Lateral creepage, η [-], of magnitude at most 1; zero if not given.
     spin : Quantity or str
-        Spin, φ [1/m]; zero if not given.
+        Spin, φ [1/m]; that of the contact angle, sin δ / r, if not given.
+    contact_angle : Quantity or str
+        Contact angle, δ [rad], between -90 and 90 deg; that of the rig if not given.
     friction_coefficient : array_like of float, or FallingFriction
         Friction coefficient, μ [-].
     """
@@ -50,6 +56,7 @@ class WheelRailConditions(TypedDict, total=False):
     longitudinal_creepage: Required[QuantityLike]
     lateral_creepage: QuantityLike
     spin: QuantityLike
+    contact_angle: QuantityLike
     friction_coefficient: Required[ArrayLike | FrictionLaw]
 
 
@@ -58,17 +65,26 @@ WHEEL_RAIL = ConditionTable(
     ("longitudinal_creepage", "lateral_creepage", "spin"),
     COEFFICIENTS[:1],
     {"longitudinal_creepage": 'Q(0.2, "%")', "friction_coefficient": "0.3"},
+    ("contact_angle",),
 )
 """The conditions of a wheel on a rail."""
 
 
 class _Patch(NamedTuple):
-    """Values shared by all operating points, in SI: the patch under a load of 1 N, and constants."""
+    """The patch under a load of 1 N at a contact angle, and the spin of that angle, in SI."""
 
-    a: float
-    b: float
-    max_pressure: float
+    a: float | Array
+    b: float | Array
+    max_pressure: float | Array
+    spin: float | Array
+
+
+class _Constants(NamedTuple):
+    """Values shared by all operating points, in SI; G and ν are the means of both bodies."""
+
     shear_modulus: float
+    poisson_ratio: float
+    density: float
     rolling_speed: float
 
 
@@ -76,8 +92,12 @@ class WheelRail(Rig):
     """A wheel that rolls on a straight rail and touches it in a point, which the load widens to an ellipse.
 
     Radii of curvature are positive for a convex body, infinite for a flat one and negative for a concave one. The
-    planes of the lateral radii stand upright and across the rail, the planes of the rolling radii along it. Wheel and
-    rail have the same material.
+    lateral radii are those of the profiles, in a plane upright and across the rail. On a surface at the contact angle
+    δ, a wheel of the rolling radius r has the radius of curvature r/cos δ in the plane of the rolling direction and the
+    normal. It still rolls 2πr in a revolution. The normal force, the pressure and the lateral creepage and force are
+    normal and tangential to that surface.
+
+    Materials may differ. The rig then takes E* and Kalker's means of G and ν.
     """
 
     name: ClassVar[str] = "wheel_rail"
@@ -99,13 +119,18 @@ class WheelRail(Rig):
     }
 
     wheel_radius: Length
-    """Rolling radius of the wheel [m]."""
+    """Rolling radius of the wheel at the contact point, from the axle, r [m]."""
     rail_head_radius: Radius
     """Lateral radius of the rail head at the contact point [m]."""
     wheel_profile_radius: Radius = Field(default="inf mm", validate_default=True)
     """Lateral radius of the wheel profile at the contact point [m]; infinite for a cone, negative for a worn hollow."""
+    contact_angle: Angle = Field(default="0 deg", validate_default=True)
+    """Contact angle, δ [rad], between -90 and 90 deg, positive where the surface falls towards y; the condition of the
+    same name replaces it."""
     material: MaterialField
     """Material of wheel and rail; a file may also give the name of an installed material."""
+    rail_material: MaterialField | None = None
+    """Material of the rail, if it differs from the wheel's."""
     rolling_speed: Speed
     """Rolling speed, V [m/s]."""
 
@@ -117,9 +142,17 @@ class WheelRail(Rig):
             wheel_radius: QuantityLike,
             rail_head_radius: QuantityLike,
             wheel_profile_radius: QuantityLike = "inf mm",
+            contact_angle: QuantityLike = "0 deg",
             material: Material,
+            rail_material: Material | None = None,
             rolling_speed: QuantityLike,
         ) -> None: ...
+
+    @field_validator("contact_angle")
+    @classmethod
+    def _not_upright(cls, angle: Quantity) -> Quantity:
+        _check_angle(scalar_si(angle, "rad"))
+        return angle
 
     @model_validator(mode="after")
     def _touch_in_a_point(self) -> WheelRail:
@@ -143,7 +176,7 @@ class WheelRail(Rig):
     def _bodies(self) -> dict[str, Body]:
         return {
             "wheel": Body(self.material, scalar_si(self.wheel_radius, "m")),
-            "rail": Body(self.material, np.inf),
+            "rail": Body(self.rail_material or self.material, np.inf),
         }
 
     @classmethod
@@ -166,7 +199,9 @@ class WheelRail(Rig):
         longitudinal_creepage, lateral_creepage : Quantity or str
             ξ and η, ratios or in percent, of magnitude at most 1; η is zero if not given.
         spin : Quantity or str
-            φ [1/m]; zero if not given.
+            φ [1/m]; sin δ / r if not given.
+        contact_angle : Quantity or str
+            δ [rad], between -90 and 90 deg; that of the rig if not given.
         friction_coefficient : array_like of float, or FallingFriction
             μ [-].
 
@@ -177,12 +212,22 @@ class WheelRail(Rig):
         UnitError
             If a condition lacks its unit or is out of bounds.
         """
-        patch = self._patch
+        constants = self._constants
         arrays = condition_arrays(
             conditions,
             WHEEL_RAIL,
-            lambda a: patch.rolling_speed * np.hypot(a["longitudinal_creepage"], a["lateral_creepage"]),
+            lambda a: constants.rolling_speed * np.hypot(a["longitudinal_creepage"], a["lateral_creepage"]),
         )
+        shape = arrays["longitudinal_creepage"].shape
+        patch, angle = self._patch, arrays.get("contact_angle")
+        if angle is not None:
+            _check_angle(angle, "contact_angle: ")
+            # An axis of stride 0 repeats one angle, for which one patch is enough.
+            patch = self._patch_at(angle[tuple(slice(None if stride else 1) for stride in angle.strides)])
+        elif patch.spin:
+            arrays["contact_angle"] = np.broadcast_to(self._angle, shape)
+        if "contact_angle" in arrays and conditions.get("spin") is None:
+            arrays["spin"] = np.broadcast_to(patch.spin, shape)
         with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` rejects the result
             if "max_pressure" in arrays:
                 pressure = arrays.pop("max_pressure")
@@ -194,25 +239,53 @@ class WheelRail(Rig):
             {"longer semi-axis": np.maximum(a, b), "shorter semi-axis": np.minimum(a, b), "max pressure": max_pressure},
             arrays["friction_coefficient"],
         )
-        same = {
-            "shear_modulus": patch.shear_modulus,
-            "poisson_ratio": self.material.poisson_ratio,
-            "rolling_speed": patch.rolling_speed,
-            "density": scalar_si(self.material.density, "kg/m^3"),
-        }
-        shape = arrays["longitudinal_creepage"].shape
+        same = constants._asdict()
         constant = {name: np.broadcast_to(np.float64(value), shape) for name, value in same.items()}
         return Problem.ellipse_from_si(a=a, b=b, bodies=self._bodies, **arrays, **constant)
 
     @cached_property
+    def _angle(self) -> Array:
+        """The contact angle of the rig [rad]."""
+        return np.asarray(scalar_si(self.contact_angle, "rad"))
+
+    @cached_property
     def _patch(self) -> _Patch:
-        youngs_modulus, ratio = scalar_si(self.material.youngs_modulus, "Pa"), self.material.poisson_ratio
-        modulus = hertz.effective_modulus(youngs_modulus, ratio, youngs_modulus, ratio)
+        """The patch at the contact angle of the rig."""
+        return _Patch(*(float(value) for value in self._patch_at(self._angle)))
+
+    def _patch_at(self, angle: Array) -> _Patch:
+        """Return the patch at contact angles [rad], of their shape."""
+        modulus = hertz.effective_modulus(*(value for pair in self._elastic for value in pair))
         radii = (self.wheel_radius, self.wheel_profile_radius, self.rail_head_radius)
         wheel, profile, head = (np.asarray(scalar_si(radius, "m")) for radius in radii)
         load, straight = np.asarray(1.0), np.asarray(np.inf)
-        curvatures = hertz_ellipse.curvature(wheel, straight), hertz_ellipse.curvature(profile, head)
+        curvatures = hertz_ellipse.curvature(wheel / np.cos(angle), straight), hertz_ellipse.curvature(profile, head)
         a, b = hertz_ellipse.semi_axes(load, *curvatures, modulus)
-        shear_modulus = 0.5 * youngs_modulus / (1.0 + ratio)
-        p0 = hertz_ellipse.max_pressure(load, a, b)
-        return _Patch(float(a), float(b), float(p0), shear_modulus, scalar_si(self.rolling_speed, "m/s"))
+        return _Patch(a, b, hertz_ellipse.max_pressure(load, a, b), np.sin(angle) / wheel)
+
+    @cached_property
+    def _constants(self) -> _Constants:
+        (wheel, wheel_ratio), (rail, rail_ratio) = self._elastic
+        return _Constants(
+            shear_modulus=hertz.mean_shear_modulus(0.5 * wheel / (1.0 + wheel_ratio), 0.5 * rail / (1.0 + rail_ratio)),
+            poisson_ratio=hertz.mean_poisson_ratio(wheel, wheel_ratio, rail, rail_ratio),
+            density=scalar_si(self.material.density, "kg/m^3"),
+            rolling_speed=scalar_si(self.rolling_speed, "m/s"),
+        )
+
+    @cached_property
+    def _elastic(self) -> tuple[tuple[float, float], ...]:
+        """E [Pa] and ν of the wheel and of the rail."""
+        materials = (body.material for body in self._bodies.values())
+        return tuple((scalar_si(material.youngs_modulus, "Pa"), material.poisson_ratio) for material in materials)
+
+
+def _check_angle(angle: Array | float, subject: str = "") -> None:
+    """Raise an error for contact angles [rad] of a right angle or more."""
+    upright = np.abs(angle) >= 0.5 * np.pi
+    if upright.any():
+        first = float(np.asarray(angle)[upright].flat[0])
+        raise UnitError(
+            f"{subject}must lie between -90 and 90 deg, got {from_si(first, 'deg')!r}; give the angle of the surface to"
+            ' the axle, such as Q(70, "deg") on a flange'
+        )

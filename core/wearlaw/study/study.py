@@ -24,6 +24,7 @@ from wearlaw.errors import (
 )
 from wearlaw.models.contact_model import Model
 from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
@@ -171,13 +172,14 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
     points = grid.points(case.units)
     axes = points.dims
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
-    found_in = _variables(grid, case, usable)
+    found_in, first = _variables(grid, case, usable), grid.problem(case.rig)
     rates: list[dict[str, Array]] = []
     contacts: dict[str, dict[str, Array]] = {}
     for number, pair in enumerate(usable):
         new = found_in.of_contact[pair.contact_model] if pair.contact_model not in contacts else ()
         outputs = [*RATES, *new, *(found_in.of_point if not contacts else ())]
         with notes.of(f"sweep '{name}'"):
+            warn_of_unlike_materials(pair.pipeline.contact_model, first, stacklevel=1)
             found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs)
         contacts.setdefault(pair.contact_model, found)
         rates.append(_with_band(f"{name}-{number}", pair.pipeline, points, found, evaluator))
@@ -320,4 +322,4 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
         return ["wear_rate"], prediction.profile
     across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in rig.bodies}
     named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
-    return [f"{body}_depth" for body in across], xarray.Dataset(named)
+    return [name for name in named if not name.endswith("_sliding_distance")], xarray.Dataset(named)

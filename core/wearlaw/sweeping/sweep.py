@@ -14,7 +14,7 @@ import xarray
 
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, ResumeWarning, WorkerWarning
-from wearlaw.pipeline.composition import check_one_patch, warn_of_geometry
+from wearlaw.pipeline.composition import check_one_patch, warn_of_geometry, warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
@@ -156,6 +156,7 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
     check_one_patch(first, pipeline.rig, "sweep")
     for law in pipeline.laws:
         warn_of_geometry(pipeline.rig.geometry, model, scale, law, first.geometry, stacklevel=4)
+    warn_of_unlike_materials(model, min(problems, key=lambda one: one.friction_coefficient.min()), stacklevel=4)
     return first.flatten()[:1]
 
 

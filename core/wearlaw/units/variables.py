@@ -55,6 +55,7 @@ VARIABLES: Mapping[str, Variable] = {
     ),
     "lateral_creepage": Variable("%", "lateral creepage", "Lateral creepage", "η", "any", 1.0),
     "spin": Variable("1/m", "spin", "Spin", "φ", "any"),
+    "contact_angle": Variable("deg", "contact angle", "Contact angle", "δ", "any"),
     "normal_force": Variable("kN", "normal force", "Normal force", "N"),
     "normal_force_per_width": Variable("kN/m", "normal force per width", "Normal force per unit width", "P"),
     "max_pressure": Variable("MPa", "maximum pressure", "Hertz's maximum pressure", "p0"),
