@@ -60,7 +60,7 @@ class Fastsim(wl.LineContactModel):
     strips: Annotated[int, Field(ge=2, le=1000, strict=True)] = 10
     """Number of strips of an ellipse. The number of nodes along a strip is proportional to it; a uniform march has as
     many cells as strips. On 10 strips forces are off by 0.4 % of μN, the energy of the cells and USFD by 0.4 %, and
-    KTH, which jumps, by 8 %, root mean square over a/b from 1/10 to 10; single points are ten times further off. The
+    KTH, which jumps, by 5 %, root mean square over a/b from 1/10 to 10; single points are ten times further off. The
     documentation of wheels on rails has a table."""
 
     slip: Literal["local", "scaled"] = "local"

@@ -5,7 +5,7 @@ This is the only code that sees both a contact model and a wear law. It uses the
 1. Closed form without nodes, if the law is a sum of ramps in q·s, and the model knows the energy above a threshold.
 2. Quadrature over the slip zone, if the model knows its fields on a line. The result is exact to rounding if the law
    declares its breakpoints, because the zone is then split there.
-3. The law at the model's own nodes. This is always the method on an ellipse.
+3. The law at the model's own nodes. This is always the method on an ellipse, where cells are split at jumps of the law.
 
 On a line, the last two methods give an error estimate. On an ellipse, `wear_rate_error` computes one. The number of
 cells of a plot does not matter here.
@@ -31,6 +31,7 @@ from wearlaw.models.wear_law import Numbers, WearLaw
 from wearlaw.numerics.blocks import Columns, OfBlock, OnBlock, blocks, by_block
 from wearlaw.numerics.crossings import crossings
 from wearlaw.numerics.solving import Solver, check_columns, check_type
+from wearlaw.numerics.splits import split_rates
 
 BLOCK = 8192
 """Operating points of a block in closed form: its arrays stay in the cache and in reused memory."""
@@ -219,7 +220,8 @@ def _over_ellipse(
         contact = solver.solve(part)
         seen = seen_by_law(model, contact, scale)
         area = seen.patch_area
-        rate = seen.sum_over_nodes(solver.rate(law, seen, part, _at_points(across, points)) * seen.area) / area
+        rates = split_rates(solver, law, seen, part, _at_points(across, points))
+        rate = seen.sum_over_nodes(rates * seen.area) / area
         found = {"wear_rate": rate, "patch_area": area, **_columns(contact.forces)}
         return found if part.size == problem.size else found | _slip_columns(seen, contact)
 
@@ -338,7 +340,7 @@ def integrate_across(
         return chosen
 
     def along(part: Problem, contact: Contact) -> tuple[Array, Array, Array]:
-        wear = contact.over_strip(solver.rate(law, contact, part))
+        wear = contact.over_strip(split_rates(solver, law, contact, part, law.numbers))
         return contact.y[..., 0, :], wear, contact.over_strip(contact.slip)
 
     if strips is None and solved_before is not None:

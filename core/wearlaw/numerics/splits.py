@@ -1,0 +1,98 @@
+"""Rates of a law on the strips of a patch, with cells split where the rate jumps."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import NODE_VARIABLES, TOTALS, Contact
+from wearlaw.contact.problem import Problem
+from wearlaw.models.contact_model import Blame
+from wearlaw.models.wear_law import Numbers, WearLaw
+from wearlaw.numerics.solving import VECTORS, Solver
+
+FIELDS = ("pressure", "traction", "slip", "traction_bound", "x", *VECTORS)
+"""The fields of a contact that are interpolated between nodes."""
+
+
+def split_rates(solver: Solver, law: WearLaw, contact: Contact, problem: Problem, p: Numbers) -> Array:
+    """Return the rates of a law at the nodes of strips; where the rate jumps in a node's cell, the mean over the cell.
+
+    A cell is the part of a strip that its node represents. Between two nodes that slip, the contact is interpolated
+    linearly. Where a variable crosses a jump of the law there, the part of a cell beyond the jump has the rate beyond
+    it. The error along the strip is then of second order in the size of the cells, and otherwise of first order.
+
+    Parameters
+    ----------
+    solver : Solver
+        For the contact model.
+    law : WearLaw
+    contact : Contact
+        On strips, with a batch of one axis.
+    problem : Problem
+        The solved problem.
+    p : mapping of str to float or ndarray
+        The law's numbers in SI, floats or arrays of shape (points, 1, 1).
+
+    Returns
+    -------
+    ndarray, (points, nodes, strips)
+        Rates [kg/m/m²].
+    """
+    rate = solver.rate(law, contact, problem, p)
+    with Blame(law, p):
+        jumps = law.jumps(p)
+    levels = [(name, value) for name, values in jumps.items() if name in NODE_VARIABLES for value in values]
+    step = np.diff(contact.x, axis=-2)
+    if not levels or not step.size:
+        return rate
+    slips = contact.slip != 0.0
+    inside = slips[..., 1:, :] & slips[..., :-1, :] & (step > 0.0)
+    variables = {name: np.abs(getattr(contact, name)) for name, _ in levels}
+    crossed = []
+    for name, value in levels:
+        above = variables[name] >= value
+        crossed.append(inside & (above[..., 1:, :] != above[..., :-1, :]))
+    first = np.nonzero(np.logical_or.reduce(crossed))
+    if not first[0].size:
+        return rate
+    point, node, strip = first
+    second = point, node + 1, strip
+    length = contact.area / contact.strip_width[..., None, :]
+    border = (length.cumsum(axis=-2) - 0.5 * length.sum(axis=-2, keepdims=True))[first]  # between the two cells
+    shares = np.empty((node.size, len(levels) + 1))
+    shares[:] = np.clip((border - contact.x[first]) / step[first], 0.0, 1.0)[:, None]
+    in_first_until = shares[:, -1:].copy()
+    for column, ((name, value), here) in enumerate(zip(levels, crossed, strict=True)):
+        low, high = variables[name][first], variables[name][second]
+        level = np.broadcast_to(value, contact.pressure.shape)[first]
+        np.divide(level - low, high - low, out=shares[:, column], where=here[first])
+    shares.sort(axis=-1)
+    middle, part = 0.5 * (shares[:, 1:] + shares[:, :-1]), np.diff(shares, axis=-1) * step[first][:, None]
+    own = {name: value[point] if isinstance(value, np.ndarray) else value for name, value in p.items()}
+    there = law.checked_rate(_between(contact, problem, first, second, middle), own)[..., 0]
+    in_first = middle < in_first_until
+    split = rate.copy()
+    for cell, in_cell in ((first, in_first), (second, ~in_first)):
+        more = np.where(in_cell, (there - rate[cell][:, None]) * part, 0.0).sum(axis=-1)
+        np.add.at(split, cell, np.divide(more, length[cell], out=np.zeros_like(more), where=length[cell] > 0.0))
+    return split
+
+
+def _between(contact: Contact, problem: Problem, first: Any, second: Any, share: Array) -> Contact:
+    """Return the contact at shares (pairs, k) of the way from a first node to a second, as one strip for each pair."""
+    point, _, strip = first
+    fields = {}
+    for name in FIELDS:
+        values = getattr(contact, name)
+        low, high = values[first][:, None], values[second][:, None]
+        fields[name] = (low + share * (high - low))[..., None]
+    return Contact(
+        **fields,
+        area=np.ones_like(fields["x"]),
+        strip_width=contact.strip_width[point, strip][:, None],
+        problem=problem[point],
+        **{name: getattr(contact, name)[point] for name in TOTALS},
+    )

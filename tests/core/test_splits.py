@@ -1,0 +1,119 @@
+"""Cells on the strips of an ellipse, split where a law jumps."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.strategies import EPS
+from wearlaw import Array, Q
+
+RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
+FULL_SLIP: Any = {"normal_force": "80 kN", "longitudinal_creepage": "10 %", "friction_coefficient": 0.3}
+STRIPS = 20
+
+
+class PressedHard(wl.WearLaw):
+    """Wears at one rate where a body slips under a pressure in some intervals, and not elsewhere."""
+
+    name: ClassVar[str] = "pressed_hard"
+    source: ClassVar[str] = "none"
+    levels: ClassVar[tuple[float, ...]] = ()
+    variable: ClassVar[str] = "pressure"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        above = np.sum([getattr(contact, self.variable) >= level for level in self.levels], axis=0)
+        rate: Array = np.where((contact.slip != 0.0) & (above % 2 == 1), 1e-3, 0.0)
+        return rate
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {self.variable: self.levels}
+
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return self.breakpoints(p)
+
+
+def law(*levels: float, declares: bool = True) -> wl.WearLaw:
+    """Return the law that jumps at these pressures [Pa]."""
+    members: dict[str, Any] = {"levels": levels, "__module__": __name__}
+    if not declares:
+        members["jumps"] = wl.WearLaw.jumps
+    made: wl.WearLaw = type("Pressed", (PressedHard,), members)()
+    return made
+
+
+def lengths(levels: tuple[float, ...], declares: bool = True, strips: int = STRIPS) -> tuple[Any, Array]:
+    """Return the contact, and the length of each strip that wears, over that of the longest [-]."""
+    predict = RAILS | wl.contact_model("fastsim", strips=strips) | law(*levels, declares=declares)
+    found: Any = predict(**FULL_SLIP)
+    wear = found.wear_profile("rail").depth.values * 1e-9 * 7850.0 / 1e-3
+    return found, wear / (2.0 * found.problem.a)
+
+
+def exact(share: float, y: Array) -> Array:
+    """Return the length of strips at y/b within the ellipse where p/p0 is at least a share, over 2a."""
+    return np.sqrt(np.maximum(1.0 - y**2 - share**2, 0.0))
+
+
+def error_of_interpolation(contact: Any, p0: float, share: float) -> Array:
+    """Return the largest error of the place where linear interpolation between nodes finds a pressure, over 2a.
+
+    Between nodes h apart it is off by h² |p''|/8 / |p'| at most, with p'' and p' at the two nodes; on both sides.
+    """
+    x, y, a, b = contact.x, contact.y, contact.problem.a, contact.problem.b
+    inside = np.maximum(1.0 - (y / b) ** 2 - (x / a) ** 2, 1e-12)
+    first, second = np.abs(x / a) / np.sqrt(inside), (1.0 - (y / b) ** 2) / inside**1.5
+    h = np.diff(x / a, axis=-2)
+    most = h**2 / 8.0 * np.maximum(second[1:], second[:-1]) / np.minimum(first[1:], first[:-1])
+    crossed = (contact.pressure[1:] >= share * p0) != (contact.pressure[:-1] >= share * p0)
+    bound: Array = 0.5 * np.where(crossed, most, 0.0).sum(axis=0)
+    return bound
+
+
+@pytest.mark.parametrize("share", [0.3, 0.6, 0.8])
+def test_a_jump_is_placed_between_nodes_to_second_order(share: float) -> None:
+    p0 = float((RAILS | wl.contact_model("fastsim"))(**FULL_SLIP).problem.max_pressure)
+    found, length = lengths((share * p0,))
+    contact = found.contact
+    y = contact.y[0] / float(found.problem.b)
+    assert ((contact.slip > 0.0) | (contact.area == 0.0)).all()  # so a strip crosses the pressure twice or never
+    error = np.abs(length - exact(share, y))
+    reaches = (contact.pressure >= share * p0).any(axis=0)
+    assert reaches.sum() > STRIPS // 3
+    assert (error <= error_of_interpolation(contact, p0, share) + 64 * EPS)[reaches].all()
+    _, unsplit = lengths((share * p0,), declares=False)
+    assert error[reaches].max() < 0.2 * np.abs(unsplit - exact(share, y))[reaches].max()
+
+
+def test_two_jumps_between_two_nodes_are_both_placed() -> None:
+    p0 = float((RAILS | wl.contact_model("fastsim"))(**FULL_SLIP).problem.max_pressure)
+    low, high = 0.70, 0.71  # a band narrower than a cell
+    found, length = lengths((low * p0, high * p0))
+    y = found.contact.y[0] / float(found.problem.b)
+    reaches = (found.contact.pressure >= high * p0).any(axis=0)
+    want = exact(low, y) - exact(high, y)
+    # The width of a band that two lines between the same two nodes cut off: the slope of a chord in place of p'.
+    assert length[reaches].sum() == pytest.approx(want[reaches].sum(), rel=0.1)
+    _, unsplit = lengths((low * p0, high * p0), declares=False)
+    assert abs(unsplit[reaches].sum() / want[reaches].sum() - 1.0) > 0.3
+
+
+def test_kth_on_ten_strips_is_nearer_to_many() -> None:
+    conditions = {**FULL_SLIP, "longitudinal_creepage": Q(np.linspace(0.2, 2.0, 40), "%"), "normal_force": "150 kN"}
+
+    def mean(strips: int) -> Array:
+        found = (RAILS | wl.contact_model("fastsim", strips=strips) | wl.wear_law("kth"))(**conditions)
+        rate: Array = found.wear_rate.magnitude
+        return rate
+
+    def unsplit(strips: int) -> Array:
+        contact = (RAILS | wl.contact_model("fastsim", strips=strips))(**conditions).contact
+        rate: Array = contact.mean(wl.wear_law("kth").checked_rate(contact)) * 1e3
+        return rate
+
+    many = mean(120)
+    errors = [float(np.sqrt(np.mean((rate / many - 1.0) ** 2))) for rate in (mean(10), unsplit(10))]
+    assert errors[0] < 0.75 * errors[1]
