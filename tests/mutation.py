@@ -49,13 +49,14 @@ TESTS = {
     "wearlaw_usfd": "plugins/test_usfd.py",
     "wearlaw.pipeline.composition": "core/test_composition.py core/test_pipeline.py core/test_wheel_rail.py"
     " core/test_wheel_rail_result.py",
-    "wearlaw.contact.hertz": "core/test_hertz.py",
+    "wearlaw.contact.hertz": "core/test_hertz.py core/test_unlike_materials.py",
     "wearlaw.contact.hertz_ellipse": "core/test_hertz_ellipse.py",
     "wearlaw.settings.parameters": "core/test_varying.py",
     "wearlaw.pipeline.pipeline": "core/test_composition.py core/test_pipeline.py core/test_uncertainty.py"
     " core/test_uncertainty_refusals.py core/test_inverse.py core/test_wheel_rail.py core/test_wheel_rail_result.py"
     " core/test_models.py test_interface.py",
-    "wearlaw.contact.contact": "core/test_records.py core/test_contact_from_arrays.py",
+    "wearlaw.contact.contact": "core/test_records.py core/test_contact_from_arrays.py core/test_elliptic_contact.py"
+    " core/test_several_patches.py plugins/test_fastsim_given_strips.py",
     "wearlaw.units.quantities": "core/test_units.py core/test_quantities.py core/test_unit_registries.py",
 }
 """The test files of each package or module; a plugin must pass the conformance kit too."""
