@@ -367,19 +367,25 @@ class Contact:
         total: Array = value.sum(axis=tuple(range(self.rolling_speed.ndim, value.ndim)))
         return total
 
+    def integral(self, *factors: Array) -> Array:
+        """Return the integral over the patch of a value at the nodes, or of a product of values, of the batch shape."""
+        nodes = "..." + "abcdefgh"[: self.pressure.ndim - self.rolling_speed.ndim]
+        total: Array = np.einsum(f"{','.join([nodes] * (len(factors) + 1))}->...", *factors, self.area)
+        return total
+
     def mean(self, value: Array) -> Array:
         """Return the area mean of a value at the nodes, of the batch shape."""
-        return self.sum_over_nodes(value * self.area) / self.patch_area
+        return self.integral(value) / self.patch_area
 
     @property
     def mean_slip(self) -> Array:
         """Area mean of the magnitude of the slip over the patch, stick included [-], of the batch shape."""
-        return self.mean(np.abs(self.slip))
+        return self.mean(self.slip if self.on_strips else np.abs(self.slip))  # on strips it is a magnitude
 
     @property
     def slip_area(self) -> Array:
         """Area of the part of the patch that slips [m²], of the batch shape."""
-        return self.sum_over_nodes(np.where(self.slip != 0, self.area, 0.0))
+        return self.sum_over_nodes(np.where(self.slip != 0, self.area, 0.0))  # in full slip the same bits as `patch_area`
 
     @property
     def stick_ratio(self) -> Array:
@@ -389,7 +395,9 @@ class Contact:
     @property
     def cell_wear_index(self) -> Array:
         """Energy dissipated per metre rolled, ∑ q·s dA over the nodes [N], of the batch shape."""
-        return self.sum_over_nodes(self.wear_index_density * self.area)
+        if self.pressure.size > self.rolling_speed.size and self.on_strips:
+            return self.integral(self.traction_x, self.slip_x) + self.integral(self.traction_y, self.slip_y)
+        return self.integral(self.wear_index_density)
 
     @property
     def forces(self) -> CreepForces:

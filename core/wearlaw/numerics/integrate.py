@@ -221,7 +221,7 @@ def _over_ellipse(
         seen = seen_by_law(model, contact, scale)
         area = seen.patch_area
         rates = split_rates(solver, law, seen, part, _at_points(across, points))
-        rate = seen.sum_over_nodes(rates * seen.area) / area
+        rate = seen.integral(rates) / area
         found = {"wear_rate": rate, "patch_area": area, **_columns(contact.forces)}
         return found if part.size == problem.size else found | _slip_columns(seen, contact)
 

@@ -265,8 +265,6 @@ def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> No
     if not all(math.isfinite(_product(values, values)) for values in (totals, *vectors)):
         check_finite(model, contact, problem)
     limit = np.maximum(problem.friction_coefficient * problem.normal_force, np.abs(contact.tangential_force))
-    nodes = (*contact.rolling_speed.shape, -1)
-    area = contact.area.reshape(nodes)
     if ellipse:
         declared, error = "elliptic_accuracy", SLACK * max(model.elliptic_accuracy, ROUNDINGS)
         sums = {
@@ -282,7 +280,7 @@ def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> No
         if "energy_balance" not in model.exemptions and model.scale == "cells":
             sums["wear_index"] = contact.wear_index_density, limit * np.abs(problem.longitudinal_creepage)
     for name, (values, size) in {"normal_force": (contact.pressure, contact.normal_force), **sums}.items():
-        total, found = getattr(contact, name), np.vecdot(values.reshape(nodes), area)
+        total, found = getattr(contact, name), contact.integral(values)
         right = np.abs(found - total) <= error * size
         if not right.all():
             wrong = ~right
