@@ -29,8 +29,10 @@ A claim holds in part if it holds for some of its variants or in part of the ran
 on something that the paper does not give. Four things are such: the coefficient k of KTH, which has ranges, so that a \
 claim holds if it does for some k within them; the slip, for which the exact theory is computed with the slip that \
 follows from the tractions and with eq. (7) as printed; the flexibility L of FASTSIM; and the rolling speed V, on \
-which the slip speed depends, and with it where KTH has its thresholds. V is taken as the surface speed of disc 1 and \
-as the mean surface speed, where disc 1 keeps its speed and drives."""
+which the slip speed depends, and with it where KTH has its thresholds. V is the mean of the surface speeds, as in \
+section 2 of the paper, which prints neither V nor which speed its rig keeps as the creepage grows. Claims near a \
+threshold are computed for two rigs of one speed: in one, disc 1, which drives, keeps it, and V = v1/(1 + ξ/2) falls \
+as the creepage grows; in the other the mean keeps it."""
 
 
 def verdict(parts: Iterable[bool | None]) -> wl.Verdict:
@@ -44,9 +46,16 @@ def verdict(parts: Iterable[bool | None]) -> wl.Verdict:
 
 
 def at_both(parts: Iterable[bool]) -> bool | None:
-    """Return whether something holds at every one of several rolling speeds, or None if that depends on the speed."""
+    """Return whether something holds whichever speed the rig keeps, or None if that depends on it."""
     found = set(parts)
     return found.pop() if len(found) == 1 else None
+
+
+def by_speed(part: bool | None, what: str = "this part of the claim") -> str:
+    """Return a sentence on how far a part of a claim depends on the speed that the rig keeps, from `at_both`."""
+    if part is None:
+        return f"Which speed the rig keeps decides {what}."
+    return f"{what[0].upper()}{what[1:]} {'holds' if part else 'fails'} whichever speed the rig keeps."
 
 
 def percent(share: float) -> str:

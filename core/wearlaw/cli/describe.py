@@ -27,7 +27,7 @@ def describe(model: type[Model]) -> str:
     default = _default(model)
     schema = model.model_json_schema(by_alias=False).get("properties", {})
     for name, text in field_docstrings(model).items():
-        lines += _field(name, default, _choices(schema[name]), text)
+        lines += _field(name, _value(model, default, name), _choices(schema[name]), text)
     lines += [] if schema else ["  none"]
     if issubclass(model, Rig):
         conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
@@ -77,8 +77,17 @@ def _default(model: type[Model]) -> Model | None:
         return None
 
 
-def _field(name: str, default: Model | None, choices: Sequence[str], description: str) -> Iterator[str]:
-    yield f"  {name} = {_shown(getattr(default, name))}" if default is not None else f"  {name} (must be given)"
+def _value(model: type[Model], default: Model | None, name: str) -> str:
+    """Return " = " and the default of a field, or that it must be given."""
+    field = model.model_fields[name]
+    if default is None and field.is_required():
+        return " (must be given)"
+    value = getattr(default, name) if default is not None else field.get_default(call_default_factory=True)
+    return f" = {_shown(value)}"
+
+
+def _field(name: str, value: str, choices: Sequence[str], description: str) -> Iterator[str]:
+    yield f"  {name}{value}"
     if choices:
         yield f"      one of {', '.join(choices)}"
     yield from _wrapped("      ", description)
