@@ -30,7 +30,7 @@ on something that the paper does not give. Four things are such: the coefficient
 claim holds if it does for some k within them; the slip, for which the exact theory is computed with the slip that \
 follows from the tractions and with eq. (7) as printed; the flexibility L of FASTSIM; and the rolling speed V, on \
 which the slip speed depends, and with it where KTH has its thresholds. V is the mean of the surface speeds, as in \
-section 2 of the paper, which prints neither V nor which speed its rig keeps as the creepage grows. Claims near a \
+section 3 of the paper, which prints neither V nor which speed its rig keeps as the creepage grows. Claims near a \
 threshold are computed for two rigs of one speed: in one, disc 1, which drives, keeps it, and V = v1/(1 + ξ/2) falls \
 as the creepage grows; in the other the mean keeps it."""
 

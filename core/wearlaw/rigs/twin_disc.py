@@ -93,7 +93,10 @@ class TwinDisc(Rig):
     """
 
     name: ClassVar[str] = "twin_disc"
-    source: ClassVar[str] = "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(c)"
+    source: ClassVar[str] = (
+        "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(c), after Tassini et al., Wear"
+        " 268 (2010) 660-667, eqs. (1) and (2)"
+    )
     geometry: ClassVar[Geometry | None] = "line"
     example: ClassVar[Mapping[str, Any]] = {
         "max_pressure": "1500 MPa",
