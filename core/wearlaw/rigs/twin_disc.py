@@ -237,9 +237,11 @@ class TwinDisc(Rig):
             max_pressure = hertz.max_pressure(per_width, half_width)
         check_sizes({"half width": half_width, "max pressure": max_pressure}, arrays["friction_coefficient"])
         creepage = arrays["creepage"]
-        rest = {**self._same, "rolling_speed": self._mean_speed(creepage)}
-        if creepage.shape:
-            rest = {name: np.broadcast_to(value, creepage.shape) for name, value in rest.items()}
+        shape = creepage.shape
+        same, rolling_speed = self._same, self._mean_speed(creepage)
+        if shape:
+            same = {name: np.broadcast_to(value, shape) for name, value in same.items()}
+            rolling_speed = np.broadcast_to(rolling_speed, shape)
         return Problem(
             geometry="line",
             a=half_width,
@@ -247,9 +249,10 @@ class TwinDisc(Rig):
             max_pressure=max_pressure,
             friction_coefficient=arrays["friction_coefficient"],
             longitudinal_creepage=creepage,
+            rolling_speed=rolling_speed,
             traction_coefficient=arrays.get("traction_coefficient"),
             bodies=self._bodies,
-            **rest,
+            **same,
         )
 
     @property
