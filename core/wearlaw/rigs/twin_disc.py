@@ -173,7 +173,8 @@ class TwinDisc(Rig):
 
         Notes
         -----
-        Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, read in a secondary transcription.
+        Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, read in a secondary transcription. It gives 400 rpm
+        as the nominal speed; that disc 1 keeps it is an interpretation.
         """
         standard = Disc(diameter=diameter, material=material or steel())
         disc_1, disc_2 = disc_1 or standard, disc_2 or standard
