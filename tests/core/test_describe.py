@@ -138,6 +138,13 @@ def test_no_line_of_the_fields_is_wider_than_a_screen() -> None:
         assert max(len(line) for line in fields.splitlines()) <= 100
 
 
+def test_a_field_with_a_default_need_not_be_given_where_others_must_be() -> None:
+    discs, wheel = (said(wl.rigs()[name]) for name in ("twin_disc", "wheel_rail"))
+    assert "rolling_speed (must be given)" in discs
+    assert "speed_of = 'mean' one of 'mean', 'disc_1' Whose surface speed" in discs
+    assert "wheel_profile_radius = inf mm Lateral radius" in wheel
+
+
 class Silent(wl.WearLaw):
     """Says nothing about itself."""
 

@@ -25,6 +25,7 @@ from tests.core.fits import (
     usfd,
 )
 from wearlaw import Q
+from wearlaw.fitting.result import _between, _one_series
 
 
 @pytest.fixture(scope="module")
@@ -203,6 +204,33 @@ def test_the_curve_of_a_contact_that_uses_measured_traction_passes_through_its_p
     assert not curve.points
     predicted = fit.residuals["predicted"].to_numpy()
     assert np.interp(points.x, curve.x, curve.y) == pytest.approx(predicted, rel=1e-9)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("kept", ["mean", "disc_1"])
+def test_the_curve_has_the_rolling_speed_of_each_creepage_between_the_tests(kept: Any, sign: float) -> None:
+    predict = wl.TwinDisc.suros(speed_of=kept) | wl.contact_model("global") | wl.wear_law("kth").explicit()
+    conditions: Any = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46}
+    creepage = Q(sign * np.array([4.0, 10.0, 16.0, 24.0]), "%")
+    tests = wl.WearTests.from_arrays(
+        creepage=creepage, wear_rate=predict(creepage=creepage, **conditions).wear_rate, **conditions
+    )
+    fit = wl.fit(predict, tests, free=["coefficient.low_speed"], bootstrap=0)
+    curve, _ = fit.figure_data().panels[0].curves
+    assert not curve.points
+    # All slips, so that Tγ/A is μ ξ π/4 p0. KTH jumps between the last two tests.
+    between = Q(sign * curve.x / (0.46 * 0.25 * np.pi * 1500.0), "")
+    expected = predict(creepage=between, **conditions).wear_rate.magnitude
+    assert curve.y == pytest.approx(expected, rel=1e-9)
+    posed = predict.rig.problem(creepage=between, **conditions)
+    assert _between(fit.observations[0]).rolling_speed == pytest.approx(posed.rolling_speed, rel=1e-9)
+
+
+def test_tests_at_speeds_of_their_own_are_points() -> None:
+    rig = wl.TwinDisc.suros()
+    problem = rig.problem(max_pressure="1500 MPa", creepage=Q([5.0, 10.0, 20.0], "%"), friction_coefficient=0.46)
+    assert _one_series(problem)
+    assert not _one_series(problem.replaced(rolling_speed=np.array([1.0, 1.1, 1.0])))
 
 
 def test_a_law_fitted_down_to_no_creepage_is_stated_from_zero() -> None:
