@@ -29,7 +29,8 @@ from wearlaw.pipeline.composition import (
     check_traction,
     law_among,
     warn_of_calibration,
-    warn_of_geometry,
+    warn_of_materials,
+    warn_of_problem,
 )
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.ranges import RangeWatch, overload_of
@@ -282,7 +283,7 @@ class Pipeline(Configuration, Generic[P]):
         return law_among(self.laws, self.contact_model)
 
     def with_law(self, law: WearLaw) -> Pipeline[P]:
-        """Return the pipeline with this law in place of its own, without a warning about the law's calibration."""
+        """Return the pipeline with this law in place of its own, without the warnings about the law's calibration."""
         return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages, laws=(law,))
 
     def __repr__(self) -> str:
@@ -300,6 +301,7 @@ class Pipeline(Configuration, Generic[P]):
             raise CompositionError(f"a contact model is followed by wl.patch_mean() or a wear law, not by {stage!r}")
         pipeline = self.with_law(stage)
         warn_of_calibration(self.rig.geometry, self.contact_model, self.scale, stage)
+        warn_of_materials(self.rig.bodies, stage)
         return pipeline
 
     def __call__(self, *positional: P.args, **conditions: P.kwargs) -> Prediction:
@@ -354,8 +356,7 @@ class Pipeline(Configuration, Generic[P]):
         """
         if self.rig.geometry not in (None, problem.geometry):
             raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
-        for law in self.laws:
-            warn_of_geometry(self.rig.geometry, self.contact_model, self.scale, law, problem.geometry, stacklevel + 1)
+        warn_of_problem(self, problem, stacklevel + 1)
         watch = self.range_watch()
         found = self.watched(problem, watch, on_block)
         watch.warn(stacklevel)

@@ -19,7 +19,7 @@ from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics import integrate
 from wearlaw.numerics.integrate import SlipTotals, WearTotals
 from wearlaw.numerics.solving import Solver
-from wearlaw.pipeline.composition import law_among
+from wearlaw.pipeline.composition import law_among, warn_of_body
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
 from wearlaw.units.variables import UNITS
 
@@ -75,6 +75,7 @@ class Prediction:
         self.laws = laws
         self._given_forces = forces
         self._given_wear = wear
+        self._asked_for: set[str] = set()
 
     @property
     def longitudinal_force(self) -> Quantity:
@@ -279,6 +280,7 @@ class Prediction:
         if strips is not None and (isinstance(strips, bool) or not isinstance(strips, int) or strips < 2):
             raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
         law, solved = self._law, self._solved
+        self._warn_of(body, stacklevel=3)
         if not (problem.density == density).all():
             problem = problem.replaced(density=np.full_like(problem.density, density))
             flat = problem.flatten()
@@ -399,10 +401,17 @@ class Prediction:
     def _rate(self, body: str) -> Array:
         """Return the wear rate of a body; with a law of volume it is proportional to the body's density."""
         density = np.full_like(self.problem.density, self._density(body))
+        self._warn_of(body, stacklevel=5)
         if np.array_equal(density, self.problem.density):
             return self._wear.wear_rate
         of_body = self.problem.replaced(density=density)
         return integrate.integrate_wear(self.contact_model, self._law, of_body, self.scale).wear_rate
+
+    def _warn_of(self, body: str, stacklevel: int) -> None:
+        """Warn once if the law was fitted to the wear of the other body; `stacklevel` 1 is this method."""
+        if body not in self._asked_for:
+            self._asked_for.add(body)
+            warn_of_body(self.problem, self._law, body, stacklevel + 1)
 
     def _density(self, body: str) -> float:
         return scalar_si(self.problem.body(body).material.density, "kg/m^3")

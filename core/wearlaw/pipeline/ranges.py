@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,6 +26,8 @@ class RangeWatch:
 
     Attributes
     ----------
+    seen : dict of str to Seen
+        The points outside, by the variable that leaves its range.
     overload : Overload or None
         The operating point furthest beyond first yield.
     """
@@ -35,7 +38,7 @@ class RangeWatch:
         if law is not None:
             with Blame(law):
                 self.range = law.valid_range
-        self.seen = {name: _Seen() for name in self.range}
+        self.seen: dict[str, Seen] = {}
         self.points = 0
         self.overload: Overload | None = None
 
@@ -45,17 +48,19 @@ class RangeWatch:
         for name, (low, high) in self.range.items():
             values = mean_over_patch(name)
             lowest, highest = extremes(values)
-            seen = self.seen[name]
-            seen.lowest, seen.highest = min(seen.lowest, lowest), max(seen.highest, highest)
-            if lowest < low:
-                seen.outside += int(np.count_nonzero(values < low))
-            if highest > high:
-                seen.outside += int(np.count_nonzero(values > high))
+            if lowest < low or highest > high:
+                self.see_outside(name, Seen(lowest, highest, int(((values < low) | (values > high)).sum())))
 
     def see_block(self, part: Problem, columns: Columns) -> None:
         """Record a block of operating points, with forces [N] and areas [m²] in columns."""
         self.see(part.size, partial(mean_over_patch, part, columns))
         self.see_overload(overload_of(part, tangential_force(part, columns)))
+
+    def see_outside(self, name: str, more: Seen) -> None:
+        """Record points outside the range of a variable."""
+        known = self.seen.get(name, more)
+        outside = more.outside if known is more else known.outside + more.outside
+        self.seen[name] = Seen(min(known.lowest, more.lowest), max(known.highest, more.highest), outside)
 
     def see_overload(self, overload: Overload | None) -> None:
         """Record an operating point beyond first yield if none so far lies further beyond."""
@@ -66,24 +71,27 @@ class RangeWatch:
         """Warn of points beyond first yield or out of range; `stacklevel` 1 is the caller."""
         if self.overload is not None:
             self.overload.warn(stacklevel + 1)
-        for name, seen in self.seen.items():
-            if self.law is not None and seen.outside:
-                low, high = self.range[name]
+        for name, (low, high) in self.range.items():
+            if self.law is not None and name in self.seen:
+                seen, calibration = self.seen[name], self.law.calibration
                 farthest = seen.highest if seen.highest > high else seen.lowest
                 shown = [repr(from_si(value, UNITS[name])) for value in (low, high, farthest)]
+                source = f" ({calibration.source})" if calibration and name in calibration.range_in_si else ""
                 warnings.warn(
                     f"wear law '{self.law.name}' is stated for a mean {name.replace('_', ' ')} from {shown[0]} to"
-                    f" {shown[1]}; {seen.outside} of {self.points} operating points lie outside, as far as {shown[2]}",
+                    f" {shown[1]}{source}; {seen.outside} of {self.points} operating points lie outside, as far as"
+                    f" {shown[2]}",
                     RangeWarning,
                     stacklevel=stacklevel + 1,
                 )
 
 
-class _Seen:
-    """Extremes of one variable, and the number of points out of range."""
+class Seen(NamedTuple):
+    """The extremes of a variable among points some of which are out of range [SI], and the number of these."""
 
-    def __init__(self) -> None:
-        self.lowest, self.highest, self.outside = np.inf, -np.inf, 0
+    lowest: float
+    highest: float
+    outside: int
 
 
 def mean_over_patch(problem: Problem, columns: Columns, variable: str) -> Array:
