@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from wearlaw.contact.problem import PATCHES, Body, Geometry, Problem
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
 from wearlaw.models.contact_model import ContactModel, Model, Scale
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
-
-if TYPE_CHECKING:
-    from wearlaw.pipeline.pipeline import Pipeline
 
 PEAKS = (
     "The peak of the traction is 4/π or 3/2 times its mean on a line (elliptic or parabolic bound), but 3/2 or 2 times"
@@ -56,7 +52,7 @@ def warn_of_calibration(
     if calibration is None:
         return
     fitted = calibration.geometry
-    if geometry is None:  # until there is a problem: see `warn_of_problem`
+    if geometry is None:  # until there is a problem: see `Pipeline.warn_of_problem`
         geometry = "line" if fitted == "any" else fitted
     if calibration.covers(model, scale, geometry):
         return
@@ -77,14 +73,25 @@ def warn_of_calibration(
     )
 
 
+def other_materials(bodies: Mapping[str, Body], law: WearLaw) -> list[str]:
+    """Return the names of the bodies whose material differs from that which the law was fitted to."""
+    calibration = law.calibration
+    if calibration is None:
+        return []
+    pairs = zip(bodies.items(), calibration.bodies, strict=False)
+    return [name for (name, body), fitted in pairs if not body.material.resembles(fitted)]
+
+
+def fitted_to_other_body(bodies: Mapping[str, Body], law: WearLaw, body: str) -> bool:
+    """Return whether the law was fitted to the wear of another body than this one."""
+    calibration = law.calibration
+    return calibration is not None and bool(calibration.bodies) and body != next(iter(bodies))
+
+
 def warn_of_materials(bodies: Mapping[str, Body], law: WearLaw, stacklevel: int = 3) -> None:
     """Warn if the law's parameters were fitted for other materials; `stacklevel` 1 is this function."""
-    calibration = law.calibration
-    if calibration is None or not (bodies and calibration.bodies):
-        return
-    pairs = zip(bodies.items(), calibration.bodies, strict=False)
-    others = [name for (name, body), fitted in pairs if not body.material.resembles(fitted)]
-    if others:
+    calibration, others = law.calibration, other_materials(bodies, law)
+    if calibration is not None and others:
         warnings.warn(
             f"the parameters of wear law '{law.name}' were fitted for {calibration.materials}, but"
             f" {' and '.join(others)} {'is' if len(others) == 1 else 'are'} of another material: Young's modulus or"
@@ -97,28 +104,13 @@ def warn_of_materials(bodies: Mapping[str, Body], law: WearLaw, stacklevel: int 
 def warn_of_body(problem: Problem, law: WearLaw, body: str, stacklevel: int) -> None:
     """Warn if the law's parameters were fitted to the wear of the other body; `stacklevel` 1 is this function."""
     calibration = law.calibration
-    if calibration is not None and calibration.bodies and body != next(iter(problem.bodies)):
+    if calibration is not None and fitted_to_other_body(problem.bodies, law, body):
         warnings.warn(
             f"the parameters of wear law '{law.name}' were fitted to the wear of the first body, with"
             f" {calibration.materials}, but are used for the wear of '{body}'; check them against data",
             CalibrationWarning,
             stacklevel=stacklevel,
         )
-
-
-def warn_of_problem(pipeline: Pipeline[...], problem: Problem, stacklevel: int) -> None:
-    """Warn of parameters fitted for another shape of patch or other materials if only the problem shows them.
-
-    If the rig declares its geometry or its bodies, the warning was given when the pipeline was composed. `stacklevel` 1
-    is this function.
-    """
-    rig, model, scale = pipeline.rig, pipeline.contact_model, pipeline.scale
-    for law in pipeline.laws:
-        calibration = law.calibration
-        if rig.geometry is None and calibration and calibration.geometry not in ("any", problem.geometry):
-            warn_of_calibration(problem.geometry, model, scale, law, stacklevel + 1)
-        if not rig.bodies:
-            warn_of_materials(problem.bodies, law, stacklevel + 1)
 
 
 def check_one_patch(problem: Problem, rig: Model, application: str) -> None:

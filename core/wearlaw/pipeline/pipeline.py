@@ -30,7 +30,6 @@ from wearlaw.pipeline.composition import (
     law_among,
     warn_of_calibration,
     warn_of_materials,
-    warn_of_problem,
 )
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.ranges import RangeWatch, overload_of
@@ -356,11 +355,25 @@ class Pipeline(Configuration, Generic[P]):
         """
         if self.rig.geometry not in (None, problem.geometry):
             raise InputError(f"problem: {type(problem).__name__} is not what a {type(self.rig).__name__} makes")
-        warn_of_problem(self, problem, stacklevel + 1)
+        self.warn_of_problem(problem, stacklevel + 1)
         watch = self.range_watch()
         found = self.watched(problem, watch, on_block)
         watch.warn(stacklevel)
         return found
+
+    def warn_of_problem(self, problem: Problem, stacklevel: int) -> None:
+        """Warn of parameters fitted for another shape of patch or other materials if only the problem shows them.
+
+        If the rig declares its geometry or its bodies, composing the pipeline gave the warning. `stacklevel` 1 is this
+        method.
+        """
+        rig, declared = self.rig, self.rig.geometry is not None
+        for law in self.laws:
+            calibration = law.calibration
+            if not declared and calibration is not None and calibration.geometry not in ("any", problem.geometry):
+                warn_of_calibration(problem.geometry, self.contact_model, self.scale, law, stacklevel + 1)
+            if not rig.bodies:
+                warn_of_materials(problem.bodies, law, stacklevel + 1)
 
     def range_watch(self) -> RangeWatch:
         """Return a watch that sees whether operating points stay elastic and within the range of the law, if any."""

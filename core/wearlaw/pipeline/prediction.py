@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,8 @@ from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics import integrate
 from wearlaw.numerics.integrate import SlipTotals, WearTotals
 from wearlaw.numerics.solving import Solver
-from wearlaw.pipeline.composition import law_among, warn_of_body
+from wearlaw.pipeline.composition import law_among, other_materials, warn_of_body
+from wearlaw.pipeline.ranges import elastic_limits, outside_range
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
 from wearlaw.units.variables import UNITS
 
@@ -182,6 +184,24 @@ class Prediction:
     def max_pressure(self) -> Quantity:
         """Hertz's maximum pressure, p0 [Pa]."""
         return from_si(self.problem.max_pressure, "MPa")
+
+    @property
+    def first_yield(self) -> Quantity:
+        """Maximum pressure at which a body first yields under this traction [Pa]; see `elastic_limit`."""
+        return from_si(self._elastic_limits[0], "MPa")
+
+    @property
+    def shakedown_limit(self) -> Quantity:
+        """Maximum pressure at the shakedown limit under this traction [Pa]; see `elastic_limit`."""
+        return from_si(self._elastic_limits[1], "MPa")
+
+    @property
+    def outside_range(self) -> Quantity:
+        """1 where a point lies outside the range or the materials that the law was fitted to, otherwise 0 [-]."""
+        problem, law = self.problem, self._law
+        columns = {**asdict(self._forces), "patch_area": self._patch_area}
+        outside = outside_range(problem, columns, law) | bool(other_materials(problem.bodies, law))
+        return from_si(outside.astype(np.float64), "")
 
     @property
     def patch_area(self) -> Quantity:
@@ -365,6 +385,10 @@ class Prediction:
     def _force(self) -> Array:
         """Tangential force [N]; its magnitude on an ellipse."""
         return self._forces.longitudinal if self.problem.geometry == "line" else self._forces.tangential
+
+    @cached_property
+    def _elastic_limits(self) -> tuple[Array, Array]:
+        return elastic_limits(self.problem, np.abs(self._force))
 
     @cached_property
     def _wear_index(self) -> Array:

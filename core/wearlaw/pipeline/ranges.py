@@ -8,12 +8,13 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.extremes import extremes
-from wearlaw.contact.elastic_limit import Overload, overload
+from wearlaw.contact.elastic_limit import Overload, first_yield, overload, shakedown_limit
 from wearlaw.contact.problem import CreepForces, Problem
-from wearlaw.errors import ModelError, RangeWarning
+from wearlaw.errors import CompositionError, ModelError, RangeWarning
 from wearlaw.models.contact_model import Blame
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics.blocks import Columns
@@ -138,6 +139,47 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
         problem.friction_coefficient,
         None if problem.geometry == "line" else problem.a / problem.b,
     )
+
+
+def outside_range(problem: Problem, columns: Columns, law: WearLaw) -> NDArray[np.bool_]:
+    """Return at which operating points a mean over the patch lies outside the law's range, of the batch shape."""
+    outside = np.zeros(problem.batch_shape, dtype=np.bool_)
+    for name, (low, high) in law.valid_range.items():
+        values = mean_over_patch(problem, columns, name)
+        outside |= (values < low) | (values > high)
+    return outside
+
+
+def elastic_limits(problem: Problem, tangential_force: Array) -> tuple[Array, Array]:
+    """Return Hertz's maximum pressure at first yield and at the shakedown limit [Pa], of the body that yields first.
+
+    Parameters
+    ----------
+    problem : Problem
+    tangential_force : ndarray
+        Magnitude of the tangential force [N], of the batch shape; NaN where there is no patch, and in the result.
+
+    Raises
+    ------
+    CompositionError
+        If no body's material has a `shear_yield_stress`.
+    """
+    strengths = {body.strength for body in problem.bodies.values() if body.strength is not None}
+    if not strengths:
+        raise CompositionError("elastic limit: no body's material has a shear_yield_stress; give one to its Material")
+    there = np.isfinite(tangential_force)
+    limits = np.full((2, *problem.batch_shape), np.nan)
+    traction, friction = (tangential_force / problem.normal_force)[there], problem.friction_coefficient[there]
+    ratio = 0.0 if problem.geometry == "line" else (problem.a / problem.b)[there]
+    found = [
+        (
+            first_yield(k, traction, friction, poisson_ratio=nu, axis_ratio=ratio),
+            shakedown_limit(k, traction, friction, axis_ratio=ratio),
+        )
+        for k, nu in strengths
+    ]
+    limits[:, there] = np.min(found, axis=0)
+    return limits[0], limits[1]
 
 
 def tangential_force(problem: Problem, columns: Columns) -> Array:

@@ -14,7 +14,7 @@ import xarray
 
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, ResumeWarning, WorkerWarning
-from wearlaw.pipeline.composition import check_one_patch, warn_of_problem
+from wearlaw.pipeline.composition import check_one_patch
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
@@ -154,7 +154,7 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
         problems.append(pipeline.rig.checked_problem({**not_given, **line.conditions()}))
     first = problems[0]
     check_one_patch(first, pipeline.rig, "sweep")
-    warn_of_problem(pipeline, first, stacklevel=4)
+    pipeline.warn_of_problem(first, stacklevel=4)
     return first.flatten()[:1]
 
 
