@@ -201,7 +201,8 @@ class Prediction:
         problem, law = self.problem, self._law
         columns = {**asdict(self._forces), "patch_area": self._patch_area}
         outside = outside_range(problem, columns, law) | bool(other_materials(problem.bodies, law))
-        return from_si(outside.astype(np.float64), "")
+        marks = outside.astype(np.float64)
+        return from_si(marks if problem.exists is None else np.where(problem.exists, marks, np.nan), "")
 
     @property
     def patch_area(self) -> Quantity:
