@@ -72,7 +72,7 @@ EXPECTED: dict[str, list[str]] = {
         "m_c = 61.9 µg/m/N",
         "tr_sc = 77.26 N/mm²",
         "scale: patch means or cells",
-        "fitted for: patch means (the global model); R8T wheel steel on UIC 60 900A rail steel; R. Lewis",
+        "fitted for: patch means (the global model); R8T wheel steel on UIC 60 900A rail steel; parameters: Tassini",
         "never falls with: wear_index_density",
         "branches in wear_index_density at 10.38 N/mm², 77.26 N/mm²",
         "stated for a mean wear_index_density from 0.000 N/mm² to 108.4 N/mm²",

@@ -24,6 +24,7 @@ from tests.core.fits import (
     traction_tests,
     usfd,
 )
+from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.fitting.result import _between, _one_series
 
@@ -46,9 +47,19 @@ def test_the_fitted_law_knows_what_it_was_fitted_to(exact_fit: wl.Fit) -> None:
     tested = contact.wear_index_density.to("N/m^2").magnitude
     assert low <= tested.min() < 1.001 * low
     assert high >= tested.max() > 0.999 * high
+    mean_pressure, of_disc_1 = 0.25 * np.pi * PRESSURE.to("Pa").magnitude, RIG.rolling_speed.to("m/s").magnitude
+    low, high = calibration.range_in_si["pressure"]
+    assert low <= mean_pressure * (1 + 4 * EPS)
+    assert mean_pressure * (1 - 4 * EPS) <= high <= 1.001 * low
+    low, high = calibration.range_in_si["slip_speed"]
+    # v1 - v2 = ξV with V = v1/(1 + ξ/2)
+    slowest, fastest = (of_disc_1 * 0.01 * x / (1.0 + 0.005 * x) for x in (CREEPAGE[0], CREEPAGE[-1]))
+    assert low <= slowest < 1.001 * low
+    assert high >= fastest > 0.999 * high
+    assert calibration.bodies == (RIG.disc_1.material, RIG.disc_2.material)
     with pytest.warns(wl.CalibrationWarning, match="fitted for the cells of contact_model"):
         _ = RIG | wl.contact_model("fastsim") | law
-    with pytest.warns(wl.RangeWarning, match="1 of 1"):
+    with pytest.warns(wl.RangeWarning, match="mean wear index density .* 1 of 1"):
         exact_fit.predict(creepage="25 %", max_pressure=PRESSURE, friction_coefficient=FRICTION)
 
 

@@ -99,7 +99,7 @@ def test_the_borders_belong_to_the_range() -> None:
 
 
 def test_no_range_and_no_points_are_no_matter() -> None:
-    see(watch := RangeWatch(wl.wear_law("kth")), [0.001, 1.0])
+    see(watch := RangeWatch(wl.wear_law("brr")), [0.001, 1.0])
     assert messages(watch) == []
     assert messages(RangeWatch(Stated())) == []
 
