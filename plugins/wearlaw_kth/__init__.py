@@ -38,8 +38,8 @@ PUBLISHED = {
 def calibration() -> wl.Calibration:
     """Return the record of the published map.
 
-    The map has no end in print: its outermost fields, at 2.1 GPa and above and at 0.7 m/s and above, are open, and the
-    paper does not say how far the tests went. A prediction in them counts as out of range.
+    Table 2 gives k in the outermost fields of the map, at 2.1 GPa and above and at 0.7 m/s and above, but prints no end
+    for them, and the paper does not say how far the tests went. A prediction in them counts as out of range.
     """
     return wl.Calibration(
         contact_model="any",
@@ -48,8 +48,8 @@ def calibration() -> wl.Calibration:
         materials="unspecified materials, in twin-disc and pin-on-disc tests",
         stated_range=(("pressure", "0 MPa", "2100 MPa"), ("slip_speed", "0 m/s", "0.7 m/s")),
         source=(
-            "T. Jendel, Wear 253 (2002) 89-99, after Tassini et al., Wear 268 (2010) 660-667, Table 2, which prints no"
-            " end for the outermost fields of the map"
+            "T. Jendel, Wear 253 (2002) 89-99, after Tassini et al., Wear 268 (2010) 660-667, Table 2, whose outermost"
+            " fields, at 2.1 GPa and above and at 0.7 m/s and above, have a k but no printed end"
         ),
     )
 

@@ -75,7 +75,7 @@ EXPECTED: dict[str, list[str]] = {
         "fitted for: patch means (the global model); R8T wheel steel on UIC 60 900A rail steel; parameters: Tassini",
         "never falls with: wear_index_density",
         "branches in wear_index_density at 10.38 N/mm², 77.26 N/mm²",
-        "stated for a mean wear_index_density from 0.000 N/mm² to 108.4 N/mm²",
+        "known range of mean wear_index_density from 0.000 N/mm² to 108.4 N/mm²",
     ],
     "brr": [  # Table 1 of Tassini et al. (2010), times the diameter
         "mild_slope = 0.25 mm³/km/N",
@@ -176,7 +176,7 @@ def test_a_law_that_declares_nothing_or_must_be_given_a_field_is_described(monke
     assert silent.startswith("silent: a wear law of wearlaw-testing 9.8.7 (plugin 'testing') Says nothing")
     assert "fields: none declares: scale: patch means or cells branches: not declared" in silent
     assert silent.endswith("branches: not declared")
-    assert said(Bounded).endswith("scale: patch means or cells stated for a mean pressure from 1.000 MPa to 2000 MPa")
+    assert said(Bounded).endswith("scale: patch means or cells known range of mean pressure from 1.000 MPa to 2000 MPa")
     must = said(cases.Linear)
     assert "slope (must be given) Wear rate over p s [m], of no meaning. declares: what depends on its fields" in must
 

@@ -76,9 +76,9 @@ def test_leaving_the_range_of_a_law_is_warned_of_once_a_call_at_the_users_line(s
         predict(max_pressure=Q(1500, "MPa"), creepage=creepage, friction_coefficient=0.46)
     assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)] * 3
     assert caught[0].category is wl.PlasticityWarning
-    assert "wear law 'usfd' is stated for a mean slip speed" in str(caught[1].message)
+    assert "wear law 'usfd' has a known range of mean slip speed" in str(caught[1].message)
     message = str(caught[2].message)
-    assert "wear law 'usfd' is stated for a mean wear index density from 0.000 N/mm² to 108.4 N/mm²" in message
+    assert "wear law 'usfd' has a known range of mean wear index density from 0.000 N/mm² to 108.4 N/mm²" in message
     assert f"{size} of {size} operating points lie outside" in message
 
 
@@ -90,8 +90,8 @@ def test_warnings_about_a_problem_of_the_rig_are_at_the_users_line_too() -> None
         predict.predict(problem)
     assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)] * 4
     assert "shakedown limit" in str(caught[0].message)
-    for warning, variable in zip(caught[1:], ("pressure", "slip speed", "wear index density"), strict=True):
-        assert f"wear law 'usfd' is stated for a mean {variable} from" in str(warning.message)
+    for warning, variable in zip(list(caught)[1:], ("pressure", "slip speed", "wear index density"), strict=True):
+        assert f"wear law 'usfd' has a known range of mean {variable} from" in str(warning.message)
 
 
 @pytest.mark.parametrize("rig", [RIG, RAILS], ids=lambda rig: type(rig).__name__)

@@ -179,7 +179,7 @@ def test_the_range_is_that_of_the_tests_up_to_twenty_percent_creepage() -> None:
     with pytest.warns(wl.RangeWarning) as caught:
         predict(creepage=Q([20.0, 20.1], "%"), **conditions)
     of_law = [str(one.message) for one in caught if one.category is wl.RangeWarning]
-    assert [re.search(r"stated for a mean (.*) from", one).group(1) for one in of_law] == [  # type: ignore[union-attr]
+    assert [re.search(r"known range of mean (.*) from", one).group(1) for one in of_law] == [  # type: ignore[union-attr]
         "slip speed", "wear index density",
     ]  # fmt: skip
     assert all("1 of 2 operating points" in one for one in of_law)
@@ -198,7 +198,7 @@ def test_pressures_without_a_test_are_warned_of(pressure: str, said: str) -> Non
     of_law = [str(one.message) for one in caught if one.category is wl.RangeWarning]
     assert len(of_law) == bool(said)
     for message in of_law:
-        assert message.startswith("wear law 'usfd' is stated for a mean pressure from 706.8 MPa to 1414 MPa (")
+        assert message.startswith("wear law 'usfd' has a known range of mean pressure from 706.8 MPa to 1414 MPa (")
         assert "Lewis and R. S. Dwyer-Joyce" in message
         assert message.endswith(f"1 of 1 operating points lie outside, as far as {said}")
 

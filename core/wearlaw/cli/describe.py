@@ -133,7 +133,7 @@ def _of_law(law: WearLaw) -> Iterator[str]:
     for variable, values in law.jumps(law.numbers).items():
         yield f"jumps in {variable} at {', '.join(_si(variable, value) for value in values)}"
     for variable, (low, high) in law.valid_range.items():
-        yield f"stated for a mean {variable} from {_si(variable, low)} to {_si(variable, high)}"
+        yield f"known range of mean {variable} from {_si(variable, low)} to {_si(variable, high)}"
     if law.band() is not None:
         yield "band: published parameter ranges give a low, a middle and a high law"
 

@@ -79,7 +79,7 @@ class RangeWatch:
                 shown = [repr(from_si(value, UNITS[name])) for value in (low, high, farthest)]
                 source = f" ({calibration.source})" if calibration and name in calibration.range_in_si else ""
                 warnings.warn(
-                    f"wear law '{self.law.name}' is stated for a mean {name.replace('_', ' ')} from {shown[0]} to"
+                    f"wear law '{self.law.name}' has a known range of mean {name.replace('_', ' ')} from {shown[0]} to"
                     f" {shown[1]}{source}; {seen.outside} of {self.points} operating points lie outside, as far as"
                     f" {shown[2]}",
                     RangeWarning,
