@@ -62,6 +62,7 @@ FLAT = wl.Disc(diameter="inf mm", material=wl.steel(youngs_modulus="70 GPa", poi
 RIGS: dict[str, wl.Rig] = {
     "suros": wl.TwinDisc.suros(),
     "disc_on_flat": wl.TwinDisc.suros(disc_2=FLAT),
+    "mean_speed": wl.TwinDisc.suros(speed_of="mean"),
     "conical_wheel": wl.rig("wheel_rail", **wl.WheelRail.example_fields),
     "hollow_wheel": wl.rig("wheel_rail", **wl.WheelRail.example_fields, wheel_profile_radius="-400 mm"),
 }

@@ -124,7 +124,7 @@ class WearlawWarning(UserWarning):
 
 
 class CalibrationWarning(WearlawWarning):
-    """A parameter set is used with a contact solution for which it was not fitted."""
+    """A parameter set is used with a contact, materials or a body for which it was not fitted."""
 
 
 class RangeWarning(WearlawWarning):

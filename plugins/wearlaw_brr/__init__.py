@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache, cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -16,6 +17,22 @@ Force = Annotated[wl.Quantity, wl.Unit("N")]
 
 ROUNDING = 1e-12
 """Relative difference below which two regimes count as continuous."""
+
+
+@cache
+def calibration() -> wl.Calibration:
+    """Return the record of the published law, without a range: the paper prints none."""
+    return wl.Calibration(
+        contact_model="any",
+        scale="patch",
+        geometry="any",
+        materials="R8T wheel steel on BS11 rail steel",
+        bodies=(wl.steel(), wl.steel()),
+        source=(
+            "T. G. Pearce and N. D. Sherratt, Wear 144 (1991) 343-351, after Tassini et al., Wear 268 (2010) 660-667,"
+            " section 4.1, which prints no range"
+        ),
+    )
 
 
 class BRR(wl.WearLaw):
@@ -79,6 +96,11 @@ class BRR(wl.WearLaw):
         mild_end, plateau, severe_start = _at_borders(p)
         steps = ((p["mild_limit"], plateau - mild_end), (p["severe_limit"], severe_start - plateau))
         return {"wear_index": tuple(limit for limit, step in steps if np.any(step > ROUNDING * plateau))}
+
+    @cached_property
+    def calibration(self) -> wl.Calibration | None:
+        """The record of the published law; None with numbers of your own."""
+        return calibration() if self == BRR() else None
 
 
 def _at_borders(p: wl.Numbers) -> tuple[Any, Any, Any]:

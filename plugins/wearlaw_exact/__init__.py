@@ -28,7 +28,7 @@ class Exact(wl.LineContactModel):
     name: ClassVar[str] = "exact"
     source: ClassVar[str] = (
         "F. W. Carter, Proc. R. Soc. A 112 (1926) 151-157; K. L. Johnson, Contact Mechanics, Cambridge 1985, "
-        "section 8.3; Tassini et al., Wear 268 (2010) 660-667, section 3.2.1"
+        "section 8.3, after Tassini et al., Wear 268 (2010) 660-667, section 3.2.1"
     )
 
     slip: Literal["consistent", "as_printed"] = "consistent"

@@ -41,7 +41,8 @@ class Fastsim(wl.LineContactModel):
 
     name: ClassVar[str] = "fastsim"
     source: ClassVar[str] = (
-        "J. J. Kalker, Vehicle System Dynamics 11 (1982) 1-13; Tassini et al., Wear 268 (2010) 660-667, section 3.2.2"
+        "J. J. Kalker, Vehicle System Dynamics 11 (1982) 1-13, after Tassini et al., Wear 268 (2010) 660-667, section"
+        " 3.2.2, and on an ellipse after the source of the program CONTACT (E. A. H. Vollebregt)"
     )
 
     bound: Literal["parabolic", "elliptic"] = "parabolic"

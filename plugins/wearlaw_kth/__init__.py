@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache, cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -31,6 +32,26 @@ PUBLISHED = {
     "mid": {"high_pressure": 350e-4, "low_speed": 5.5e-4, "mid_speed": 35e-4, "high_speed": 5.5e-4},
     "high": {"high_pressure": 400e-4, "low_speed": 10e-4, "mid_speed": 40e-4, "high_speed": 10e-4},
 }
+
+
+@cache
+def calibration() -> wl.Calibration:
+    """Return the record of the published map.
+
+    Table 2 gives k in the outermost fields of the map, at 2.1 GPa and above and at 0.7 m/s and above, but prints no end
+    for them, and the paper does not say how far the tests went. A prediction in them counts as out of range.
+    """
+    return wl.Calibration(
+        contact_model="any",
+        scale="any",
+        geometry="any",
+        materials="unspecified materials, in twin-disc and pin-on-disc tests",
+        stated_range=(("pressure", "0 MPa", "2100 MPa"), ("slip_speed", "0 m/s", "0.7 m/s")),
+        source=(
+            "T. Jendel, Wear 253 (2002) 89-99, after Tassini et al., Wear 268 (2010) 660-667, Table 2, whose outermost"
+            " fields, at 2.1 GPa and above and at 0.7 m/s and above, have a k but no printed end"
+        ),
+    )
 
 
 class KTH(wl.WearLaw):
@@ -100,6 +121,13 @@ class KTH(wl.WearLaw):
     def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
         """Return every border of the map: the rate jumps there."""
         return self.breakpoints(p)
+
+    @cached_property
+    def calibration(self) -> wl.Calibration | None:
+        """The record of the published map; None with borders or coefficients of your own."""
+        ends: tuple[Literal["low", "mid", "high"], ...] = ("low", "mid", "high")
+        published = [KTH(coefficient=end, hardness=self.hardness).explicit() for end in ends]
+        return calibration() if self.explicit() in published else None
 
     def explicit(self) -> KTH:
         """Return this law with numbers for k."""

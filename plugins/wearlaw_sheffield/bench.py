@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,11 +26,12 @@ PARTIAL = np.array([0.1, 0.5, 1.0])
 WINDOW = 350.0 / 6.2934
 """Upper end of the severe wear window in the paper's Figure 6c: 350 N on its patch of 6.2934 mm² [N/mm²]."""
 
-Speed = Literal["disc_1", "mean"]
+SPEEDS = {"disc_1": "if disc 1 keeps its speed", "mean": "if the mean does"}
+"""Whose surface speed the rig can keep, `TwinDisc.speed_of`, in words for a list of both. The paper defines V as the
+mean of the surface speeds, but gives neither its value nor which speed its rig keeps."""
 
-SPEEDS: dict[Speed, str] = {"disc_1": "the surface speed of disc 1", "mean": "the mean surface speed"}
-"""What the rolling speed V can be. The paper defines it as the mean, and prints neither V nor which disc turns at which
-speed; both are computed here for a disc 1 that keeps its speed and drives."""
+KEPT = {"disc_1": "the surface speed of disc 1", "mean": "the mean of the surface speeds"}
+"""Whose surface speed the rig can keep, in words for one rig."""
 
 
 def borders(law: str, variable: str) -> tuple[float, ...]:
@@ -56,15 +56,11 @@ def discs_of(study: wl.Study) -> wl.TwinDisc:
 
 @dataclass(frozen=True)
 class Bench:
-    """A rig under one load and with one friction coefficient, at the creepages of the paper, 0.001 to 25 %.
-
-    The speed of the rig is taken as that of the surface of disc 1; `speed` says what V is then.
-    """
+    """A rig under one load and with one friction coefficient, at the creepages of the paper, 0.001 to 25 %."""
 
     rig: wl.TwinDisc
     normal_force_per_width: wl.Quantity
     friction_coefficient: float
-    speed: Speed = "disc_1"
 
     @classmethod
     def of(cls, study: wl.Study) -> Bench:
@@ -110,14 +106,11 @@ class Bench:
         The law's parameters may have been fitted for another contact model.
         """
         contact = wl.contact_model(model) if isinstance(model, str) else model
-        problem = self.rig.problem(
-            normal_force_per_width=self.normal_force_per_width if loads is None else loads,
-            creepage=Q(creepage, "%"),
-            friction_coefficient=self.friction_coefficient,
-        )
         with _quietly():
-            return (self.rig | contact | law).predict(
-                problem.replaced(rolling_speed=self.rolling_speed(problem.creepage))
+            return (self.rig | contact | law)(
+                normal_force_per_width=self.normal_force_per_width if loads is None else loads,
+                creepage=Q(creepage, "%"),
+                friction_coefficient=self.friction_coefficient,
             )
 
     def rate(self, model: wl.ContactModel | str, law: wl.WearLaw, creepage: Array | None = None) -> Array:
@@ -158,27 +151,35 @@ class Bench:
         return float(1e6 * self.problem.patch_area)
 
     @cached_property
-    def disc_speed(self) -> float:
-        """Surface speed of disc 1, v1 [m/s]."""
+    def kept_speed(self) -> float:
+        """Surface speed that the rig keeps, of disc 1 or the mean of both [m/s]."""
         return wl.scalar_si(self.rig.rolling_speed, "m/s")
 
-    def rolling_speed(self, creepage: Array) -> Array:
-        """Return V [m/s] at creepages [-]: v1, or (v1 + v2)/2 = v1/(1 + ξ/2), since ξ = (v1 - v2)/V."""
-        if self.speed == "disc_1":
-            return np.full_like(creepage, self.disc_speed)
-        return self.disc_speed / (1.0 + 0.5 * creepage)
-
     def creepage_at(self, slip_speed: float) -> float:
-        """Return the creepage [%] at which the mean slip has a speed, ξV [m/s]."""
-        return 100.0 * slip_speed / (self.disc_speed - (0.5 * slip_speed if self.speed == "mean" else 0.0))
+        """Return the creepage [%] at which the surface speeds differ by a slip speed, ξV = v1 - v2 [m/s].
+
+        It is infinite if v1 is kept and at most half the slip speed, since a mean V is above zero.
+        """
+        mean = self.kept_speed - (0.5 * slip_speed if self.rig.speed_of == "disc_1" else 0.0)
+        return 100.0 * slip_speed / mean if mean > 0.0 else np.inf
 
     def at_speeds(self) -> dict[str, Bench]:
-        """Return this bench with each of the rolling speeds that the paper may have, by what they are."""
-        return {words: replace(self, speed=speed) for speed, words in SPEEDS.items()}
+        """Return this bench with disc 1 keeping its speed, and with the mean keeping it, by these words."""
+        return {
+            words: replace(self, rig=self.rig.model_copy(update={"speed_of": kept})) for kept, words in SPEEDS.items()
+        }
+
+    def creepages_at(self, slip_speed: float, digits: int = 2) -> str:
+        """Return, in words, the creepage of a slip speed [m/s], whichever speed the rig keeps."""
+        found = {words: one.creepage_at(slip_speed) for words, one in self.at_speeds().items()}
+        return ", ".join(
+            f"{f'{creepage:.{digits}f} %' if np.isfinite(creepage) else 'no creepage'} {words}"
+            for words, creepage in found.items()
+        )
 
     @cached_property
     def slow(self) -> NDArray[np.bool_]:
-        """The tests' creepages at which no cell reaches the lower slip speed of KTH, whichever speed V is."""
+        """The tests' creepages at which no cell reaches the lower slip speed of KTH, whichever speed the rig keeps."""
         lower, _ = borders("kth", "slip_speed")
         fastest = [
             bench.predict(model, wl.wear_law("kth"), self.creepage).contact.slip_speed.max(axis=-1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import wearlaw as wl
-from wearlaw_sheffield.bench import Bench
+from wearlaw_sheffield.bench import KEPT, Bench
 from wearlaw_sheffield.contact_claims import contact_claims
 from wearlaw_sheffield.figures import figures
 from wearlaw_sheffield.law_claims import law_claims
@@ -16,7 +16,8 @@ TESTS = "lewis2004"
 
 INTRODUCTION = """\
 {count} claims from sections 3 to 6 of the paper, checked for the rig of this case at {load:.5g~P} and a friction \
-coefficient of {friction:g}."""
+coefficient of {friction:g}. At every creepage this rig keeps {kept} at {speed:.3f} m/s. Unless they say otherwise, \
+the numbers below are for that."""
 
 NOT_CHECKABLE = """\
 The measured wear rates have not been published as numbers. In claims about them, USFD on the patch means stands in \
@@ -31,7 +32,11 @@ def section(study: wl.Study) -> wl.Section:
     measured = tests.creepage.to("%").magnitude, np.asarray(tests.traction_coefficient.to("").magnitude)
     claims = (*contact_claims(bench, measured), *law_claims(bench, measured), *local_claims(bench))
     text = INTRODUCTION.format(
-        count=len(claims), load=bench.normal_force_per_width, friction=bench.friction_coefficient
+        count=len(claims),
+        load=bench.normal_force_per_width,
+        friction=bench.friction_coefficient,
+        kept=KEPT[bench.rig.speed_of],
+        speed=bench.kept_speed,
     )
     words = f"{WORDS} The published tests are from {tests.source}."
     return wl.Section(

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_sheffield.bench import PARTIAL, TESTED, Bench, borders
-from wearlaw_sheffield.wording import GOOD, SAME, SIMILAR, first_crossing, percent, verdict
+from wearlaw_sheffield.bench import HIGHEST, PARTIAL, TESTED, Bench, borders
+from wearlaw_sheffield.wording import GOOD, SAME, SIMILAR, at_both, first_crossing, percent, verdict
 
 LOWEST = 5.0
 """The lowest wear index [N] at which the claims compare KTH with W.I.; towards zero they grow with different powers of
@@ -205,25 +205,32 @@ def brr_plateau_is_shorter(bench: Bench) -> wl.CheckedClaim:
 def kth_proportional(bench: Bench) -> wl.CheckedClaim:
     """Check the ratio of KTH to the wear index in each regime of USFD, up to 20 % creepage."""
     begin, end = bench.usfd_borders
-    share = _kth(bench) / bench.wear_index
-    share = share / share[np.searchsorted(bench.creepage, bench.full_slip)]
-    said, parts = [], []
+    lower, _ = borders("kth", "slip_speed")
+
+    def share_of(one: Bench) -> Array:
+        found = _kth(one) / one.wear_index
+        return np.asarray(found / found[np.searchsorted(one.creepage, one.full_slip)])
+
+    share, shares = share_of(bench), [share_of(one) for one in bench.at_speeds().values()]
+    said: list[str] = []
+    parts: list[bool | None] = []
     for name, low, high in (("mild", LOWEST, begin), ("severe", begin, end), ("catastrophic", end, np.inf)):
         inside = bench.between(low, high) & (bench.creepage <= TESTED[1])
         if not inside.any():
             continue
-        part = share[inside]
-        parts.append(bool(part.max() / part.min() - 1.0 < SIMILAR))
-        said.append(f"{name} wear: {part.min():.3g} to {part.max():.3g}")
+        parts.append(at_both(bool(one[inside].max() / one[inside].min() - 1.0 < SIMILAR) for one in shares))
+        said.append(f"{name} wear: {share[inside].min():.3g} to {share[inside].max():.3g}")
     border, at_lowest = bench.full_force * bench.full_slip / 100.0, float(np.interp(LOWEST, bench.wear_index, share))
     return wl.CheckedClaim(
         statement="KTH keeps roughly the same proportionality between W.I. and wear rate within each wear regime.",
         where="Section 5.1.1",
         criterion="The ratio of the rate to W.I. is similar throughout each regime of USFD, from"
-        f" {LOWEST:g} N to {TESTED[1]:g} % creepage. Holds in part if this is true of some regimes.",
+        f" {LOWEST:g} N to {TESTED[1]:g} % creepage, whichever speed the rig keeps. Holds in part if this is true of"
+        " some regimes.",
         found=f"The ratio of the rate to W.I., relative to its value at full slip: {'; '.join(said)}. Full slip begins"
         f" at {border:.1f} N; at {LOWEST:g} N the ratio is {at_lowest:.3g} times as large, because in partial slip W.I."
-        " grows with the square of the creepage and KTH with the creepage itself, as section 6 of the paper says too.",
+        " grows with the square of the creepage and KTH with the creepage itself, as section 6 of the paper says too."
+        f" KTH jumps at a slip speed of {lower:g} m/s, that is, at {bench.creepages_at(lower)}.",
         verdict=verdict(parts),
     )
 
@@ -284,8 +291,10 @@ def straight_in_full_slip(bench: Bench) -> wl.CheckedClaim:
         "USFD mild": (_usfd(bench), bench.between(-np.inf, begin)),
         "USFD severe": (_usfd(bench), bench.between(begin, end)),
         "USFD catastrophic": (_usfd(bench), bench.between(end, np.inf)),
-        f"KTH below {lower:g} m/s": (_kth(bench), bench.creepage < bench.creepage_at(lower)),
     }
+    for words, one in bench.at_speeds().items():
+        jump = one.creepage_at(lower)
+        regimes[f"KTH below {lower:g} m/s, to {min(jump, HIGHEST):.2f} % {words},"] = _kth(one), one.creepage < jump
     slopes, off = {}, []
     for name, (rate, regime) in regimes.items():
         inside = regime & (bench.creepage >= bench.full_slip)
@@ -293,13 +302,13 @@ def straight_in_full_slip(bench: Bench) -> wl.CheckedClaim:
         if x.size > 1:
             slopes[name] = (y[-1] - y[0]) / (x[-1] - x[0])
             off.append(np.abs(y - np.interp(x, x[[0, -1]], y[[0, -1]])).max() / y.max())
-    listed = ", ".join(f"{name} {slope:z.2f}" for name, slope in slopes.items())
+    listed = "; ".join(f"{name} {slope:z.2f}" for name, slope in slopes.items())
     worst = float(max(off))
     return wl.CheckedClaim(
         statement="In full slip USFD and KTH are linear in the creepage.",
         where="Section 6",
         criterion="In each regime the rate lies on a straight line, to within what counts as the same, in percent of"
-        " its highest rate.",
+        " its highest rate, whichever speed the rig keeps.",
         found=f"Slopes in µg/m/mm² per % of creepage: {listed}. No rate is off its line by more than"
         f" {percent(worst).lstrip('+')} of the highest rate.",
         verdict=verdict([worst < SAME]),

@@ -30,8 +30,10 @@ A claim holds in part if it holds for some of its variants or in part of the ran
 depends on something that the paper does not give. There are four such things. The coefficient k of KTH has ranges; a \
 claim holds if it holds for some k in them. The slip of the exact theory is computed both from the tractions and from \
 eq. (7) as printed. The paper does not print the flexibility L of FASTSIM. Nor does it print the rolling speed V, \
-which sets the slip speed and thus where KTH reaches its thresholds. V is taken as the surface speed of disc 1 and as \
-the mean surface speed, where disc 1 keeps its speed and drives."""
+which sets the slip speed and thus where KTH reaches its thresholds. Section 3 defines V as the mean of the surface \
+speeds, but the paper does not say which speed its rig keeps as the creepage grows. So claims near a threshold are \
+judged for two rigs with the same speed. In one, disc 1, which drives, keeps it, and V = v1/(1 + ξ/2) falls as the \
+creepage grows; in the other, the mean keeps it."""
 
 
 def verdict(parts: Iterable[bool | None]) -> wl.Verdict:
@@ -45,9 +47,16 @@ def verdict(parts: Iterable[bool | None]) -> wl.Verdict:
 
 
 def at_both(parts: Iterable[bool]) -> bool | None:
-    """Return whether something holds at every rolling speed, or None if that depends on the speed."""
+    """Return whether something holds whichever speed the rig keeps, or None if that depends on the speed."""
     found = set(parts)
     return found.pop() if len(found) == 1 else None
+
+
+def by_speed(part: bool | None, what: str = "this part of the claim") -> str:
+    """Return a sentence on how far a part of a claim depends on the speed that the rig keeps, from `at_both`."""
+    if part is None:
+        return f"Whether {what} holds depends on which speed the rig keeps."
+    return f"{what[0].upper()}{what[1:]} {'holds' if part else 'fails'} whichever speed the rig keeps."
 
 
 def percent(share: float) -> str:

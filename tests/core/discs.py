@@ -11,7 +11,7 @@ import wearlaw as wl
 from wearlaw import Q
 
 RIG = wl.TwinDisc.suros(
-    disc_2=wl.Disc(diameter="60 mm", material=wl.steel(density="7000 kg/m^3", youngs_modulus="190 GPa")),
+    disc_2=wl.Disc(diameter="60 mm", material=wl.steel(density="7100 kg/m^3", youngs_modulus="190 GPa")),
     track_width="8 mm",
 )
 LAW = wl.wear_law("usfd", fitted_for="exact")
@@ -20,7 +20,7 @@ FORCE, FRICTION = 6000.0, 0.4
 CONDITIONS: Any = {"normal_force": Q(FORCE, "N"), "friction_coefficient": FRICTION}
 
 # The rig again, by hand.
-WIDTH, DIAMETERS, DENSITIES = 8e-3, {"disc_1": 47e-3, "disc_2": 60e-3}, {"disc_1": 7850.0, "disc_2": 7000.0}
+WIDTH, DIAMETERS, DENSITIES = 8e-3, {"disc_1": 47e-3, "disc_2": 60e-3}, {"disc_1": 7850.0, "disc_2": 7100.0}
 RADIUS = 23.5e-3 * 30e-3 / 53.5e-3
 MODULUS = 1.0 / ((1 - 0.28**2) / 206.47742e9 + (1 - 0.28**2) / 190e9)
 HALF_WIDTH = np.sqrt(4 * FORCE / WIDTH * RADIUS / (np.pi * MODULUS))

@@ -99,6 +99,8 @@ ACCEPTED = {
             "rolling_speed": "1 m/s",
         }
     ),
+    "preset, the mean speed": table(rig={"preset": "suros", "speed_of": "mean"}),
+    "rig, the speed of disc 1": table(rig={**OWN_RIG, "speed_of": "disc_1"}),
     "preset, disc by disc": table(
         rig={"preset": "suros", "disc_1": OWN_RIG["disc_1"], "disc_2": OWN_RIG["disc_2"], "rotational_speed": "600 rpm"}
     ),
@@ -165,6 +167,8 @@ def test_a_preset_is_the_rig_with_what_is_overridden() -> None:
     material = wl.Material(**STEEL)  # type: ignore[arg-type]
     rig = Case(**ACCEPTED["preset, overridden"]).rig
     assert rig == wl.TwinDisc.suros(diameter="100 mm", material=material, track_width="5 mm", rolling_speed="1 m/s")
+    assert Case(**ACCEPTED["preset, the mean speed"]).rig == wl.TwinDisc.suros(speed_of="mean")
+    assert Case(**ACCEPTED["rig, the speed of disc 1"]).rig.speed_of == "disc_1"  # type: ignore[attr-defined]
     by_disc: Any = Case(**ACCEPTED["preset, disc by disc"]).rig
     assert by_disc.disc_2 == wl.Disc(diameter="inf mm", material=wl.Material(**RAIL))  # type: ignore[arg-type]
     assert by_disc.rolling_speed.to("m/s").magnitude == pytest.approx(np.pi * 0.047 * 10.0, rel=1e-14)

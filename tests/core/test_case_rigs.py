@@ -149,7 +149,9 @@ def test_the_sweep_of_a_wheel_holds_what_direct_predictions_give(on_rail: Study)
                     here = here.sel(pair=f"kth on {model}") if "pair" in here.dims else here
                     there = getattr(one, str(name)).to(UNITS[str(name)]).magnitude
                     # The axis is rounded once more than the condition: a few roundings, in sums of a hundred nodes.
-                    np.testing.assert_allclose(here[index].item(), there, rtol=1e-12, atol=1e-12, err_msg=str(name))
+                    # Near full slip the elastic limits go as the cube root of 1 - T/μN, whose rounding is ε.
+                    rtol = EPS ** (1 / 3) if name in ("first_yield", "shakedown_limit") else 1e-12
+                    np.testing.assert_allclose(here[index].item(), there, rtol=rtol, atol=1e-12, err_msg=str(name))
     assert sweep.semi_axis_a.attrs["units"] == "mm"
     assert sweep.spin_moment.attrs["units"] == "N*m"
 
@@ -183,7 +185,9 @@ def test_the_profile_runs_across_the_patch_for_both_bodies(on_rail: Study) -> No
     for law in ("usfd", "kth"):
         one = direct(rig, "fastsim", law, **CURVE)
         for body in ("wheel", "rail"):
-            expected = one.wear_profile(body, strips=101)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", wl.CalibrationWarning)  # USFD is a law of wheel steel
+                expected = one.wear_profile(body, strips=101)
             depth = profile[f"{body}_depth"]
             np.testing.assert_array_equal(depth.sel(pair=f"{law} on fastsim"), expected.depth)
             slid = profile[f"{body}_sliding_distance"].sel(contact_model="fastsim")

@@ -44,6 +44,106 @@ def test_brr_on_cells_is_refused_with_what_to_add(model: wl.ContactModel) -> Non
     assert 'put wl.patch_mean() between them, or use wl.contact_model("global")' in message
 
 
+BRONZE = wl.Material(youngs_modulus="110 GPa", poisson_ratio=0.34, density="8800 kg/m^3")
+CAST_IRON = wl.Material(youngs_modulus="120 GPa", poisson_ratio=0.26, density="7200 kg/m^3")
+RAIL_STEEL = wl.Material(youngs_modulus="210 GPa", poisson_ratio=0.3, density="7800 kg/m^3")
+
+
+def of_discs(one: wl.Material, other: wl.Material) -> wl.TwinDisc:
+    return wl.TwinDisc.suros(
+        disc_1=wl.Disc(diameter="47 mm", material=one), disc_2=wl.Disc(diameter="47 mm", material=other)
+    )
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "said"),
+    [
+        (BRONZE, wl.steel(), "disc_1 is"),
+        (wl.steel(), CAST_IRON, "disc_2 is"),
+        (BRONZE, BRONZE, "disc_1 and disc_2 are"),
+        (wl.steel(density="6900 kg/m^3"), wl.steel(), "disc_1 is"),
+    ],
+)
+@pytest.mark.parametrize(("law", "fitted"), [(FITTED["global"], "UIC 60 900A"), (BRR, "BS11")], ids=["usfd", "brr"])
+def test_parameters_fitted_to_steel_warn_on_other_materials(
+    one: wl.Material, other: wl.Material, said: str, law: wl.WearLaw, fitted: str
+) -> None:
+    contact = of_discs(one, other) | GLOBAL
+    line = following_line()
+    with pytest.warns(wl.CalibrationWarning) as caught:
+        contact | law
+    (warning,) = caught
+    assert (warning.filename, warning.lineno) == (__file__, line)
+    assert f"were fitted for R8T wheel steel on {fitted} rail steel, but {said} of another material" in str(
+        warning.message
+    )
+
+
+@pytest.mark.parametrize("law", [FITTED["global"], BRR], ids=["usfd", "brr"])
+def test_any_steel_is_like_the_steel_of_the_tests(law: wl.WearLaw) -> None:
+    of_discs(RAIL_STEEL, wl.steel()) | GLOBAL | law  # a warning would be an error here
+
+
+def test_a_law_for_unspecified_materials_does_not_warn_of_any() -> None:
+    predict = of_discs(BRONZE, BRONZE) | GLOBAL | KTH
+    predict(**CONDITIONS).mass_lost("1 km", "disc_2")
+
+
+class Unnamed(wl.Rig):
+    """A rig whose bodies only its problems show."""
+
+    name = "unnamed"
+    source = "-"
+    material: wl.Material
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        return of_discs(self.material, wl.steel()).problem(**conditions)
+
+
+def test_materials_that_only_the_problem_shows_are_warned_of_in_each_prediction() -> None:
+    predict = Unnamed(material=BRONZE) | GLOBAL | FITTED["global"]
+    along: dict[str, Any] = {**CONDITIONS, "creepage": wl.Q([1, 2], "%")}
+    for ask in (lambda: predict(**CONDITIONS), lambda: wl.sweep(predict, **along, outputs=["wear_rate"])):
+        with pytest.warns(wl.CalibrationWarning, match="but disc_1 is of another material") as caught:
+            ask()
+        assert [one.filename for one in caught if one.category is wl.CalibrationWarning] == [__file__]
+    (Unnamed(material=wl.steel()) | GLOBAL | FITTED["global"])(**CONDITIONS)
+
+
+def of_body(result: wl.Prediction, name: str, body: str) -> Any:
+    distance = {"over": "1 km"} if name == "mass_lost" else {}
+    return getattr(result, name)(body=body, **distance)
+
+
+OF_A_DISC = ("mass_lost", "mass_per_cycle", "depth_per_distance", "profile_area_rate")
+
+
+@pytest.mark.parametrize("law", [FITTED["global"], BRR], ids=["usfd", "brr"])
+@pytest.mark.parametrize("name", OF_A_DISC)
+def test_a_law_of_wheel_steel_warns_once_of_the_wear_of_the_rail_disc(name: str, law: wl.WearLaw) -> None:
+    result = (RIG | GLOBAL | law)(**CONDITIONS)
+    of_body(result, name, "disc_1")
+    method, distance = getattr(result, name), {"over": "1 km"} if name == "mass_lost" else {}
+    line = following_line()
+    with pytest.warns(wl.CalibrationWarning, match="to the wear of the first body, .* the wear of 'disc_2'") as caught:
+        method(body="disc_2", **distance)
+    assert [(one.filename, one.lineno) for one in caught] == [(__file__, line)]
+    for other in OF_A_DISC:
+        of_body(result, other, "disc_2")
+
+
+def test_a_law_of_wheel_steel_warns_of_the_wear_of_a_rail() -> None:
+    rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
+    with pytest.warns(wl.CalibrationWarning, match="fitted for line contacts"):
+        predict = rig | FASTSIM | FITTED["fastsim"]
+    result = predict(normal_force="80 kN", longitudinal_creepage="0.2 %", friction_coefficient=0.3)
+    result.wear_profile("wheel")
+    line = following_line()
+    with pytest.warns(wl.CalibrationWarning, match="the wear of 'rail'") as caught:
+        result.wear_profile("rail")
+    assert [(one.filename, one.lineno) for one in caught] == [(__file__, line)]
+
+
 SILENT = [
     (GLOBAL, None, FITTED["global"]),
     (wl.contact_model("global", total_from="fastsim"), None, FITTED["global"]),
@@ -96,7 +196,7 @@ def test_parameters_on_another_contact_give_one_warning_that_names_both(
     )
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        predict(**{**CONDITIONS, "normal_force": wl.Q(2, "kN")})  # elastic
+        predict(**{**CONDITIONS, "normal_force": wl.Q(2.7, "kN")})  # elastic
         pickle.loads(pickle.dumps(predict))
         copy.copy(predict)
         copy.deepcopy(predict)

@@ -116,8 +116,8 @@ def test_a_configuration_is_frozen_and_says_how_to_change_a_copy() -> None:
     assert law == before
     with pytest.raises(wl.FrozenError, match=r"^TwinDisc: rolling_speed: cannot be changed"):
         rig.rolling_speed = Q(2, "m/s")
-    with pytest.raises(wl.FrozenError, match=r"^TwinDisc: speed: unknown field. The fields are: disc_1, disc_2"):
-        rig.speed = "1 m/s"  # type: ignore[attr-defined]
+    with pytest.raises(wl.FrozenError, match=r"^TwinDisc: weight: unknown field. The fields are: disc_1, disc_2"):
+        rig.weight = "1 kN"  # type: ignore[attr-defined]
     with pytest.raises(wl.FrozenError, match=r"unknown field; did you mean 'q_s'\?"):
         law.qs = "56 ug/m/mm^2"  # type: ignore[attr-defined]
 

@@ -72,10 +72,10 @@ EXPECTED: dict[str, list[str]] = {
         "m_c = 61.9 µg/m/N",
         "tr_sc = 77.26 N/mm²",
         "scale: patch means or cells",
-        "fitted for: patch means (the global model); R8T wheel steel on UIC 60 900A rail steel; R. Lewis",
+        "fitted for: patch means (the global model); R8T wheel steel on UIC 60 900A rail steel; parameters: Tassini",
         "never falls with: wear_index_density",
         "branches in wear_index_density at 10.38 N/mm², 77.26 N/mm²",
-        "stated for a mean wear_index_density from 0.000 N/mm² to 108.4 N/mm²",
+        "known range of mean wear_index_density from 0.000 N/mm² to 108.4 N/mm²",
     ],
     "brr": [  # Table 1 of Tassini et al. (2010), times the diameter
         "mild_slope = 0.25 mm³/km/N",
@@ -138,6 +138,13 @@ def test_no_line_of_the_fields_is_wider_than_a_screen() -> None:
         assert max(len(line) for line in fields.splitlines()) <= 100
 
 
+def test_a_field_with_a_default_need_not_be_given_where_others_must_be() -> None:
+    discs, wheel = (said(wl.rigs()[name]) for name in ("twin_disc", "wheel_rail"))
+    assert "rolling_speed (must be given)" in discs
+    assert "speed_of = 'mean' one of 'mean', 'disc_1' Whose surface speed" in discs
+    assert "wheel_profile_radius = inf mm Lateral radius" in wheel
+
+
 class Silent(wl.WearLaw):
     """Says nothing about itself."""
 
@@ -169,7 +176,7 @@ def test_a_law_that_declares_nothing_or_must_be_given_a_field_is_described(monke
     assert silent.startswith("silent: a wear law of wearlaw-testing 9.8.7 (plugin 'testing') Says nothing")
     assert "fields: none declares: scale: patch means or cells branches: not declared" in silent
     assert silent.endswith("branches: not declared")
-    assert said(Bounded).endswith("scale: patch means or cells stated for a mean pressure from 1.000 MPa to 2000 MPa")
+    assert said(Bounded).endswith("scale: patch means or cells known range of mean pressure from 1.000 MPa to 2000 MPa")
     must = said(cases.Linear)
     assert "slope (must be given) Wear rate over p s [m], of no meaning. declares: what depends on its fields" in must
 

@@ -24,7 +24,9 @@ from tests.core.fits import (
     traction_tests,
     usfd,
 )
+from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.fitting.result import _between, _one_series
 
 
 @pytest.fixture(scope="module")
@@ -45,9 +47,19 @@ def test_the_fitted_law_knows_what_it_was_fitted_to(exact_fit: wl.Fit) -> None:
     tested = contact.wear_index_density.to("N/m^2").magnitude
     assert low <= tested.min() < 1.001 * low
     assert high >= tested.max() > 0.999 * high
+    mean_pressure, of_disc_1 = 0.25 * np.pi * PRESSURE.to("Pa").magnitude, RIG.rolling_speed.to("m/s").magnitude
+    low, high = calibration.range_in_si["pressure"]
+    assert low <= mean_pressure * (1 + 4 * EPS)
+    assert mean_pressure * (1 - 4 * EPS) <= high <= 1.001 * low
+    low, high = calibration.range_in_si["slip_speed"]
+    # v1 - v2 = ξV with V = v1/(1 + ξ/2)
+    slowest, fastest = (of_disc_1 * 0.01 * x / (1.0 + 0.005 * x) for x in (CREEPAGE[0], CREEPAGE[-1]))
+    assert low <= slowest < 1.001 * low
+    assert high >= fastest > 0.999 * high
+    assert calibration.bodies == (RIG.disc_1.material, RIG.disc_2.material)
     with pytest.warns(wl.CalibrationWarning, match="fitted for the cells of contact_model"):
         _ = RIG | wl.contact_model("fastsim") | law
-    with pytest.warns(wl.RangeWarning, match="1 of 1"):
+    with pytest.warns(wl.RangeWarning, match="mean wear index density .* 1 of 1"):
         exact_fit.predict(creepage="25 %", max_pressure=PRESSURE, friction_coefficient=FRICTION)
 
 
@@ -203,6 +215,33 @@ def test_the_curve_of_a_contact_that_uses_measured_traction_passes_through_its_p
     assert not curve.points
     predicted = fit.residuals["predicted"].to_numpy()
     assert np.interp(points.x, curve.x, curve.y) == pytest.approx(predicted, rel=1e-9)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("kept", ["mean", "disc_1"])
+def test_the_curve_has_the_rolling_speed_of_each_creepage_between_the_tests(kept: Any, sign: float) -> None:
+    predict = wl.TwinDisc.suros(speed_of=kept) | wl.contact_model("global") | wl.wear_law("kth").explicit()
+    conditions: Any = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46}
+    creepage = Q(sign * np.array([4.0, 10.0, 16.0, 24.0]), "%")
+    tests = wl.WearTests.from_arrays(
+        creepage=creepage, wear_rate=predict(creepage=creepage, **conditions).wear_rate, **conditions
+    )
+    fit = wl.fit(predict, tests, free=["coefficient.low_speed"], bootstrap=0)
+    curve, _ = fit.figure_data().panels[0].curves
+    assert not curve.points
+    # All slips, so that Tγ/A is μ ξ π/4 p0. KTH jumps between the last two tests.
+    between = Q(sign * curve.x / (0.46 * 0.25 * np.pi * 1500.0), "")
+    expected = predict(creepage=between, **conditions).wear_rate.magnitude
+    assert curve.y == pytest.approx(expected, rel=1e-9)
+    posed = predict.rig.problem(creepage=between, **conditions)
+    assert _between(fit.observations[0]).rolling_speed == pytest.approx(posed.rolling_speed, rel=1e-9)
+
+
+def test_tests_at_speeds_of_their_own_are_points() -> None:
+    rig = wl.TwinDisc.suros()
+    problem = rig.problem(max_pressure="1500 MPa", creepage=Q([5.0, 10.0, 20.0], "%"), friction_coefficient=0.46)
+    assert _one_series(problem)
+    assert not _one_series(problem.replaced(rolling_speed=np.array([1.0, 1.1, 1.0])))
 
 
 def test_a_law_fitted_down_to_no_creepage_is_stated_from_zero() -> None:

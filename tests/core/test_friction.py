@@ -96,6 +96,15 @@ def test_a_line_contact_has_the_friction_of_its_creep_speed(name: str) -> None:
     assert found.traction_coefficient.magnitude[4:] == pytest.approx(coefficient[4:], rel=64 * EPS)
 
 
+def test_discs_have_the_friction_of_the_difference_of_their_surface_speeds() -> None:
+    # Disc 1 keeps 10 m/s; disc 2 turns more slowly, as fast, faster, and three times as fast.
+    faster, slower = 10.0, np.array([6.0, 9.5, 10.0, 11.0, 30.0])
+    creepage = 2.0 * (faster - slower) / (faster + slower)
+    rig = wl.TwinDisc.suros(rolling_speed=Q(faster, "m/s"), speed_of="disc_1")
+    found = rig.problem(normal_force="7 kN", creepage=Q(creepage, ""), friction_coefficient=FRICTION)
+    assert found.friction_coefficient == pytest.approx(falling(np.abs(faster - slower)), rel=32 * EPS)
+
+
 @pytest.mark.parametrize("name", ELLIPTIC)
 def test_an_elliptic_contact_has_the_friction_of_its_creep_speed(name: str) -> None:
     solve = WHEEL_RAIL | wl.contact_model(name)

@@ -20,7 +20,7 @@ HEAVY = {
 IMPORT = "import wearlaw as wl"
 PREDICT = (
     f"{IMPORT}; (wl.TwinDisc.suros() | wl.contact_model('global') | wl.wear_law('usfd'))"
-    "(normal_force='2 kN', creepage='1 %', friction_coefficient=0.4)"
+    "(normal_force='2.7 kN', creepage='1 %', friction_coefficient=0.4)"
 )
 
 

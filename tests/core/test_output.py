@@ -162,9 +162,9 @@ def test_the_csv_has_one_row_a_pair_and_operating_point_with_units_in_its_head(r
     units = {name: f" [{UNITS[name]}]" if UNITS[name] else "" for name in UNITS}
     expected = [
         "half_width", "max_pressure", "normal_force", "normal_force_per_width", "creepage", "friction_coefficient",
-        "wear_rate", "wear_rate_error", "wear_rate_low", "wear_rate_high",
+        "wear_rate", "wear_rate_error", "outside_range", "wear_rate_low", "wear_rate_high",
         "tangential_force", "traction_coefficient", "wear_index", "averaged_wear_index", "wear_index_density",
-        "stick_ratio", "mean_slip",
+        "stick_ratio", "mean_slip", "first_yield", "shakedown_limit",
     ]  # fmt: skip
     assert list(rows.columns) == ["sweep", "contact_model", "wear_law", *(name + units[name] for name in expected)]
     assert "wear_rate [ug/m/mm^2]" in rows.columns

@@ -70,14 +70,15 @@ def test_brr_is_accepted_on_patch_means_and_agrees_with_the_global_model() -> No
 @pytest.mark.parametrize("size", [1, 7])
 def test_leaving_the_range_of_a_law_is_warned_of_once_a_call_at_the_users_line(size: int) -> None:
     predict = RIG | GLOBAL | FITTED["global"]
-    creepage = Q(np.linspace(22.0, 25.0, size), "%")
+    creepage = Q(np.linspace(23.0, 25.0, size), "%")
     line = following_line()
     with pytest.warns(wl.RangeWarning) as caught:
         predict(max_pressure=Q(1500, "MPa"), creepage=creepage, friction_coefficient=0.46)
-    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)] * 2
+    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)] * 3
     assert caught[0].category is wl.PlasticityWarning
-    message = str(caught[1].message)
-    assert "wear law 'usfd' is stated for a mean wear index density from 0.000 N/mm² to 108.4 N/mm²" in message
+    assert "wear law 'usfd' has a known range of mean slip speed" in str(caught[1].message)
+    message = str(caught[2].message)
+    assert "wear law 'usfd' has a known range of mean wear index density from 0.000 N/mm² to 108.4 N/mm²" in message
     assert f"{size} of {size} operating points lie outside" in message
 
 
@@ -87,9 +88,10 @@ def test_warnings_about_a_problem_of_the_rig_are_at_the_users_line_too() -> None
     line = following_line()
     with pytest.warns(wl.RangeWarning) as caught:
         predict.predict(problem)
-    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)] * 2
+    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)] * 4
     assert "shakedown limit" in str(caught[0].message)
-    assert "wear law 'usfd'" in str(caught[1].message)
+    for warning, variable in zip(list(caught)[1:], ("pressure", "slip speed", "wear index density"), strict=True):
+        assert f"wear law 'usfd' has a known range of mean {variable} from" in str(warning.message)
 
 
 @pytest.mark.parametrize("rig", [RIG, RAILS], ids=lambda rig: type(rig).__name__)
@@ -226,13 +228,13 @@ def test_a_pickled_pipeline_predicts_the_same_in_a_fresh_process() -> None:
     predict = RIG | GLOBAL | FITTED["global"]
     code = (
         "import pickle, sys; predict = pickle.load(sys.stdin.buffer);"
-        "print(predict(normal_force='2 kN', creepage='1 %', friction_coefficient=0.46).wear_rate.magnitude)"
+        "print(predict(normal_force='2.7 kN', creepage='1 %', friction_coefficient=0.46).wear_rate.magnitude)"
     )
     run = subprocess.run(
         [sys.executable, "-W", "error", "-c", code], input=pickle.dumps(predict), capture_output=True, check=False
     )
     assert run.returncode == 0, run.stderr.decode()
-    assert float(run.stdout) == predict(**{**CONDITIONS, "normal_force": Q(2, "kN")}).wear_rate.magnitude
+    assert float(run.stdout) == predict(**{**CONDITIONS, "normal_force": Q(2.7, "kN")}).wear_rate.magnitude
 
 
 def test_negative_creepage_mirrors_the_force_and_leaves_the_wear() -> None:

@@ -68,8 +68,8 @@ def test_points_outside_are_counted_over_all_blocks() -> None:
     watch = RangeWatch(Stated())
     see(watch, [0.001, 0.02, 0.2], [0.05, -0.005], [0.3], 0.05)
     assert messages(watch) == [
-        "wear law 'stated' is stated for a mean slip from 1.000 % to 10.00 %; 4 of 7 operating points lie outside, as"
-        " far as 30.00 %"
+        "wear law 'stated' has a known range of mean slip from 1.000 % to 10.00 %; 4 of 7 operating points lie outside,"
+        " as far as 30.00 %"
     ]
 
 
@@ -99,7 +99,7 @@ def test_the_borders_belong_to_the_range() -> None:
 
 
 def test_no_range_and_no_points_are_no_matter() -> None:
-    see(watch := RangeWatch(wl.wear_law("kth")), [0.001, 1.0])
+    see(watch := RangeWatch(wl.wear_law("brr")), [0.001, 1.0])
     assert messages(watch) == []
     assert messages(RangeWatch(Stated())) == []
 
@@ -123,7 +123,7 @@ def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> 
         watch = RangeWatch(Stated(variable=name, low=low, high=high))
         watch.see(one.size, partial(mean_over_patch, one, {"longitudinal": EXACT.tangential_force(one)}))
         (message,) = messages(watch)
-        assert f"a mean {name.replace('_', ' ')} from" in message
+        assert f"range of mean {name.replace('_', ' ')} from" in message
         assert f"; {outside} of 4 operating points lie outside" in message
 
 

@@ -132,12 +132,12 @@ def test_the_numbers_of_every_figure_stand_in_the_page(page: Page) -> None:
 
 def test_the_wear_rates_are_those_of_the_sweep(study: Study, page: Page) -> None:
     assert "Sweep 'creepage' wear rate [µg/m/mm²] by creepage [%] 0.1 0.3162 1 3.162 10 usfd on global" in page.text
-    sweep = study.sweeps["creepage"]
+    sweep, unmarked = study.sweeps["creepage"], re.sub(" ?[†‡*]+", "", page.text)
     for pair in sweep.pair.values:
         rates = " ".join(f"{rate:.4g}" for rate in sweep.wear_rate.sel(pair=pair).values)
-        assert f"{pair} {rates}" in page.text
+        assert f"{pair} {rates}" in unmarked
     low = " ".join(f"{rate:.4g}" for rate in sweep.wear_rate_low.sel(pair="kth on exact").values)
-    assert f"kth on exact, low end {low}" in page.text
+    assert f"kth on exact, low end {low}" in unmarked
 
 
 def test_claims_are_a_list_of_verdicts_with_criteria_and_numbers(page: Page) -> None:

@@ -29,7 +29,7 @@ def problem(rig: wl.TwinDisc = RIG, **conditions: Any) -> wl.Problem:
 
 def test_the_suros_rig_is_that_of_the_literature() -> None:
     # Lewis and Dwyer-Joyce (2004): discs of 47 mm, track of 10 mm, 400 rpm; π · 47 mm · 400/min = 0.984 m/s.
-    found = problem()
+    found = problem(creepage="0 %")
     assert found.rolling_speed == pytest.approx(np.pi * 0.047 * 400 / 60, rel=4 * EPS)
     assert round(float(found.rolling_speed), 3) == 0.984
     assert found.track_width == pytest.approx(0.010, rel=EPS)
@@ -106,6 +106,7 @@ OVERRIDES: dict[str, tuple[Any, Callable[[wl.TwinDisc], Any], Any]] = {
     ),
     "track_width": ("12 mm", lambda rig: rig.track_width, Q(12, "mm")),
     "rolling_speed": ("2 m/s", lambda rig: rig.rolling_speed, Q(2, "m/s")),
+    "speed_of": ("mean", lambda rig: rig.speed_of, "mean"),
 }
 
 
@@ -122,9 +123,79 @@ def test_every_value_of_the_suros_rig_can_be_overridden(name: str) -> None:
 def test_the_rolling_speed_follows_from_the_rotational_speed_and_disc_1() -> None:
     big = wl.Disc(diameter="94 mm", material=wl.steel())
     usual = np.pi * 0.047 * 400 / 60
-    assert problem(wl.TwinDisc.suros(rotational_speed="800 rpm")).rolling_speed == pytest.approx(2 * usual, rel=4 * EPS)
-    assert problem(wl.TwinDisc.suros(disc_1=big)).rolling_speed == pytest.approx(2 * usual, rel=4 * EPS)
-    assert problem(wl.TwinDisc.suros(disc_2=big)).rolling_speed == pytest.approx(usual, rel=4 * EPS)
+    made: list[tuple[dict[str, Any], float]] = [
+        ({"rotational_speed": "800 rpm"}, 2 * usual),
+        ({"disc_1": big}, 2 * usual),
+        ({"disc_2": big}, usual),
+    ]
+    for values, speed in made:
+        rig = wl.TwinDisc.suros(**values)
+        assert rig.rolling_speed.m_as("m/s") == pytest.approx(speed, rel=4 * EPS)
+        assert problem(rig, creepage="0 %").rolling_speed == pytest.approx(speed, rel=4 * EPS)
+
+
+SURFACE_SPEEDS = [(1.0, 1.0), (1.1, 0.9), (0.984, 0.805), (0.5, 0.52), (30.0, 10.0), (1.0, 3.0)]
+"""v1 and v2 [m/s]; the last two have the creepages 1 and -1."""
+
+
+@pytest.mark.validates(
+    "line-contact",
+    "V of two discs, whether the rig keeps the mean of the surface speeds or the speed of disc 1",
+    source="the two surface speeds themselves",
+    held_to="{roundings} ε, relative",
+    roundings=8,
+)
+@pytest.mark.parametrize(("v1", "v2"), SURFACE_SPEEDS)
+def test_the_rolling_speed_is_the_mean_of_the_surface_speeds(v1: float, v2: float, roundings: int) -> None:
+    mean = 0.5 * (v1 + v2)
+    creepage = Q((v1 - v2) / mean, "")
+    keeps_mean = wl.TwinDisc.suros(rolling_speed=Q(mean, "m/s"))
+    keeps_disc_1 = wl.TwinDisc.suros(rolling_speed=Q(v1, "m/s"), speed_of="disc_1")
+    for rig in (keeps_mean, keeps_disc_1):
+        assert problem(rig, creepage=creepage).rolling_speed == pytest.approx(mean, rel=roundings * EPS)
+        # What slides per second is the difference of the surface speeds.
+        slid = (rig | wl.contact_model("global"))(
+            normal_force="5 kN", creepage=creepage, friction_coefficient=0.46
+        ).contact.slip_speed
+        # A difference rounds by as much as the larger speed does.
+        assert slid == pytest.approx(abs(v1 - v2), rel=roundings * EPS, abs=roundings * EPS * max(v1, v2))
+
+
+def test_a_rig_that_keeps_disc_1_has_a_rolling_speed_at_each_creepage() -> None:
+    keeps_mean, keeps_disc_1 = (wl.TwinDisc.suros(rolling_speed="2 m/s", speed_of=of) for of in ("mean", "disc_1"))
+    creepage = Q([[0.0, 20.0, -20.0]], "%")
+    assert problem(keeps_mean, creepage=creepage).rolling_speed.tolist() == [[2.0, 2.0, 2.0]]
+    # v2 is 2, 18/11 and 22/9 m/s.
+    expected = np.array([[2.0, 20.0 / 11.0, 20.0 / 9.0]])
+    np.testing.assert_allclose(problem(keeps_disc_1, creepage=creepage).rolling_speed, expected, rtol=4 * EPS)
+
+
+def test_the_suros_rig_keeps_disc_1_at_its_rotational_speed_and_else_the_mean() -> None:
+    cases: list[tuple[dict[str, Any], str]] = [
+        ({}, "disc_1"),
+        ({"rotational_speed": "500 rpm"}, "disc_1"),
+        ({"rotational_speed": "500 rpm", "speed_of": "mean"}, "mean"),
+        ({"rolling_speed": "1 m/s"}, "mean"),
+        ({"rolling_speed": "1 m/s", "speed_of": "disc_1"}, "disc_1"),
+    ]
+    for values, kept in cases:
+        assert wl.TwinDisc.suros(**values).speed_of == kept
+    assert wl.rig("twin_disc", **wl.TwinDisc.example_fields).speed_of == "mean"
+
+
+@pytest.mark.parametrize(("kept", "v2_at_jump"), [("mean", 0.9), ("disc_1", 0.8)])
+def test_kth_jumps_where_the_surface_speeds_are_0_2_metres_per_second_apart(kept: Any, v2_at_jump: float) -> None:
+    # The rig keeps 1 m/s: a mean of 1.1 and 0.9 m/s, or 1 m/s of disc 1 and 0.8 m/s of disc 2.
+    v1 = v2_at_jump + 0.2
+    jump = (v1 - v2_at_jump) / (0.5 * (v1 + v2_at_jump))
+    rig = wl.TwinDisc.suros(rolling_speed="1 m/s", speed_of=kept)
+    predict = rig | wl.contact_model("global") | wl.wear_law("kth")
+    creepage = jump * np.array([1.0 - 1e-9, 1.0 + 1e-9])
+    below, above = predict(
+        max_pressure="1500 MPa", creepage=Q(creepage, ""), friction_coefficient=0.46
+    ).wear_rate.magnitude
+    # Table 2 of Tassini et al. (2010): k in the middle of 1 to 10, and of 30 to 40. KTH grows with the creepage too.
+    assert above / below == pytest.approx(35.0 / 5.5, rel=3e-9)
 
 
 @pytest.mark.parametrize("option", ["youngs_modulus", "density", "shear_yield_stress"])
@@ -143,7 +214,7 @@ def test_a_flat_disc_has_the_radius_of_the_other() -> None:
 
 @pytest.mark.parametrize("value", ["41.887902047863905 rad/s", "400 rpm", "2400 deg/s", "6.666666666666667 turn/s"])
 def test_a_rotational_speed_may_count_any_angle(value: str) -> None:
-    speed = problem(wl.TwinDisc.suros(rotational_speed=value)).rolling_speed
+    speed = wl.TwinDisc.suros(rotational_speed=value).rolling_speed.m_as("m/s")
     assert speed == pytest.approx(np.pi * 0.047 * 400 / 60, rel=8 * EPS)
 
 

@@ -56,6 +56,12 @@ def test_a_wrong_width_or_speed_is_refused(field: str, value: Any) -> None:
         wl.TwinDisc.suros(**values)
 
 
+@pytest.mark.parametrize("value", ["disc_2", "Mean", 1, True])
+def test_a_rig_keeps_the_mean_speed_or_that_of_disc_1(value: Any) -> None:
+    with pytest.raises(wl.ConfigurationError, match=r"^TwinDisc: speed_of: input should be 'mean' or 'disc_1', got "):
+        wl.TwinDisc.suros(speed_of=value)
+
+
 WRONG_CONDITIONS: list[tuple[dict[str, Any], type[Exception], list[str]]] = [
     (
         {"normal_force": None},

@@ -64,7 +64,8 @@ def alone(name: str) -> Array:
 @pytest.mark.parametrize(
     "name",
     ["wear_rate", "wear_rate_error", "longitudinal_force", "spin_moment", "wear_index", "mean_slip", "stick_ratio",
-     "patch_area", "max_pressure", "semi_axis_a", "mass_per_distance"],
+     "patch_area", "max_pressure", "semi_axis_a", "mass_per_distance",
+     "first_yield", "shakedown_limit", "outside_range"],
 )  # fmt: skip
 def test_each_patch_is_a_contact_of_its_own_and_missing_ones_are_nan(name: str) -> None:
     found = getattr(PREDICT(**GIVEN), name).to_base_units().magnitude

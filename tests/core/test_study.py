@@ -74,7 +74,8 @@ def test_a_sweep_has_the_axes_of_its_grid_and_one_entry_a_pair_and_a_contact_mod
     assert list(lattice.contact_model.values) == ["global", "exact"]
     axes = ("max_pressure", "creepage", "friction_coefficient")
     for name in lattice.data_vars:
-        first = {"pair"} if str(name).startswith("wear_rate") else {"contact_model"} if name in OF_CONTACT else set()
+        of_pair = str(name).startswith("wear_rate") or name == "outside_range"
+        first = {"pair"} if of_pair else {"contact_model"} if name in OF_CONTACT else set()
         assert set(lattice[name].dims) == first | set(axes)
     np.testing.assert_allclose(lattice.max_pressure, [1000.0, 1500.0], rtol=1e-14)
     np.testing.assert_allclose(lattice.creepage, np.arange(-2.0, 6.0), rtol=1e-14, atol=1e-15)

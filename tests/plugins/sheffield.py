@@ -23,6 +23,7 @@ from wearlaw import Array
 LOAD, FRICTION, RADIUS = 741.43e3, 0.46, 0.047 / 4.0
 MODULUS = 206.47742e9 / (2.0 * (1.0 - 0.28**2))
 SPEED = math.pi * 0.047 * 400.0 / 60.0
+"""Surface speed of a disc at 400 rpm [m/s]."""
 HALF_WIDTH = math.sqrt(4.0 * LOAD * RADIUS / (math.pi * MODULUS))
 AREA = 2.0 * HALF_WIDTH * 10.0 * 1e3
 """Patch area on a track of 10 mm [mm²]."""
@@ -40,8 +41,23 @@ HEAT = {0.2: 1.3, 0.5: 9.2, 1.0: 25.7, 3.0: 102.6, 7.5: 246.0, 10.0: 327.8, 15.0
 CONDITIONS: dict[str, Any] = {"normal_force": wl.Q(7.4143, "kN"), "friction_coefficient": FRICTION}
 
 
-def point(percent_creepage: float, load: float = LOAD, speed: float = SPEED) -> reference.Point:
-    return reference.Point(load, RADIUS, MODULUS, FRICTION, percent_creepage / 100.0, speed)
+def mean_speed(creepage: float) -> float:
+    """Return V [m/s] if disc 1 keeps `SPEED`: (v1 + v2)/2 with (v1 - v2)/V = ξ, at a creepage [%]."""
+    slower = SPEED * (2.0 - creepage / 100.0) / (2.0 + creepage / 100.0)
+    return 0.5 * (SPEED + slower)
+
+
+ROLLING_SPEEDS: dict[Any, Callable[[float], float]] = {"disc_1": mean_speed, "mean": lambda _: SPEED}
+"""V [m/s] at a creepage [%], by whose surface speed the rig keeps; the rig of the paper keeps that of disc 1."""
+
+
+KEPT: dict[Any, str] = {"disc_1": "if disc 1 keeps its speed", "mean": "if the mean does"}
+"""What the claims say of these."""
+
+
+def point(creepage: float, load: float = LOAD, kept: str = "disc_1") -> reference.Point:
+    """Return the operating point at a creepage [%], by whose surface speed the rig keeps."""
+    return reference.Point(load, RADIUS, MODULUS, FRICTION, creepage / 100.0, ROLLING_SPEEDS[kept](creepage))
 
 
 SOLUTIONS: dict[str, Callable[[reference.Point], reference.Solution]] = {
@@ -85,7 +101,7 @@ def brr_of(wear_index: float) -> float:
 def kth_of(creepage: float, k: tuple[float, ...] = KTH_MID) -> float:
     """Return the rate of KTH on the patch means below 2.1 GPa [µg/m/mm²]."""
     slip = creepage / 100.0
-    coefficient = k[1] if slip * SPEED < 0.2 else k[2]
+    coefficient = k[1] if slip * mean_speed(creepage) < 0.2 else k[2]
     return 7850.0 * coefficient * LOAD / (2.0 * HALF_WIDTH) * slip / 2.625e9 * 1e3
 
 
@@ -150,14 +166,8 @@ def exact_force(creepage: float) -> float:
     return reference.exact(point(creepage)).force
 
 
-def kth(model: str, creepage: float, load: float = LOAD, speed: float = SPEED) -> float:
-    return reference.kth_mean(SOLUTIONS[model](point(creepage, load, speed)), KTH_MID)
-
-
-def mean_speed(creepage: float) -> float:
-    """Return the mean surface speed [m/s] where disc 1 turns at `SPEED`: (v1 + v2)/2 with (v1 - v2)/V = ξ."""
-    slower = SPEED * (2.0 - creepage / 100.0) / (2.0 + creepage / 100.0)
-    return 0.5 * (SPEED + slower)
+def kth(model: str, creepage: float, load: float = LOAD, kept: str = "disc_1") -> float:
+    return reference.kth_mean(SOLUTIONS[model](point(creepage, load, kept)), KTH_MID)
 
 
 def printed(text: str) -> Any:

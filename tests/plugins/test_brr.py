@@ -146,3 +146,13 @@ def test_the_declared_jumps_are_where_the_rate_jumps(options: dict[str, str], ju
 def test_a_wrong_value_is_one_clear_error(options: dict[str, Any], message: str) -> None:
     with pytest.raises(wl.ConfigurationError, match=message):
         wl.wear_law("brr", **options)
+
+
+def test_the_published_law_names_its_materials_and_no_range() -> None:
+    calibration = BRR.calibration
+    assert calibration is not None
+    assert calibration.materials == "R8T wheel steel on BS11 rail steel"
+    assert calibration.stated_range == ()
+    assert "prints no range" in calibration.source
+    assert BRR.valid_range == {}
+    assert wl.wear_law("brr", plateau="26 mm^3/km").calibration is None

@@ -114,11 +114,37 @@ def test_borders_of_your_own_move_the_jumps() -> None:
     assert at / below == pytest.approx(350.0 / 5.5, rel=1e-12)
 
 
-def test_the_law_claims_no_calibration_no_range_and_no_monotony() -> None:
-    law = kth()
-    assert law.calibration is None
-    assert law.valid_range == {}
+@every_coefficient
+def test_the_range_ends_where_the_fields_without_a_printed_end_begin(coefficient: str) -> None:
+    law = kth(coefficient)
+    assert law.calibration is not None
+    assert law.explicit().calibration == law.calibration
+    assert law.calibration.materials == "unspecified materials, in twin-disc and pin-on-disc tests"
+    assert law.valid_range == {"pressure": (0.0, 2.1e9), "slip_speed": (0.0, 0.7)}
     assert law.monotone_in == ()
+
+
+@pytest.mark.parametrize("options", [{"coefficient": OWN}, {"pressure_threshold": "1 GPa"}], ids=["k", "border"])
+def test_numbers_of_your_own_have_no_range(options: dict[str, Any]) -> None:
+    assert kth(**options).calibration is None
+    assert kth(**options).valid_range == {}
+    assert kth(hardness="3 GPa").calibration is not None  # k alone was fitted
+
+
+def test_slip_speeds_and_pressures_in_the_fields_without_an_end_are_warned_of() -> None:
+    fast = wl.TwinDisc.suros(rolling_speed="200 m/s") | wl.contact_model("global") | kth()
+    conditions: dict[str, Any] = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46}
+    fast(creepage="0.35 %", **conditions)  # 0.7 m/s, inside: a warning would be an error here
+    no_end = (
+        "Table 2, whose outermost fields, at 2.1 GPa and above and at 0.7 m/s and above, have a k but no printed end)"
+    )
+    with pytest.warns(
+        wl.RangeWarning, match=r"slip speed from 0\.000 m/s to 0\.7000 m/s .* as far as 40\.00 m/s"
+    ) as said:
+        fast(creepage="20 %", **conditions)
+    assert no_end in str(said[-1].message)
+    with pytest.warns(wl.RangeWarning, match=r"mean pressure from 0\.000 MPa to 2100 MPa .* as far as 2356 MPa"):
+        fast(creepage="0.1 %", **conditions | {"max_pressure": "3000 MPa"})  # π/4 of it is the mean
 
 
 @pytest.mark.parametrize(

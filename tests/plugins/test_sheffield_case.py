@@ -9,7 +9,7 @@ import pytest
 
 import wearlaw as wl
 import wearlaw_sheffield
-from tests.plugins.sheffield import HEAT, SPEED
+from tests.plugins.sheffield import HEAT, SPEED, mean_speed
 from wearlaw.models.labels import labels
 from wearlaw.plugins import loader
 from wearlaw.study.case import Case, case_text, load_case
@@ -54,12 +54,22 @@ def test_the_shipped_tests_give_the_published_traction() -> None:
     assert "secondary transcription" in measured.data.source
 
 
+def test_the_heat_gives_the_friction_of_the_paper_with_one_speed_at_every_creepage_only() -> None:
+    # Tassini et al. (2010), section 5.1: 0.46. V = (v1 + v2)/2 would divide the heat by less.
+    full = [creepage for creepage in HEAT if creepage >= 3.0]
+    one_speed = [HEAT[x] / (x / 100.0 * SPEED * 7414.3) for x in full]
+    of_mean = [HEAT[x] / (x / 100.0 * mean_speed(x) * 7414.3) for x in full]
+    assert f"{np.mean(one_speed):.2f}" == "0.46"
+    assert f"{np.mean(of_mean):.2f}" == "0.49"
+
+
 def test_the_shipped_tests_are_at_the_pressure_and_speed_of_the_rig() -> None:
     tests, rig = wl.read_tests("lewis2004"), wl.TwinDisc.suros()
     problem = rig.problem(**tests.conditions(wl.contact_model("exact"), 0.46))
     # Half a unit of the last printed digit, of a force that goes with the square of the pressure.
     np.testing.assert_allclose(problem.max_pressure, 1.5e9, rtol=0.5 * 0.05 / 7414.3)
-    (speed,) = {float(line.split(",")[3]) for line in text_of_tests("lewis2004").splitlines()[4:]}
+    _, *rows = (line for line in text_of_tests("lewis2004").splitlines() if not line.startswith("#"))
+    (speed,) = {float(line.split(",")[3]) for line in rows}
     assert speed == pytest.approx(wl.scalar_si(rig.rolling_speed, "m/s"), rel=4e-16)  # the order of products rounds
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from typing import Any
 
@@ -10,12 +11,13 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import case
-from tests.plugins.sheffield import AREA, FORCE, FULL_SLIP, SPEED, STEP
+from tests.plugins.sheffield import AREA, FORCE, FULL_SLIP, ROLLING_SPEEDS, SPEED, STEP
 from tests.plugins.sheffield_report import SWEEP, study_of
 from wearlaw.study.study import run
 from wearlaw_sheffield import claims as claims_module
 from wearlaw_sheffield.bench import Bench
-from wearlaw_sheffield.wording import at_both, first_crossing, largest, percent, verdict
+from wearlaw_sheffield.local_claims import upper_slip_speed
+from wearlaw_sheffield.wording import at_both, by_speed, first_crossing, largest, percent, verdict
 
 
 def test_every_claim_names_its_place_its_criterion_and_its_numbers() -> None:
@@ -27,6 +29,13 @@ def test_every_claim_names_its_place_its_criterion_and_its_numbers() -> None:
         assert re.search(r"\d", claim.found) or claim.verdict == "cannot be decided"
     assert made.text.startswith("28 claims from sections 3 to 6")
     assert "741.43 kN/m and a friction coefficient of 0.46" in made.text
+    assert "At every creepage this rig keeps the surface speed of disc 1 at 0.984 m/s." in made.text
+
+
+def test_the_text_names_the_speed_that_the_rig_of_the_case_keeps() -> None:
+    content = {"sweeps": {"creepage": SWEEP}, "profiles": {}, "rig": {"preset": "suros", "rolling_speed": "1.1 m/s"}}
+    text = claims_module.section(run(case(**content))).text
+    assert "this rig keeps the mean of the surface speeds at 1.100 m/s." in text
 
 
 def test_what_needs_measured_wear_is_named() -> None:
@@ -48,24 +57,30 @@ def test_the_bench_has_the_patch_and_the_borders_of_the_formulas(bench: Bench) -
     assert bench.full_slip == pytest.approx(FULL_SLIP, rel=1e-14)
     assert bench.full_force == pytest.approx(FORCE, rel=1e-14)
     assert bench.usfd_borders == pytest.approx((55.0 / 5.3 * AREA, 77.26 * AREA), rel=1e-14)
-    assert bench.disc_speed == pytest.approx(SPEED, rel=1e-14)
+    assert bench.kept_speed == pytest.approx(SPEED, rel=1e-14)
     assert bench.window == pytest.approx(350.0, rel=1e-4)  # 6.2934 mm² in five digits
 
 
-def test_the_rolling_speed_is_that_of_disc_1_or_the_mean_of_both(bench: Bench) -> None:
-    creepage = np.array([0.0, 0.05, 0.2, 1.0])
-    of_disc_1, mean = bench.at_speeds().values()
-    np.testing.assert_array_equal(of_disc_1.rolling_speed(creepage), 4 * [bench.disc_speed])
-    # V = (v1 + v2)/2 and ξ = (v1 - v2)/V.
-    slower = SPEED * (2.0 - creepage) / (2.0 + creepage)
-    speed = mean.rolling_speed(creepage)
-    np.testing.assert_allclose(speed, 0.5 * (SPEED + slower), rtol=1e-14)
-    np.testing.assert_allclose((SPEED - slower) / speed, creepage, rtol=1e-13, atol=1e-15)
-    for one in (of_disc_1, mean):
-        found = one.creepage_at(0.2) / 100.0
-        assert found * float(one.rolling_speed(np.array(found))) == pytest.approx(0.2, rel=1e-14)
+@pytest.mark.parametrize("rig", [wl.TwinDisc.suros(), wl.TwinDisc.suros(rotational_speed="400 rpm", speed_of="mean")])
+def test_a_bench_stands_for_both_speeds_that_a_rig_can_keep(bench: Bench, rig: wl.TwinDisc) -> None:
+    benches = dataclasses.replace(bench, rig=rig).at_speeds()
+    assert [one.rig.speed_of for one in benches.values()] == ["disc_1", "mean"]
+    assert list(benches) == ["if disc 1 keeps its speed", "if the mean does"]
+    for one, speed in zip(benches.values(), ROLLING_SPEEDS.values(), strict=True):
+        found = one.creepage_at(0.2)
+        assert found / 100.0 * speed(found) == pytest.approx(0.2, rel=1e-14)
         predicted = one.predict("global", wl.wear_law("kth"), 20.0).contact.slip_speed
-        assert predicted == pytest.approx(0.2 * one.rolling_speed(np.array(0.2)), rel=1e-14)
+        assert predicted == pytest.approx(0.2 * speed(20.0), rel=1e-14)
+    assert benches["if disc 1 keeps its speed"].creepages_at(0.2) == (
+        "22.62 % if disc 1 keeps its speed, 20.32 % if the mean does"
+    )
+
+
+def test_discs_that_are_too_slow_for_a_slip_speed_have_no_creepage_of_it(bench: Bench) -> None:
+    # The surface speeds of 0.3 m/s and -0.4 m/s differ by 0.7 m/s, and their mean is below zero.
+    slow = dataclasses.replace(bench, rig=wl.TwinDisc.suros(rolling_speed="0.3 m/s", speed_of="disc_1"))
+    assert slow.creepages_at(0.7, digits=1) == "no creepage if disc 1 keeps its speed, 233.3 % if the mean does"
+    assert upper_slip_speed(slow).verdict == "holds"
 
 
 def test_the_creepages_of_the_bench_are_dense_and_meet_its_kinks(bench: Bench) -> None:
@@ -116,6 +131,11 @@ def test_the_verdict_on_a_claim_is_that_on_its_parts(parts: list[bool | None], e
 
 def test_what_depends_on_the_speed_cannot_be_decided() -> None:
     assert [at_both(parts) for parts in ([True, True], [False, False], [True, False])] == [True, False, None]
+    assert [by_speed(part) for part in (True, False, None)] == [
+        "This part of the claim holds whichever speed the rig keeps.",
+        "This part of the claim fails whichever speed the rig keeps.",
+        "Whether this part of the claim holds depends on which speed the rig keeps.",
+    ]
 
 
 def test_the_first_crossing_is_found_whichever_curve_is_above() -> None:

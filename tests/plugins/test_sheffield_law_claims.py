@@ -141,6 +141,9 @@ def test_kth_is_proportional_to_the_wear_index_in_full_slip_only(bench: Bench) -
     # The first creepage of the bench above 5 N is up to a hundredth beyond it, and the rate over W.I. goes with 1/ξ.
     assert_says(claim, "mild wear: 1 to", at_5 / in_full_slip, slack=0.01 * at_5 / in_full_slip)
     assert "severe wear: 1 to 1; catastrophic wear: 1 to 1." in claim.found
+    # KTH jumps where v1 - v2 is 0.2 m/s, beyond the tests.
+    assert_says(claim, "that is, at", 20.0 / (SPEED - 0.1))
+    assert_says(claim, "keeps its speed,", 20.0 / SPEED)
     assert claim.verdict == "holds in part"
 
 
@@ -168,7 +171,9 @@ def test_in_full_slip_the_laws_are_straight_in_each_regime(bench: Bench) -> None
     assert_says(claim, "USFD mild", 5.3 * density)
     assert_says(claim, "USFD severe", 0.0)
     assert_says(claim, "USFD catastrophic", 61.9 * density)
-    assert_says(claim, "KTH below 0.2 m/s", kth_of(1.0))
+    assert_says(claim, "KTH below 0.2 m/s, to", 20.0 / (SPEED - 0.1), 20.0 / SPEED)
+    assert_says(claim, "if disc 1 keeps its speed,", kth_of(1.0))
+    assert_says(claim, "if the mean does,", kth_of(1.0))
     assert claim.verdict == "holds"
 
 

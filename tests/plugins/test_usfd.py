@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from typing import Any
 
@@ -167,12 +168,47 @@ def test_each_set_fits_the_contact_it_was_fitted_for_and_no_other() -> None:
 
 
 def test_the_range_is_that_of_the_tests_up_to_twenty_percent_creepage() -> None:
-    predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
+    # The slip speed of 20 % is the highest if the rig keeps the mean of the surface speeds.
+    predict = wl.TwinDisc.suros(speed_of="mean") | wl.contact_model("global") | wl.wear_law("usfd")
     conditions: dict[str, Any] = {"max_pressure": Q(1500, "MPa"), "friction_coefficient": 0.46}
     low, high = wl.wear_law("usfd").valid_range["wear_index_density"]
     assert low == 0.0
     # 20 % · 0.46 · the mean of 1500 MPa, to the four digits that a message shows
     assert high == pytest.approx(0.2 * 0.46 * 1.5e9 * np.pi / 4.0, rel=2e-4)
     predict(creepage=Q(20.0, "%"), **conditions)  # inside: a warning would be an error here
-    with pytest.warns(wl.RangeWarning, match=r"1 of 2 operating points"):
+    with pytest.warns(wl.RangeWarning) as caught:
         predict(creepage=Q([20.0, 20.1], "%"), **conditions)
+    of_law = [str(one.message) for one in caught if one.category is wl.RangeWarning]
+    assert [re.search(r"known range of mean (.*) from", one).group(1) for one in of_law] == [  # type: ignore[union-attr]
+        "slip speed", "wear index density",
+    ]  # fmt: skip
+    assert all("1 of 2 operating points" in one for one in of_law)
+
+
+@pytest.mark.parametrize(
+    ("pressure", "said"),
+    [("300 MPa", "235.6 MPa"), ("899 MPa", "706.1 MPa"), ("900 MPa", ""), ("1800 MPa", ""), ("1801 MPa", "1415 MPa")],
+)
+def test_pressures_without_a_test_are_warned_of(pressure: str, said: str) -> None:
+    # Table 1 of Lewis and Dwyer-Joyce (2004): tests at 900, 1200, 1500 and 1800 MPa, of which π/4 is the mean.
+    predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        predict(max_pressure=pressure, creepage="1 %", friction_coefficient=0.46)
+    of_law = [str(one.message) for one in caught if one.category is wl.RangeWarning]
+    assert len(of_law) == bool(said)
+    for message in of_law:
+        assert message.startswith("wear law 'usfd' has a known range of mean pressure from 706.8 MPa to 1414 MPa (")
+        assert "Lewis and R. S. Dwyer-Joyce" in message
+        assert message.endswith(f"1 of 1 operating points lie outside, as far as {said}")
+
+
+@pytest.mark.parametrize("fitted_for", ["global", "exact", "fastsim"])
+def test_every_set_names_its_materials_its_range_and_its_sources(fitted_for: str) -> None:
+    calibration = wl.wear_law("usfd", fitted_for=fitted_for).calibration
+    assert calibration is not None
+    assert calibration.materials == "R8T wheel steel on UIC 60 900A rail steel"
+    assert [name for name, _, _ in calibration.stated_range] == ["pressure", "slip_speed", "wear_index_density"]
+    assert calibration.range_in_si["slip_speed"][1] == pytest.approx(0.2 * 0.047 * np.pi * 400 / 60, abs=5e-4)
+    assert "Table 4" in calibration.source
+    assert "secondary transcription" in calibration.source

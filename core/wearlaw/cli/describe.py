@@ -78,12 +78,14 @@ def _default(model: type[Model]) -> Model | None:
 
 
 def _value(model: type[Model], default: Model | None, name: str) -> str:
-    """Return what a description says of the value of a field: its default, or that there is none."""
+    """Return the default of a field, or that it must be given."""
     field = model.model_fields[name]
-    if default is None and field.is_required():
+    if default is not None:
+        return f"= {_shown(getattr(default, name))}"
+    if field.is_required():
         return "(must be given)"
-    value = field.get_default(call_default_factory=True) if default is None else getattr(default, name)
-    return f"= {value}" if default is None and isinstance(value, str) else f"= {_shown(value)}"
+    value = field.get_default(call_default_factory=True)
+    return f"= {value if field.validate_default else _shown(value)}"  # text to be validated is a quantity's
 
 
 def _field(name: str, value: str, choices: Sequence[str], description: str) -> Iterator[str]:
@@ -131,7 +133,7 @@ def _of_law(law: WearLaw) -> Iterator[str]:
     for variable, values in law.jumps(law.numbers).items():
         yield f"jumps in {variable} at {', '.join(_si(variable, value) for value in values)}"
     for variable, (low, high) in law.valid_range.items():
-        yield f"stated for a mean {variable} from {_si(variable, low)} to {_si(variable, high)}"
+        yield f"known range of mean {variable} from {_si(variable, low)} to {_si(variable, high)}"
     if law.band() is not None:
         yield "band: published parameter ranges give a low, a middle and a high law"
 

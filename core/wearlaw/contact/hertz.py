@@ -1,7 +1,8 @@
 """The normal problem: Hertz's theory of line contact.
 
-Source: K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, section 4.2(c). All values are in
-SI units; the normal force P is per unit width.
+Source: K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, section 4.2(c), after Tassini et al.,
+Wear 268 (2010) 660-667, eqs. (1) and (2), of which (1) is misprinted. All values are in SI units; the normal force P is
+per unit width.
 """
 
 from __future__ import annotations

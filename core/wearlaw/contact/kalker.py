@@ -5,7 +5,8 @@ the ratio a/b of the semi-axes, a along the rolling direction, and on Poisson's 
 
 Sources: J. J. Kalker, On the rolling contact of two elastic bodies in the presence of dry friction, doctoral thesis,
 Delft University of Technology, 1967; J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer, 1990,
-Table E.3, for the values and the asymptotes.
+Table E.3, for the values and the asymptotes. C11, C22 and C23 with their asymptotes are after the source of the program
+CONTACT (E. A. H. Vollebregt, src/m_hertz.f90), C33 after another copy of the table.
 """
 
 from __future__ import annotations

@@ -9,6 +9,10 @@ from pydantic import Field
 from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import Density, QuantityLike, Stress, scalar_si
 
+ALIKE = 0.1
+"""Relative difference in E and in ρ up to which two materials are alike. Grades of steel differ by less; bronze, cast
+iron, titanium and aluminium differ from steel by more."""
+
 
 class Material(Configuration):
     """An isotropic elastic material."""
@@ -32,6 +36,17 @@ class Material(Configuration):
             density: QuantityLike,
             shear_yield_stress: QuantityLike | None = None,
         ) -> None: ...
+
+    def resembles(self, other: Material) -> bool:
+        """Return whether E and ρ differ from those of another material by at most a tenth.
+
+        This tells bronze from steel, but not one grade of steel from another.
+        """
+        pairs = (
+            (scalar_si(self.youngs_modulus, "Pa"), scalar_si(other.youngs_modulus, "Pa")),
+            (scalar_si(self.density, "kg/m^3"), scalar_si(other.density, "kg/m^3")),
+        )
+        return all(abs(one - two) <= ALIKE * two for one, two in pairs)
 
 
 def steel(

@@ -180,7 +180,7 @@ class Problem:
     spin : ndarray
         Spin, φ [1/m], the relative angular velocity about the normal over the rolling speed.
     rolling_speed : ndarray
-        Rolling speed, V [m/s].
+        Rolling speed, V [m/s]: of two discs the mean of their surface speeds, of a wheel on a rail the vehicle's speed.
     density : ndarray
         Mass density of the body whose wear is predicted, ρ [kg/m³].
     traction_coefficient : ndarray or None

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from wearlaw.arrays.array import Array
 
 FigureFormat = Literal["png", "pdf", "svg"]
@@ -30,6 +33,8 @@ class Curve:
         Ends of a band around it.
     points : bool
         Whether it is a set of points, not joined by a line.
+    outside : ndarray of bool, (points,), or None
+        Where it lies outside the range of its wear law; drawn thin and pale.
     """
 
     label: str
@@ -40,6 +45,26 @@ class Curve:
     low: Array | None = None
     high: Array | None = None
     points: bool = False
+    outside: NDArray[np.bool_] | None = None
+
+
+@dataclass(frozen=True)
+class Shade:
+    """A shaded part of a panel.
+
+    Attributes
+    ----------
+    label : str
+        Its name in the legend.
+    level : int
+        How dark it is, from 1.
+    spans : tuple of (float, float)
+        Ends of each span along the x axis.
+    """
+
+    label: str
+    level: int
+    spans: tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,15 +75,21 @@ class PlotAxis:
     scale: Literal["linear", "log"] = "linear"
     ends: tuple[float, float] | None = None
 
+    def shows(self, values: Array) -> NDArray[np.bool_]:
+        """Return which values lie between the ends."""
+        low, high = self.ends or (-np.inf, np.inf)
+        return (low <= values) & (values <= high)
+
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """A pair of axes with its curves."""
+    """A pair of axes with its curves and shades; a darker shade lies over a lighter one."""
 
     x: PlotAxis
     y: PlotAxis
     curves: tuple[Curve, ...]
     title: str = ""
+    shades: tuple[Shade, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,3 +117,30 @@ class FigureData:
 def has_band(figure: FigureData) -> bool:
     """Return whether any line of a figure has a band; points have error bars."""
     return any(curve.low is not None and not curve.points for panel in figure.panels for curve in panel.curves)
+
+
+OUTSIDE = "outside the range of the law"
+"""Legend of the thin and pale parts of curves."""
+
+
+def shows_outside(figure: FigureData) -> bool:
+    """Return whether a figure shows any part of a curve outside the range of its law."""
+    return any(
+        curve.outside is not None and (curve.outside & np.isfinite(curve.y) & panel.x.shows(curve.x)).any()
+        for panel in figure.panels
+        for curve in panel.curves
+    )
+
+
+def in_parts(curve: Curve) -> tuple[Array, Array | None]:
+    """Return the y values of a curve inside the range of its law, and those outside if there are any.
+
+    Values of the other part are NaN. The part outside begins and ends at the nearest point inside.
+    """
+    outside = curve.outside
+    if outside is None or not outside.any():
+        return curve.y, None
+    near = outside.copy()
+    near[1:] |= outside[:-1]
+    near[:-1] |= outside[1:]
+    return np.where(outside, np.nan, curve.y), np.where(near, curve.y, np.nan)

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from wearlaw.arrays.array import Array
-from wearlaw.figures.curves import has_band
+from wearlaw.figures.curves import OUTSIDE, has_band, in_parts, shows_outside
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,6 +43,10 @@ STYLE: Any = {
 }
 WIDTH, ROW_HEIGHT = 7.4, 3.6
 """Width of a figure and height of a row of panels, in inches."""
+SHADES = ("#f4f4f4", "#e4e4e4")
+"""Greys of the levels of shades."""
+THIN, PALE = 0.8, 0.6
+"""Width in points and opacity of a line outside the range of its law."""
 LEGEND_WIDTH = 100
 """Characters that fit below a figure."""
 
@@ -98,6 +103,10 @@ def _shares(values: Array, axis: PlotAxis, shown: list[Array]) -> Array:
 
 
 def _fill(axes: Axes, panel: Panel, markers: bool) -> None:
+    for shade in panel.shades:
+        for number, (low, high) in enumerate(shade.spans):
+            label = "_" if number else _literal(shade.label)
+            axes.axvspan(low, high, color=SHADES[shade.level - 1], lw=0, zorder=0, label=label)
     for curve in panel.curves:
         _plot(axes, curve, marked_points(curve, panel) if markers else None)
     axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label), title=_literal(panel.title))
@@ -111,7 +120,10 @@ def _ends(axis: PlotAxis) -> Any:
 
 def _plot(axes: Axes, curve: Curve, marked: list[int] | None) -> None:
     looks = _looks(curve, marked)
-    axes.plot(curve.x, curve.y, label=_literal(curve.label), **looks)
+    inside, outside = in_parts(curve)
+    axes.plot(curve.x, inside, label=_literal(curve.label), **looks)
+    if outside is not None:
+        axes.plot(curve.x, outside, label="_", **{**looks, "linewidth": THIN, "alpha": PALE})
     if curve.low is None or curve.high is None:
         return
     if curve.points:
@@ -134,8 +146,11 @@ def _looks(curve: Curve, marked: list[int] | None) -> dict[str, Any]:
 
 def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
     """Add one legend for all panels, with each label once."""
-    lines = [line for one in axes for line in one.get_lines()]
-    entries = {str(line.get_label()): line for line in lines if not str(line.get_label()).startswith("_")}
+    drawn_here = [artist for one in axes for artist in (*one.get_lines(), *one.patches)]
+    entries: dict[str, Any] = {str(artist.get_label()): artist for artist in drawn_here}
+    entries = {label: artist for label, artist in entries.items() if not label.startswith("_")}
+    if shows_outside(figure):
+        entries[OUTSIDE] = Line2D([], [], color="black", linewidth=THIN, alpha=PALE)
     widths = [len(name) + 8 for name in entries]  # in characters, with the line sample and the gap
     drawn.legend(
         list(entries.values()),

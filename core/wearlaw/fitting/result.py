@@ -270,9 +270,23 @@ def _arrays(problem: Problem) -> dict[str, Array]:
 
 
 def _one_series(problem: Problem) -> bool:
-    """Return whether operating points differ only in longitudinal creepage and measured traction."""
-    others = (value for name, value in _arrays(problem).items() if name not in VARIES)
-    return all(np.ptp(array) <= SAME * np.abs(array).mean() for array in others)
+    """Return whether points differ only in longitudinal creepage, measured traction, and a V that the creepage sets."""
+    others = (value for name, value in _arrays(problem).items() if name not in (*VARIES, "rolling_speed"))
+    return all(map(_is_one_value, others)) and _speed_by_creepage(problem) is not None
+
+
+def _is_one_value(array: Array) -> bool:
+    return bool(np.ptp(array) <= SAME * np.abs(array).mean())
+
+
+def _speed_by_creepage(problem: Problem) -> float | None:
+    """Return the c of a V (1 + c|ξ|) that is the same at all points, or None.
+
+    It is 0 if V is kept, and ±1/2 if disc 1 keeps its speed and is the faster or the slower one.
+    """
+    kept = {c: problem.rolling_speed * (1.0 + c * np.abs(problem.creepage)) for c in (0.0, 0.5, -0.5)}
+    best = min(kept, key=lambda c: float(np.ptp(kept[c])))
+    return best if _is_one_value(kept[best]) else None
 
 
 def _between(one: Observations) -> Problem:
@@ -281,9 +295,12 @@ def _between(one: Observations) -> Problem:
     order = np.argsort(problem.creepage, kind="stable")
     places = np.arange(order.size, dtype=np.float64)
     fine = np.linspace(0.0, places[-1], BETWEEN * (order.size - 1) + 1)
-    return problem.replaced(
+    between = problem.replaced(
         **{name: np.interp(fine, places, values[order]) for name, values in _arrays(problem).items()}
     )
+    c = _speed_by_creepage(problem) or 0.0
+    kept = (problem.rolling_speed * (1.0 + c * problem.creepage)).mean()
+    return between.replaced(rolling_speed=kept / (1.0 + c * between.creepage))
 
 
 def _along(fit: Fit, problem: Problem, x: str) -> Array:

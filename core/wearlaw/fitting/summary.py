@@ -20,10 +20,12 @@ from wearlaw.fitting.task import Task
 from wearlaw.models.contact_model import Model
 from wearlaw.models.wear_law import Calibration, WearLaw
 from wearlaw.pipeline.pipeline import Rig
+from wearlaw.pipeline.ranges import mean_over_patch
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import known_name
 from wearlaw.settings.parameters import changed
 from wearlaw.units.quantities import Quantity, in_unit
+from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
 
 DIGITS = 4
@@ -106,19 +108,31 @@ def _fitted_law(
 
 def _calibration(task: Task, one: Observations) -> Calibration:
     """Return the calibration of the fitted law."""
-    predict = task.predict
-    density = in_unit(wear_index_density(predict, one.problem), "N/mm^2")
-    low, high = _rounded(float(density.min()), math.floor), _rounded(float(density.max()), math.ceil)
+    predict, problem = task.predict, one.problem
+    means = {
+        "pressure": mean_over_patch(problem, {}, "pressure"),
+        "slip_speed": mean_over_patch(problem, {}, "slip_speed"),
+        "wear_index_density": wear_index_density(predict, problem),
+    }
     of = f" of {task.tests.source}" if task.tests.source else ""
     return Calibration(
         contact_model=predict.contact_model.name,
         scale=predict.scale,
         options=_options(predict.contact_model),
-        geometry=one.problem.geometry,
+        geometry=problem.geometry,
         materials=_materials(predict.rig),
-        stated_range=(("wear_index_density", f"{low!r} N/mm^2", f"{high!r} N/mm^2"),),
+        bodies=tuple(body.material for body in problem.bodies.values()),
+        stated_range=tuple((name, *_ends(name, values)) for name, values in means.items()),
         source=f"fitted to {one.measured.size} tests{of}",
     )
+
+
+def _ends(variable: str, values: Array) -> tuple[str, str]:
+    """Return the least and the greatest value with the unit, rounded outwards."""
+    unit = UNITS[variable]
+    shown = in_unit(values, unit)
+    low, high = _rounded(float(shown.min()), math.floor), _rounded(float(shown.max()), math.ceil)
+    return f"{low!r} {unit}", f"{high!r} {unit}"
 
 
 def _options(model: Model) -> tuple[tuple[str, str], ...]:

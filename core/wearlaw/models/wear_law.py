@@ -15,6 +15,7 @@ from pydantic import model_validator
 from wearlaw.arrays.array import Array, type_name
 from wearlaw.arrays.extremes import extremes
 from wearlaw.contact.contact import LAW_VARIABLES, Contact
+from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Geometry
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, did_you_mean
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
@@ -41,20 +42,23 @@ class Calibration(Configuration):
     """Record of the contact, materials and tests that the parameters of a wear law were fitted to."""
 
     contact_model: str
-    """Name of the contact model in the fit."""
-    scale: Scale
-    """Whether the fit used patch means or cells."""
+    """Name of the contact model in the fit, or "any" if the parameters are not tied to one."""
+    scale: Scale | Literal["any"]
+    """Whether the fit used patch means or cells, or "any"."""
     options: tuple[tuple[str, str], ...] = ()
     """Relevant settings of that contact model, as pairs of field and value."""
-    geometry: Geometry = "line"
-    """Shape of the contact patch."""
+    geometry: Geometry | Literal["any"] = "line"
+    """Shape of the contact patch, or "any"."""
     materials: str
-    """Materials of the two bodies."""
+    """Materials of the two bodies, in words."""
+    bodies: tuple[Material, ...] = ()
+    """Materials of the body that wore and of the other one. wearlaw compares them with those of the rig, and warns if
+    you ask for the wear of the other body. Empty if they are not known."""
     stated_range: tuple[tuple[str, str, str], ...] = ()
     """Range of the tests: patch means of `Contact` variables with lowest and highest value, such as
     ("wear_index_density", "0 N/mm^2", "108.4 N/mm^2")."""
     source: str
-    """Literature."""
+    """Literature on the parameters and on their range."""
 
     @model_validator(mode="after")
     def _range_has_units(self) -> "Calibration":
@@ -75,14 +79,16 @@ class Calibration(Configuration):
     def __str__(self) -> str:
         if self.scale == "patch":
             return "patch means (the global model)"
+        if self.contact_model == "any":
+            return "any contact"
         options = "".join(f", {field}={value!r}" for field, value in self.options)
         return f"the cells of contact_model({self.contact_model!r}{options})"
 
     def covers(self, model: ContactModel, scale: Scale, geometry: Geometry = "line") -> bool:
         """Return whether the parameters were fitted for this contact model, scale and shape of patch."""
-        if scale != self.scale or geometry != self.geometry:
+        if self.scale not in ("any", scale) or self.geometry not in ("any", geometry):
             return False
-        if scale == "patch":
+        if scale == "patch" or self.contact_model == "any":
             return True
         return model.name == self.contact_model and all(
             getattr(model, field, None) == value for field, value in self.options
@@ -186,6 +192,8 @@ class WearLaw(Model):
         p = self.numbers if p is None else p
         with Blame(self, p):
             rate = self.rate(contact, p)
+        if type(rate) is np.float64:  # of one point, which has no batch axis; the shape says what is wrong
+            rate = np.asarray(rate)
         if type(rate) is not np.ndarray or rate.dtype != np.float64:
             raise ModelError(
                 f"wear law '{self.name}' returned rates of type {type_name(rate)}; it must return a float64 array"
@@ -241,7 +249,7 @@ class WearLaw(Model):
         held = "the means of the patch" if scale == "patch" else "its cells"
         if contact.on_strips and fitted_for.geometry == "line":
             held += ", of an ellipse"
-        elif fitted_for.scale == scale:
+        elif fitted_for.scale in ("any", scale):
             return
         warnings.warn(
             f"the parameters of wear law '{self.name}' were fitted for {fitted_for}, but the contact holds {held};"
@@ -271,12 +279,16 @@ class WearLaw(Model):
 
     @property
     def valid_range(self) -> Mapping[str, tuple[float, float]]:
-        """The stated range of the law: patch means of `Contact` variables with their SI bounds."""
-        return {}
+        """The stated range of the law: patch means of `Contact` variables with their SI bounds.
+
+        By default it is that of the `calibration`.
+        """
+        calibration = self.calibration
+        return {} if calibration is None else calibration.range_in_si
 
     @property
     def calibration(self) -> Calibration | None:
-        """Record of the fit of the parameters; None if they are not tied to a contact solution."""
+        """Record of the fit of the parameters, or None."""
         return None
 
     def explicit(self) -> "WearLaw":

@@ -98,16 +98,16 @@ def _write_tables(study: Study, folder: Path, latex: bool) -> list[str]:
     names = []
     (folder / TABLES).mkdir()
     for name, one in _by_name("table", ((one.name, one) for one in tables(study))).items():
-        names += save_table(one.frame, folder, os.path.join(TABLES, name), latex)
+        names += save_table(one.frame, folder, os.path.join(TABLES, name), latex, one.footnotes)
     return names
 
 
-def save_table(frame: pd.DataFrame, folder: Path, name: str, latex: bool) -> list[str]:
-    """Write a table as CSV, and for LaTeX too if asked for, and return the names of the files."""
+def save_table(frame: pd.DataFrame, folder: Path, name: str, latex: bool, footnotes: Sequence[str] = ()) -> list[str]:
+    """Write a table as CSV, and for LaTeX with its footnotes if asked for, and return the names of the files."""
     frame.to_csv(folder / f"{name}.csv", index=False)
     if not latex:
         return [f"{name}.csv"]
-    (folder / f"{name}.tex").write_text(latex_table(frame), encoding="utf-8")
+    (folder / f"{name}.tex").write_text(latex_table(frame, footnotes), encoding="utf-8")
     return [f"{name}.csv", f"{name}.tex"]
 
 
@@ -164,7 +164,7 @@ def table(study: Study) -> pd.DataFrame:
     rows = pd.concat([_rows(name, sweep) for name, sweep in study.sweeps.items()], ignore_index=True)
     units = {**UNITS, **study.case.units}
     of_point = [name for name in (*OF_POINT, *study.case.units) if name in rows and name not in OF_CONTACT]
-    rates = [str(column) for column in rows.columns if str(column).startswith("wear_rate")]
+    rates = [str(column) for column in rows.columns if str(column).startswith(("wear_rate", "outside_range"))]
     of_contact = [name for name in OF_CONTACT if name in rows]
     names = dict.fromkeys(("sweep", "contact_model", "wear_law", *of_point, *rates, *of_contact))
     return rows[list(names)].rename(columns={name: f"{name} [{units[name]}]" for name in names if units.get(name)})

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 
 import numpy as np
 
 from wearlaw.contact.material import dundurs_beta
-from wearlaw.contact.problem import PATCHES, Geometry, Problem
+from wearlaw.contact.problem import PATCHES, Body, Geometry, Problem
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning
 from wearlaw.models.contact_model import ContactModel, Model, Scale
 from wearlaw.models.wear_law import WearLaw
@@ -63,12 +64,14 @@ def warn_of_calibration(
     calibration = law.calibration
     if calibration is None:
         return
-    geometry = geometry or calibration.geometry  # may be unknown until there is a problem: see `warn_of_geometry`
+    fitted = calibration.geometry
+    if geometry is None:  # until there is a problem: see `Pipeline.warn_of_problem`
+        geometry = "line" if fitted == "any" else fitted
     if calibration.covers(model, scale, geometry):
         return
-    if calibration.geometry != geometry:
+    if fitted != "any" and fitted != geometry:
         warnings.warn(
-            f"the parameters of wear law '{law.name}' were fitted for {PATCHES[calibration.geometry]}, but are used"
+            f"the parameters of wear law '{law.name}' were fitted for {PATCHES[fitted]}, but are used"
             f" with {PATCHES[geometry]}. {PEAKS} Check them against data",
             CalibrationWarning,
             stacklevel=stacklevel,
@@ -83,13 +86,44 @@ def warn_of_calibration(
     )
 
 
-def warn_of_geometry(
-    declared: Geometry | None, model: ContactModel, scale: Scale, law: WearLaw, geometry: Geometry, stacklevel: int
-) -> None:
-    """Warn of parameters fitted for another shape of patch if the rig has not declared the shape of its own."""
+def other_materials(bodies: Mapping[str, Body], law: WearLaw) -> list[str]:
+    """Return the names of the bodies whose material differs from that which the law was fitted to."""
     calibration = law.calibration
-    if declared is None and calibration is not None and calibration.geometry != geometry:
-        warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
+    if calibration is None:
+        return []
+    pairs = zip(bodies.items(), calibration.bodies, strict=False)
+    return [name for (name, body), fitted in pairs if not body.material.resembles(fitted)]
+
+
+def fitted_to_other_body(bodies: Mapping[str, Body], law: WearLaw, body: str) -> bool:
+    """Return whether the law was fitted to the wear of another body than this one."""
+    calibration = law.calibration
+    return calibration is not None and bool(calibration.bodies) and body != next(iter(bodies))
+
+
+def warn_of_materials(bodies: Mapping[str, Body], law: WearLaw, stacklevel: int = 3) -> None:
+    """Warn if the law's parameters were fitted for other materials; `stacklevel` 1 is this function."""
+    calibration, others = law.calibration, other_materials(bodies, law)
+    if calibration is not None and others:
+        warnings.warn(
+            f"the parameters of wear law '{law.name}' were fitted for {calibration.materials}, but"
+            f" {' and '.join(others)} {'is' if len(others) == 1 else 'are'} of another material: Young's modulus or"
+            " density differs by more than 10 %. Check them against data",
+            CalibrationWarning,
+            stacklevel=stacklevel,
+        )
+
+
+def warn_of_body(problem: Problem, law: WearLaw, body: str, stacklevel: int) -> None:
+    """Warn if the law's parameters were fitted to the wear of the other body; `stacklevel` 1 is this function."""
+    calibration = law.calibration
+    if calibration is not None and fitted_to_other_body(problem.bodies, law, body):
+        warnings.warn(
+            f"the parameters of wear law '{law.name}' were fitted to the wear of the first body, with"
+            f" {calibration.materials}, but are used for the wear of '{body}'; check them against data",
+            CalibrationWarning,
+            stacklevel=stacklevel,
+        )
 
 
 def warn_of_unlike_materials(model: ContactModel, problem: Problem, stacklevel: int) -> None:

@@ -29,7 +29,7 @@ from wearlaw.pipeline.composition import (
     check_traction,
     law_among,
     warn_of_calibration,
-    warn_of_geometry,
+    warn_of_materials,
     warn_of_unlike_materials,
 )
 from wearlaw.pipeline.prediction import Prediction
@@ -283,7 +283,7 @@ class Pipeline(Configuration, Generic[P]):
         return law_among(self.laws, self.contact_model)
 
     def with_law(self, law: WearLaw) -> Pipeline[P]:
-        """Return the pipeline with this law in place of its own, without a warning about the law's calibration."""
+        """Return the pipeline with this law in place of its own, without the warnings about the law's calibration."""
         return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages, laws=(law,))
 
     def __repr__(self) -> str:
@@ -301,6 +301,7 @@ class Pipeline(Configuration, Generic[P]):
             raise CompositionError(f"a contact model is followed by wl.patch_mean() or a wear law, not by {stage!r}")
         pipeline = self.with_law(stage)
         warn_of_calibration(self.rig.geometry, self.contact_model, self.scale, stage)
+        warn_of_materials(self.rig.bodies, stage)
         return pipeline
 
     def __call__(self, *positional: P.args, **conditions: P.kwargs) -> Prediction:
@@ -358,13 +359,26 @@ class Pipeline(Configuration, Generic[P]):
                 f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"
                 f" the geometry '{self.rig.geometry}'; make it with the `problem` method of the rig"
             )
-        for law in self.laws:
-            warn_of_geometry(self.rig.geometry, self.contact_model, self.scale, law, problem.geometry, stacklevel + 1)
+        self.warn_of_problem(problem, stacklevel + 1)
         watch = self.range_watch()
         found = self.watched(problem, watch, on_block)
         warn_of_unlike_materials(self.contact_model, problem, stacklevel + 1)
         watch.warn(stacklevel)
         return found
+
+    def warn_of_problem(self, problem: Problem, stacklevel: int) -> None:
+        """Warn of parameters fitted for another shape of patch or other materials if only the problem shows them.
+
+        If the rig declares its geometry or its bodies, composing the pipeline gave the warning. `stacklevel` 1 is this
+        method.
+        """
+        rig, declared = self.rig, self.rig.geometry is not None
+        for law in self.laws:
+            calibration = law.calibration
+            if not declared and calibration is not None and calibration.geometry not in ("any", problem.geometry):
+                warn_of_calibration(problem.geometry, self.contact_model, self.scale, law, stacklevel + 1)
+            if not rig.bodies:
+                warn_of_materials(problem.bodies, law, stacklevel + 1)
 
     def range_watch(self) -> RangeWatch:
         """Return a watch that sees whether operating points stay elastic and within the range of the law, if any."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,8 @@ from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics import integrate
 from wearlaw.numerics.integrate import SlipTotals, WearTotals
 from wearlaw.numerics.solving import Solver
-from wearlaw.pipeline.composition import law_among
+from wearlaw.pipeline.composition import law_among, other_materials, warn_of_body
+from wearlaw.pipeline.ranges import elastic_limits, outside_range
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
 from wearlaw.units.variables import UNITS, name_of
 
@@ -75,6 +77,7 @@ class Prediction:
         self.laws = laws
         self._given_forces = forces
         self._given_wear = wear
+        self._asked_for: set[str] = set()
 
     @property
     def longitudinal_force(self) -> Quantity:
@@ -183,6 +186,25 @@ class Prediction:
         return from_si(self.problem.max_pressure, "MPa")
 
     @property
+    def first_yield(self) -> Quantity:
+        """Maximum pressure at which a body first yields under this traction [Pa]; see `elastic_limit`."""
+        return from_si(self._elastic_limits[0], "MPa")
+
+    @property
+    def shakedown_limit(self) -> Quantity:
+        """Maximum pressure at the shakedown limit under this traction [Pa]; see `elastic_limit`."""
+        return from_si(self._elastic_limits[1], "MPa")
+
+    @property
+    def outside_range(self) -> Quantity:
+        """1 where a point lies outside the range or the materials that the law was fitted to, otherwise 0 [-]."""
+        problem, law = self.problem, self._law
+        columns = {**asdict(self._forces), "patch_area": self._patch_area}
+        outside = outside_range(problem, columns, law) | bool(other_materials(problem.bodies, law))
+        marks = outside.astype(np.float64)
+        return from_si(marks if problem.exists is None else np.where(problem.exists, marks, np.nan), "")
+
+    @property
     def patch_area(self) -> Quantity:
         """Area of the patch, A [m²], the sum of its nodes' areas; in Hertz's theory 2a × track width, or πab."""
         return from_si(self._patch_area, "mm^2")
@@ -281,6 +303,7 @@ class Prediction:
         if strips is not None and (isinstance(strips, bool) or not isinstance(strips, int) or strips < 2):
             raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
         law, solved = self._law, self._solved
+        self._warn_of(body, stacklevel=3)
         if not (problem.density == density).all():
             problem = problem.replaced(density=np.full_like(problem.density, density))
             flat = problem.flatten()
@@ -373,6 +396,10 @@ class Prediction:
         return self._forces.longitudinal if self.problem.geometry == "line" else self._forces.tangential
 
     @cached_property
+    def _elastic_limits(self) -> tuple[Array, Array]:
+        return elastic_limits(self.problem, np.abs(self._force))
+
+    @cached_property
     def _wear_index(self) -> Array:
         return self.problem.power(self._forces)
 
@@ -409,10 +436,17 @@ class Prediction:
     def _rate(self, body: str) -> Array:
         """Return the wear rate of a body; with a law of volume it is proportional to the body's density."""
         density = np.full_like(self.problem.density, self._density(body))
+        self._warn_of(body, stacklevel=5)
         if np.array_equal(density, self.problem.density):
             return self._wear.wear_rate
         of_body = self.problem.replaced(density=density)
         return integrate.integrate_wear(self.contact_model, self._law, of_body, self.scale).wear_rate
+
+    def _warn_of(self, body: str, stacklevel: int) -> None:
+        """Warn once if the law was fitted to the wear of the other body; `stacklevel` 1 is this method."""
+        if body not in self._asked_for:
+            self._asked_for.add(body)
+            warn_of_body(self.problem, self._law, body, stacklevel + 1)
 
     def _density(self, body: str) -> float:
         return scalar_si(self.problem.body(body).material.density, "kg/m^3")

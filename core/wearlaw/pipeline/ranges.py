@@ -5,14 +5,16 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.extremes import extremes
-from wearlaw.contact.elastic_limit import Overload, overload
+from wearlaw.contact.elastic_limit import Overload, first_yield, overload, shakedown_limit
 from wearlaw.contact.problem import CreepForces, Problem
-from wearlaw.errors import ModelError, RangeWarning
+from wearlaw.errors import CompositionError, ModelError, RangeWarning
 from wearlaw.models.contact_model import Blame
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics.blocks import Columns
@@ -25,6 +27,8 @@ class RangeWatch:
 
     Attributes
     ----------
+    seen : dict of str to Seen
+        The points outside, by the variable that leaves its range.
     overload : Overload or None
         The operating point furthest beyond first yield.
     """
@@ -35,7 +39,7 @@ class RangeWatch:
         if law is not None:
             with Blame(law):
                 self.range = law.valid_range
-        self.seen = {name: _Seen() for name in self.range}
+        self.seen: dict[str, Seen] = {}
         self.points = 0
         self.overload: Overload | None = None
 
@@ -45,17 +49,19 @@ class RangeWatch:
         for name, (low, high) in self.range.items():
             values = mean_over_patch(name)
             lowest, highest = extremes(values)
-            seen = self.seen[name]
-            seen.lowest, seen.highest = min(seen.lowest, lowest), max(seen.highest, highest)
-            if lowest < low:
-                seen.outside += int(np.count_nonzero(values < low))
-            if highest > high:
-                seen.outside += int(np.count_nonzero(values > high))
+            if lowest < low or highest > high:
+                self.see_outside(name, Seen(lowest, highest, int(((values < low) | (values > high)).sum())))
 
     def see_block(self, part: Problem, columns: Columns) -> None:
         """Record a block of operating points, with forces [N] and areas [m²] in columns."""
         self.see(part.size, partial(mean_over_patch, part, columns))
         self.see_overload(overload_of(part, tangential_force(part, columns)))
+
+    def see_outside(self, name: str, more: Seen) -> None:
+        """Record points outside the range of a variable."""
+        known = self.seen.get(name, more)
+        outside = more.outside if known is more else known.outside + more.outside
+        self.seen[name] = Seen(min(known.lowest, more.lowest), max(known.highest, more.highest), outside)
 
     def see_overload(self, overload: Overload | None) -> None:
         """Record an operating point beyond first yield if none so far lies further beyond."""
@@ -66,24 +72,27 @@ class RangeWatch:
         """Warn of points beyond first yield or out of range; `stacklevel` 1 is the caller."""
         if self.overload is not None:
             self.overload.warn(stacklevel + 1)
-        for name, seen in self.seen.items():
-            if self.law is not None and seen.outside:
-                low, high = self.range[name]
+        for name, (low, high) in self.range.items():
+            if self.law is not None and name in self.seen:
+                seen, calibration = self.seen[name], self.law.calibration
                 farthest = seen.highest if seen.highest > high else seen.lowest
                 shown = [repr(from_si(value, UNITS[name])) for value in (low, high, farthest)]
+                source = f" ({calibration.source})" if calibration and name in calibration.range_in_si else ""
                 warnings.warn(
-                    f"wear law '{self.law.name}' is stated for a mean {name.replace('_', ' ')} from {shown[0]} to"
-                    f" {shown[1]}; {seen.outside} of {self.points} operating points lie outside, as far as {shown[2]}",
+                    f"wear law '{self.law.name}' has a known range of mean {name.replace('_', ' ')} from {shown[0]} to"
+                    f" {shown[1]}{source}; {seen.outside} of {self.points} operating points lie outside, as far as"
+                    f" {shown[2]}",
                     RangeWarning,
                     stacklevel=stacklevel + 1,
                 )
 
 
-class _Seen:
-    """Extremes of one variable, and the number of points out of range."""
+class Seen(NamedTuple):
+    """The extremes of a variable among points some of which are out of range [SI], and the number of these."""
 
-    def __init__(self) -> None:
-        self.lowest, self.highest, self.outside = np.inf, -np.inf, 0
+    lowest: float
+    highest: float
+    outside: int
 
 
 def mean_over_patch(problem: Problem, columns: Columns, variable: str) -> Array:
@@ -130,6 +139,47 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
         problem.friction_coefficient,
         None if problem.geometry == "line" else problem.a / problem.b,
     )
+
+
+def outside_range(problem: Problem, columns: Columns, law: WearLaw) -> NDArray[np.bool_]:
+    """Return at which operating points a mean over the patch lies outside the law's range, of the batch shape."""
+    outside = np.zeros(problem.batch_shape, dtype=np.bool_)
+    for name, (low, high) in law.valid_range.items():
+        values = mean_over_patch(problem, columns, name)
+        outside |= (values < low) | (values > high)
+    return outside
+
+
+def elastic_limits(problem: Problem, tangential_force: Array) -> tuple[Array, Array]:
+    """Return Hertz's maximum pressure at first yield and at the shakedown limit [Pa], of the body that yields first.
+
+    Parameters
+    ----------
+    problem : Problem
+    tangential_force : ndarray
+        Magnitude of the tangential force [N], of the batch shape; NaN where there is no patch, and in the result.
+
+    Raises
+    ------
+    CompositionError
+        If no body's material has a `shear_yield_stress`.
+    """
+    strengths = {body.strength for body in problem.bodies.values() if body.strength is not None}
+    if not strengths:
+        raise CompositionError("elastic limit: no body's material has a shear_yield_stress; give one to its Material")
+    there = np.isfinite(tangential_force)
+    limits = np.full((2, *problem.batch_shape), np.nan)
+    traction, friction = (tangential_force / problem.normal_force)[there], problem.friction_coefficient[there]
+    ratio = 0.0 if problem.geometry == "line" else (problem.a / problem.b)[there]
+    found = [
+        (
+            first_yield(k, traction, friction, poisson_ratio=nu, axis_ratio=ratio),
+            shakedown_limit(k, traction, friction, axis_ratio=ratio),
+        )
+        for k, nu in strengths
+    ]
+    limits[:, there] = np.min(found, axis=0)
+    return limits[0], limits[1]
 
 
 def tangential_force(problem: Problem, columns: Columns) -> Array:

@@ -25,6 +25,8 @@ OF_CONTACT = (
     "wear_index_density",
     "stick_ratio",
     "mean_slip",
+    "first_yield",
+    "shakedown_limit",
 )
 """Variables that depend on the contact model but not on the wear law; no prediction has all of them."""
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis, has_band
-from wearlaw.figures.drawing import LINES, MARKERS, PALETTE, has_markers, marked_points
+from wearlaw.figures.curves import OUTSIDE, Curve, FigureData, Panel, PlotAxis, has_band, in_parts, shows_outside
+from wearlaw.figures.drawing import LINES, MARKERS, PALE, PALETTE, THIN, has_markers, marked_points
 
 DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
 SYMBOLS = dict(
@@ -45,6 +45,7 @@ def plotly_figure(figure: FigureData) -> Json:
         for curve in panel.curves
         for trace in _traces(curve, panel, number, markers)
     ]
+    data += _explained(figure)
     listed: set[str] = set()
     for trace in data:
         if trace["showlegend"]:
@@ -60,11 +61,40 @@ def plotly_figure(figure: FigureData) -> Json:
         "margin": {"l": 70, "r": 20, "t": 40, "b": 60},
         "legend": {"tracegroupgap": 0, **below, **_bands(figure)},
         "annotations": [_heading(panel, number) for number, panel in numbered if panel.title],
+        "shapes": [shape for number, panel in numbered for shape in _shapes(panel, number)],
     }
     for (number, panel), (across, up) in zip(numbered, _places(len(numbered)), strict=True):
         layout[f"xaxis{number}"] = {**_axis(panel.x), "domain": across, "anchor": f"y{number}"}
         layout[f"yaxis{number}"] = {**_axis(panel.y), "domain": up, "anchor": f"x{number}"}
     return {"data": data, "layout": layout}
+
+
+def _shapes(panel: Panel, number: str) -> list[Json]:
+    """Return the shades of a panel as rectangles below its curves; where two lie over each other it is darker.
+
+    plotly.js takes the ends of a rectangle on a logarithmic axis as they are, unlike the ends of the axis.
+    """
+    place = {"xref": f"x{number}", "yref": f"y{number} domain", "y0": 0, "y1": 1, "layer": "below"}
+    look = {"type": "rect", "line": {"width": 0}, "fillcolor": _grey(1)}
+    return [{**look, **place, "x0": low, "x1": high} for shade in panel.shades for low, high in shade.spans]
+
+
+def _grey(level: int) -> str:
+    """Return a translucent grey, for pages on bright and on dark ground."""
+    return f"rgba(128, 128, 128, {0.13 * level:g})"
+
+
+def _explained(figure: FigureData) -> list[Json]:
+    """Return traces without points that explain shades and thin lines in the legend."""
+    shades = {shade.label: shade.level for panel in figure.panels for shade in panel.shades}
+    looks: dict[str, Json] = {
+        label: {"mode": "markers", "marker": {"symbol": "square", "size": 12, "color": _grey(level)}}
+        for label, level in shades.items()
+    }
+    if shows_outside(figure):
+        looks[OUTSIDE] = {"mode": "lines", "line": {"color": "rgb(128, 128, 128)", "width": THIN}}
+    nowhere = {"type": "scatter", "x": [None], "y": [None], "hoverinfo": "skip", "showlegend": True}
+    return [{**nowhere, "name": literal(label), "legendgroup": literal(label), **look} for label, look in looks.items()]
 
 
 def _bands(figure: FigureData) -> Json:
@@ -91,24 +121,29 @@ def _traces(curve: Curve, panel: Panel, number: str, markers: bool) -> list[Json
         "yaxis": f"y{number}",
     }
     marked = markers or np.isfinite(curve.y).sum() == 1
+    inside, outside = in_parts(curve)
     style: Json = {"color": colour, "dash": DASHES[LINES[curve.dash % len(LINES)]], "width": 2}
     line = {
         **common,
         **(_sparse(curve, panel) if markers and not curve.points else {}),
         "x": _numbers(curve.x),
-        "y": _numbers(curve.y),
+        "y": _numbers(inside),
         "mode": "markers" if curve.points else "lines+markers" if marked else "lines",
         "line": style,
         "marker": _marker(curve, colour),
         "hovertemplate": _hover(curve, panel),
         "showlegend": True,
     }
+    lines = [line]
+    if outside is not None:
+        thin = {"line": {**style, "width": THIN}, "opacity": PALE, "showlegend": False}
+        lines.append({**line, "y": _numbers(outside), **thin})
     if curve.low is None or curve.high is None:
-        return [line]
+        return lines
     line["customdata"] = [list(ends) for ends in zip(_numbers(curve.low), _numbers(curve.high), strict=True)]
     if curve.points:
         return [{**line, "error_y": _bars(curve.y, curve.low, curve.high, colour)}]
-    return [{**common, **_band(curve, panel, colour), "showlegend": False}, line]
+    return [{**common, **_band(curve, panel, colour), "showlegend": False}, *lines]
 
 
 def _marker(curve: Curve, colour: str) -> Json:

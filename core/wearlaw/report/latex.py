@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Iterable
 from typing import Any
 
 import pandas as pd
@@ -23,6 +24,7 @@ _TEXT = {
     **{character: f"\\{character}" for character in "&%$#_{}"},
     "\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "µ": r"\textmu{}",
     "–": r"\textendash{}", "—": r"\textemdash{}", "…": r"\dots{}",
+    "†": r"\textdagger{}", "‡": r"\textdaggerdbl{}",
 }  # fmt: skip
 _SYMBOLS = str.maketrans(
     {
@@ -39,8 +41,8 @@ LONG = 40
 """Letters beyond which a text column wraps."""
 
 
-def latex_table(frame: pd.DataFrame) -> str:
-    """Return a table as a tabular, with the units in the heads of its columns."""
+def latex_table(frame: pd.DataFrame, footnotes: Iterable[str] = ()) -> str:
+    """Return a table as a tabular, with the units in the heads of its columns, and footnotes below it."""
     rows = [[cell(value) for value in row] for row in frame.itertuples(index=False, name=None)]
     lines = [
         r"% \usepackage{booktabs}",
@@ -51,6 +53,7 @@ def latex_table(frame: pd.DataFrame) -> str:
         *(_row(row) for row in rows),
         r"\bottomrule",
         r"\end{tabular}",
+        *(rf"\par{{\footnotesize {escaped(note)}}}" for note in footnotes),
     ]
     return "\n".join(lines) + "\n"
 
@@ -61,7 +64,8 @@ def cell(value: Any) -> str:
     if not shown.number:
         return escaped(shown.text)
     mantissa = shown.text.replace("inf", r"\infty")
-    return rf"${mantissa} \times 10^{{{shown.power}}}$" if shown.power else f"${mantissa}$"
+    number = rf"${mantissa} \times 10^{{{shown.power}}}$" if shown.power else f"${mantissa}$"
+    return number + escaped(shown.marks)
 
 
 def escaped(text: str) -> str:
@@ -83,5 +87,6 @@ def _columns(frame: pd.DataFrame) -> str:
     for number, dtype in enumerate(frame.dtypes):
         longest = max((len(str(value)) for value in frame.iloc[:, number]), default=0)
         text = rf"p{{{LONG / 100:g}\linewidth}}" if longest > LONG else "l"
-        kinds.append("r" if pd.api.types.is_numeric_dtype(dtype) else text)
+        marked = all(isinstance(value, tables.Marked) for value in frame.iloc[:, number])
+        kinds.append("r" if marked or pd.api.types.is_numeric_dtype(dtype) else text)
     return "".join(kinds)

@@ -6,7 +6,7 @@ Each can be written as CSV with all digits, and for LaTeX with the digits shown.
 from __future__ import annotations
 
 import numbers
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +18,7 @@ import xarray
 from wearlaw.models.contact_model import Model
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.study.results import along_main_axis, axes_of, main_axis
+from wearlaw.study.results import along_main_axis, axes_of, beyond_limits, main_axis
 from wearlaw.study.study import Study, used
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import label as label_of
@@ -27,23 +27,44 @@ from wearlaw.units.variables import name_of
 COLUMNS = 5
 """Number of values on the main axis at which wear rates are shown."""
 
+FOOTNOTES = {
+    "†": "outside the range, the materials or the body that the law was fitted to",
+    "*": "beyond first yield",
+    "‡": "beyond shakedown",
+}
+"""Meanings of the marks of wear rates and depths."""
+
 
 @dataclass(frozen=True, eq=False)
 class NamedTable:
-    """A table with its file name, an identifier, and its title. The heads of its columns hold the units."""
+    """A table with its file name, an identifier, its title and footnotes. The heads of its columns hold the units."""
 
     name: str
     title: str
     frame: pd.DataFrame
+    footnotes: tuple[str, ...] = ()
+
+
+class Marked(float):
+    """A number with marks such as "†" behind it, which footnotes explain; files of numbers leave them out."""
+
+    marks: str
+
+    def __new__(cls, value: float, marks: str) -> Marked:
+        """Return the number with its marks."""
+        found = super().__new__(cls, value)
+        found.marks = marks
+        return found
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell of a table: a text, or a number with its power of ten, if any."""
+    """A cell of a table: a text, or a number with its power of ten and its marks, if any."""
 
     text: str
     power: str = ""
     number: bool = False
+    marks: str = ""
 
 
 def cell(value: Any) -> Cell:
@@ -55,7 +76,7 @@ def cell(value: Any) -> Cell:
     if isinstance(value, numbers.Integral) or not isinstance(value, numbers.Real):
         return Cell(str(value), number=isinstance(value, numbers.Integral))
     mantissa, _, power = f"{value:.4g}".partition("e")
-    return Cell(mantissa, str(int(power)) if power else "", number=True)
+    return Cell(mantissa, str(int(power)) if power else "", number=True, marks=getattr(value, "marks", ""))
 
 
 def tables(study: Study) -> list[NamedTable]:
@@ -68,9 +89,23 @@ def summaries(study: Study) -> list[NamedTable]:
     """Return a short table of wear rates for each sweep."""
     creepage = study.case.rig.creepage
     return [
-        NamedTable(f"wear_rate_{name}", f"Sweep '{name}'{_fixed(sweep, creepage)}", summary(sweep, creepage))
+        _marked(f"wear_rate_{name}", f"Sweep '{name}'{_fixed(sweep, creepage)}", summary(sweep, creepage))
         for name, sweep in study.sweeps.items()
     ]
+
+
+def _marked(name: str, title: str, frame: pd.DataFrame) -> NamedTable:
+    """Return a table with the footnotes of its marks."""
+    marks = "".join(getattr(value, "marks", "") for value in frame.to_numpy().flat)
+    return NamedTable(name, title, frame, tuple(f"{mark} {FOOTNOTES[mark]}" for mark in FOOTNOTES if mark in marks))
+
+
+def _marks(outside: Any, beyond: Mapping[str, xarray.DataArray], model: str) -> list[str]:
+    """Return the marks of the operating points of a contact model, from where they are outside and beyond limits."""
+    limits = [np.atleast_1d(where.sel(contact_model=model).values) for where in beyond.values()]
+    beyond_yield, beyond_shakedown = limits or [np.zeros(np.shape(outside), bool)] * 2
+    last = np.where(beyond_shakedown, "‡", np.where(beyond_yield, "*", ""))
+    return [str(mark) for mark in np.char.add(np.where(outside, "†", ""), last)]
 
 
 def _fixed(sweep: xarray.Dataset, creepage: str) -> str:
@@ -88,13 +123,17 @@ def summary(sweep: xarray.Dataset, creepage: str) -> pd.DataFrame:
     line = along_main_axis(sweep, creepage)
     count = line.sizes[axis]
     line = line.isel({axis: sorted({round(step * (count - 1) / (COLUMNS - 1)) for step in range(COLUMNS)})})
+    beyond = beyond_limits(line)
     rows: dict[str, Any] = {}
     for pair in line.pair.values:
         one = line.sel(pair=pair)
-        rows[pair] = one.wear_rate.values
+        marks = _marks(one.outside_range.values > 0.0, beyond, one.pair_contact_model.item())
+        rates = {pair: one.wear_rate}
         if (one.wear_rate_high > one.wear_rate_low).any():
-            rows |= {f"{pair}, low end": one.wear_rate_low.values, f"{pair}, high end": one.wear_rate_high.values}
-    frame = pd.DataFrame(list(rows.values()), columns=[_four_digits(value) for value in line[axis].values])
+            rates |= {f"{pair}, low end": one.wear_rate_low, f"{pair}, high end": one.wear_rate_high}
+        rows |= {label: list(map(Marked, rate.values, marks)) for label, rate in rates.items()}
+    heads = [_four_digits(value) for value in line[axis].values]
+    frame = pd.DataFrame(list(rows.values()), columns=heads, dtype=object)
     frame.insert(0, f"{label_of('wear_rate')} by {label_of(axis, units={axis: line[axis].attrs['units']})}", list(rows))
     return frame
 
@@ -104,14 +143,20 @@ def profiles(study: Study) -> list[NamedTable]:
     found = []
     for name, profile in study.profiles.items():
         columns: dict[str, Any] = {"pair": profile.pair.values} if "y" in profile.coords else {}
+        beyond = beyond_limits(profile) if columns else {}
         for body in study.case.rig.bodies if columns else ():
             depth = profile[f"{body}_depth"]
             unit = depth.attrs["units"].replace("um", "µm")
-            columns[f"{body}: greatest depth [{unit}]"] = depth.max("y").values
+            greatest = dict(zip(profile.pair.values, depth.max("y").values, strict=True))
+            columns[f"{body}: greatest depth [{unit}]"] = [
+                Marked(value, *_marks([study.is_outside(profile, pair, body)], beyond, study.pair(pair).contact_model))
+                for pair, value in greatest.items()
+            ]
             columns[f"{body}: at y [mm]"] = depth.fillna(0.0).idxmax("y").values
         if columns:
             title = f"Profile '{name}': wear across the patch, {_per(profile, study)}"
-            found.append(NamedTable(f"profile_{name}", title, pd.DataFrame(columns)))
+            frame = pd.DataFrame({head: np.array(values, dtype=object) for head, values in columns.items()})
+            found.append(_marked(f"profile_{name}", title, frame))
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Required, TypedDict, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Required, TypeAlias, TypedDict, Unpack
 
 import numpy as np
 from pydantic import model_validator
@@ -31,6 +31,9 @@ from wearlaw.units.quantities import (
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+SpeedOf: TypeAlias = Literal["mean", "disc_1"]
+"""Whose surface speed a rig keeps: the mean of both discs or that of disc 1."""
 
 
 class TwinDiscConditions(TypedDict, total=False):
@@ -90,7 +93,10 @@ class TwinDisc(Rig):
     """
 
     name: ClassVar[str] = "twin_disc"
-    source: ClassVar[str] = "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(c)"
+    source: ClassVar[str] = (
+        "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(c), after Tassini et al., Wear"
+        " 268 (2010) 660-667, eqs. (1) and (2)"
+    )
     geometry: ClassVar[Geometry | None] = "line"
     example: ClassVar[Mapping[str, Any]] = {
         "max_pressure": "1500 MPa",
@@ -111,12 +117,21 @@ class TwinDisc(Rig):
     track_width: Length
     """Width of the running track across the rolling direction [m]."""
     rolling_speed: Speed
-    """Mean of the two discs' surface speeds, V [m/s]."""
+    """Surface speed that the rig keeps at every creepage, V [m/s] unless `speed_of` is "disc_1"."""
+    speed_of: SpeedOf = "mean"
+    """Whose surface speed the rig keeps: "mean", that of both discs, which is V; or "disc_1". If disc 1 keeps its speed
+    v1, then V = v1/(1 + ξ/2), the mean of v1 and v2 at the creepage ξ = (v1 - v2)/V."""
 
     if TYPE_CHECKING:
 
         def __init__(
-            self, *, disc_1: Disc, disc_2: Disc, track_width: QuantityLike, rolling_speed: QuantityLike
+            self,
+            *,
+            disc_1: Disc,
+            disc_2: Disc,
+            track_width: QuantityLike,
+            rolling_speed: QuantityLike,
+            speed_of: SpeedOf = "mean",
         ) -> None: ...
 
     @model_validator(mode="after")
@@ -136,8 +151,9 @@ class TwinDisc(Rig):
         track_width: Annotated[QuantityLike, Unit("mm")] = "10 mm",
         rotational_speed: Annotated[QuantityLike, Unit("rpm")] | None = None,
         rolling_speed: Annotated[QuantityLike, Unit("m/s")] | None = None,
+        speed_of: SpeedOf | None = None,
     ) -> TwinDisc:
-        """Return the rig of the University of Sheffield: steel discs of 47 mm, a 10 mm track, 400 rpm.
+        """Return the rig of the University of Sheffield: steel discs of 47 mm, a 10 mm track, disc 1 at 400 rpm.
 
         Parameters
         ----------
@@ -147,17 +163,23 @@ class TwinDisc(Rig):
             A disc in place of the standard one.
         track_width : Quantity or str
             Width of the running track [m].
-        rotational_speed : Quantity or str
-            Speed of disc 1 [rad/s], which sets the rolling speed.
+        rotational_speed : Quantity or str, optional
+            Rotational speed, ω [rad/s], by default 400 rpm. With the diameter of disc 1 it gives `rolling_speed`, ωD/2.
         rolling_speed : Quantity or str, optional
-            Rolling speed V [m/s], in place of `rotational_speed`.
+            Surface speed [m/s], in place of `rotational_speed`.
+        speed_of : {"mean", "disc_1"}, optional
+            Whose surface speed that is, and stays at every creepage. By default "disc_1" for a rotational speed, and
+            "mean" for a `rolling_speed`.
 
         Notes
         -----
-        Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, read in a secondary transcription.
+        Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, read in a secondary transcription. It gives 400 rpm
+        as the nominal speed; that disc 1 keeps it is an interpretation.
         """
         standard = Disc(diameter=diameter, material=material or steel())
         disc_1, disc_2 = disc_1 or standard, disc_2 or standard
+        if speed_of is None:
+            speed_of = "disc_1" if rolling_speed is None else "mean"
         if rolling_speed is None:
             rolling_speed = _surface_speed(disc_1, "400 rpm" if rotational_speed is None else rotational_speed)
         elif rotational_speed is not None:
@@ -167,6 +189,7 @@ class TwinDisc(Rig):
             disc_2=disc_2,
             track_width=track_width,
             rolling_speed=rolling_speed,
+            speed_of=speed_of,
         )
 
     @classmethod
@@ -206,23 +229,28 @@ class TwinDisc(Rig):
             If a condition lacks its unit or is out of bounds.
         """
         constants = self._constants
-        arrays = condition_arrays(conditions, TWIN_DISC, lambda a: constants["rolling_speed"] * np.abs(a["creepage"]))
+        arrays = condition_arrays(
+            conditions, TWIN_DISC, lambda a: self._mean_speed(a["creepage"]) * np.abs(a["creepage"])
+        )
         with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` rejects the result
             per_width = self._normal_force_per_width(arrays)
             half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
             max_pressure = hertz.max_pressure(per_width, half_width)
         check_sizes({"half width": half_width, "max pressure": max_pressure}, arrays["friction_coefficient"])
-        shape = arrays["creepage"].shape
-        same: dict[str, Any] = self._same
+        creepage = arrays["creepage"]
+        shape = creepage.shape
+        same, rolling_speed = self._same, self._mean_speed(creepage)
         if shape:
             same = {name: np.broadcast_to(value, shape) for name, value in same.items()}
+            rolling_speed = np.broadcast_to(rolling_speed, shape)
         return Problem(
             geometry="line",
             a=half_width,
             normal_force=per_width * constants["track_width"],
             max_pressure=max_pressure,
             friction_coefficient=arrays["friction_coefficient"],
-            longitudinal_creepage=arrays["creepage"],
+            longitudinal_creepage=creepage,
+            rolling_speed=rolling_speed,
             traction_coefficient=arrays.get("traction_coefficient"),
             bodies=self._bodies,
             **same,
@@ -237,6 +265,14 @@ class TwinDisc(Rig):
     def _bodies(self) -> dict[str, Body]:
         discs = {"disc_1": self.disc_1, "disc_2": self.disc_2}
         return {name: Body(disc.material, 0.5 * scalar_si(disc.diameter, "m")) for name, disc in discs.items()}
+
+    def _mean_speed(self, creepage: Array) -> Array:
+        """Return V [m/s], the mean of the surface speeds, at creepages ξ [-]."""
+        kept: Array = self._constants["rolling_speed"]
+        if self.speed_of == "mean":
+            return kept
+        speed: Array = kept / (1.0 + 0.5 * creepage[()])  # of one point a scalar, much faster than an array of it
+        return speed
 
     def _normal_force_per_width(self, arrays: dict[str, Array]) -> Array:
         constants = self._constants
@@ -271,9 +307,13 @@ class TwinDisc(Rig):
     def _same(self) -> dict[str, Any]:
         """The fields of `Problem` that are the same at all operating points, as SI scalars."""
         constants = self._constants
-        kept = ("effective_modulus", "poisson_ratio", "rolling_speed", "density")
         none, b = np.float64(0.0), 0.5 * constants["track_width"]
-        return {**{name: constants[name] for name in kept}, "b": b, "lateral_creepage": none, "spin": none}
+        return {
+            **{name: constants[name] for name in ("effective_modulus", "poisson_ratio", "density")},
+            "b": b,
+            "lateral_creepage": none,
+            "spin": none,
+        }
 
 
 def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:

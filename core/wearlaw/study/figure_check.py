@@ -135,7 +135,9 @@ class Contents:
         units = dict(UNITS)
         resolved = [one for one in across if one.scale == "cells"]
         for body in self.rig.bodies if resolved else ():
-            columns = resolved[0].wear_profile(body).data_vars.items()
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
+                columns = resolved[0].wear_profile(body).data_vars.items()
             units |= {f"{body}_{name}": column.attrs["units"] for name, column in columns}
         return Variables(("x", "y"), ACROSS, units)
 

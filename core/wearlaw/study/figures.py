@@ -2,25 +2,28 @@
 
 Line styles stand for contact models. Colours stand for wear laws in figures of wear rates, for variables along the
 patch or where several are shown, and otherwise for contact models too. Bands show the published range of a law's
-parameters.
+parameters. Parts of curves outside the range of their law are thin and pale, and parts of panels beyond first yield or
+shakedown are shaded.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray
 
-from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis, Shade
 from wearlaw.models.labels import labels
 from wearlaw.study.figure_spec import ACROSS, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
 from wearlaw.study.measured import measured_points
-from wearlaw.study.results import Results, along, main_axis
+from wearlaw.study.results import LIMITS, Results, along, beyond_limits, main_axis
 from wearlaw.units.variables import UNITS, label, name_of
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from wearlaw.arrays.array import Array
     from wearlaw.study.grid import Grid
 
@@ -63,15 +66,21 @@ def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
         x = spec.x
         if spec.sweep:
             curves = _over_sweep(results, spec, window, axis)
+            shades = _over_limits(results, spec, window, axis)
         elif "y" in results.profiles[spec.profile or ""].coords:
             x, body = "y", window.body or next(iter(results.case.rig.bodies))
             curves = _across_the_patch(results, spec, window, body)
             profile = results.profiles[spec.profile or ""]
             units |= {name: profile[f"{body}_{name}"].attrs["units"] for name in window.shown}
+            shades = _all_over(results.profiles[spec.profile or ""], spec, curves)
         else:
             curves = _along_the_patch(results, spec, window)
+            shades = _all_over(results.profiles[spec.profile or ""], spec, curves)
         title = ", ".join(filter(None, (window.title, *heads)))
-        panels.append(Panel(*_axes(x, window, curves, units), curves=tuple(curves), title=title))
+        axes = _axes(x, window, curves, units)
+        low, high = axes[0].ends or (-np.inf, np.inf)
+        seen = (shade for shade in shades if any(start < high and end > low for start, end in shade.spans))
+        panels.append(Panel(*axes, curves=tuple(curves), title=title, shades=tuple(seen)))
     caption = spec.caption or f"At {', '.join(fixed.values())}."
     return FigureData(name=name, title=spec.title or results.case.title, panels=tuple(panels), caption=caption)
 
@@ -113,7 +122,59 @@ def _rate(results: Results, line: xarray.Dataset, x: str, pair: str) -> Curve:
         *_style(results, pair),
         low=low if has_band else None,
         high=high if has_band else None,
+        outside=one.outside_range.values > 0.0,
     )
+
+
+def _over_limits(results: Results, spec: FigureSpec, window: Window, axis: str) -> list[Shade]:
+    """Return where the contact of any model of a panel is beyond its elastic limits, over a sweep."""
+    line = along(results.sweeps[spec.sweep or ""], axis)
+    models = spec.contact_models or line.contact_model.values.tolist()
+    if window.shown == ("wear_rate",):
+        models = line.pair_contact_model.sel(pair=list(spec.pairs or line.pair.values)).values.tolist()
+    tracks = [(_magnitude(line, spec.x, model), model) for model in dict.fromkeys(models)]
+    shades = []
+    for level, (limit, beyond) in enumerate(beyond_limits(line).items(), start=1):
+        spans = [span for x, model in tracks for span in _spans(x, beyond.sel(contact_model=model).values)]
+        if window.x_scale == "log":
+            positive = np.concatenate([x[x > 0.0] for x, _ in tracks])
+            spans = [(max(low, positive.min()), high) for low, high in spans if high > 0.0]
+        if spans:
+            shades.append(Shade(LIMITS[limit], level, tuple(_merged(spans))))
+    return shades
+
+
+def _all_over(profile: xarray.Dataset, spec: FigureSpec, curves: list[Curve]) -> list[Shade]:
+    """Return shades over the whole patch if the contact of any model is beyond its elastic limits."""
+    models = list(spec.contact_models or profile.contact_model.values)
+    x = np.concatenate([curve.x for curve in curves])
+    return [
+        Shade(LIMITS[limit], level, ((float(x.min()), float(x.max())),))
+        for level, (limit, beyond) in enumerate(beyond_limits(profile).items(), start=1)
+        if beyond.sel(contact_model=models).any()
+    ]
+
+
+def _spans(x: Array, beyond: NDArray[np.bool_]) -> Iterator[tuple[float, float]]:
+    """Yield the ends of each run of points beyond a limit, half-way to the next point on either side."""
+    known = np.flatnonzero(np.isfinite(x))
+    order = known[np.argsort(x[known], kind="stable")]
+    x, beyond = x[order], beyond[order]
+    steps = np.flatnonzero(np.diff(np.concatenate([[False], beyond, [False]]).astype(int)))
+    edges = np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]])
+    for first, after in zip(steps[::2], steps[1::2], strict=True):
+        yield float(edges[first]), float(edges[after])
+
+
+def _merged(spans: Iterable[tuple[float, float]]) -> Iterator[tuple[float, float]]:
+    """Yield the union of spans as spans that do not touch."""
+    start, end = np.inf, -np.inf
+    for low, high in sorted(spans):
+        if low > end and start <= end:
+            yield start, end
+        start, end = (low, high) if low > end else (start, max(end, high))
+    if start <= end:
+        yield start, end
 
 
 def _of_contact(
@@ -171,7 +232,8 @@ def _along_the_patch(results: Results, spec: FigureSpec, window: Window) -> list
         elif variable == "wear_rate":
             for pair in spec.pairs or profile.pair.values.tolist():
                 one = profile.wear_rate.sel(pair=pair).dropna("x")
-                curves.append(Curve(pair, one.x.values, one.values, *_style(results, pair)))
+                outside = np.full(one.shape, profile.outside_range.sel(pair=pair).item() > 0.0)
+                curves.append(Curve(pair, one.x.values, one.values, *_style(results, pair), outside=outside))
         else:
             models = spec.contact_models or profile.contact_model.values.tolist()
             alike = 1 if variable == "pressure" else None
@@ -188,7 +250,8 @@ def _across_the_patch(results: Results, spec: FigureSpec, window: Window, body: 
         if "pair" in values.dims:
             for pair in spec.pairs or profile.pair.values.tolist():
                 one = values.sel(pair=pair).dropna("y")
-                curves.append(Curve(pair, one.y.values, one.values, *_style(results, pair)))
+                outside = np.full(one.shape, results.is_outside(profile, pair, body))
+                curves.append(Curve(pair, one.y.values, one.values, *_style(results, pair), outside=outside))
         else:
             for model in spec.contact_models or profile.contact_model.values.tolist():
                 one = values.sel(contact_model=model).dropna("y")
@@ -211,7 +274,7 @@ def _dash(results: Results, model: str) -> int:
 
 def _style(results: Results, label_of_pair: str) -> tuple[int, int]:
     """Return the colour of a pair's wear law and the dash of its contact model."""
-    (pair,) = (pair for pair in results.pairs if pair.label == label_of_pair)
+    pair = results.pair(label_of_pair)
     return labels(results.case.wear_laws).index(pair.wear_law), _dash(results, pair.contact_model)
 
 

@@ -10,7 +10,7 @@ from wearlaw.errors import CompositionError, InputError
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.labels import labelled
 from wearlaw.models.wear_law import WearLaw
-from wearlaw.pipeline.composition import check_geometry, warn_of_geometry
+from wearlaw.pipeline.composition import check_geometry
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.study.case import Case
@@ -68,8 +68,8 @@ def compose(
                 with notes.of(f"{law_label} on {contact_label}"):
                     check_geometry(rig, model, geometry or rig.geometry)
                     pipeline = rig | model | law
-                    if geometry is not None:
-                        warn_of_geometry(rig.geometry, model, pipeline.scale, law, geometry, stacklevel=1)
+                    if problem is not None:
+                        pipeline.warn_of_problem(problem, stacklevel=1)
                     pairs.append(Pair(contact_label, law_label, pipeline))
             except CompositionError as error:
                 notes.add(f"{law_label} on {contact_label} is left out: {error}")

@@ -7,8 +7,13 @@ from dataclasses import dataclass
 import xarray
 
 from wearlaw.errors import InputError, did_you_mean
+from wearlaw.pipeline.composition import fitted_to_other_body
 from wearlaw.study.case import Case
 from wearlaw.study.pairs import Pair
+from wearlaw.units.variables import UNITS
+
+LIMITS = {"first_yield": "beyond first yield", "shakedown_limit": "beyond shakedown"}
+"""The limits of the maximum pressure, with words for a contact beyond them."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +36,17 @@ class Results:
         if name not in self.sweeps:
             raise InputError(f"the case has no sweep '{name}'{did_you_mean(name, self.sweeps)} Add [sweeps.{name}]")
         return self.sweeps[name]
+
+    def pair(self, label: str) -> Pair:
+        """Return the pair with a label."""
+        (found,) = (pair for pair in self.pairs if pair.label == label)
+        return found
+
+    def is_outside(self, profile: xarray.Dataset, label: str, body: str) -> bool:
+        """Return whether the depth that a pair gives for a body lies outside what its law was fitted to."""
+        law = self.pair(label).pipeline.wear_law
+        other = fitted_to_other_body(self.case.rig.bodies, law, body)
+        return other or bool(profile.outside_range.sel(pair=label).item())
 
 
 def axes_of(sweep: xarray.Dataset) -> list[str]:
@@ -66,3 +82,11 @@ def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
 def _other(point: xarray.Dataset) -> str:
     """Return a variable of a sweep without axes."""
     return next(str(name) for name in point.data_vars if not point[name].dims)
+
+
+def beyond_limits(dataset: xarray.Dataset) -> dict[str, xarray.DataArray]:
+    """Return where the contact of each model is beyond each of `LIMITS`; {} if they are not known."""
+    needed = ("max_pressure", *LIMITS)
+    if any(name not in dataset or dataset[name].attrs.get("units") != UNITS[name] for name in needed):
+        return {}
+    return {limit: dataset.max_pressure > dataset[limit] for limit in LIMITS}

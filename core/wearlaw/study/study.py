@@ -46,9 +46,11 @@ if TYPE_CHECKING:
     from wearlaw.plugins.shelf import Shelf
     from wearlaw.study.grid import Grid
 
-RATES, BAND = ("wear_rate", "wear_rate_error"), ("wear_rate_low", "wear_rate_high")
+RATES, BAND = ("wear_rate", "wear_rate_error", "outside_range"), ("wear_rate_low", "wear_rate_high")
 """Variables that differ from pair to pair: the wear rate, and its band over the published parameters of the law."""
 
+LIMITS = ("max_pressure", "first_yield", "shakedown_limit")
+"""Variables that show whether the contact of a profile stays elastic, if the yield stress of a body is known."""
 
 PROFILE_STRIPS = 101
 """Strips of a profile across the patch, if the contact model can choose them."""
@@ -318,8 +320,14 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
     The profile of a line runs along the patch, over x. That of an ellipse runs across it, over y, with the wear of
     each body.
     """
+    limits = LIMITS if len(offered(prediction, LIMITS)) == len(LIMITS) else ()
+    whole = {name: ((), getattr(prediction, name).magnitude, {"units": UNITS[name]}) for name in limits}
+    of_law = {"outside_range": ((), prediction.outside_range.magnitude, {"units": ""})}
     if prediction.problem.geometry == "line":
-        return ["wear_rate"], prediction.profile
+        return ["wear_rate", *of_law], prediction.profile.assign(whole | of_law)
     across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in rig.bodies}
     named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
-    return [name for name in named if not name.endswith("_sliding_distance")], xarray.Dataset(named)
+    if not named:
+        return [], xarray.Dataset()
+    shown = [name for name in named if not name.endswith("_sliding_distance")]
+    return [*shown, *of_law], xarray.Dataset(named).assign(whole | of_law)

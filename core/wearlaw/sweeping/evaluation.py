@@ -21,6 +21,7 @@ from wearlaw.errors import CompositionError, InputError, did_you_mean
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import unsolved
+from wearlaw.pipeline.ranges import Seen
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.units.quantities import Quantity
 from wearlaw.units.registry import symbol
@@ -59,8 +60,8 @@ class BlockRecord:
     overload : Overload or None
         The one furthest beyond first yield.
     ranges : mapping of str to tuple
-        For each variable with a range in the law: lowest and highest mean over the patch in SI, and the number of
-        points outside.
+        For each variable that leaves the range of the law: lowest and highest mean over the patch in SI, and the number
+        of points outside.
     checksum : int
         Checksum of the outputs and of the values above.
     """
@@ -81,8 +82,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     watch = job.pipeline.range_watch()
     prediction = job.pipeline.watched(problem, watch, on_block)
     outputs = {name: _in_unit(getattr(prediction, name), unit) for name, unit in job.units.items()}
-    ranges = {name: (seen.lowest, seen.highest, seen.outside) for name, seen in watch.seen.items()}
-    seen = BlockRecord(watch.points, watch.overload, ranges, checksum=0)
+    seen = BlockRecord(watch.points, watch.overload, watch.seen, checksum=0)
     return outputs, replace(seen, checksum=checksum(seen, outputs.values()))
 
 
@@ -136,9 +136,9 @@ def range_warnings(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> li
     every = list(blocks)
     watch = pipeline.range_watch()
     watch.points = sum(one.points for one in every)
-    for name, seen in watch.seen.items():
-        lowest, highest, outside = zip(*(one.ranges[name] for one in every), strict=True)
-        seen.lowest, seen.highest, seen.outside = min(lowest), max(highest), sum(outside)
+    for one in every:
+        for name, seen in one.ranges.items():
+            watch.see_outside(name, Seen(*seen))
     watch.overload = max((one.overload for one in every if one.overload), default=None)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

@@ -14,7 +14,7 @@ import xarray
 
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, ResumeWarning, WorkerWarning
-from wearlaw.pipeline.composition import check_one_patch, warn_of_geometry, warn_of_unlike_materials
+from wearlaw.pipeline.composition import check_one_patch, warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
@@ -152,11 +152,11 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
     for dim in points.dims:
         line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
         problems.append(pipeline.rig.checked_problem({**not_given, **line.conditions()}))
-    first, model, scale = problems[0], pipeline.contact_model, pipeline.scale
+    first = problems[0]
     check_one_patch(first, pipeline.rig, "sweep")
-    for law in pipeline.laws:
-        warn_of_geometry(pipeline.rig.geometry, model, scale, law, first.geometry, stacklevel=4)
-    warn_of_unlike_materials(model, min(problems, key=lambda one: one.friction_coefficient.min()), stacklevel=4)
+    pipeline.warn_of_problem(first, stacklevel=4)
+    slipperiest = min(problems, key=lambda one: one.friction_coefficient.min())
+    warn_of_unlike_materials(pipeline.contact_model, slipperiest, stacklevel=4)
     return first.flatten()[:1]
 
 

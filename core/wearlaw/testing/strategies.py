@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from hypothesis import strategies as st
@@ -19,7 +19,7 @@ from wearlaw.contact import hertz
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Problem
-from wearlaw.rigs.twin_disc import Disc, TwinDisc
+from wearlaw.rigs.twin_disc import Disc, SpeedOf, TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.testing.problems import SATURATION, at_reduced, creeping, translation
 from wearlaw.testing.sampling import CONDITIONS_DRAWN, NODE_VALUES_DRAWN, aimed, contact_from_shares
@@ -54,7 +54,7 @@ def materials(draw: st.DrawFn) -> Material:
 
 @st.composite
 def rigs(draw: st.DrawFn) -> TwinDisc:
-    """Draw a rig of two discs of unlike sizes and materials; disc 2 may be flat."""
+    """Draw a rig of two discs of unlike sizes and materials, of either `speed_of`; disc 2 may be flat."""
     diameters = draw(log_uniform(2e-3, 20.0)), draw(st.just(np.inf) | log_uniform(2e-3, 20.0))
     disc_1, disc_2 = (Disc(diameter=Q(diameter, "m"), material=draw(materials())) for diameter in diameters)
     return TwinDisc(
@@ -62,6 +62,7 @@ def rigs(draw: st.DrawFn) -> TwinDisc:
         disc_2=disc_2,
         track_width=Q(draw(log_uniform(0.1, 1e3)), "mm"),
         rolling_speed=Q(draw(log_uniform(1e-2, 1e2)), "m/s"),
+        speed_of=draw(st.sampled_from(get_args(SpeedOf))),
     )
 
 

@@ -20,7 +20,7 @@ from wearlaw.figures.plot import plot
 from wearlaw.models.wear_law import Numbers
 from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_wear
-from wearlaw.pipeline.composition import check_traction, warn_of_geometry, warn_of_unlike_materials
+from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
 from wearlaw.uncertainties.inputs import OTHERS, Known, Uncertain, check_samples, parameter, split
@@ -254,7 +254,7 @@ class Uncertainty:
 
         wear = integrate_wear(model, self._law, flat, scale, see if stacklevel is not None else None, p)
         if stacklevel is not None:
-            warn_of_geometry(predict.rig.geometry, model, scale, self._law, flat.geometry, stacklevel + 1)
+            predict.warn_of_problem(flat, stacklevel + 1)
             warn_of_unlike_materials(model, flat, stacklevel + 1)
             watch.warn(stacklevel)
         return wear.wear_rate.reshape(shape)

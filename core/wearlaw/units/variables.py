@@ -121,6 +121,19 @@ VARIABLES: Mapping[str, Variable] = {
     "mean_slip": Variable(
         "%", "mean slip", "Mean magnitude of the relative slip over the whole patch", "", "not negative"
     ),
+    "first_yield": Variable(
+        "MPa", "maximum pressure at first yield", "Maximum pressure at which a body first yields under this traction"
+    ),
+    "shakedown_limit": Variable(
+        "MPa", "maximum pressure at shakedown", "Maximum pressure at the shakedown limit under this traction"
+    ),
+    "outside_range": Variable(
+        "",
+        "outside the range of the law",
+        "1 where a point lies outside the range or the materials that the law was fitted to, otherwise 0",
+        "",
+        "not negative",
+    ),
     "wear_rate": Variable(
         WEAR_RATE, "wear rate", "Mass lost per metre rolled and contact area, mean over the patch", "", "not negative"
     ),
