@@ -385,7 +385,7 @@ class Contact:
     @property
     def slip_area(self) -> Array:
         """Area of the part of the patch that slips [m²], of the batch shape."""
-        return self.sum_over_nodes(np.where(self.slip != 0, self.area, 0.0))  # in full slip the same bits as `patch_area`
+        return self.sum_over_nodes(np.where(self.slip != 0, self.area, 0.0))  # in full slip to the bit `patch_area`
 
     @property
     def stick_ratio(self) -> Array:
