@@ -109,6 +109,11 @@ def test_a_patch_as_one_node_holds_means_that_dissipate_the_same() -> None:
     assert patch.pressure.shape == (2, 1, 1)
     assert patch.patch_area == pytest.approx([area] * 2, rel=4 * EPS)
     assert patch.traction[:, 0, 0] == pytest.approx([5e3 / area] * 2, rel=4 * EPS)
+    assert patch.traction_x[:, 0, 0] == pytest.approx([3e3 / area] * 2, rel=4 * EPS)
+    assert patch.traction_y[:, 0, 0] == pytest.approx([-4e3 / area] * 2, rel=4 * EPS)
+    assert patch.pressure[:, 0, 0] == pytest.approx([5e4 / area, 1e5 / area], rel=4 * EPS)
+    assert patch.traction_bound[:, 0, 0] == pytest.approx([1.5e4 / area, 3e4 / area], rel=8 * EPS)
+    assert patch.strip_width[:, 0] == pytest.approx([8e-3] * 2, rel=4 * EPS)
     assert patch.cell_wear_index == pytest.approx(patch.wear_index, rel=8 * EPS)
     assert (patch.slip_x[0, 0, 0], patch.slip_y[0, 0, 0]) == pytest.approx((2e-3, -1e-3), rel=4 * EPS)
 
@@ -132,6 +137,15 @@ def test_patch_means_of_strips_are_those_of_a_model_that_knows_the_forces_alone(
     assert means.traction[:, 0, 0] == pytest.approx(5e3 / area, rel=8 * EPS)
     assert means.slip[:, 0, 0] == pytest.approx(problem().rigid_slip, rel=2 * EPS)
     assert means.wear_index_density[:, 0, 0] * area == pytest.approx(contact.wear_index, rel=8 * EPS)
+    assert means.traction_x[:, 0, 0] == pytest.approx(3e3 / area, rel=8 * EPS)
+    assert means.traction_y[:, 0, 0] == pytest.approx(-4e3 / area, rel=8 * EPS)
+    assert means.strip_width == pytest.approx(np.full((2, 1), 6e-3), rel=8 * EPS)
+    assert means.traction_bound[0, 0, 0] == pytest.approx(3e8, rel=8 * EPS)
+    # A node without area, such as one of a zone without length, has any bound.
+    empty = contact.area.copy()
+    empty[:, 0] = 0.0
+    bound = np.where(empty == 0.0, np.inf, contact.traction_bound)
+    means = contact.replaced(area=empty, traction_bound=bound).patch_mean()
     assert means.traction_bound[0, 0, 0] == pytest.approx(3e8, rel=8 * EPS)
 
 
