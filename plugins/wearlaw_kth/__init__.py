@@ -122,12 +122,16 @@ class KTH(wl.WearLaw):
         """Return every border of the map: the rate jumps there."""
         return self.breakpoints(p)
 
-    @cached_property
+    @property
     def calibration(self) -> wl.Calibration | None:
         """The record of the published map; None with borders or coefficients of your own."""
+        return calibration() if self._is_published else None
+
+    @cached_property
+    def _is_published(self) -> bool:
         ends: tuple[Literal["low", "mid", "high"], ...] = ("low", "mid", "high")
         published = [KTH(coefficient=end, hardness=self.hardness).explicit() for end in ends]
-        return calibration() if self.explicit() in published else None
+        return self.explicit() in published
 
     def explicit(self) -> KTH:
         """Return this law with numbers for k."""

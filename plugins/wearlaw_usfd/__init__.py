@@ -32,10 +32,10 @@ TESTED = (
 """Range of the means over the patch in the tests, rounded outwards.
 
 The tests had maximum pressures from 900 to 1800 MPa, of which the mean is π/4, and creepages up to 20 % at 400 rpm on
-discs of 47 mm, which is 0.984 m/s. If disc 1 kept that speed, the highest slip speed was 0.179 m/s; if the mean did,
-it was 0.197 m/s. The source does not say which, so the range has the higher one. At 20 % the pressure was 1500 MPa:
-Tγ/A is 0.2 · 0.46 · (π/4) 1500 MPa with the μ of the paper. The lower ends of slip speed and Tγ/A are those of the
-law, where nothing wears.
+discs of 47 mm, which is 0.984 m/s. If disc 1 kept that speed, the highest slip speed was 0.179 m/s; if the mean did, it
+was 0.197 m/s. The source does not say which, so the range has the higher one. At 20 % the pressure was 1500 MPa: Tγ/A
+is 0.2 · 0.46 · (π/4) 1500 MPa with the μ of the paper. The lower ends of slip speed and Tγ/A are those of the law, at
+which nothing wears.
 """
 
 Slope = Annotated[wl.Quantity, wl.Unit("ug/m/N")]

@@ -192,8 +192,6 @@ class WearLaw(Model):
         p = self.numbers if p is None else p
         with Blame(self, p):
             rate = self.rate(contact, p)
-        if type(rate) is np.float64:  # of one point, which has no batch axis; the shape says what is wrong
-            rate = np.asarray(rate)
         if type(rate) is not np.ndarray or rate.dtype != np.float64:
             raise ModelError(
                 f"wear law '{self.name}' returned rates of type {type_name(rate)}; it must return a float64 array"

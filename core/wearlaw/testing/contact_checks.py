@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import dataclasses
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -94,9 +95,9 @@ def _differing(problem: Problem, other: Problem) -> list[str]:
     return [name for name, value in _values(problem).items() if not np.array_equal(value, _values(other)[name])]
 
 
-def _values(problem: Problem) -> dict[str, object]:
+def _values(problem: Problem) -> dict[str, Any]:
     """Return the fields of a problem, and of its strips if it has any."""
-    records = [problem] if problem.strips is None else [problem, problem.strips]
+    records: list[Any] = [problem] if problem.strips is None else [problem, problem.strips]
     fields = [(record, field.name) for record in records for field in dataclasses.fields(record)]
     return {name: getattr(record, name) for record, name in fields if name != "strips"}
 

@@ -183,7 +183,7 @@ class Shape(ABC):
 class Line(Shape):
     """Discs with parallel axes: one axis of nodes, one creepage."""
 
-    geometry = "line"
+    geometry: ClassVar[Geometry] = "line"
     where = "on a line"
     unit = "the creepage μa/R"
     problems = line_problems()
@@ -288,7 +288,7 @@ class Line(Shape):
 class Ellipse(Shape):
     """A wheel on a rail: nodes on strips, two creepages and a spin."""
 
-    geometry = "ellipse"
+    geometry: ClassVar[Geometry] = "ellipse"
     where = "on an ellipse"
     unit = "the creepage that linear theory needs for μN"
     problems = elliptic_problems()
@@ -377,7 +377,7 @@ class Ellipse(Shape):
 class Patch(Ellipse):
     """A patch of strips with a given pressure, fuller on one side than an ellipse and shorter on the other."""
 
-    geometry = "strips"
+    geometry: ClassVar[Geometry] = "strips"
     where = "on strips"
     problems = Ellipse.problems.map(in_strips)
     pairs = Ellipse.pairs.map(lambda pair: (in_strips(pair[0]), in_strips(pair[1])))
@@ -393,7 +393,8 @@ class Patch(Ellipse):
         strips = problem.strips
         assert strips is not None
         within: NDArray[np.bool_] = np.abs(contact.x) <= strips.half_length[..., None, :] * (1.0 + SAME)
-        return within & (contact.y == strips.y[..., None, :])
+        on_strip: NDArray[np.bool_] = contact.y == strips.y[..., None, :]
+        return within & on_strip
 
     def longer(self, problem: Problem, factor: float) -> Problem:
         """Return the problem with strips of another length."""
