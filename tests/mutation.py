@@ -48,9 +48,10 @@ TESTS = {
     "wearlaw_shen_hedrick_elkins": "plugins/test_shen_hedrick_elkins.py",
     "wearlaw_usfd": "plugins/test_usfd.py",
     "wearlaw.pipeline.composition": "core/test_composition.py core/test_pipeline.py core/test_wheel_rail.py"
-    " core/test_wheel_rail_result.py",
+    " core/test_wheel_rail_result.py core/test_unlike_materials.py core/test_several_patches.py",
     "wearlaw.contact.hertz": "core/test_hertz.py core/test_unlike_materials.py",
     "wearlaw.contact.hertz_ellipse": "core/test_hertz_ellipse.py",
+    "wearlaw.numerics.splits": "core/test_splits.py",
     "wearlaw.settings.parameters": "core/test_varying.py",
     "wearlaw.pipeline.pipeline": "core/test_composition.py core/test_pipeline.py core/test_uncertainty.py"
     " core/test_uncertainty_refusals.py core/test_inverse.py core/test_wheel_rail.py core/test_wheel_rail_result.py"

@@ -223,3 +223,10 @@ def test_a_locomotive_wheel_has_the_patch_of_the_program_contact(
     assert number(hertz_ellipse.pressure, 1.1 * a / 48, 1.1 * b / 44, a, b, p0) / 1e6 == pytest.approx(
         pressure, abs=0.05
     )
+
+
+def test_the_pressure_is_zero_a_rounding_beyond_the_edge() -> None:
+    beyond = np.nextafter(1.0, 2.0)
+    a, b, p0 = np.array(6e-3), np.array(4e-3), np.array(1e9)
+    assert hertz_ellipse.pressure(np.array(0.0), b * beyond, a, b, p0) == 0.0
+    assert hertz_ellipse.pressure(a * beyond, np.array(0.0), a, b, p0) == 0.0
