@@ -32,8 +32,8 @@ FORCES = ("fx", "fy", "mz")
 def influence(x: Array, y: Array, dx: float, dy: float, nu: float) -> tuple[Array, Array, Array]:
     """πG times the relative displacement by unit traction on a rectangle: along x by x, along y by y, and mixed.
 
-    Cerruti's solution for two like half-spaces (K. L. Johnson, Contact Mechanics, 1985, section 3.6). The mixed one
-    has the sign of tractions along the rolling direction at positions against it.
+    Cerruti's solution for two like half-spaces, after the source of CONTACT (E. A. H. Vollebregt, src/m_inflcf.f90).
+    The mixed one has the sign of tractions along the rolling direction at positions against it.
     """
     along, across, mixed = (np.zeros_like(x) for _ in range(3))
     for i, sign_i in ((x + dx / 2, 1), (x - dx / 2, -1)):

@@ -3,8 +3,8 @@
 All fields are functions of v = (a - x)/a, the distance from the trailing edge in half widths, in which nothing
 cancels: 0 at the trailing edge, 2 at the leading edge. Pressures are in Pa, the load P is per unit width.
 
-Sources: K. L. Johnson, Contact Mechanics, 1985, sections 4.2 and 8.3; J. J. Kalker, Vehicle System Dynamics 11
-(1982) 1-13; Tassini et al., Wear 268 (2010) 660-667.
+Sources: K. L. Johnson, Contact Mechanics, 1985, section 4.2; F. W. Carter, Proc. R. Soc. A 112 (1926) 151-157, and
+J. J. Kalker, Vehicle System Dynamics 11 (1982) 1-13, after Tassini et al., Wear 268 (2010) 660-667.
 """
 
 from __future__ import annotations

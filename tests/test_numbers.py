@@ -153,7 +153,7 @@ def test_the_reference_meets_a_second_integral_in_another_variable(within: float
     "paper",
     "E* = {modulus} GPa, a = {half_width} mm, A = {area} mm², μN = {limit} N, full slip from {exact} %"
     " (`exact`) and {fastsim} % (`fastsim`)",
-    source="Johnson 1985, sections 4.2 and 8.3, by hand; Tassini et al. 2010, section 5.2",
+    source="Johnson 1985, section 4.2, and Carter 1926, by hand; Tassini et al. 2010, section 5.2",
     held_to="all digits shown",
     modulus="112.0212",
     half_width="0.31467",

@@ -25,7 +25,8 @@ class Linear(wl.CreepForceModel):
     name: ClassVar[str] = "linear"
     source: ClassVar[str] = (
         "J. J. Kalker, On the rolling contact of two elastic bodies in the presence of dry friction, doctoral thesis,"
-        " Delft University of Technology, 1967"
+        " Delft University of Technology, 1967; forces after the source of the program CONTACT"
+        " (E. A. H. Vollebregt), moment after another program"
     )
 
     interpolation: wl.kalker.Interpolation = "scaled"

@@ -28,7 +28,7 @@ def at(*creepages: float) -> Points:
 
 
 def by_mpmath(force: float, creepage: float, friction: float) -> mpmath.mpf:
-    """Return the mean rate with 30 digits from the formulas in x (Johnson 1985, sections 4.2 and 8.3)."""
+    """Return the mean rate with 30 digits from the formulas in x (Johnson 1985, section 4.2; Carter 1926)."""
     with mpmath.workdps(30):
         p = [mpmath.mpf(value) for value in PARAMETERS]
         radius, modulus, width, m_m, q_s, m_c, tr_sc = p
@@ -62,7 +62,7 @@ def by_mpmath(force: float, creepage: float, friction: float) -> mpmath.mpf:
 @pytest.mark.validates(
     "integration",
     "The reference of the accuracy page",
-    source="mpmath quadrature in 30 digits (Johnson 1985, sections 4.2 and 8.3)",
+    source="mpmath quadrature in 30 digits (Johnson 1985, section 4.2; Carter 1926)",
     held_to="{roundings} ε, relative",
     roundings=50,
 )

@@ -29,7 +29,7 @@ SATURATION = FRICTION * HALF_WIDTH / RADIUS
 
 
 def slip_at(x: float, creepage: float) -> float:
-    """Return Johnson's slip of a rolling cylinder (Contact Mechanics, section 8.3), zero in stick."""
+    """Return the slip of a rolling cylinder in Carter's solution, zero in stick."""
     k = FRICTION / RADIUS
     stick = max(HALF_WIDTH - creepage / k, 0.0)  # half its length
     if stick == 0.0:

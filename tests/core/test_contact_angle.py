@@ -67,7 +67,7 @@ def arrays(found: wl.Problem) -> dict[str, Any]:
 @pytest.mark.validates(
     "hertz",
     "The patch of a flange at {angle:g}°, 60 kN on radii of 460, -20 and 13 mm: p0 = {p0:g} MPa, a = {a:g} mm",
-    source="Hertz's equations (Johnson 1985, eq. 4.25) in Legendre's integrals, with R/cos δ",
+    source="Hertz's equations (Johnson 1985, after CONTACT) in Legendre's integrals, with R/cos δ",
     held_to="the digits given, and {within:g}, relative",
     angle=70,
     p0=1885,
@@ -82,7 +82,7 @@ def test_the_patch_of_a_flange(angle: float, p0: float, a: float, within: float)
     along, across = 0.5 * np.cos(np.radians(angle)) / 0.46, 0.5 * (1 / 0.013 - 1 / 0.020)
     modulus = 0.5 * STEEL.youngs_modulus.to("Pa").magnitude / (1 - STEEL.poisson_ratio**2)
 
-    def misfit(ratio: float) -> float:  # b/a, of B/A = ((a/b)² E - K)/(K - E), Johnson, eq. 4.25
+    def misfit(ratio: float) -> float:  # b/a, of B/A = ((a/b)² E - K)/(K - E)
         m = 1 - ratio**2
         k, e = scipy.special.ellipk(m), scipy.special.ellipe(m)
         return float((e / ratio**2 - k) / (k - e) - across / along)

@@ -23,7 +23,7 @@ K = 2.625e9 / 2.8 / math.sqrt(3.0)
 def under_line_loads(x: Array, z: Array, nu: float) -> tuple[Array, Array]:
     """Return σx, σy, σz, τzx under Hertz's pressure of 1 on a line, and under that traction, by Flamant's solution.
 
-    Johnson 1985, sections 2.2 and 2.3, superposed by the midpoint rule in the angle, which converges exponentially.
+    It is superposed by the midpoint rule in the angle, which converges exponentially.
     """
     angle = (np.arange(4000) + 0.5) * np.pi / 4000
     s, weight = np.cos(angle), np.sin(angle) ** 2 * np.pi / 4000  # √(1-s²) ds
@@ -41,7 +41,8 @@ def under_line_loads(x: Array, z: Array, nu: float) -> tuple[Array, Array]:
 def under_point_loads(x: Array, z: Array, nu: float, a: float, b: float) -> tuple[Array, Array]:
     """Return the same under Hertz's pressure on an ellipse, by the solutions of Boussinesq and Cerruti at y = 0.
 
-    Johnson 1985, sections 3.2 and 3.6.
+    J. C. Jaeger, N. G. W. Cook, R. W. Zimmerman, Fundamentals of Rock Mechanics, 2007, after R. Crummett's programs
+    Traction_3D_NormalPointLoad.m and Traction_3D_TangentialPointLoad.m.
     """
     nodes, weights = np.polynomial.legendre.leggauss(300)
     theta = (np.arange(1600) + 0.5) * 2 * np.pi / 1600
@@ -159,7 +160,7 @@ def test_first_yield_at_the_surface_of_a_line_has_closed_forms(traction: float, 
 
 
 def test_first_yield_without_friction_is_that_of_the_literature() -> None:
-    # Johnson 1985, chapter 6: the greatest shear stress is 0.30 p0 on a line, and p0 = 1.60 Y on a circle with ν = 0.3.
+    # Johnson 1985: the greatest shear stress is 0.30 p0 on a line, and p0 = 1.60 Y on a circle with ν = 0.3.
     assert 1 / first_yield(1.0, 0.0, poisson_ratio=0.3, criterion="tresca") == pytest.approx(0.300, abs=5e-4)
     on_circle = first_yield(0.5, 0.0, poisson_ratio=0.3, axis_ratio=1.0, criterion="tresca")
     assert on_circle == pytest.approx(1.60, abs=0.02)
@@ -170,7 +171,7 @@ def test_first_yield_without_friction_is_that_of_the_literature() -> None:
 @pytest.mark.validates(
     "hertz",
     "The shakedown limit of a line is 4k without friction, and k/μ in full slip with μ = 0.46: {paper:g} MPa",
-    source="Johnson's map of shakedown limits",
+    source="the greatest τzx: p0/4 without friction, else μp0 (as in Johnson's map of shakedown limits)",
     held_to="{within:.1%}",
     paper=1177.0,
     within=0.002,

@@ -17,7 +17,7 @@ import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Array, Q
 
-# Polach, Wear 258 (2005) 992-1000, Table 2: typical parameters on dry rails.
+# Polach, Wear 258 (2005) 992-1000, Table 2: typical parameters on dry rails. μ0 is after Open Rails (Axle.cs).
 DRY: dict[str, Any] = {"static_coefficient": 0.55, "limit_ratio": 0.4, "decay": "0.6 s/m"}
 FRICTION = wl.FallingFriction(**DRY)
 

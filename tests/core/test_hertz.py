@@ -54,7 +54,7 @@ def test_load_half_width_and_maximum_pressure_go_round(
     load = hertz.force_from_max_pressure(pressure, radius, modulus)
     width = hertz.half_width(load, radius, modulus)
     assert hertz.max_pressure(load, width) == pytest.approx(float(pressure), rel=roundings * EPS)
-    # a = 2 p0 R / E* (Johnson, section 4.2c)
+    # a = 2 p0 R / E* (Johnson, section 4.2)
     assert width == pytest.approx(2.0 * float(pressure) * radius / modulus, rel=roundings * EPS)
 
 
@@ -76,13 +76,13 @@ def test_the_pressure_carries_the_load(within: float, half_width: float, max_pre
 @pytest.mark.validates(
     "hertz",
     "Hertz's pressure bends two half-spaces to the curvature 1/R of the bodies",
-    source="Johnson 1985, eq. 2.25b, as a principal value by QUADPACK",
+    source="displacement of half-planes (Johnson 1985), as a principal value by QUADPACK",
     held_to="{within:g}, relative",
     within=1e-06,
 )
 def test_the_pressure_deforms_the_bodies_into_each_other(within: float) -> None:
     # In the patch the approach of the half spaces has the curvature 1/R: d/dx of the displacement is
-    # -(2/πE*) ⨍ p(s)/(x-s) ds = -x/R (Johnson, eq. 2.25b with both bodies), checked as a principal value.
+    # -(2/πE*) ⨍ p(s)/(x-s) ds = -x/R (Johnson, for both bodies), checked as a principal value.
     radius, modulus, load = 0.01175, 112e9, 741e3
     a = hertz.half_width(np.array(load), radius, modulus)
     p0 = hertz.max_pressure(np.array(load), a)

@@ -1,4 +1,4 @@
-"""Hertz's elliptic contact, against Johnson's equations and Boussinesq's integral."""
+"""Hertz's elliptic contact, against Hertz's equations and Boussinesq's integral."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ AXES_ROUNDING = 32 * EPS
 
 
 def johnson(a: float, b: float, max_pressure: float, modulus: float) -> tuple[float, float, float]:
-    """A, B and the approach by Johnson's eq. (4.26), in Legendre's integrals, which need the extra digits."""
+    """A, B and the approach by Hertz's equations in Legendre's integrals, which need the extra digits.
+
+    K. L. Johnson, Contact Mechanics, 1985, after the source of CONTACT (E. A. H. Vollebregt, src/m_hertz.f90).
+    """
     with mpmath.workdps(150):
         major, minor = mpmath.mpf(max(a, b)), mpmath.mpf(min(a, b))
         m = 1 - (minor / major) ** 2
@@ -49,7 +52,7 @@ def semi_axes(force: float, curvature_x: float, curvature_y: float, modulus: flo
 @pytest.mark.validates(
     "hertz",
     "Semi-axes of the ellipse for a/b from 0.001 to 1000, with the approach of the bodies",
-    source="Johnson 1985, eq. 4.26, in Legendre's integrals with 150 digits",
+    source="Johnson 1985, after CONTACT, in Legendre's integrals with 150 digits",
     held_to="{axes:.1e} (a, b), {others:.1e} (p0, approach), relative",
     axes=AXES_ROUNDING,
     others=2 * AXES_ROUNDING,

@@ -252,7 +252,7 @@ def test_the_steps_at_the_ends_of_the_table_are_as_documented(
 @pytest.mark.validates(
     "elliptic-contact",
     "C11 and C22 of a wide patch go to those of line contact",
-    source="Kalker 1967: π²/(4(1-ν)), π²/4",
+    source="Kalker 1990, after CONTACT: π²/(4(1-ν)), π²/4",
     held_to="{within:g}, relative",
     within=1e-12,
 )

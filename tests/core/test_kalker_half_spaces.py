@@ -29,7 +29,7 @@ def half_spaces(ratio: float, nu: float, cells: int) -> Array:
 @pytest.mark.validates(
     "elliptic-contact",
     "C11, C22, C23 and C33 between the rows, a/b from 0.15 to 6.7, ν from 0 to 0.45",
-    source="a half-space solver written for the tests (Cerruti's solution; Johnson 1985, section 3.6)",
+    source="a half-space solver written for the tests (Cerruti's solution, after CONTACT)",
     held_to="{others:g}, and {moment:g} for C33, relative (its grids)",
     others=0.025,
     moment=0.045,
@@ -49,7 +49,7 @@ def test_the_coefficients_are_those_of_two_half_spaces(ratio: float, nu: float, 
 @pytest.mark.validates(
     "limits",
     "C33 of a long patch is uncertain: at a/b = 20 half-spaces give {low:.0%} less at ν = 0.28, {lower:.0%} at 0.45",
-    source="a half-space solver written for the tests (Cerruti's solution; Johnson 1985, section 3.6)",
+    source="a half-space solver written for the tests (Cerruti's solution, after CONTACT)",
     held_to="{moment:g}; C11, C22 and C23 to {others:g}, and at a/b = {wide:g} all, relative (its grids)",
     low=0.09,
     lower=0.18,

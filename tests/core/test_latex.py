@@ -24,7 +24,8 @@ COMMANDS = {
     "approx": "≈", "infty": "∞", "surd": "√", "int": "∫", "partial": "∂", "propto": "∝", "to": "→", "circ": "°",
     "dot": "ṡ",
 }  # fmt: skip
-"""What LaTeX prints for a command (L. Lamport, LaTeX: A Document Preparation System, 2. ed., 1994, section 3.3)."""
+"""What LaTeX prints for a command (L. Lamport, LaTeX: A Document Preparation System, 2nd ed., 1994; the symbols of
+mathematics after the tables of the LaTeX2e-Kurzbeschreibung)."""
 
 RAISED = "⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹"
 LOWERED = "₀₁₂₃₄₅₆₇₈₉ᵢᵣ"

@@ -31,12 +31,14 @@ from tests.strategies import EPS
 from wearlaw import Q
 
 OF_ELLIPSES = {"semi_axis_a", "semi_axis_b"}
+LIMITS = {"first_yield", "shakedown_limit", "outside_range"}
+"""Properties with a file of their own, `test_marks.py`."""
 
 
 def public_properties() -> set[str]:
-    """Return the properties of a prediction of a line."""
+    """Return the properties of a prediction of a line, without its limits."""
     names = {name for name, value in vars(wl.Prediction).items() if isinstance(value, property)}
-    return {name for name in names if not name.startswith("_")} - OF_ELLIPSES
+    return {name for name in names if not name.startswith("_")} - OF_ELLIPSES - LIMITS
 
 
 def test_properties_of_ellipses_say_so_on_a_line() -> None:

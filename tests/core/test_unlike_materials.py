@@ -193,7 +193,7 @@ def test_beta_is_kalkers_difference_parameter_over_one_less_the_mean_ratio(
 @pytest.mark.validates(
     "limits",
     "Traction of unlike half-planes that roll without slip: q = βp/π ln((a+x)/(a-x)), on which the warning rests",
-    source="strains under p and q (Johnson 1985, eq. 2.25a), as principal values by QUADPACK",
+    source="strains under p and q (Johnson 1985), as principal values by QUADPACK",
     held_to="{within:g}, relative",
     within=1e-6,
 )

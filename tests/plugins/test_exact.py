@@ -47,7 +47,7 @@ def literal(problem: wl.Problem, x: float) -> tuple[float, float]:
 @pytest.mark.validates(
     "line-contact",
     "Traction and slip of `exact` along the patch, at any load, friction and creepage",
-    source="Johnson 1985, section 8.3; Tassini et al. 2010, eqs. 7 and 8 corrected; with 60 digits",
+    source="Carter 1926, after Tassini et al. 2010, eqs. 7 and 8 corrected; with 60 digits",
     held_to="{roundings} ε over the root of the distance from the border of slip, in half-widths",
     roundings=16,
 )
@@ -99,7 +99,7 @@ def test_the_total_is_the_integral_of_the_traction(percent: float, within: float
 @pytest.mark.validates(
     "line-contact",
     "The tractions displace two half-planes so that they slip as `exact` says, and not at all in stick",
-    source="Johnson 1985, eq. 8.24, as a principal value by QUADPACK",
+    source="displacement of half-planes (Johnson 1985), as a principal value by QUADPACK",
     held_to="{within:g} of the creepage",
     within=2e-06,
 )
@@ -107,7 +107,7 @@ def test_the_total_is_the_integral_of_the_traction(percent: float, within: float
 def test_the_slip_leaves_the_surfaces_together_in_stick(percent: float, within: float) -> None:
     """The displacement gradient of the tractions on two half planes must be the creepage wherever nothing slips.
 
-    s = ξ - (2/πE*) ⨍ q(t)/(x-t) dt·(sign by the leading edge at -a), Johnson eq. (8.24) with x reversed.
+    s = ξ - (2/πE*) ⨍ q(t)/(x-t) dt·(sign by the leading edge at -a), as in Johnson (1985) with x reversed.
     """
     problem = problem_at(percent)
     a, modulus = float(problem.half_width), float(problem.effective_modulus)
@@ -145,7 +145,7 @@ def test_both_slips_have_the_same_tractions_and_total() -> None:
 @pytest.mark.validates(
     "line-contact",
     "The share of the patch that sticks is 1 - ξ/ξ_sat",
-    source="Carter 1926; Johnson 1985, section 8.3",
+    source="Carter 1926, after Tassini et al. 2010",
     held_to="{roundings} ε",
     roundings=64,
 )

@@ -27,7 +27,7 @@ rounding or two. Roots matter only by the square of their error.
 
 
 def density(reduced: Real) -> Density:
-    """Return q·s/(μp0 μa/R) by its factors (Johnson 1985, section 8.3), with d = ξR/(μa).
+    """Return q·s/(μp0 μa/R) by its factors (Carter 1926), with d = ξR/(μa).
 
     s/(μa/R) is √((x+a-c)² - c²)/a = √((2d-v)(2-v)) in partial slip, and d + x/a = d + 1 - v in full slip.
     """
@@ -64,7 +64,7 @@ def integrals() -> tuple[Array, Array, Array]:
 @pytest.mark.validates(
     "integration",
     "The closed form of the energy that `exact` dissipates above a threshold",
-    source="mpmath quadrature in 50 digits (Johnson 1985, section 8.3)",
+    source="mpmath quadrature in 50 digits (Carter 1926, after Tassini et al. 2010)",
     held_to="{share:.1e} of the whole dissipation",
     share=ROUNDINGS,
 )

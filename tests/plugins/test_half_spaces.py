@@ -25,7 +25,7 @@ def words(page: str) -> str:
     "Forces, Mz and dissipated energy of `fastsim`, `shen_hedrick_elkins` and `polach` with and without spin, a/b from"
     " 1/10 to 10: the [tables of errors](theory-elliptic.md#how-far-the-models-are-from-the-half-space-theory) at"
     " {drawn} points drawn at random and others that a search found",
-    source="a half-space solver written for the tests (Cerruti's solution; Johnson 1985, section 3.6)",
+    source="a half-space solver written for the tests (Cerruti's solution, after CONTACT)",
     held_to="every digit of the tables",
     drawn=440,
 )

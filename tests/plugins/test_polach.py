@@ -19,7 +19,7 @@ WET = wl.contact_model("polach", adhesion_reduction=0.3, slip_reduction=0.1)
 
 
 def published(problem: wl.Problem, k_a: float, k_s: float) -> tuple[float, float, float]:
-    """Return Fx, Fy and the sum of what they are made of, as Polach (1999, 2005) prints them, from 60 digits.
+    """Return Fx, Fy and the sum of what they are made of, in the form of Polach (1999, 2005), from 60 digits.
 
     They are in the signs of the creepages.
     """
@@ -53,7 +53,7 @@ def published(problem: wl.Problem, k_a: float, k_s: float) -> tuple[float, float
 @pytest.mark.validates(
     "creep-forces",
     "`polach`: Fx and Fy with any reduction factors",
-    source="Polach 1999 and 2005, as printed, with 60 digits",
+    source="Polach 1999 and 2005, with 60 digits",
     held_to="{roundings} ε of the terms",
     roundings=32,
 )
@@ -72,7 +72,7 @@ def test_the_forces_are_those_of_the_published_equations(
 @pytest.mark.validates(
     "creep-forces",
     "`polach` at vanishing creepage: Kalker's slopes, times (k_A + k_S)/2",
-    source="Kalker 1990, Table E.3; Polach 2005, eq. 12",
+    source="Kalker 1990, Table E.3; the derivative of Polach 2005, eq. 11, without creepage",
     held_to="{within:g}, relative",
     within=1e-11,
 )
@@ -82,7 +82,7 @@ def test_the_slopes_at_vanishing_creepage_are_kalkers(
     model: wl.ContactModel, axis_ratio: float, poisson_ratio: float, within: float
 ) -> None:
     c11, c22, c23, c33 = TABLE_E3[axis_ratio, poisson_ratio]
-    k = 1.0 if model is POLACH else 0.2  # (k_A + k_S)/2, Polach (2005), eq. (12)
+    k = 1.0 if model is POLACH else 0.2  # (k_A + k_S)/2, the derivative of Polach (2005), eq. (11)
     expected = np.array([[k * c11, 0.0, 0.0], [0.0, k * c22, -c23], [0.0, c23, k * c33]])
     # ε and ε_S are below 1e-6 here, and what is neglected is their square.
     assert initial_slopes(model, axis_ratio, poisson_ratio) == pytest.approx(expected, rel=within, abs=0.0)

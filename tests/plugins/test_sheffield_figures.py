@@ -233,7 +233,7 @@ def nearest(curve: Curve, x: float) -> int:
 @pytest.mark.validates(
     "paper",
     "Figure 4 with equation 7 as printed, and with the slip that follows from the tractions",
-    source="Tassini et al. 2010, eq. (7); Johnson 1985, section 8.3; Kalker 1982, by hand",
+    source="Tassini et al. 2010, eq. (7); Carter 1926 and Kalker 1982, by hand",
     held_to="{roundings} ε",
     roundings=256,
 )

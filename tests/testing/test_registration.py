@@ -68,7 +68,7 @@ def test_typed_arguments_are_drawn(
 def test_conditions_pose_a_problem(drawn: dict[str, object], problem: Problem) -> None:
     posed = wl.TwinDisc.suros().problem(**drawn)  # type: ignore[arg-type]
     assert posed.max_pressure > 0
-    # p0 = E* a/(2R) ties the parts of a drawn problem together (Johnson, Contact Mechanics, eqs. 4.43 and 4.45)
+    # p0 = E* a/(2R) ties the parts of a drawn problem together (Johnson, Contact Mechanics, section 4.2)
     expected = problem.effective_modulus * problem.half_width / (2.0 * problem.relative_radius)
     assert float(problem.max_pressure) == pytest.approx(float(expected), rel=1e-14)
 

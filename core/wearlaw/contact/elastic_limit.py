@@ -31,10 +31,11 @@ is McEwen's solution. With P + iQ = F and z downwards, a pressure P and a tracti
 
 plane strain has ση = ν(σξ + σz), and a traction P across ξ makes τηz = -P and τξη = -Q.
 
-Sources: K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, chapters 2, 7 and 9; K. L. Johnson, A
-graphical approach to shakedown in rolling contact, in Applied Stress Analysis, Elsevier, 1990, 263-274; E. McEwen,
-Phil. Mag. 40 (1949) 454-459; P. J. Vermeulen, K. L. Johnson, ASME J. Appl. Mech. 31 (1964) 338-340. All values are in
-SI units.
+Sources: K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985; K. L. Johnson, A graphical approach to
+shakedown in rolling contact, in Applied Stress Analysis, Elsevier, 1990, 263-274, for the method; the limits and the
+sum over directions are derived here; E. McEwen, Phil. Mag. 40 (1949) 454-459, after the wiki of the library
+Medusa (https://e6.ijs.si/medusa/wiki/index.php/Hertzian_contact); P. J. Vermeulen, K. L. Johnson, ASME J. Appl. Mech.
+31 (1964) 338-340. All values are in SI units.
 """
 
 from __future__ import annotations

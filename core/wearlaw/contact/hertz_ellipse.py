@@ -8,12 +8,12 @@ With p = p0 √(1-(x/a)²-(y/b)²) and p0 = 3N/(2πab), the surfaces fit togethe
 
     A = N/(2πE*) R_D(0, b², a²),  B = N/(2πE*) R_D(0, a², b²),  δ = 3N/(2πE*) R_F(0, a², b²),
 
-with the approach δ of the bodies. These are Johnson's equations (4.26) in Carlson's symmetric elliptic integrals,
-which lose no digits to cancellation at any axis ratio.
+with the approach δ of the bodies. These are Hertz's equations in Carlson's symmetric elliptic integrals, which lose no
+digits to cancellation at any axis ratio.
 
-Sources: K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, sections 3.5, 4.1 and 4.2(b);
-B. C. Carlson, Numer. Algorithms 10 (1995) 13-26, for R_F and R_D. All values are in SI units. The effective modulus
-E* is that of `wearlaw.contact.hertz`.
+Sources: K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, after the source of the program CONTACT
+(E. A. H. Vollebregt, src/m_hertz.f90), which has Legendre's integrals; B. C. Carlson, Numer. Algorithms 10 (1995)
+13-26, for R_F and R_D. All values are in SI units. The effective modulus E* is that of `wearlaw.contact.hertz`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _ITERATIONS = 10
 
 
 def curvature(radius_1: Array, radius_2: Array) -> Array:
-    """Return A = (1/R1 + 1/R2)/2 [1/m], half the relative curvature in one principal plane (Johnson, eq. 4.3).
+    """Return A = (1/R1 + 1/R2)/2 [1/m], half the relative curvature in one principal plane.
 
     Parameters
     ----------
@@ -87,18 +87,18 @@ def semi_axes(
 
 
 def max_pressure(normal_force: Array, a: Array, b: Array) -> Array:
-    """Return p0 = 3N/(2πab) [Pa] (Johnson, section 4.2(b))."""
+    """Return p0 = 3N/(2πab) [Pa]."""
     return normal_force * (1.5 / np.pi) / (a * b)
 
 
 def approach(normal_force: Array, a: Array, b: Array, effective_modulus: Array | float) -> Array:
-    """Return δ [m], the approach of distant points of the two bodies (Johnson, eq. 4.26c)."""
+    """Return δ [m], the approach of distant points of the two bodies."""
     distance: Array = normal_force * (1.5 / np.pi) / effective_modulus * scipy.special.elliprf(0.0, a**2, b**2)
     return distance
 
 
 def pressure(x: Array, y: Array, a: Array, b: Array, max_pressure: Array) -> Array:
-    """Return p = p0 √(1-(x/a)²-(y/b)²) [Pa] inside the ellipse, 0 outside (Johnson, section 3.5)."""
+    """Return p = p0 √(1-(x/a)²-(y/b)²) [Pa] inside the ellipse, 0 outside."""
     half_length = a * np.sqrt(np.maximum((1.0 - y / b) * (1.0 + y / b), 0.0))  # at y
     inside = np.maximum((half_length - x) * (half_length + x), 0.0)
     return max_pressure / a * np.sqrt(inside)
@@ -107,7 +107,7 @@ def pressure(x: Array, y: Array, a: Array, b: Array, max_pressure: Array) -> Arr
 def _elongation(curvature_x: Array, curvature_y: Array) -> Array:
     """Return the ratio of the major to the minor axis."""
     target = np.log(np.maximum(curvature_x, curvature_y) / np.minimum(curvature_x, curvature_y))
-    # (B/A)^(2/π) is within 4 % up to ratios of 100: B. J. Hamrock, D. Brewe, ASME J. Lubr. Technol. 105 (1983) 171.
+    # B. J. Hamrock and D. Brewe (1983) fit 1.0339 (B/A)^0.636. (B/A)^(2/π) is within 4 % up to ratios of 100.
     logarithm = target * (2.0 / np.pi)
     for _ in range(_ITERATIONS):
         value, slope = _log_curvature_ratio(logarithm)

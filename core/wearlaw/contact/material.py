@@ -88,7 +88,7 @@ def dundurs_beta(material_1: Material, material_2: Material) -> float:
 
     Notes
     -----
-    K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, section 5.4.
+    K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985.
     """
     (soft_1, ratio_1), (soft_2, ratio_2) = (
         ((1.0 + one.poisson_ratio) / scalar_si(one.youngs_modulus, "Pa"), one.poisson_ratio)

@@ -73,7 +73,7 @@ class Information:
 
     Notes
     -----
-    K. P. Burnham and D. R. Anderson, Model Selection and Multimodel Inference, 2nd ed., Springer, 2002, section 2.4.
+    K. P. Burnham and D. R. Anderson, Model Selection and Multimodel Inference, 2nd ed., Springer, 2002.
     """
 
     parameters: int

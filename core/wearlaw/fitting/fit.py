@@ -84,7 +84,7 @@ def fit(
 
     Notes
     -----
-    G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989, chapters 2, 5 and 14.
+    G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989.
     """
     _check_settings(scatter, confidence, starts=starts, bootstrap=bootstrap, seed=seed)
     _check_replicates(bootstrap, confidence)

@@ -102,7 +102,8 @@ def replicate(
 
     Notes
     -----
-    A. C. Davison and D. V. Hinkley, Bootstrap Methods and their Application, Cambridge 1997, section 6.2.3.
+    A. C. Davison and D. V. Hinkley, Bootstrap Methods and their Application, Cambridge 1997, after the example
+    `nuclear` of the R package boot.
     """
     generator = np.random.default_rng(seed)
     predicted = fit.residuals[0]  # as good as the prediction, since the target of the model is zero

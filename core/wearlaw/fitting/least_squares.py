@@ -116,8 +116,8 @@ def fit_many(model: Model, targets: Array, start: Array, bounds: Bounds) -> Solu
 
     Notes
     -----
-    Nocedal and Wright, Numerical Optimization, 2nd edition 2006, section 10.3; the damping follows Nielsen's rule
-    (H. B. Nielsen, Damping parameter in Marquardt's method, IMM-REP-1999-05).
+    Nocedal and Wright, Numerical Optimization, 2nd edition 2006; the damping follows Nielsen's rule (H. B. Nielsen,
+    Damping parameter in Marquardt's method, IMM-REP-1999-05).
     """
     state = _State(model, targets, bounds.clip(start), bounds)
     for _ in range(ITERATIONS):
