@@ -113,6 +113,12 @@ def _gauss(count: int) -> tuple[Array, Array]:
     return 0.5 + 0.5 * nodes, 0.5 * weights
 
 
+@cache
+def _down(count: int) -> Array:
+    """Return one, and how far Gauss's nodes are from one."""
+    return np.append(1.0, 1.0 - _gauss(count)[0])
+
+
 def _from_leading(angle: Array) -> Array:
     distance: Array = 2.0 * np.cos(0.5 * angle) ** 2
     return distance
@@ -148,7 +154,7 @@ def _slip(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) -
     zone = Zone(*nodes[:, part])
     share, weight = _gauss(len(zone.x))
     span = start.angle - end
-    angle = np.multiply.outer(np.append(1.0, 1.0 - share), span)
+    angle = np.multiply.outer(_down(len(share)), span)
     angle += end
     tangent = np.tan(0.5 * angle)
     left = angle if strips.elliptic else np.log(tangent)  # ∫ dX over the bound from this point on, up to a constant

@@ -103,6 +103,20 @@ def test_slip_that_is_nowhere_cannot_be_scaled() -> None:
         stuck.scaled_to_wear_index()
 
 
+@pytest.mark.parametrize("fed_in", [1.0, -1.0, 0.25])
+def test_slip_is_scaled_where_there_is_any_and_free_rolling_stays(fed_in: float) -> None:
+    contact, rolls = on_strips(), np.array([[[1.0]], [[0.0]]])
+    little = 1e-2 * rolls  # dissipates less than one newton
+    fields = {name: little * getattr(contact, name) for name in ("slip", "slip_x", "slip_y")}
+    contact = contact.replaced(**fields, wear_index=np.array([0.25, 0.0]))
+    assert 0.0 < contact.cell_wear_index[0] < 1.0
+    scaled = contact.scaled_to_wear_index()
+    assert scaled.cell_wear_index == pytest.approx([0.25, 0.0], rel=16 * EPS)
+    assert (scaled.slip[1] == 0.0).all()
+    with pytest.raises(wl.InputError, match="no node of the contact dissipates energy"):
+        contact.replaced(wear_index=np.array([0.25, fed_in])).scaled_to_wear_index()
+
+
 def test_a_patch_as_one_node_holds_means_that_dissipate_the_same() -> None:
     patch = wl.Contact.of_patch(problem(), forces())
     area = np.pi * 6e-3 * 4e-3

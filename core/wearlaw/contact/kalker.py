@@ -150,7 +150,7 @@ def coefficients(
     ratio, nu = np.broadcast_arrays(axis_ratio, poisson_ratio)
     _refuse("axis_ratio: must be positive and finite", ratio, (ratio > 0.0) & (ratio < np.inf))
     _refuse("poisson_ratio: must be from 0 to 1/2", nu, (nu >= 0.0) & (nu <= 0.5))
-    inside = np.clip(ratio, _EDGE, 1.0 / _EDGE)
+    inside = np.minimum(np.maximum(ratio, _EDGE), 1.0 / _EDGE)
     values = _from_table(inside, nu) if interpolation == "scaled" else _as_contact(inside, nu)
     if (inside != ratio).any():
         values = [np.array(value) for value in values]

@@ -240,7 +240,7 @@ class WheelRail(Rig):
             arrays["friction_coefficient"],
         )
         same = constants._asdict()
-        constant = {name: np.broadcast_to(np.float64(value), shape) for name, value in same.items()}
+        constant = {name: np.broadcast_to(value, shape) if shape else np.float64(value) for name, value in same.items()}
         return Problem.ellipse_from_si(a=a, b=b, bodies=self._bodies, **arrays, **constant)
 
     @cached_property
