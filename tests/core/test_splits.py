@@ -10,6 +10,8 @@ import pytest
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Array, Q
+from wearlaw.numerics.solving import Solver
+from wearlaw.numerics.splits import split_rates
 
 RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 FULL_SLIP: Any = {"normal_force": "80 kN", "longitudinal_creepage": "10 %", "friction_coefficient": 0.3}
@@ -36,9 +38,9 @@ class PressedHard(wl.WearLaw):
         return self.breakpoints(p)
 
 
-def law(*levels: float, declares: bool = True) -> wl.WearLaw:
-    """Return the law that jumps at these pressures [Pa]."""
-    members: dict[str, Any] = {"levels": levels, "__module__": __name__}
+def law(*levels: float, declares: bool = True, variable: str = "pressure") -> wl.WearLaw:
+    """Return the law that jumps at these pressures [Pa], or values of another variable in SI."""
+    members: dict[str, Any] = {"levels": levels, "variable": variable, "__module__": __name__}
     if not declares:
         members["jumps"] = wl.WearLaw.jumps
     made: wl.WearLaw = type("Pressed", (PressedHard,), members)()
@@ -99,6 +101,22 @@ def test_two_jumps_between_two_nodes_are_both_placed() -> None:
     assert length[reaches].sum() == pytest.approx(want[reaches].sum(), rel=0.1)
     _, unsplit = lengths((low * p0, high * p0), declares=False)
     assert abs(unsplit[reaches].sum() / want[reaches].sum() - 1.0) > 0.3
+
+
+@pytest.mark.parametrize(("variable", "level"), [("slip_speed", 1e-6), ("pressure", 0.9e9)])
+def test_what_sticks_does_not_wear_beside_a_jump(variable: str, level: float) -> None:
+    # Where a strip begins to slip, the slip jumps from zero, so that nothing may be interpolated there.
+    conditions = {**FULL_SLIP, "longitudinal_creepage": "0.15 %", "lateral_creepage": "0.05 %"}
+    predict: Any = RAILS | wl.contact_model("fastsim", strips=STRIPS) | law(level, variable=variable)
+    found = predict(**conditions)
+    contact = found.contact
+    assert 0.3 < contact.stick_ratio < 0.7
+    solver, own = Solver(predict.contact_model), predict.wear_law
+    batch = contact.problem[None]
+    rates = split_rates(solver, own, predict.contact_model.solve(batch), batch, own.numbers)[0]
+    assert (rates[contact.slip == 0.0] == 0.0).all()
+    if variable == "slip_speed":
+        assert found.wear_rate.m_as("kg/m^3") == pytest.approx(1e-3 * (1.0 - contact.stick_ratio), rel=64 * EPS)
 
 
 def test_kth_on_ten_strips_is_nearer_to_many() -> None:
