@@ -260,7 +260,7 @@ def _rounding_of_traction(model: ContactModel) -> float:
 def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> None:
     """Compare sums over the nodes with the totals, within the model's declared accuracy."""
     ellipse = contact.on_strips
-    totals = sum(getattr(contact, name) for name in (TOTALS if ellipse else LINE_TOTALS))  # finite if each is
+    totals: Any = sum(getattr(contact, name) for name in (TOTALS if ellipse else LINE_TOTALS))  # finite if each is
     vectors = (getattr(contact, name) for name in (VECTORS if ellipse else ()))
     if not all(math.isfinite(_product(values, values)) for values in (totals, *vectors)):
         check_finite(model, contact, problem)

@@ -239,7 +239,8 @@ class TwinDisc(Rig):
         check_sizes({"half width": half_width, "max pressure": max_pressure}, arrays["friction_coefficient"])
         creepage = arrays["creepage"]
         shape = creepage.shape
-        same, rolling_speed = self._same, self._mean_speed(creepage)
+        same: dict[str, Any] = self._same
+        rolling_speed = self._mean_speed(creepage)
         if shape:
             same = {name: np.broadcast_to(value, shape) for name, value in same.items()}
             rolling_speed = np.broadcast_to(rolling_speed, shape)

@@ -239,9 +239,9 @@ class WheelRail(Rig):
             {"longer semi-axis": np.maximum(a, b), "shorter semi-axis": np.minimum(a, b), "max pressure": max_pressure},
             arrays["friction_coefficient"],
         )
-        same = constants._asdict()
-        constant = {name: np.broadcast_to(value, shape) if shape else np.float64(value) for name, value in same.items()}
-        return Problem.ellipse_from_si(a=a, b=b, bodies=self._bodies, **arrays, **constant)
+        same: dict[str, Any] = constants._asdict()
+        same = {name: np.broadcast_to(value, shape) if shape else np.float64(value) for name, value in same.items()}
+        return Problem.ellipse_from_si(a=a, b=b, bodies=self._bodies, **arrays, **same)
 
     @cached_property
     def _angle(self) -> Array:
