@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import integrate
 
@@ -72,7 +72,7 @@ def materials() -> st.SearchStrategy[wl.Material]:
     return st.builds(
         lambda modulus, ratio: wl.steel(youngs_modulus=Q(modulus, "Pa"), poisson_ratio=ratio),
         log_uniform(1e8, 1e12),
-        st.floats(0.0, 0.5),
+        st.floats(0.0, 0.5).filter(lambda ratio: not 0.0 < ratio < 1e-300),  # floats lose digits there
     )
 
 
@@ -107,7 +107,6 @@ def test_unlike_bodies_are_two_springs_in_series(wheel: wl.Material, rail: wl.Ma
 
 @given(materials())
 def test_like_bodies_keep_every_digit(material: wl.Material) -> None:
-    assume(not 0.0 < material.poisson_ratio < 1e-300)  # where floats lose digits
     one, two = rig(material=material).problem(**CONDITIONS), rig(material=material, rail_material=material)
     same = two.problem(**CONDITIONS)
     for name in ("a", "b", "max_pressure", "shear_modulus", "effective_modulus", "poisson_ratio", "density"):

@@ -45,9 +45,9 @@ def split_rates(solver: Solver, law: WearLaw, contact: Contact, problem: Problem
     with Blame(law, p):
         jumps = law.jumps(p)
     levels = [(name, value) for name, values in jumps.items() if name in NODE_VARIABLES for value in values]
-    step = np.diff(contact.x, axis=-2)
-    if not levels or not step.size:
+    if not levels or contact.x.shape[-2] == 1:
         return rate
+    step = np.diff(contact.x, axis=-2)
     slips = contact.slip != 0.0
     inside = slips[..., 1:, :] & slips[..., :-1, :] & (step > 0.0)
     variables = {name: np.abs(getattr(contact, name)) for name, _ in levels}

@@ -131,10 +131,12 @@ def warn_of_unlike_materials(model: ContactModel, problem: Problem, stacklevel: 
 
     It does not matter if the traction was measured.
     """
-    if not problem.bodies or not model.assumes_like_materials or problem.traction_coefficient is not None:
+    materials = [body.material for body in problem.bodies.values()]
+    if not materials or all(one is materials[0] for one in materials[1:]):
         return
-    first, *others = (body.material for body in problem.bodies.values())
-    beta = max((dundurs_beta(first, one) for one in others if one is not first), key=abs, default=0.0)
+    if not model.assumes_like_materials or problem.traction_coefficient is not None:
+        return
+    beta = max((dundurs_beta(materials[0], one) for one in materials[1:]), key=abs)
     if beta == 0.0:
         return
     share = COUPLING * abs(beta) / float(np.nanmin(problem.friction_coefficient))
