@@ -68,6 +68,25 @@ def test_points_of_a_batch_can_be_picked_and_the_rest_stays() -> None:
     assert pickle.loads(pickle.dumps(found)).spin.tolist() == [0.0, 1.0, 2.0]
 
 
+def test_every_array_of_a_problem_takes_part_in_its_batch() -> None:
+    rig = wl.WheelRail(
+        wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s",
+        contact_angle="40 deg",
+    )  # fmt: skip
+    found = rig.problem(normal_force="80 kN", longitudinal_creepage=Q([0.1, 0.2, 0.3], "%"), friction_coefficient=0.3)
+    given = found.replaced(
+        traction_coefficient=np.array([0.1, 0.2, 0.3]), exists=np.array([True, True, False]), dims=("patch",)
+    )
+    fields = {field.name: getattr(given, field.name) for field in dataclasses.fields(given)}
+    assert [name for name, value in fields.items() if value is None] == ["strips"]
+    second = given[1:]
+    for name, value in fields.items():
+        if isinstance(value, np.ndarray):
+            np.testing.assert_array_equal(getattr(second, name), value[1:], err_msg=name)
+        elif name != "strips":
+            assert getattr(second, name) == value, name
+
+
 def test_a_problem_cannot_be_changed() -> None:
     with pytest.raises(dataclasses.FrozenInstanceError):
         problem().a = np.array(1.0)  # type: ignore[misc]

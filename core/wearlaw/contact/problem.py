@@ -549,24 +549,18 @@ class Problem:
 
     def mapped(self, function: Callable[[Array], Array]) -> Self:
         """Return the problem with a function applied to each of its arrays."""
-        fields: dict[str, Any] = {name: function(getattr(self, name)) for name in ARRAYS}
-        for name in OPTIONAL_ARRAYS:
-            array = getattr(self, name)
-            fields[name] = None if array is None else function(array)
-        return type(self)(
-            geometry=self.geometry,
-            **fields,
-            strips=None if self.strips is None else self.strips.mapped(function),
-            bodies={name: body.mapped(function) for name, body in self.bodies.items()},
-            dims=self.dims,
-        )
+        fields: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
+        for name in ARRAYS:
+            if fields[name] is not None:
+                fields[name] = function(fields[name])
+        if self.strips is not None:
+            fields["strips"] = self.strips.mapped(function)
+        fields["bodies"] = {name: body.mapped(function) for name, body in self.bodies.items()}
+        return type(self)(**fields)
 
 
-OPTIONAL_ARRAYS = ("traction_coefficient", "exists")
-"""The arrays of a `Problem` that can be None."""
-
-ARRAYS = tuple(one.name for one in dataclasses.fields(Problem) if one.type == "Array")
-"""The other arrays of a `Problem`."""
+ARRAYS = tuple(one.name for one in dataclasses.fields(Problem) if "Array" in str(one.type))
+"""The fields of a `Problem` that are arrays, some of them None if they do not apply."""
 
 
 def _flat(array: Array) -> Array:
