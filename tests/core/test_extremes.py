@@ -9,7 +9,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw.arrays.extremes import extremes
+from wearlaw.arrays.array import extremes
 
 TINIEST, LARGEST = float(np.finfo(np.float64).smallest_subnormal), float(np.finfo(np.float64).max)
 

@@ -205,7 +205,7 @@ def overload(
     if axis_ratio is not None:
         arrays.append(axis_ratio)
     find: Callable[..., Overload | None] = _overload_among
-    if max_pressure.ndim == 0 or max_pressure.size == 1:  # floats take a tenth of the time of arrays
+    if max_pressure.size == 1:  # floats take a tenth of the time of arrays
         find, arrays = _overload, [array.item() for array in arrays]
     worst = None
     for k, nu in bodies:

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 import numpy as np
 from pydantic import model_validator
 
-from wearlaw.arrays.array import Array, type_name
-from wearlaw.arrays.extremes import extremes
+from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.contact import LAW_VARIABLES, Contact
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Geometry

@@ -19,8 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
-from wearlaw.arrays.extremes import extremes
+from wearlaw.arrays.array import Array, extremes
 from wearlaw.arrays.kernels import accelerated
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import CreepForces, Problem

@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, type_name
-from wearlaw.arrays.extremes import extremes
+from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Nodes

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, Pa
 import numpy as np
 from pydantic import model_validator
 
-from wearlaw.arrays.array import Array, type_name
-from wearlaw.arrays.extremes import extremes
+from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
 from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
-from wearlaw.arrays.extremes import extremes
+from wearlaw.arrays.array import Array, extremes
 from wearlaw.contact.elastic_limit import Overload, first_yield, overload, shakedown_limit
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.errors import CompositionError, ModelError, RangeWarning

@@ -15,7 +15,7 @@ import numpy as np
 import pint
 from pydantic_core import core_schema
 
-from wearlaw.arrays.extremes import extremes
+from wearlaw.arrays.array import extremes
 from wearlaw.errors import UnitError
 from wearlaw.units.registry import application_registry, quantity, quantity_from_si, si_factor, symbol, unit_in_si
 
