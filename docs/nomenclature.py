@@ -24,6 +24,9 @@ CLASSES = (
     *(wl.Problem, wl.Contact, TwinDiscConditions, wl.Prediction, wl.LocalWear),
     *(wl.CreepForces, WheelRailConditions),
 )
+OF_ANY_UNIT = ("outcome", "outcome_error", "value", "local_value")
+"""Quantities of a law, whose unit is that of its outcome."""
+
 SHOWN_AS = {"TwinDiscConditions": "conditions", "WheelRailConditions": "conditions"}
 
 ATTRIBUTE = re.compile(
@@ -68,7 +71,7 @@ def falling_friction() -> wl.FallingFriction:
     return wl.FallingFriction(static_coefficient=0.55, limit_ratio=0.4, decay="0.6 s/m")
 
 
-def shipped_models() -> Iterator[wl.WearLaw | wl.ContactModel]:
+def shipped_models() -> Iterator[wl.Law | wl.ContactModel]:
     """Yield the models that ship with wearlaw, with their defaults, and laws with numbers in place of names."""
     found = installed()
     for name, model in found.contact_models.items().items():
@@ -99,7 +102,7 @@ def properties(cls: type) -> Iterator[tuple[str, str]]:
         returned = getattr(function, "__annotations__", {}).get("return")
         read_as_attribute = isinstance(member, (property, cached_property))
         numeric = ("Quantity", "Array") if read_as_attribute else ("Quantity",)
-        if not name.startswith("_") and getattr(returned, "__name__", returned) in numeric:
+        if not name.startswith("_") and name not in OF_ANY_UNIT and getattr(returned, "__name__", returned) in numeric:
             yield name, inspect.getdoc(member) or ""
 
 

@@ -49,19 +49,26 @@ from wearlaw.hookspecs import INTERFACE_VERSION, hookimpl
 from wearlaw.models.contact_model import Claim, ContactModel, Scale
 from wearlaw.models.creep_force_model import CreepForceModel
 from wearlaw.models.functions import as_wear_law
+from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome
 from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
-from wearlaw.models.wear_law import BreakpointMap, Calibration, LocalWear, Numbers, WearLaw
-from wearlaw.pipeline.pipeline import PatchMean, Pipeline, Rig, patch_mean
+from wearlaw.models.stage import Forces, Solve, Stage
+from wearlaw.models.wear_law import LocalWear, WearLaw
+from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.plugins.fields import ContactModelField, WearLawField
+from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField
 from wearlaw.plugins.loader import (
     contact_model,
     contact_models,
+    law,
+    laws,
     material,
     materials,
     parameter_sets,
+    patch_mean,
     rig,
     rigs,
+    stage,
+    stages,
     wear_law,
     wear_laws,
 )
@@ -106,20 +113,24 @@ __all__ = [
     "Fit",
     "FitError",
     "FitWarning",
+    "Forces",
     "FrozenError",
     "Geometry",
     "InputError",
+    "Law",
+    "LawField",
     "Length",
     "LineContactModel",
     "LineFields",
+    "LocalOutcome",
     "LocalWear",
     "Material",
     "ModelError",
     "Nodes",
     "Numbers",
+    "Outcome",
     "OutputError",
     "Panel",
-    "PatchMean",
     "Pipeline",
     "PlasticityWarning",
     "PlotAxis",
@@ -134,7 +145,10 @@ __all__ = [
     "Rig",
     "Scale",
     "Section",
+    "Solve",
     "Speed",
+    "Stage",
+    "StageField",
     "Stress",
     "Strips",
     "Study",
@@ -168,6 +182,8 @@ __all__ = [
     "hookimpl",
     "kalker",
     "kernel",
+    "law",
+    "laws",
     "load_case",
     "lognormal",
     "material",
@@ -183,6 +199,8 @@ __all__ = [
     "rigs",
     "run",
     "scalar_si",
+    "stage",
+    "stages",
     "steel",
     "sweep",
     "uncertainty",

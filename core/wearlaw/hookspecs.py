@@ -14,6 +14,8 @@ import pluggy
 if TYPE_CHECKING:
     from wearlaw.contact.material import Material
     from wearlaw.models.contact_model import ContactModel, Model
+    from wearlaw.models.law import Law
+    from wearlaw.models.stage import Stage
     from wearlaw.models.wear_law import WearLaw
 
 PROJECT = "wearlaw"
@@ -37,6 +39,16 @@ def wearlaw_rigs() -> Iterable[type[Model]]:  # type: ignore[empty-body]
 @hookspec
 def wearlaw_contact_models() -> Iterable[type[ContactModel]]:  # type: ignore[empty-body]
     """Return the contact models that the plugin provides."""
+
+
+@hookspec
+def wearlaw_stages() -> Iterable[type[Stage]]:  # type: ignore[empty-body]
+    """Return the stages that the plugin provides."""
+
+
+@hookspec
+def wearlaw_laws() -> Iterable[type[Law]]:  # type: ignore[empty-body]
+    """Return the laws of other outcomes than wear that the plugin provides, such as damage by fatigue."""
 
 
 @hookspec

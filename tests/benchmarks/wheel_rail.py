@@ -21,7 +21,7 @@ from tests.benchmarks.report import Gate
 from tests.benchmarks.rivals import CHECK, FAST, PLAIN_LIBRARY, compilers
 from tests.benchmarks.timing import Times, in_mode, modes, side_by_side
 from tests.benchmarks.wheel_rail_rivals import RIVAL_CELLS, WORKLOAD, Compiled, MarchAndLaw, Outcome, ellipses, workload
-from wearlaw.numerics.integrate import integrate_wear
+from wearlaw.numerics.integrate import integrate_laws
 from wearlaw_fastsim import Fastsim
 from wearlaw_fastsim._march import Cells, march
 
@@ -124,9 +124,9 @@ def _march_and_law(problem: wl.Problem, bound: str, cells: int, strips: int, blo
 
 def _wearlaw(problem: wl.Problem, bound: str, strips: int) -> Outcome:
     model = wl.contact_model("fastsim", bound=bound, strips=strips)
-    found = integrate_wear(model, wl.wear_law("usfd", fitted_for="global"), problem, "cells")
+    found = integrate_laws(model, (wl.wear_law("usfd", fitted_for="global"),), problem)
     assert found.forces is not None
-    return found.forces.longitudinal, found.forces.lateral, found.wear_rate
+    return found.forces.longitudinal, found.forces.lateral, found.values[0]
 
 
 def _reference(problem: wl.Problem, bound: str) -> Outcome:

@@ -43,12 +43,12 @@ class Wear(NamedTuple):
     tangential_force: Array
 
 
-def integrate_wear(model: wl.ContactModel, law: wl.WearLaw, problem: wl.Problem, scale: wl.Scale) -> Wear:
+def integrate_wear(model: wl.ContactModel, law: wl.Law, problem: wl.Problem) -> Wear:
     """Return the wear, including the totals that are computed on demand."""
-    wear = integrate.integrate_wear(model, law, problem, scale)
-    forces = integrate_forces(model, problem) if wear.forces is None else wear.forces
-    error = integrate.wear_rate_error(model, law, problem, scale, wear)
-    return Wear(wear.wear_rate, error, forces.longitudinal)
+    totals = integrate.integrate_laws(model, (law,), problem)
+    forces = integrate_forces(model, problem) if totals.forces is None else totals.forces
+    error = integrate.outcome_error(model, law, problem, totals, 0)
+    return Wear(totals.values[0], error, forces.longitudinal)
 
 
 class Points:
@@ -90,6 +90,6 @@ class Points:
 
 def compare(name: str, law: str, points: Points) -> tuple[Array, Array, Array]:
     """Return the rates, those of the reference and the error estimates [µg/m/mm²]."""
-    wear = integrate_wear(LINE_MODELS[name], wl.wear_law(law), points.problem, "cells")
+    wear = integrate_wear(LINE_MODELS[name], wl.wear_law(law), points.problem)
     want = np.array([MEANS[law](REFERENCE[name](point)) for point in points.references()])
     return wear.wear_rate * 1e3, want, wear.wear_rate_error * 1e3

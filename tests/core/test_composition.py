@@ -20,13 +20,14 @@ from tests.core.stages import AS_PRINTED, BRR, CONDITIONS, ELLIPTIC, EXACT, FAST
         (RIG, FITTED["global"], "a rig is followed by a contact model, not by USFD"),
         (RIG, wl.patch_mean(), "a rig is followed by a contact model, not by patch_mean()"),
         (RIG, 3, "a rig is followed by a contact model, not by 3"),
-        (RIG | EXACT, GLOBAL, "a contact model is followed by wl.patch_mean() or a wear law, not by Global"),
-        (RIG | EXACT, "usfd", "a contact model is followed by wl.patch_mean() or a wear law, not by 'usfd'"),
+        (RIG | EXACT, GLOBAL, "a contact model is followed by a stage or a law, not by Global"),
+        (RIG | EXACT, "usfd", "a contact model is followed by a stage or a law, not by 'usfd'"),
         (EXACT, KTH, "'exact' cannot start a pipeline; begin with a rig"),
         (KTH, EXACT, "'kth' cannot start a pipeline; begin with a rig"),
-        (wl.patch_mean(), KTH, "wl.patch_mean() cannot start a pipeline; the order is rig | "),
-        (RIG | EXACT | KTH, KTH, "a pipeline ends with its wear law, nothing follows it, not KTH"),
-        (RIG | EXACT | KTH, wl.patch_mean(), "a pipeline ends with its wear law, nothing follows it, not patch_mean()"),
+        (wl.patch_mean(), KTH, "stage 'patch_mean' cannot start a pipeline; the order is rig | "),
+        (RIG | EXACT | KTH, KTH, "kth and kth both predict 'wear_rate'; keep one of them"),
+        (RIG | EXACT | KTH, wl.patch_mean(), "a stage stands before the laws, not after them: patch_mean()"),
+        (RIG | EXACT | KTH, 3, "a law is followed by another law, not by 3"),
     ],
 )
 def test_stages_in_the_wrong_order_are_refused(left: Any, right: Any, said: str) -> None:
@@ -168,13 +169,13 @@ WARNED = [
 ]
 
 
-def contact_pipeline(model: wl.ContactModel, mean: wl.PatchMean | None) -> wl.Pipeline[...]:
+def contact_pipeline(model: wl.ContactModel, mean: wl.Stage | None) -> wl.Pipeline[...]:
     return RIG | model if mean is None else RIG | model | mean
 
 
 @pytest.mark.parametrize(("model", "mean", "law"), SILENT)
 def test_parameters_on_the_contact_they_were_fitted_for_give_no_warning(
-    model: wl.ContactModel, mean: wl.PatchMean | None, law: wl.WearLaw
+    model: wl.ContactModel, mean: wl.Stage | None, law: wl.WearLaw
 ) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -183,7 +184,7 @@ def test_parameters_on_the_contact_they_were_fitted_for_give_no_warning(
 
 @pytest.mark.parametrize(("model", "mean", "law", "fitted_for", "used"), WARNED)
 def test_parameters_on_another_contact_give_one_warning_that_names_both(
-    model: wl.ContactModel, mean: wl.PatchMean | None, law: wl.WearLaw, fitted_for: str, used: str
+    model: wl.ContactModel, mean: wl.Stage | None, law: wl.WearLaw, fitted_for: str, used: str
 ) -> None:
     contact = contact_pipeline(model, mean)
     line = following_line()

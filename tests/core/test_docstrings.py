@@ -160,4 +160,6 @@ def test_a_law_made_of_a_function_keeps_the_descriptions_that_it_was_given() -> 
     def made(w: Any, *, k: float = 5.0) -> Any:
         return k * w
 
-    assert field_docstrings(type(made)) == {"k": "Parameter k of made [ug/m/N]."}
+    described = field_docstrings(type(made))
+    assert described.pop("body").startswith("The body that the law is for")
+    assert described == {"k": "Parameter k of made [ug/m/N]."}

@@ -148,10 +148,10 @@ def test_results_do_not_depend_on_the_blocks_they_were_computed_in(name: str, la
     points = Points(seed=15, size=2 * block + 100)
     problem = points.problem
     model, wear_law = LINE_MODELS[name], wl.wear_law(law)
-    wear = integrate_wear(model, wear_law, problem, "cells")
+    wear = integrate_wear(model, wear_law, problem)
     borders = [0, 1, block - 1, block, block + 1, 2 * block - 1, 2 * block, points.size - 1]
     for index in [*borders, *range(7, points.size, 211)]:
-        wear_alone = integrate_wear(model, wear_law, problem[index : index + 1], "cells")
+        wear_alone = integrate_wear(model, wear_law, problem[index : index + 1])
         # to rounding, not to the bit: zones without length, which some batches hold, change the order of sums
         assert wear.wear_rate[index] == pytest.approx(wear_alone.wear_rate[0], rel=roundings * EPS)
         assert wear.tangential_force[index] == pytest.approx(wear_alone.tangential_force[0], rel=roundings * EPS)
@@ -160,10 +160,10 @@ def test_results_do_not_depend_on_the_blocks_they_were_computed_in(name: str, la
 def test_slip_is_summed_in_blocks() -> None:
     points = Points(seed=17, size=NODE_BLOCK + 30)
     model = LINE_MODELS["exact"]
-    slip = integrate_slip(model, points.problem, "cells")
+    slip = integrate_slip(model, points.problem)
     share = np.minimum(points.creepage / points.saturation, 1.0)
     assert slip.slip_area == pytest.approx(share * points.problem.patch_area, rel=64 * EPS)
-    alone = integrate_slip(model, points.problem[-1:], "cells")
+    alone = integrate_slip(model, points.problem[-1:])
     assert slip.mean_slip[-1] == pytest.approx(alone.mean_slip[0], rel=64 * EPS)
 
 
@@ -174,7 +174,7 @@ def test_each_block_is_told_with_its_forces() -> None:
     def on_block(part: wl.Problem, columns: dict[str, Array]) -> None:
         told.append((part, dict(columns)))
 
-    integrate.integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells", on_block)
+    integrate.integrate_laws(LINE_MODELS["exact"], (wl.wear_law("usfd"),), problem, on_block)
     assert [part.creepage.size for part, _ in told] == [BLOCK, 10]
     forces = np.concatenate([columns["longitudinal"] for _, columns in told])
     assert forces == pytest.approx(integrate_forces(LINE_MODELS["exact"], problem).longitudinal, rel=4 * EPS)
@@ -184,10 +184,10 @@ def test_the_batch_keeps_its_shape() -> None:
     conditions: dict[str, Any] = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46}
     creepage = np.geomspace(1e-4, 0.2, 24).reshape(2, 3, 4)
     problem = RIG.problem(creepage=Q(creepage, ""), **conditions)
-    wear = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), problem, "cells")
+    wear = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), problem)
     assert wear.wear_rate.shape == wear.wear_rate_error.shape == (2, 3, 4)
     alone = RIG.problem(creepage=Q(float(creepage[1, 2, 0]), ""), **conditions)
-    single = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), alone, "cells")
+    single = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), alone)
     assert single.wear_rate.shape == ()
     assert float(single.wear_rate) == pytest.approx(float(wear.wear_rate[1, 2, 0]), rel=64 * EPS)
 

@@ -16,6 +16,7 @@ from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.numerics.integrate import integrate_forces
+from wearlaw.numerics.staged import staged
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 
@@ -89,7 +90,7 @@ def test_the_error_estimate_of_a_law_that_declares_nothing_is_honest(
     points.creepage = 10.0 ** points.random.uniform(-4.0, 0.0, points.size)
     law: Any = law_type() if law_type is Smooth else law_type(threshold=10.0)  # type: ignore[call-arg]
     assert law.breakpoints(law.numbers) is None
-    wear = integrate_wear(LINE_MODELS[name], law, points.problem, "cells")
+    wear = integrate_wear(LINE_MODELS[name], law, points.problem)
     want = []
     for point in points.references():
         solution = REFERENCE[name](point)
@@ -109,7 +110,7 @@ def test_a_law_that_wears_where_the_bodies_stick_is_refused(name: str) -> None:
     points = Points(seed=7, size=5)
     points.creepage = 0.5 * points.saturation
     with pytest.raises(wl.ModelError, match="wear law 'sticking' gives wear where the bodies stick"):
-        integrate_wear(LINE_MODELS[name], Sticking(), points.problem, "cells")
+        integrate_wear(LINE_MODELS[name], Sticking(), points.problem)
 
 
 def test_breakpoints_that_are_declared_bring_the_error_down() -> None:
@@ -119,7 +120,7 @@ def test_breakpoints_that_are_declared_bring_the_error_down() -> None:
 
     points = Points(seed=8, size=100)
     blind, split = (
-        integrate_wear(LINE_MODELS["exact"], law(threshold=10.0), points.problem, "cells") for law in (Kinked, Declared)
+        integrate_wear(LINE_MODELS["exact"], law(threshold=10.0), points.problem) for law in (Kinked, Declared)
     )
     worn = split.wear_rate > 0.0
     assert np.median(split.wear_rate_error[worn] / split.wear_rate[worn]) < 1e-12
@@ -157,7 +158,7 @@ class Celled(wl.ContactModel):
 )
 def test_a_model_that_only_solves_works_and_says_how_good_it_is(honest: float) -> None:
     points = Points(seed=9, size=200)
-    wear = integrate_wear(Celled(), wl.wear_law("usfd"), points.problem, "cells")
+    wear = integrate_wear(Celled(), wl.wear_law("usfd"), points.problem)
     want = np.array([MEANS["usfd"](reference.exact(point)) for point in points.references()]) / 1e3
     # A zone of less than two cells cannot be seen at all.
     seen = points.creepage / points.saturation > 0.02
@@ -172,7 +173,7 @@ def test_finer_cells_have_a_smaller_error_estimate() -> None:
     points = Points(seed=10, size=50)
     points.creepage = points.saturation * points.random.uniform(0.2, 3.0, points.size)
     coarse, fine = (
-        np.median(integrate_wear(Celled(cells=n), wl.wear_law("usfd"), points.problem, "cells").wear_rate_error)
+        np.median(integrate_wear(Celled(cells=n), wl.wear_law("usfd"), points.problem).wear_rate_error)
         for n in (50, 800)
     )
     assert fine < 0.2 * coarse
@@ -180,14 +181,15 @@ def test_finer_cells_have_a_smaller_error_estimate() -> None:
 
 def test_one_cell_alone_says_nothing_of_its_error() -> None:
     points = Points(seed=11, size=5)
-    wear = integrate_wear(Celled(cells=1), wl.wear_law("usfd"), points.problem, "cells")
+    wear = integrate_wear(Celled(cells=1), wl.wear_law("usfd"), points.problem)
     assert (wear.wear_rate_error == np.abs(wear.wear_rate)).all()
 
 
 def test_patch_means_have_no_integration_error() -> None:
     points = Points(seed=12, size=20)
-    for model, scale in ((wl.contact_model("global"), "patch"), (LINE_MODELS["exact"], "patch"), (Celled(), "patch")):
-        wear = integrate_wear(model, wl.wear_law("usfd"), points.problem, scale)  # type: ignore[arg-type]
+    means = [staged(model, (wl.patch_mean(),)) for model in (LINE_MODELS["exact"], Celled())]
+    for model in (wl.contact_model("global"), *means):
+        wear = integrate_wear(model, wl.wear_law("usfd"), points.problem)
         assert (wear.wear_rate_error <= 2.0 * EPS * wear.wear_rate).all()
 
 
@@ -218,7 +220,7 @@ class Broken(Smooth):
 )
 def test_a_law_that_breaks_its_contract_is_named(fault: str, message: str) -> None:
     with pytest.raises(wl.ModelError, match=message):
-        integrate_wear(LINE_MODELS["exact"], Broken(fault=fault), Points(seed=13, size=5).problem, "cells")
+        integrate_wear(LINE_MODELS["exact"], Broken(fault=fault), Points(seed=13, size=5).problem)
 
 
 class Nan(Celled):
@@ -235,4 +237,4 @@ class Nan(Celled):
 def test_a_contact_model_that_is_not_finite_is_named(field: str) -> None:
     problem = Points(seed=14, size=5).problem
     with pytest.raises(wl.ModelError, match=f"'nan' gave an? {field.replace('_', ' ')} that is not finite, first for"):
-        integrate_wear(Nan(field=field), wl.wear_law("usfd"), problem, "cells")
+        integrate_wear(Nan(field=field), wl.wear_law("usfd"), problem)

@@ -206,7 +206,7 @@ def test_a_law_is_taken_off_and_put_on_again() -> None:
     assert (contact.laws, predict.laws, predict.stages) == ((), (KTH,), (wl.patch_mean(),))
     with pytest.raises(wl.CompositionError, match="the pipeline has no wear law; give one, as in rig"):
         contact.wear_law  # noqa: B018
-    with pytest.raises(wl.CompositionError, match="a pipeline has one wear law, got kth and kth"):
+    with pytest.raises(wl.CompositionError, match="kth and kth both predict 'wear_rate'; keep one of them"):
         wl.Pipeline(rig=RIG, contact_model=FASTSIM, laws=(KTH, KTH))
 
 

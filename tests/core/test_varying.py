@@ -12,7 +12,7 @@ import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.errors import InputError
-from wearlaw.numerics.integrate import BLOCK, integrate_wear
+from wearlaw.numerics.integrate import BLOCK, integrate_laws
 from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 
 RIG = wl.TwinDisc.suros()
@@ -57,7 +57,7 @@ def points(count: int) -> tuple[Any, Any]:
 
 def rates(model: wl.ContactModel, law: wl.WearLaw, values: Mapping[str, Any], problem: wl.Problem) -> Any:
     p = {**law.numbers, **{name: si[:, None] for name, si in values.items()}}
-    return integrate_wear(model, law, problem, model.scale, p=p).wear_rate
+    return integrate_laws(model, (law,), problem, numbers=[p]).values[0]
 
 
 @pytest.mark.usefixtures("_accelerated")
@@ -71,7 +71,7 @@ def test_each_point_gets_the_rate_of_its_own_law(law: wl.WearLaw, contact: str) 
     found = rates(model, law, values, problem)
     for point, rate in enumerate(found):
         own = changed(law, {name: number_like(units[name], float(si[point])) for name, si in values.items()})
-        expected = integrate_wear(model, own, problem[point : point + 1], model.scale).wear_rate[0]
+        expected = integrate_laws(model, (own,), problem[point : point + 1]).values[0][0]
         # The same sums, but of NumPy, scalar and compiled arithmetic, whose errors the thresholds of a law in
         # catastrophic wear amplify by up to m_c tr_sc / q_s = 87.
         assert rate == pytest.approx(expected, rel=1000 * EPS)
@@ -119,7 +119,7 @@ class AsksAboutNumbers(Stepped):
 def test_a_law_that_fails_with_arrays_is_named_and_told_what_to_write(where: str) -> None:
     law, model = AsksAboutNumbers(where=where), wl.contact_model("exact")
     problem, rng = points(12)
-    assert integrate_wear(model, law, problem, "cells").wear_rate.shape == (12,)
+    assert integrate_laws(model, (law,), problem).values[0].shape == (12,)
     with pytest.raises(wl.ModelError, match=r"(?s)^wear law 'asks' failed: ValueError: .*np\.where instead of if"):
         rates(model, law, {"exponent": rng.uniform(1.0, 2.0, 12)}, problem)
 

@@ -220,7 +220,7 @@ class PatchOnCells(Linear):
     scale: ClassVar[Literal["patch", "any"]] = "patch"
 
     def __ror__(self, contact: wl.Contact) -> wl.LocalWear:
-        return wl.LocalWear(contact, self.checked_rate(contact))
+        return wl.LocalWear(contact, self.checked_rate(contact), self.outcome)
 
 
 class Raises(Linear):

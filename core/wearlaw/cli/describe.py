@@ -12,7 +12,7 @@ import pint
 
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.settings.docstrings import field_docstrings
@@ -110,7 +110,7 @@ def _choices(schema: Mapping[str, Any]) -> list[str]:
 def _declared(default: Model | None) -> Iterator[str]:
     if default is None:
         yield "what depends on its fields"
-    elif isinstance(default, WearLaw):
+    elif isinstance(default, Law):
         yield from _of_law(default)
     elif isinstance(default, ContactModel):
         yield "scale: the means of the patch" if default.scale == "patch" else "scale: the patch resolved into cells"
@@ -119,7 +119,7 @@ def _declared(default: Model | None) -> Iterator[str]:
         yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
 
 
-def _of_law(law: WearLaw) -> Iterator[str]:
+def _of_law(law: Law) -> Iterator[str]:
     yield "scale: means of the whole patch only" if law.scale == "patch" else "scale: patch means or cells"
     if law.calibration is not None:
         yield f"fitted for: {law.calibration}; {law.calibration.materials}; {law.calibration.source}"

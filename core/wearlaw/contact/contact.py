@@ -21,7 +21,7 @@ from wearlaw.errors import InputError
 from wearlaw.units.quantities import Quantity, QuantityLike, from_si
 from wearlaw.units.variables import expected
 
-NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density")
+NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density", "frictional_power_density")
 """The variables of a `Contact` with a value at each node."""
 
 LAW_VARIABLES = (*NODE_VARIABLES, "traction_bound", "wear_index", "x")
@@ -352,6 +352,11 @@ class Contact:
     def slip_speed(self) -> Array:
         """Magnitude of the slip velocity, sV [m/s], of shape (batch, nodes)."""
         return np.abs(self.slip) * self.per_node(self.rolling_speed)
+
+    @property
+    def frictional_power_density(self) -> Array:
+        """Frictional power over area, qsV [W/m²], of shape (batch, nodes)."""
+        return self.wear_index_density * self.per_node(self.rolling_speed)
 
     @property
     def patch_area(self) -> Array:

@@ -472,6 +472,14 @@ class Problem:
             raise InputError(f"body: this rig has no '{name}'; its bodies are {names}")
         return self.bodies[name]
 
+    def density_of(self, body: str | None) -> Array:
+        """Return the mass density of a body [kg/m³], of the batch shape; for None, `density` itself."""
+        if body is None:
+            return self.density
+        density = scalar_si(self.body(body).material.density, "kg/m^3")
+        same = (self.density == density) | np.isnan(self.density)  # NaN where there is no patch
+        return self.density if same.all() else np.full_like(self.density, density)
+
     def needs(self, geometry: Geometry, what: str) -> None:
         """Raise an error if `what` belongs to patches of another shape."""
         if self.geometry != geometry:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from wearlaw.arrays.array import Array
 from wearlaw.errors import FitError, UnitError, did_you_mean
 from wearlaw.fitting.least_squares import Bounds
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import number_in_si, number_like, numbers
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
@@ -54,7 +54,7 @@ class FreeParameters:
     @classmethod
     def of(
         cls,
-        law: WearLaw | None,
+        law: Law | None,
         free: Sequence[str],
         friction: float | None,
         bounds: Mapping[str, tuple[QuantityLike | float, QuantityLike | float]],
@@ -115,7 +115,7 @@ class FreeParameters:
         return self.first + self._size * theta
 
 
-def _check_names(law: WearLaw | None, free: tuple[str, ...], like: Mapping[str, object]) -> None:
+def _check_names(law: Law | None, free: tuple[str, ...], like: Mapping[str, object]) -> None:
     known = [*like, FRICTION]
     if not free:
         raise FitError(f"free: name at least one parameter of {', '.join(known)}")

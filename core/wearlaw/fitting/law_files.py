@@ -11,13 +11,14 @@ from typing import Any
 import tomli_w
 
 from wearlaw.errors import ConfigurationError, InputError, OutputError, with_problems
+from wearlaw.models.law import Law
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import specification
 from wearlaw.settings.text_files import read_text
 
 
-def write_wear_law(path: str | os.PathLike[str], law: WearLaw, provenance: Mapping[str, Any]) -> None:
+def write_wear_law(path: str | os.PathLike[str], law: Law, provenance: Mapping[str, Any]) -> None:
     """Write a law to a TOML file, whole or not at all; `read_wear_law` reads it.
 
     Raises

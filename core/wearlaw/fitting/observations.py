@@ -14,7 +14,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError
 from wearlaw.fitting.free_parameters import FRICTION
-from wearlaw.numerics.integrate import integrate_forces, integrate_wear, patch_area
+from wearlaw.numerics.integrate import integrate_forces, integrate_laws, patch_area
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS
@@ -104,20 +104,20 @@ def predictions(
     if FRICTION in values:
         problem = problem.replaced(friction_coefficient=np.repeat(values[FRICTION], points))
     of_law = {name: np.repeat(value, points)[:, None] for name, value in values.items() if name != FRICTION}
-    model = pipeline.contact_model
+    model = pipeline.staged_model
     if observable == "traction_coefficient":
         predicted = integrate_forces(model, problem).tangential / problem.normal_force
     else:
         law = pipeline.wear_law
-        predicted = integrate_wear(model, law, problem, pipeline.scale, p={**law.numbers, **of_law}).wear_rate
+        predicted = integrate_laws(model, (law,), problem, numbers=[{**law.numbers, **of_law}]).values[0]
     return predicted.reshape(sets, points)
 
 
 def wear_index_density(pipeline: Pipeline[...], problem: Problem) -> Array:
     """Return Tγ/A [N/m²] of the whole patch, of the batch shape."""
-    model = pipeline.contact_model
+    model = pipeline.staged_model
     power = problem.power(integrate_forces(model, problem))
-    density: Array = np.abs(power) / patch_area(model, problem, pipeline.scale)
+    density: Array = np.abs(power) / patch_area(model, problem)
     return density
 
 

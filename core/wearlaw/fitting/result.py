@@ -18,7 +18,7 @@ from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
 from wearlaw.fitting.law_files import write_wear_law
 from wearlaw.fitting.observations import Observations, Scatter, predictions, wear_index_density
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
 from wearlaw.units.quantities import Quantity, from_si, in_unit
 from wearlaw.units.registry import si_factor
 from wearlaw.units.variables import UNITS, label
@@ -61,7 +61,7 @@ class Fit:
         Confidence level of the intervals.
     covariance : ndarray, (p, p)
         Of the values in SI, in the order of `parameters`, from the linearised model.
-    law : WearLaw or None
+    law : Law or None
         The law with the fitted parameters; None if no law was given.
     predict : Pipeline
         The pipeline with the fitted law.
@@ -88,7 +88,7 @@ class Fit:
     interval_method: str
     confidence: float
     covariance: Array
-    law: WearLaw | None
+    law: Law | None
     predict: Pipeline[...]
     tests: WearTests
     scatter: Scatter

@@ -18,7 +18,7 @@ from wearlaw.fitting.observations import FLOOR, Observations, test_names, wear_i
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.task import Task
 from wearlaw.models.contact_model import Model
-from wearlaw.models.wear_law import Calibration, WearLaw
+from wearlaw.models.law import Calibration, Law
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.pipeline.ranges import mean_over_patch
 from wearlaw.plugins import loader
@@ -87,7 +87,7 @@ def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observatio
 
 def _fitted_law(
     task: Task, parameters: Mapping[str, Quantity], values: Mapping[str, Array], observations: Sequence[Observations]
-) -> WearLaw | None:
+) -> Law | None:
     if not task.predict.laws:
         return None
     law = task.predict.wear_law
@@ -169,12 +169,12 @@ def _sums(task: Task, best: Solutions) -> tuple[float, float]:
 
 
 def _provenance(
-    task: Task, law: WearLaw | None, replicates: Replicates | None, seed: int, chi2: float, confidence: float
+    task: Task, law: Law | None, replicates: Replicates | None, seed: int, chi2: float, confidence: float
 ) -> dict[str, Any]:
     """Return the provenance of a fit, as a TOML table."""
     model = task.predict.contact_model
     found = loader.installed()
-    origin = {} if law is None else {"wear_law": found.wear_laws.distribution(law.name, type(law))}
+    origin = {} if law is None else {"wear_law": found.of_kind(law.kind).distribution(law.name, type(law))}
     return {
         "wearlaw": __version__,
         **origin,

@@ -121,7 +121,7 @@ class Task:
         friction = self.free.columns(best.theta[:1]).get(FRICTION)
         if friction is not None:
             problem = problem.replaced(friction_coefficient=np.full(problem.batch_shape, friction[0]))
-        return overload_of(problem, integrate_forces(self.predict.contact_model, problem).tangential)
+        return overload_of(problem, integrate_forces(self.predict.staged_model, problem).tangential)
 
     def _weigh(self, best: Solutions) -> None:
         """Weigh each kind of measurement by its scatter about the fit."""

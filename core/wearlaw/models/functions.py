@@ -14,7 +14,8 @@ from pydantic import Field, create_model
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.errors import ConfigurationError, Fault, UnitError, did_you_mean
-from wearlaw.models.wear_law import BreakpointMap, Numbers, WearLaw
+from wearlaw.models.law import BreakpointMap, Numbers
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, Unit, in_unit, text_of
 from wearlaw.units.registry import unit_in_si
 from wearlaw.units.variables import UNITS

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Nodes, Zone
 from wearlaw.errors import ModelError
@@ -23,6 +24,12 @@ END_SAMPLES = 5
 A variable is even in ψ about an end, so a maximum close to the end would hide in an equal interval.
 """
 
+PER_SPEED = {"slip_speed": "slip", "frictional_power_density": "wear_index_density"}
+"""Variables that are another one times the rolling speed."""
+
+VariableOf: TypeAlias = Callable[[Contact, str], Array]
+"""Returns a variable of a contact by its name."""
+
 CROSSINGS = 2
 """Largest number of crossings of a breakpoint, since the variables of a line contact rise, or rise and fall, in x."""
 
@@ -34,7 +41,11 @@ The part of the zone beyond the outermost samples is 2.5e-13.
 
 
 def crossings(
-    model: LineContactModel, problem: Problem, zone: Zone, breakpoints: Mapping[str, tuple[Any, ...]]
+    model: LineContactModel,
+    problem: Problem,
+    zone: Zone,
+    breakpoints: Mapping[str, tuple[Any, ...]],
+    variable: VariableOf = getattr,
 ) -> Array:
     """Return the values of ψ at which variables cross their breakpoints, in ascending order.
 
@@ -47,7 +58,9 @@ def crossings(
     zone : Zone
         The slip zone.
     breakpoints : mapping of str to tuple of float or ndarray
-        Names of node variables of `Contact` with SI values, each a float or one for each operating point, (points, 1).
+        Names of variables at the nodes with SI values, each a float or one for each operating point, (points, 1).
+    variable : callable
+        Returns a variable of a contact by its name; by default its attribute.
 
     Returns
     -------
@@ -61,11 +74,11 @@ def crossings(
         searched = None
         for value in values:
             level: Any = np.full(shape, value[:, 0] if np.ndim(value) else value) if shape else np.float64(value)
-            found = _in_closed_form(model, problem, name, level)
+            found = _in_closed_form(model, problem, name, level) if name in NODE_VARIABLES else None
             if found is not None:
                 distances.append(found)
                 continue
-            searched = searched or _Variable(model, problem, zone, name)
+            searched = searched or _Variable(model, problem, zone, name, variable)
             share = _searched(searched, level.reshape(-1, 1)).reshape(*shape, CROSSINGS)
             columns.append(zone.angle[..., None] * share)
     columns.append(zone.angle_of(np.concatenate(distances, axis=-1)))
@@ -74,16 +87,16 @@ def crossings(
 
 def _in_closed_form(model: LineContactModel, problem: Problem, name: str, level: Array) -> Array | None:
     """Return the distances from the trailing edge at which a variable crosses a level (batch), or None."""
-    if name == "slip_speed":
-        name, level = "slip", level / problem.rolling_speed
+    if name in PER_SPEED:
+        name, level = PER_SPEED[name], level / problem.rolling_speed
     return model.crossings(problem, cast(FieldVariable, name), level)
 
 
 class _Variable:
     """The magnitude of one variable of the contact as a function of ψ/Ψ, sampled over the slip zone."""
 
-    def __init__(self, model: LineContactModel, problem: Problem, zone: Zone, name: str) -> None:
-        self.model, self.name = model, name
+    def __init__(self, model: LineContactModel, problem: Problem, zone: Zone, name: str, variable: VariableOf) -> None:
+        self.model, self.name, self.variable = model, name, variable
         self.problem, self.zone = problem.flatten(), zone.flatten()
         self.share = _sample_shares()
         points = np.arange(problem.creepage.size)
@@ -100,7 +113,7 @@ class _Variable:
             (patch - span) + span * np.cos(half_angle) ** 2, span * np.sin(half_angle) ** 2, np.ones_like(half_angle)
         )
         contact = self.model.at(self.problem[point], nodes)
-        value: Array = np.abs(getattr(contact, self.name))
+        value: Array = np.abs(self.variable(contact, self.name))
         return value
 
 

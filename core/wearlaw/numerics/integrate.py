@@ -1,20 +1,23 @@
-"""The mean of a law's rate over the patch.
+"""The outcomes of laws over the patch.
 
-This is the only code that sees both a contact model and a wear law. It uses the first of three methods that applies:
+This is the only code that sees both a contact model and a law. For a mean over the patch it uses the first of three
+methods that applies:
 
 1. Closed form without nodes, if the law is a sum of ramps in q·s, and the model knows the energy above a threshold.
 2. Quadrature over the slip zone, if the model knows its fields on a line. The result is exact to rounding if the law
    declares its breakpoints, because the zone is then split there.
 3. The law at the model's own nodes. This is always the method on an ellipse, where cells are split at jumps of the law.
 
-On a line, the last two methods give an error estimate. On an ellipse, `wear_rate_error` computes one. The number of
+On a line, the last two methods give an error estimate. On an ellipse, `outcome_error` computes one. The number of
 cells of a plot does not matter here.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,13 +27,15 @@ from wearlaw.arrays.kernels import accelerated
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.contact.quadrature import Zone, join, remainder
-from wearlaw.models.contact_model import Blame, ContactModel, Scale
+from wearlaw.errors import CompositionError
+from wearlaw.models.contact_model import Blame, ContactModel
+from wearlaw.models.law import Law, Numbers
 from wearlaw.models.line_contact_model import LineContactModel
-from wearlaw.models.wear_law import Numbers, WearLaw
 from wearlaw.numerics.blocks import Columns, OfBlock, OnBlock, blocks, by_block
 from wearlaw.numerics.crossings import crossings
 from wearlaw.numerics.solving import Solver, check_columns, check_type
 from wearlaw.numerics.splits import split_rates
+from wearlaw.numerics.staged import Staged
 
 BLOCK = 8192
 """Operating points of a block in closed form: its arrays stay in the cache and in reused memory."""
@@ -83,15 +88,15 @@ class SlipTotals:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WearTotals:
-    """Wear and forces at each operating point, as SI arrays of the batch shape.
+class Totals:
+    """Outcomes of laws and forces at each operating point, as SI arrays of the batch shape.
 
     Attributes
     ----------
-    wear_rate : ndarray
-        Area mean of the law's rate over the patch [kg/m/m²].
-    wear_rate_error : ndarray or None
-        Estimate of its numerical error [kg/m/m²]; None if the function `wear_rate_error` computes the estimate.
+    values : tuple of ndarray
+        The outcome of each law: the area mean of its rate over the patch, or its value of the patch.
+    errors : tuple of ndarray or None
+        Estimate of the numerical error of each outcome; None if the function `outcome_error` computes the estimate.
     forces : CreepForces or None
         The forces and the moment; None if the contact model knows them without nodes.
     patch_area : ndarray or None
@@ -103,16 +108,27 @@ class WearTotals:
         The slip, if an ellipse has several blocks; their contacts are not kept.
     """
 
-    wear_rate: Array
-    wear_rate_error: Array | None = None
+    values: tuple[Array, ...]
+    errors: tuple[Array | None, ...]
     forces: CreepForces | None = None
     patch_area: Array | None = None
     contact: Contact | None = None
     slip: SlipTotals | None = None
 
 
+def prepared(model: ContactModel, problem: Problem) -> tuple[ContactModel, Problem]:
+    """Return a model and a problem without the outer stages that change only the problem; they are applied to it.
+
+    The model inside can then be integrated as exactly as without stages.
+    """
+    while isinstance(model, Staged) and model.stage.alters_problem_only():
+        problem, model = model.altered(problem, partial(integrate_forces, model.model)), model.model
+    return model, problem
+
+
 def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
     """Return the forces and the moment, or raise a `ModelError` if they are not finite."""
+    model, problem = prepared(model, problem)
     if problem.geometry != "line":
 
         def of_ellipse(part: Problem, _: slice) -> Columns:
@@ -133,16 +149,14 @@ def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
     return CreepForces.of({"longitudinal": found["tangential_force"]})
 
 
-def integrate_slip(
-    model: ContactModel, problem: Problem, scale: Scale, solved_before: Contact | None = None
-) -> SlipTotals:
-    """Return the slip of the patch; a contact `solved_before`, as in `WearTotals.contact`, is not solved again."""
+def integrate_slip(model: ContactModel, problem: Problem, solved_before: Contact | None = None) -> SlipTotals:
+    """Return the slip of the patch; a contact `solved_before`, as in `Totals.contact`, is not solved again."""
+    model, problem = prepared(model, problem)
     solver = Solver(model)
 
     def columns(part: Problem, _: slice) -> Columns:
-        solved = solved_before or solver.solve(part)
-        found = _slip_columns(seen_by_law(model, solved, scale), solved)
-        if scale == "cells" and isinstance(model, LineContactModel) and part.geometry == "line":
+        found = _slip_columns(solved_before or solver.solve(part))
+        if isinstance(model, LineContactModel) and part.geometry == "line":
             found["slip_area"] = model.slip_length(part.forward()) * part.track_width
             found["patch_area"] = part.patch_area
         return found
@@ -154,176 +168,194 @@ def integrate_slip(
     return SlipTotals(**{name: problem.unflatten(values) for name, values in found.items()})
 
 
-def _slip_columns(seen: Contact, solved: Contact) -> Columns:
-    """Return the columns of `SlipTotals` of a contact as the law sees it, and as it was solved."""
-    return {
-        "mean_slip": seen.mean_slip,
-        "slip_area": seen.slip_area,
-        "patch_area": seen.patch_area,
-        "cell_wear_index": solved.cell_wear_index,
-    }
+def _slip_columns(contact: Contact) -> Columns:
+    """Return the columns of `SlipTotals`."""
+    return {name: getattr(contact, name) for name in SlipTotals.__slots__}
 
 
-def patch_area(model: ContactModel, problem: Problem, scale: Scale) -> Array:
+def patch_area(model: ContactModel, problem: Problem) -> Array:
     """Return the area of the patch, the sum of its nodes' areas [m²]."""
     if isinstance(model, LineContactModel) and problem.geometry == "line":  # its nodes cover the whole patch
         return problem.patch_area
-    return integrate_slip(model, problem, scale).patch_area
+    return integrate_slip(model, problem).patch_area
 
 
-def integrate_wear(
+def integrate_laws(
     model: ContactModel,
-    law: WearLaw,
+    laws: Sequence[Law],
     problem: Problem,
-    scale: Scale,
     on_block: OnBlock | None = None,
-    p: Numbers | None = None,
-) -> WearTotals:
-    """Return the wear in a contact, block by block.
+    numbers: Sequence[Numbers] | None = None,
+) -> Totals:
+    """Return the outcomes of laws in a contact, block by block; a contact on nodes is solved once for all laws.
 
     Parameters
     ----------
     model : ContactModel
-    law : WearLaw
+    laws : sequence of Law
     problem : Problem
-    scale : str
-        Whether the law sees the patch means or the cells.
     on_block : callable, optional
         Called with each block of operating points and its columns, which include the forces [N].
-    p : mapping of str to float or ndarray, optional
-        The law's numbers in SI, by default its own. Arrays of shape (points, 1) need a batch of one axis, (points,).
+    numbers : sequence of mapping of str to float or ndarray, optional
+        The numbers of each law in SI, by default its own. Arrays of shape (points, 1) need a batch of one axis,
+        (points,).
 
     Raises
     ------
     ModelError
-        If the model or the law breaks its contract.
+        If the model or a law breaks its contract.
     """
-    p = law.numbers if p is None else p
-    if problem.geometry != "line":
-        return _over_ellipse(model, law, problem, scale, on_block, p)
-    return _over_line(model, law, problem, scale, on_block, p)
+    model, problem = prepared(model, problem)
+    numbered = list(zip(laws, numbers or [law.numbers for law in laws], strict=True))
+    integrate = _over_line if problem.geometry == "line" else _over_ellipse
+    found, solver = integrate(model, numbered, problem, on_block)
+    several_blocks = "cell_wear_index" in found
+    return Totals(
+        values=tuple(found[f"value {index}"] for index in range(len(laws))),
+        errors=tuple(found.get(f"error {index}") for index in range(len(laws))),
+        forces=CreepForces.of(found) if "longitudinal" in found else None,
+        patch_area=found.get("patch_area"),
+        contact=solver.solved,
+        slip=SlipTotals(**{name: found[name] for name in SlipTotals.__slots__}) if several_blocks else None,
+    )
+
+
+OF_LAW = ("value", "error")
+"""Columns of one law; its index follows, as in "value 0"."""
+
+Numbered: TypeAlias = Sequence[tuple[Law, Numbers]]
+"""Laws with their numbers in SI."""
 
 
 def _over_ellipse(
-    model: ContactModel,
-    law: WearLaw,
-    problem: Problem,
-    scale: Scale,
-    on_block: OnBlock | None,
-    p: Numbers,
-) -> WearTotals:
+    model: ContactModel, laws: Numbered, problem: Problem, on_block: OnBlock | None
+) -> tuple[Columns, Solver]:
     solver = Solver(model)
-    across = {name: value[..., None] if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
     def columns(part: Problem, points: slice) -> Columns:
         contact = solver.solve(part)
-        seen = seen_by_law(model, contact, scale)
-        area = seen.patch_area
-        rates = split_rates(solver, law, seen, part, _at_points(across, points))
-        rate = seen.integral(rates) / area
-        found = {"wear_rate": rate, "patch_area": area, **_columns(contact.forces)}
-        return found if part.size == problem.size else found | _slip_columns(seen, contact)
+        area = contact.patch_area
+        found = {"patch_area": area, **_columns(contact.forces)}
+        for index, (law, p) in enumerate(laws):
+            seen, own = _contact_of(law, contact, part), _at_points(p, points)
+            if law.outcome.of == "patch":
+                value = solver.rate(law, seen, part, _of_patches(own))
+            else:
+                value = seen.integral(split_rates(solver, law, seen, part, _of_nodes(own, seen))) / area
+            found[f"value {index}"] = value
+        return found if part.size == problem.size else found | _slip_columns(contact)
 
-    found = _by_block(solver, problem, columns, on_block)
-    return WearTotals(
-        wear_rate=found["wear_rate"],
-        forces=CreepForces.of(found),
-        patch_area=found["patch_area"],
-        contact=solver.solved,
-        slip=None if solver.solved else SlipTotals(**{name: found[name] for name in SlipTotals.__slots__}),
-    )
+    return _by_block(solver, problem, columns, on_block), solver
 
 
 def _over_line(
-    model: ContactModel,
-    law: WearLaw,
-    problem: Problem,
-    scale: Scale,
-    on_block: OnBlock | None,
-    p: Numbers,
-) -> WearTotals:
-    with Blame(law, p):
-        ramps = law.ramps(p) if scale == "cells" else None
-    closed = (model, ramps) if ramps is not None and isinstance(model, LineContactModel) else None
-
+    model: ContactModel, laws: Numbered, problem: Problem, on_block: OnBlock | None
+) -> tuple[Columns, Solver]:
+    fields = model if isinstance(model, LineContactModel) and model.scale == "cells" else None
+    ramps = [_ramps(law, p) if fields else None for law, p in laws]
     solver = Solver(model)
 
     def columns(part: Problem, points: slice) -> Columns:
-        found = closed and closed_form(*closed, part, points)
-        return found or _from_nodes(solver, law, _at_points(p, points), part, scale)
+        found: Columns = {}
+        on_nodes: dict[int, tuple[Law, Numbers]] = {}
+        for index, (law, p) in enumerate(laws):
+            if not (fields and law.zero_in_stick and law.outcome.of == "area mean"):
+                on_nodes[index] = law, _at_points(p, points)
+                continue
+            of, slopes = _problem_of(law, part), ramps[index]
+            mean = None if slopes is None else closed_form(fields, slopes, of, points)
+            mean = mean or _over_zones(solver, law, _at_points(p, points), of)
+            found |= {f"{name} {index}" if name in OF_LAW else name: values for name, values in mean.items()}
+        return found | _on_own_nodes(solver, on_nodes, part) if on_nodes else found
 
-    known = isinstance(model, LineContactModel)
-    if known and scale == "cells" and problem.batch_shape == () and problem.exists is None:
+    if fields and problem.batch_shape == () and problem.exists is None:
         found = solver.columns(problem, ALL, columns)  # scalars take less time than arrays of one number
         if on_block is not None:
             on_block(problem, found)
-        error = found.get("wear_rate_error")
-        return WearTotals(wear_rate=found["wear_rate"], wear_rate_error=error, contact=solver.solved)
+        del found["longitudinal"]
+        return found, solver
     block = NODE_BLOCK
-    if closed:
+    if fields and not any(one is None for one in ramps):
         block = COMPILED_BLOCK if accelerated(problem.creepage.size) else BLOCK
-    found = solver.by_block(problem, block, columns, on_block, known)
-    forces = CreepForces.of(found) if "longitudinal" in found else None
-    return WearTotals(
-        wear_rate=found["wear_rate"],
-        wear_rate_error=found.get("wear_rate_error"),
-        forces=forces,
-        patch_area=found.get("patch_area"),
-        contact=solver.solved,
-    )
+    return solver.by_block(problem, block, columns, on_block, drop_force=fields is not None), solver
 
 
-def wear_rate_error(model: ContactModel, law: WearLaw, problem: Problem, scale: Scale, totals: WearTotals) -> Array:
-    """Return an estimate of the error of wear rates [kg/m/m²].
+def _ramps(law: Law, p: Numbers) -> tuple[tuple[Any, Any], ...] | None:
+    with Blame(law, p):
+        return law.ramps(p)
+
+
+def _problem_of(law: Law, problem: Problem) -> Problem:
+    """Return the problem with the density of the body that the law is for."""
+    density = problem.density_of(law.body)
+    return problem if density is problem.density else problem.replaced(density=density)
+
+
+def _contact_of(law: Law, contact: Contact, problem: Problem) -> Contact:
+    """Return the contact with the density of the body that the law is for."""
+    density = problem.density_of(law.body)
+    return contact if density is problem.density else contact.replaced(density=density)
+
+
+def outcome_error(model: ContactModel, law: Law, problem: Problem, totals: Totals, index: int) -> Array:
+    """Return an estimate of the error of an outcome in SI; `index` is the index of the law in the totals.
 
     For a closed form, the estimate is some roundings of the sum of all ramps without their thresholds. For an ellipse,
     it is the change of the rates on nodes twice and four times as fine, times 4/3, because errors of first order exceed
     the sum of both steps by this factor. If the model has no finer nodes, the estimate is the change of the rates when
     nodes are left out. In partial slip, this last estimate can be too small, by six times on 64 strips.
     """
-    if totals.wear_rate_error is not None:
-        return totals.wear_rate_error
-    if problem.geometry == "line":
+    model, problem = prepared(model, problem)
+    value, known = totals.values[index], totals.errors[index]
+    if known is not None:
+        return known
+    if model.scale == "patch":
+        return EPS * np.abs(value)
+    if problem.geometry == "line" and law.outcome.of == "area mean":
         slopes: float = sum(abs(slope) for _, slope in law.ramps(law.numbers) or ())
         force = integrate_forces(model, problem).longitudinal
         return (ROUNDINGS * EPS * slopes) * force * problem.creepage / problem.patch_area
-    if scale == "patch":
-        return EPS * np.abs(totals.wear_rate)
     with Blame(model):
         twice = model.refined()
         four_times = None if twice is None else twice.refined()
     if twice is not None and four_times is not None:
-        fine, finest = (integrate_wear(one, law, problem, scale).wear_rate for one in (twice, four_times))
-        return 4.0 / 3.0 * (np.abs(fine - totals.wear_rate) + np.abs(finest - fine))
+        fine, finest = (integrate_laws(one, (law,), problem).values[0] for one in (twice, four_times))
+        return 4.0 / 3.0 * (np.abs(fine - value) + np.abs(finest - fine))
+    if law.outcome.of == "patch":
+        raise CompositionError(
+            f"outcome_error: contact model '{model.name}' cannot be refined, so the error of {law.kind} '{law.name}'"
+            " is not known"
+        )
     solver = Solver(model)
 
     def columns(part: Problem, _: slice) -> Columns:
-        contact = solver.solve(part)
+        contact = _contact_of(law, solver.solve(part), part)
         return {"error": thinning_error(contact, solver.rate(law, contact, part))}
 
     return _by_block(solver, problem, columns)["error"]
 
 
 def integrate_across(
-    model: ContactModel, law: WearLaw, problem: Problem, strips: int | None, solved_before: Contact | None = None
+    model: ContactModel, law: Law, problem: Problem, strips: int | None, solved_before: Contact | None = None
 ) -> tuple[Array, Array, Array]:
     """Return the wear and slip integrated along each strip of an ellipse, of the batch shape and an axis of strips.
 
     Parameters
     ----------
     model : ContactModel
-    law : WearLaw
+    law : Law
     problem : Problem
     strips : int, optional
         Number of strips of equal width. By default, and if the model cannot choose strips, the model's own strips.
     solved_before : Contact, optional
-        As in `WearTotals.contact`.
+        As in `Totals.contact`.
 
     Returns
     -------
     y, wear, slid : ndarray, (batch, strips)
         Position of each strip [m], ∫ rate dx [kg/m²] and ∫ |s| dx [m] along it.
     """
+    model, problem = prepared(model, problem)
     solver, flat = Solver(model), problem.flatten()
     edges = np.linspace(-1.0, 1.0, (strips or 0) + 1)
     shares = 0.5 * (edges[1:] + edges[:-1])
@@ -339,11 +371,12 @@ def integrate_across(
         return chosen
 
     def along(part: Problem, contact: Contact) -> tuple[Array, Array, Array]:
+        contact = _contact_of(law, contact, part)
         wear = contact.over_strip(split_rates(solver, law, contact, part, law.numbers))
         return contact.y[..., 0, :], wear, contact.over_strip(contact.slip)
 
     if strips is None and solved_before is not None:
-        found = [along(flat.replaced(density=solved_before.density), solved_before)]
+        found = [along(flat, solved_before)]
     else:
         block = max(ELLIPSE_NODES // solved(flat[:1]).pressure.size, 1)
         parts = (flat[points] for points in blocks(flat.size, block))
@@ -366,20 +399,17 @@ def _by_block(solver: Solver, problem: Problem, columns: OfBlock, on_block: OnBl
     return solver.by_block(problem, block, columns, on_block)
 
 
-def solve(model: ContactModel, problem: Problem, scale: Scale) -> Contact:
-    """Return the contact of a model on its own nodes, or its patch mean if the scale is "patch"."""
-    return seen_by_law(model, Solver(model).solve(problem.existing()).unflattened(problem), scale)
+def solve(model: ContactModel, problem: Problem) -> Contact:
+    """Return the contact of a model on its own nodes."""
+    model, prepared_problem = prepared(model, problem)
+    return Solver(model).solve(prepared_problem.existing()).unflattened(prepared_problem)
 
 
-def seen_by_law(model: ContactModel, contact: Contact, scale: Scale) -> Contact:
-    """Return the contact that a law receives: the patch means if the scale is "patch"."""
-    return contact.patch_mean() if scale == "patch" and model.scale != "patch" else contact
-
-
-def contact_for(model: ContactModel, law: WearLaw, problem: Problem, scale: Scale) -> Contact:
+def contact_for(model: ContactModel, law: Law, problem: Problem) -> Contact:
     """Return the contact on nodes suited to a law, for a batch of one axis."""
-    if scale == "patch" or not isinstance(model, LineContactModel):
-        return solve(model, problem, scale)
+    model, problem = prepared(model, problem)
+    if not isinstance(model, LineContactModel) or model.scale == "patch" or not law.zero_in_stick:
+        return solve(model, problem)
     with Blame(model):
         stick, slip = model.zones(problem)
         splits = splits_of(model, law, law.numbers, problem, slip)
@@ -411,7 +441,7 @@ def closed_form(
     if extremes(rate)[0] < 0.0:  # ramps that cancel leave a rounding error
         rate = np.maximum(rate, 0.0)
     signed = force if forward is problem else np.copysign(force, problem.creepage)
-    return {"wear_rate": rate, "longitudinal": signed}
+    return {"value": rate, "longitudinal": signed}
 
 
 def _per_point(number: float | Array, points: slice) -> float | Array:
@@ -424,28 +454,55 @@ def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:
     return {name: value[points] if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
 
-def _from_nodes(solver: Solver, law: WearLaw, p: Numbers, problem: Problem, scale: Scale) -> Columns:
-    """Return the mean of a law's rate at nodes."""
+def _of_patches(p: Numbers) -> Numbers:
+    """Return the numbers of a law without the axis of the nodes, for an outcome of the patch."""
+    return {name: value[..., 0] if isinstance(value, np.ndarray) else value for name, value in p.items()}
+
+
+def _of_nodes(p: Numbers, contact: Contact) -> Numbers:
+    """Return the numbers of a law with an axis of length one for each axis of the nodes."""
+    if not contact.on_strips:
+        return p
+    return {name: value[..., None] if isinstance(value, np.ndarray) else value for name, value in p.items()}
+
+
+def _on_own_nodes(solver: Solver, laws: Mapping[int, tuple[Law, Numbers]], problem: Problem) -> Columns:
+    """Return the outcomes of laws on the model's own nodes of a line, by the index of each law."""
     model = solver.model
-    if scale == "cells" and isinstance(model, LineContactModel) and problem.batch_shape == ():
-        return _over_slip_zone(solver, model, law, p, problem)
 
     def columns(part: Problem, points: slice) -> Columns:
-        own = _at_points(p, points)
-        if scale == "cells" and isinstance(model, LineContactModel):
-            return _over_slip_zone(solver, model, law, own, part)
-        contact = seen_by_law(model, solver.solve(part), scale)
-        rate = solver.rate(law, contact, part, own)
-        mean, force = contact.mean(rate), contact.tangential_force
-        error = thinning_error(contact, rate) if scale == "cells" else EPS * np.abs(mean)
-        found = {"wear_rate": mean, "wear_rate_error": error, "longitudinal": force}
-        return found if isinstance(model, LineContactModel) else found | {"patch_area": contact.patch_area}
+        contact = solver.solve(part)
+        found = {"longitudinal": contact.tangential_force}
+        if not isinstance(model, LineContactModel):
+            found["patch_area"] = contact.patch_area
+        for index, (law, p) in laws.items():
+            seen, own = _contact_of(law, contact, part), _at_points(p, points)
+            if law.outcome.of == "patch":
+                found[f"value {index}"] = solver.rate(law, seen, part, _of_patches(own))
+                continue
+            rate = solver.rate(law, seen, part, own)
+            mean = found[f"value {index}"] = seen.mean(rate)
+            found[f"error {index}"] = EPS * np.abs(mean) if model.scale == "patch" else thinning_error(seen, rate)
+        return found
 
     return by_block(problem, NODE_BLOCK, columns)
 
 
-def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem) -> Columns:
+def _over_zones(solver: Solver, law: Law, p: Numbers, problem: Problem) -> Columns:
+    """Return the mean of a law's rate by panels of the slip zone, and its error estimate."""
+    if problem.batch_shape == ():
+        return _over_slip_zone(solver, law, p, problem)
+
+    def columns(part: Problem, points: slice) -> Columns:
+        return _over_slip_zone(solver, law, _at_points(p, points), part)
+
+    return by_block(problem, NODE_BLOCK, columns)
+
+
+def _over_slip_zone(solver: Solver, law: Law, p: Numbers, problem: Problem) -> Columns:
     """Return the mean of a law's rate, with the number of panels that each operating point needs."""
+    model = solver.model
+    assert isinstance(model, LineContactModel)
     stick, slip = model.zones(problem)
     splits = splits_of(model, law, p, problem, slip)
     totals = solver.block_is_summed()
@@ -468,19 +525,21 @@ def _over_slip_zone(solver: Solver, model: LineContactModel, law: WearLaw, p: Nu
     return whole
 
 
-def splits_of(model: LineContactModel, law: WearLaw, p: Numbers, problem: Problem, slip: Zone) -> Array | None:
+def splits_of(model: LineContactModel, law: Law, p: Numbers, problem: Problem, slip: Zone) -> Array | None:
     """Return ψ where a law branches in the slip zone, (points, k), or None if the law does not declare it."""
     with Blame(law, p):
         breakpoints = law.breakpoints(p)
     if breakpoints is None:
         return None
-    per_node = {name: values for name, values in breakpoints.items() if name in NODE_VARIABLES}
-    return crossings(model, problem.forward(), slip, per_node)
+    per_node = {
+        name: values for name, values in breakpoints.items() if name in NODE_VARIABLES or name in law.own_variables
+    }
+    return crossings(model, problem.forward(), slip, per_node, law.value_at)
 
 
 def _over_panels(
     solver: Solver,
-    law: WearLaw,
+    law: Law,
     p: Numbers,
     problem: Problem,
     zones: tuple[Zone, Zone],
@@ -489,7 +548,7 @@ def _over_panels(
 ) -> Columns:
     """Return the mean of a law's rate over the patch, its error estimate and the force, by panels of the slip zone.
 
-    Nothing wears in the stick zone, so one node is enough there. With `totals`, the stick zone has all its nodes,
+    The rate is zero in the stick zone, so one node is enough there. With `totals`, the stick zone has all its nodes,
     because sums over the nodes are then compared with the totals.
     """
     stick, zone = zones
@@ -501,7 +560,7 @@ def _over_panels(
     slipping = weighted[..., sticking.length.shape[-1] :]
     error = ROUNDINGS * EPS * np.abs(weighted).sum(axis=-1) + remainder(slipping)
     area = problem.patch_area
-    return {"wear_rate": total / area, "wear_rate_error": error / area, "longitudinal": contact.tangential_force}
+    return {"value": total / area, "error": error / area, "longitudinal": contact.tangential_force}
 
 
 def thinning_error(contact: Contact, rate: Array) -> Array:

@@ -22,8 +22,8 @@ from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import ModelError
 from wearlaw.models.contact_model import QUADRATURE, Blame, ContactModel
+from wearlaw.models.law import Law, Numbers
 from wearlaw.models.line_contact_model import LineContactModel
-from wearlaw.models.wear_law import Numbers, WearLaw
 from wearlaw.numerics.blocks import Columns, OfBlock, OnBlock, by_block
 from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import VARIABLES
@@ -135,7 +135,7 @@ class Solver:
         if totals:
             _check_totals(self.model, contact, problem)
 
-    def rate(self, law: WearLaw, contact: Contact, problem: Problem, p: Numbers | None = None) -> Array:
+    def rate(self, law: Law, contact: Contact, problem: Problem, p: Numbers | None = None) -> Array:
         """Return the rates of a law; if they are wrong because of the contact, raise an error that names its model."""
         try:
             return law.checked_rate(contact, p)
@@ -156,10 +156,10 @@ def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Pr
 def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> None:
     ellipse = problem.geometry != "line"
     if not isinstance(contact, Contact):
-        raise ModelError(f"contact model '{model.name}' returned {contact!r}, not a wearlaw.Contact")
+        raise ModelError(f"{model.kind} '{model.name}' returned {contact!r}, not a wearlaw.Contact")
     if ellipse and not contact.on_strips:
         raise ModelError(
-            f"contact model '{model.name}' returned a contact without strips for an ellipse; make it with"
+            f"{model.kind} '{model.name}' returned a contact without strips for an ellipse; make it with"
             " wearlaw.Contact.from_strips or wearlaw.Contact.of_patch"
         )
     batch = problem.batch_shape
@@ -167,7 +167,7 @@ def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> Non
     axes = len(batch) + (2 if ellipse else 1)
     if len(nodes) != axes or nodes[: len(batch)] != batch or 0 in nodes:
         wanted = ", ".join([*map(str, batch), "nodes", *(["strips"] if ellipse else [])])
-        raise ModelError(f"contact model '{model.name}' gave a pressure of shape {nodes}; it must be ({wanted})")
+        raise ModelError(f"{model.kind} '{model.name}' gave a pressure of shape {nodes}; it must be ({wanted})")
     _check_fields(model, contact, (*FIELDS, *VECTORS) if ellipse else FIELDS, nodes)
     _check_fields(model, contact, TOTALS if ellipse else LINE_TOTALS, batch)
     if ellipse:
@@ -185,12 +185,10 @@ def check_type(model: ContactModel, name: str, values: Any, shape: tuple[int, ..
     """Raise a `ModelError` unless a value is a float64 array of a shape, or a number if the shape has no axes."""
     if type(values) not in (np.ndarray, np.float64) or values.dtype != FLOAT64:
         raise ModelError(
-            f"contact model '{model.name}' gave {_words(name)} of type {type_name(values)}; it must be a float64 array"
+            f"{model.kind} '{model.name}' gave {_words(name)} of type {type_name(values)}; it must be a float64 array"
         )
     if values.shape != shape:
-        raise ModelError(
-            f"contact model '{model.name}' gave {_words(name)} of shape {values.shape}; it must be {shape}"
-        )
+        raise ModelError(f"{model.kind} '{model.name}' gave {_words(name)} of shape {values.shape}; it must be {shape}")
 
 
 def _check_values(model: ContactModel, contact: Contact, problem: Problem, *, areas: bool) -> None:
@@ -306,7 +304,7 @@ def _error(model: ContactModel, what: str, problem: Problem, wrong: NDArray[np.b
         f" and maximum pressure {from_si(problem.max_pressure[point], 'MPa')!r}"
     )
     at = f"node {', '.join(map(str, node))} at " if node else ""
-    return ModelError(f"contact model '{model.name}' {what}, first for {at}{conditions}")
+    return ModelError(f"{model.kind} '{model.name}' {what}, first for {at}{conditions}")
 
 
 def _first(wrong: NDArray[np.bool_]) -> tuple[int, ...]:

@@ -10,25 +10,26 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import NODE_VARIABLES, TOTALS, Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.models.contact_model import Blame
-from wearlaw.models.wear_law import Numbers, WearLaw
+from wearlaw.models.law import Law, Numbers
 from wearlaw.numerics.solving import VECTORS, Solver
 
 FIELDS = ("pressure", "traction", "slip", "traction_bound", "x", *VECTORS)
 """The fields of a contact that are interpolated between nodes."""
 
 
-def split_rates(solver: Solver, law: WearLaw, contact: Contact, problem: Problem, p: Numbers) -> Array:
+def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p: Numbers) -> Array:
     """Return the rates of a law at the nodes of strips; where the rate jumps in a node's cell, the mean over the cell.
 
-    A cell is the part of a strip that its node represents. Between two nodes that slip, the contact is interpolated
-    linearly. Where a variable crosses a jump of the law there, the part of a cell beyond the jump has the rate beyond
-    it. The error along the strip is then of second order in the size of the cells, and otherwise of first order.
+    A cell is the part of a strip that its node represents. Between two nodes, the contact is interpolated linearly,
+    but not from slip to stick if the rate is zero in stick. Where a variable crosses a jump there, the part of a cell
+    beyond the jump has the rate beyond it. The error along the strip is then of second order in the size of the cells,
+    and otherwise of first order.
 
     Parameters
     ----------
     solver : Solver
         For the contact model.
-    law : WearLaw
+    law : Law
     contact : Contact
         On strips, with a batch of one axis.
     problem : Problem
@@ -44,13 +45,16 @@ def split_rates(solver: Solver, law: WearLaw, contact: Contact, problem: Problem
     rate = solver.rate(law, contact, problem, p)
     with Blame(law, p):
         jumps = law.jumps(p)
-    levels = [(name, value) for name, values in jumps.items() if name in NODE_VARIABLES for value in values]
+    known = {*NODE_VARIABLES, *law.own_variables}
+    levels = [(name, value) for name, values in jumps.items() if name in known for value in values]
     if not levels or contact.x.shape[-2] == 1:
         return rate
     step = np.diff(contact.x, axis=-2)
-    slips = contact.slip != 0.0
-    inside = slips[..., 1:, :] & slips[..., :-1, :] & (step > 0.0)
-    variables = {name: np.abs(getattr(contact, name)) for name, _ in levels}
+    inside = step > 0.0
+    if law.zero_in_stick:
+        slips = contact.slip != 0.0
+        inside &= slips[..., 1:, :] & slips[..., :-1, :]
+    variables = {name: np.abs(law.value_at(contact, name)) for name, _ in levels}
     crossed = []
     for name, value in levels:
         above = variables[name] >= value

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from wearlaw.contact.material import dundurs_beta
 from wearlaw.contact.problem import PATCHES, Body, Geometry, Problem
-from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning
+from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Model, Scale
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import WEAR, Law
 from wearlaw.plugins import loader
 
 PEAKS = (
@@ -31,18 +32,68 @@ MOST_COUPLING = 0.1
 """Largest share of μp that the traction at a/2 may have without a warning."""
 
 
-def law_among(laws: tuple[WearLaw, ...], model: ContactModel) -> WearLaw:
-    """Return the wear law of a pipeline with this contact model, or raise a `CompositionError` if it has none."""
-    if not laws:
-        raise CompositionError(f"the pipeline has no wear law; give one, as in rig | {model!r} | wl.wear_law('usfd')")
-    return laws[0]
+def law_among(laws: Sequence[Law], model: ContactModel, outcome: str, body: str | None = None) -> int:
+    """Return the index of the law of an outcome for a body, or raise an error if there is none.
+
+    Parameters
+    ----------
+    laws : sequence of Law
+    model : ContactModel
+        The contact model, for the message.
+    outcome : str
+        Name of the outcome, such as "wear_rate".
+    body : str, optional
+        The body; if it is not given, there must be one law of the outcome.
+
+    Raises
+    ------
+    CompositionError
+        If no law predicts the outcome, or if several laws do and no body is given.
+    """
+    found = [index for index, law in enumerate(laws) if law.outcome.name == outcome]
+    if not found:
+        if outcome == WEAR:
+            add = f"the pipeline has no wear law; give one, as in rig | {model!r} | wl.wear_law('usfd')"
+            raise CompositionError(add)
+        known = ", ".join(law.outcome.name for law in laws) or "there is none"
+        raise CompositionError(f"no law of the pipeline predicts '{outcome}'; its laws predict: {known}")
+    if body is None and len(found) > 1:
+        names = [laws[index].body for index in found]
+        ask = f"wear_rate_of('{names[0]}')" if outcome == WEAR else f"outcome('{outcome}', '{names[0]}')"
+        raise CompositionError(f"{outcome}: has a law for each of {' and '.join(map(str, names))}; use {ask}")
+    fitting = found if body is None else [index for index in found if laws[index].body in (None, body)]
+    if not fitting:
+        names = [laws[index].body for index in found]
+        raise CompositionError(f"{outcome}: no law predicts it for '{body}', only for {' and '.join(map(str, names))}")
+    return fitting[0]
 
 
-def check_scale(scale: Scale, model: ContactModel, law: WearLaw) -> None:
+def check_laws(laws: Sequence[Law], bodies: Iterable[str]) -> None:
+    """Raise an error for two laws of one outcome and one body, or for a law of a body that the rig does not have.
+
+    `bodies` are the bodies of the rig; none if they are not known.
+    """
+    known = list(bodies)
+    for law in laws:
+        if law.body is not None and known and law.body not in known:
+            hint = did_you_mean(law.body, known)
+            raise CompositionError(
+                f"{law.kind} '{law.name}': the rig has no body '{law.body}'{hint} Its bodies are {' and '.join(known)}"
+            )
+    for law, one in itertools.combinations(laws, 2):
+        if law.outcome.name == one.outcome.name and (None in (law.body, one.body) or one.body == law.body):
+            which = f" of '{law.body}'" if law.body is not None and law.body == one.body else ""
+            raise CompositionError(
+                f"{law.name} and {one.name} both predict '{law.outcome.name}'{which}; keep one of them, or give each"
+                f' its own body, as in body="{(known or ["rail"])[0]}"'
+            )
+
+
+def check_scale(scale: Scale, model: ContactModel, law: Law) -> None:
     """Raise an error if a law of the whole patch follows a contact resolved into cells."""
     if law.scale == "patch" and scale != "patch":
         raise CompositionError(
-            f"wear law '{law.name}' is stated for the means of the whole patch, but contact model '{model.name}'"
+            f"{law.kind} '{law.name}' is stated for the means of the whole patch, but contact model '{model.name}'"
             ' resolves it into cells; put wl.patch_mean() between them, or use wl.contact_model("global")'
         )
 
@@ -58,7 +109,7 @@ def check_geometry(rig: Model, model: ContactModel, geometry: Geometry | None) -
 
 
 def warn_of_calibration(
-    geometry: Geometry | None, model: ContactModel, scale: Scale, law: WearLaw, stacklevel: int = 3
+    geometry: Geometry | None, model: ContactModel, scale: Scale, law: Law, stacklevel: int = 3
 ) -> None:
     """Warn if the law's parameters were fitted for another contact; `stacklevel` 1 is this function."""
     calibration = law.calibration
@@ -71,7 +122,7 @@ def warn_of_calibration(
         return
     if fitted != "any" and fitted != geometry:
         warnings.warn(
-            f"the parameters of wear law '{law.name}' were fitted for {PATCHES[fitted]}, but are used"
+            f"the parameters of {law.kind} '{law.name}' were fitted for {PATCHES[fitted]}, but are used"
             f" with {PATCHES[geometry]}. {PEAKS} Check them against data",
             CalibrationWarning,
             stacklevel=stacklevel,
@@ -79,14 +130,14 @@ def warn_of_calibration(
         return
     used = "its patch means" if scale == "patch" else "its cells"
     warnings.warn(
-        f"the parameters of wear law '{law.name}' were fitted for {calibration}, but are used with"
+        f"the parameters of {law.kind} '{law.name}' were fitted for {calibration}, but are used with"
         f" {model!r} and {used}; check them against data, or choose parameters fitted for that contact",
         CalibrationWarning,
         stacklevel=stacklevel,
     )
 
 
-def other_materials(bodies: Mapping[str, Body], law: WearLaw) -> list[str]:
+def other_materials(bodies: Mapping[str, Body], law: Law) -> list[str]:
     """Return the names of the bodies whose material differs from that which the law was fitted to."""
     calibration = law.calibration
     if calibration is None:
@@ -95,18 +146,18 @@ def other_materials(bodies: Mapping[str, Body], law: WearLaw) -> list[str]:
     return [name for (name, body), fitted in pairs if not body.material.resembles(fitted)]
 
 
-def fitted_to_other_body(bodies: Mapping[str, Body], law: WearLaw, body: str) -> bool:
+def fitted_to_other_body(bodies: Mapping[str, Body], law: Law, body: str) -> bool:
     """Return whether the law was fitted to the wear of another body than this one."""
     calibration = law.calibration
     return calibration is not None and bool(calibration.bodies) and body != next(iter(bodies))
 
 
-def warn_of_materials(bodies: Mapping[str, Body], law: WearLaw, stacklevel: int = 3) -> None:
+def warn_of_materials(bodies: Mapping[str, Body], law: Law, stacklevel: int = 3) -> None:
     """Warn if the law's parameters were fitted for other materials; `stacklevel` 1 is this function."""
     calibration, others = law.calibration, other_materials(bodies, law)
     if calibration is not None and others:
         warnings.warn(
-            f"the parameters of wear law '{law.name}' were fitted for {calibration.materials}, but"
+            f"the parameters of {law.kind} '{law.name}' were fitted for {calibration.materials}, but"
             f" {' and '.join(others)} {'is' if len(others) == 1 else 'are'} of another material: Young's modulus or"
             " density differs by more than 10 %. Check them against data",
             CalibrationWarning,
@@ -114,12 +165,12 @@ def warn_of_materials(bodies: Mapping[str, Body], law: WearLaw, stacklevel: int 
         )
 
 
-def warn_of_body(problem: Problem, law: WearLaw, body: str, stacklevel: int) -> None:
+def warn_of_body(bodies: Mapping[str, Body], law: Law, body: str, stacklevel: int) -> None:
     """Warn if the law's parameters were fitted to the wear of the other body; `stacklevel` 1 is this function."""
     calibration = law.calibration
-    if calibration is not None and fitted_to_other_body(problem.bodies, law, body):
+    if calibration is not None and fitted_to_other_body(bodies, law, body):
         warnings.warn(
-            f"the parameters of wear law '{law.name}' were fitted to the wear of the first body, with"
+            f"the parameters of {law.kind} '{law.name}' were fitted to the wear of the first body, with"
             f" {calibration.materials}, but are used for the wear of '{body}'; check them against data",
             CalibrationWarning,
             stacklevel=stacklevel,

@@ -86,7 +86,7 @@ def creepage_for(
         """Return by how much T/N falls short; `find_root` passes the indices of the points as floats."""
         index = point.astype(np.intp)
         at = flat[index].replaced(longitudinal_creepage=sign[index] * np.exp(log_creepage))
-        return size[index] - sign[index] * integrate_forces(predict.contact_model, at).longitudinal / at.normal_force
+        return size[index] - sign[index] * integrate_forces(predict.staged_model, at).longitudinal / at.normal_force
 
     points = np.arange(size.size, dtype=np.float64)
     start = np.full(size.size, np.log(SMALLEST))

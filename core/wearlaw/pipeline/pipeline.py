@@ -1,6 +1,6 @@
 """The `Rig`, which poses contact problems, and the `Pipeline` that a user composes from it.
 
-The order is rig | contact model | patch mean, if needed, | wear law.
+The order is rig | contact model | stages, if any, | laws.
 """
 
 from __future__ import annotations
@@ -8,8 +8,8 @@ from __future__ import annotations
 import inspect
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, ParamSpec, Protocol, Self
+from functools import cached_property, partial
+from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self
 
 import numpy as np
 from pydantic import model_validator
@@ -18,25 +18,29 @@ from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
 from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import WEAR, Law
+from wearlaw.models.stage import Stage
 from wearlaw.numerics.blocks import Columns
-from wearlaw.numerics.integrate import integrate_forces, integrate_wear
+from wearlaw.numerics.integrate import integrate_forces, integrate_laws, prepared
+from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.composition import (
     check_geometry,
+    check_laws,
     check_one_patch,
     check_scale,
     check_traction,
     law_among,
+    warn_of_body,
     warn_of_calibration,
     warn_of_materials,
     warn_of_unlike_materials,
 )
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.ranges import RangeWatch, overload_of
-from wearlaw.plugins.fields import RIG, ContactModelField, WearLawField
+from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.settings.configuration import Configuration
 
-ORDER = 'the order is rig | wl.contact_model("exact") | wl.patch_mean(), where it is needed, | wl.wear_law("usfd")'
+ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
 
 LINE = 100
 """Longest pipeline shown on one line, in characters; a longer one has a line for each part."""
@@ -216,28 +220,8 @@ def check_sizes(sizes: dict[str, Array], friction_coefficient: Array) -> None:
         raise ConditionsError(f"friction_coefficient: must be at least {LEAST_FRICTION:g}, which no contact comes near")
 
 
-class PatchMean(Configuration):
-    """The stage that replaces a resolved contact by its patch means."""
-
-    stage: Literal["patch_mean"] = "patch_mean"
-    """Name of the stage in files."""
-
-    def __repr__(self) -> str:
-        return "patch_mean()"
-
-    if not TYPE_CHECKING:  # type checkers reject this order anyway
-
-        def __or__(self, other: object) -> object:
-            raise CompositionError(f"wl.patch_mean() cannot start a pipeline; {ORDER}")
-
-
-def patch_mean() -> PatchMean:
-    """Return the stage that replaces a resolved contact by its patch means, for laws stated for patch means."""
-    return PatchMean()
-
-
 class Pipeline(Configuration, Generic[P]):
-    """A rig, a contact model, and stages and a wear law if given; predicts the contact and, with a law, the wear.
+    """A rig, a contact model, and stages and laws if given; predicts the contact and the outcomes of the laws.
 
     A pipeline is frozen and can be printed, compared, hashed and pickled. ``model_dump_json()`` writes it as JSON, and
     ``Pipeline.model_validate_json(...)`` reads it back.
@@ -247,60 +231,68 @@ class Pipeline(Configuration, Generic[P]):
     """The two bodies that roll on each other."""
     contact_model: ContactModelField
     """The theory of the tangential contact."""
-    stages: tuple[PatchMean, ...] = ()
-    """Stages that change the contact before the law sees it."""
-    laws: tuple[WearLawField, ...] = ()
-    """The wear law; empty if the pipeline predicts the contact alone."""
+    stages: tuple[StageField, ...] = ()
+    """Stages around the contact model, the first of them next to the model."""
+    laws: tuple[LawField, ...] = ()
+    """The laws, of different outcomes or for different bodies; empty if the pipeline predicts the contact alone."""
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
         check_geometry(self.rig, self.contact_model, self.rig.geometry)
-        if len(self.laws) > 1:
-            raise CompositionError(f"a pipeline has one wear law, got {' and '.join(law.name for law in self.laws)}")
         for law in self.laws:
             check_scale(self.scale, self.contact_model, law)
+        if self.laws:
+            check_laws(self.laws, self.rig.bodies)
         return self
+
+    @cached_property
+    def staged_model(self) -> ContactModel:
+        """The contact model with the stages around it, as one contact model."""
+        return staged(self.contact_model, self.stages)
 
     @property
     def scale(self) -> Scale:
         """Whether a law sees the means of the patch or its cells."""
-        return "patch" if self.stages else self.contact_model.scale
+        return self.staged_model.scale
 
     def without_law(self) -> Pipeline[P]:
         """Return the pipeline that predicts the contact alone."""
         return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages) if self.laws else self
 
     @property
-    def wear_law(self) -> WearLaw:
+    def wear_law(self) -> Law:
         """The wear law.
 
         Raises
         ------
         CompositionError
-            If the pipeline has none.
+            If the pipeline has none, or one for each body.
         """
-        return law_among(self.laws, self.contact_model)
+        return self.laws[law_among(self.laws, self.contact_model, WEAR)]
 
-    def with_law(self, law: WearLaw) -> Pipeline[P]:
-        """Return the pipeline with this law in place of its own, without the warnings about the law's calibration."""
-        return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages, laws=(law,))
+    def with_law(self, *laws: Law) -> Pipeline[P]:
+        """Return the pipeline with these laws in place of its own, without the warnings about their calibration."""
+        return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages, laws=laws)
 
     def __repr__(self) -> str:
         parts = [repr(part) for part in (self.rig, self.contact_model, *self.stages, *self.laws)]
         line = " | ".join(parts)
         return line if len(line) <= LINE else "({})".format("\n | ".join(parts))
 
-    def __or__(self, stage: WearLaw | PatchMean) -> Pipeline[P]:
-        """Return the pipeline with a wear law, or with the contact's patch means."""
-        if self.laws:
-            raise CompositionError(f"a pipeline ends with its wear law, nothing follows it, not {stage!r}; {ORDER}")
-        if isinstance(stage, PatchMean):
-            return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=(stage,))
-        if not isinstance(stage, WearLaw):
-            raise CompositionError(f"a contact model is followed by wl.patch_mean() or a wear law, not by {stage!r}")
-        pipeline = self.with_law(stage)
-        warn_of_calibration(self.rig.geometry, self.contact_model, self.scale, stage)
-        warn_of_materials(self.rig.bodies, stage)
+    def __or__(self, part: Law | Stage) -> Pipeline[P]:
+        """Return the pipeline with one more law, or one more stage around the contact model."""
+        if isinstance(part, Stage):
+            if self.laws:
+                raise CompositionError(f"a stage stands before the laws, not after them: {part!r}; {ORDER}")
+            return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=(*self.stages, part))
+        before, after = ("law", "another law") if self.laws else ("contact model", "a stage or a law")
+        if not isinstance(part, Law):
+            raise CompositionError(f"a {before} is followed by {after}, not by {part!r}; {ORDER}")
+        pipeline = self.with_law(*self.laws, part)
+        warn_of_calibration(self.rig.geometry, self.contact_model, self.scale, part)
+        warn_of_materials(self.rig.bodies, part)
+        if part.body is not None and self.rig.bodies:
+            warn_of_body(self.rig.bodies, part, part.body, stacklevel=3)
         return pipeline
 
     def __call__(self, *positional: P.args, **conditions: P.kwargs) -> Prediction:
@@ -330,7 +322,7 @@ class Pipeline(Configuration, Generic[P]):
         if type(rig).balanced is Rig.balanced:
             return problem
         with Blame(rig):
-            balanced = rig.balanced(problem, partial(integrate_forces, self.contact_model))
+            balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
         if not isinstance(balanced, Problem):
             raise ModelError(f"`balanced` of rig '{rig.name}' returned {balanced!r}, not a wearlaw.Problem")
         return balanced
@@ -380,32 +372,37 @@ class Pipeline(Configuration, Generic[P]):
                 warn_of_materials(problem.bodies, law, stacklevel + 1)
 
     def range_watch(self) -> RangeWatch:
-        """Return a watch that sees whether operating points stay elastic and within the range of the law, if any."""
-        return RangeWatch(self.laws[0] if self.laws else None)
+        """Return a watch that sees whether operating points stay elastic and within the ranges of the laws."""
+        return RangeWatch(*self.laws)
 
     def watched(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None = None) -> Prediction:
         """Return the result of `predict` without its warnings; `watch` sees the operating points."""
-        model, scale = self.contact_model, self.scale
         if problem.geometry == "line":
-            check_traction(model, problem)
+            check_traction(self.contact_model, problem)
+        model, problem = prepared(self.staged_model, problem)
         if not self.laws:
-            return self._without_wear(problem, watch, on_block)
-        law = self.laws[0]
+            return self._without_law(model, problem, watch, on_block)
 
         def see(part: Problem, columns: Columns) -> None:
             watch.see_block(part, columns)
             if on_block is not None:
                 on_block(part.size)
 
-        wear = integrate_wear(model, law, problem, scale, see)
-        found = Prediction(problem, model, scale, self.laws, forces=wear.forces, wear=wear)
-        law.check_not_negative(wear.wear_rate, lambda: found.wear_rate_error.to("kg/m^3").magnitude)
+        totals = integrate_laws(model, self.laws, problem, see)
+        found = Prediction(problem, model, self.laws, forces=totals.forces, totals=totals)
+        for index, law in enumerate(self.laws):
+            if law.outcome.of == "patch":
+                law.check_not_negative(totals.values[index])
+            else:
+                law.check_not_negative(totals.values[index], partial(found.error_of_law, index))
         return found
 
-    def _without_wear(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None) -> Prediction:
-        forces = integrate_forces(self.contact_model, problem)
+    def _without_law(
+        self, model: ContactModel, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None
+    ) -> Prediction:
+        forces = integrate_forces(model, problem)
         watch.points += problem.size
         watch.see_overload(overload_of(problem, forces.tangential))
         if on_block is not None:
             on_block(problem.size)
-        return Prediction(problem, self.contact_model, self.scale, forces=forces)
+        return Prediction(problem, model, forces=forces)

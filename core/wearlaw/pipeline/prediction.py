@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
@@ -15,11 +16,12 @@ from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.models.contact_model import ContactModel, Scale
+from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.models.line_contact_model import LineContactModel
-from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics import integrate
-from wearlaw.numerics.integrate import SlipTotals, WearTotals
+from wearlaw.numerics.integrate import SlipTotals, Totals
 from wearlaw.numerics.solving import Solver
+from wearlaw.numerics.staged import without_stages
 from wearlaw.pipeline.composition import law_among, other_materials, warn_of_body
 from wearlaw.pipeline.ranges import elastic_limits, outside_range
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
@@ -43,41 +45,87 @@ SHOWN: Mapping[Geometry, tuple[str, ...]] = {
 
 
 class Prediction:
-    """The contact, and with a wear law the wear, at one or many operating points.
+    """The contact and the outcomes of laws, such as wear, at one or many operating points.
 
     Every property has the shape of the broadcast conditions; for one operating point it is a scalar. Forces have the
     signs of the creepages that cause them: body 1, a wheel, exerts them on body 2, a rail. Properties of the wear raise
     a `CompositionError` if the pipeline has no wear law, and so do properties of another shape of patch.
 
+    ``prediction["rcf_damage"]`` is the outcome of a law by its name; see `outcome`.
+
     Attributes
     ----------
     problem : Problem
-        The contact problem, as SI arrays.
+        The contact problem that the contact model solved, as SI arrays.
     contact_model : ContactModel
-        The theory of the tangential contact.
+        The theory of the tangential contact, without stages.
     scale : {"patch", "cells"}
-        Whether the law saw the means of the patch or its cells.
-    laws : tuple of WearLaw
-        The wear law; empty if only the contact was predicted.
+        Whether the laws saw the means of the patch or its cells.
+    laws : tuple of Law
+        The laws; empty if only the contact was predicted.
     """
 
     def __init__(
         self,
         problem: Problem,
-        contact_model: ContactModel,
-        scale: Scale,
-        laws: tuple[WearLaw, ...] = (),
+        model: ContactModel,
+        laws: tuple[Law, ...] = (),
         *,
         forces: CreepForces | None = None,
-        wear: WearTotals | None = None,
+        totals: Totals | None = None,
     ) -> None:
         self.problem = problem
-        self.contact_model = contact_model
-        self.scale: Scale = scale
+        self.contact_model = without_stages(model)
+        self.scale: Scale = model.scale
         self.laws = laws
+        self._model = model
         self._given_forces = forces
-        self._given_wear = wear
-        self._asked_for: set[str] = set()
+        self._totals = totals
+        self._asked_for: set[tuple[int, str]] = set()
+        self._errors: dict[int, Array] = {}
+
+    def __getitem__(self, name: str) -> Quantity:
+        """Return an outcome by its name in results, such as "rcf_damage" or "wear_rate_rail", or another variable."""
+        index = named_outcomes(self.laws).get(name) if isinstance(name, str) else None
+        if index is not None:
+            law = self.laws[index]
+            return from_si(self._solved_totals.values[index], law.outcome.unit)
+        if isinstance(name, str) and not name.startswith("_") and hasattr(type(self), name):
+            value = getattr(self, name)
+            if isinstance(value, pint.Quantity):
+                return value
+        return self.outcome(name)
+
+    def outcome(self, name: str, body: str | None = None) -> Quantity:
+        """Return the outcome of a law, with its unit.
+
+        Parameters
+        ----------
+        name : str
+            Name of the outcome, such as "rcf_damage".
+        body : str, optional
+            Name of a body in the rig, such as "rail"; needed if the laws differ by body.
+
+        Raises
+        ------
+        CompositionError
+            If no law predicts the outcome, or the laws differ by body and none is given.
+        """
+        index = law_among(self.laws, self.contact_model, name, body)
+        value = self._solved_totals.values[index] if body is None else self._of_body(index, body, stacklevel=3)
+        return from_si(value, self.laws[index].outcome.unit)
+
+    def outcome_error(self, name: str, body: str | None = None) -> Quantity:
+        """Return an estimate of the numerical error of an outcome; slow on an ellipse, which it solves again."""
+        index = law_among(self.laws, self.contact_model, name, body)
+        return from_si(self.error_of_law(index), self.laws[index].outcome.unit)
+
+    def error_of_law(self, index: int) -> Array:
+        """Return an estimate of the numerical error of the outcome of a law in SI, by the index of the law."""
+        if index not in self._errors:
+            law, totals = self.laws[index], self._solved_totals
+            self._errors[index] = integrate.outcome_error(self._model, law, self.problem, totals, index)
+        return self._errors[index]
 
     @property
     def longitudinal_force(self) -> Quantity:
@@ -197,10 +245,12 @@ class Prediction:
 
     @property
     def outside_range(self) -> Quantity:
-        """1 where a point lies outside the range or the materials that the law was fitted to, otherwise 0 [-]."""
-        problem, law = self.problem, self._law
+        """1 where a point lies outside the range or the materials that a law was fitted to, otherwise 0 [-]."""
+        problem = self.problem
         columns = {**asdict(self._forces), "patch_area": self._patch_area}
-        outside = outside_range(problem, columns, law) | bool(other_materials(problem.bodies, law))
+        outside = np.zeros(problem.batch_shape, dtype=np.bool_)
+        for law in self._some_laws:
+            outside |= outside_range(problem, columns, law) | bool(other_materials(problem.bodies, law))
         marks = outside.astype(np.float64)
         return from_si(marks if problem.exists is None else np.where(problem.exists, marks, np.nan), "")
 
@@ -221,25 +271,27 @@ class Prediction:
 
     @cached_property
     def contact(self) -> Contact:
-        """The solved contact as SI arrays, on nodes that suit the wear law or that the contact model chose."""
-        model, scale = self.contact_model, self.scale
+        """The solved contact as SI arrays, on nodes that suit the law or that the contact model chose."""
         if self._solved is not None:
-            return integrate.seen_by_law(model, self._solved.unflattened(self.problem), scale)
-        if self.problem.geometry != "line" or not self.laws:
-            return integrate.solve(model, self.problem, scale)
-        contact = integrate.contact_for(model, self._law, self.problem.flatten(), scale)
+            return self._solved.unflattened(self.problem)
+        if self.problem.geometry != "line" or len(self.laws) != 1:
+            return integrate.solve(self._model, self.problem)
+        contact = integrate.contact_for(self._model, self.laws[0], self.problem.flatten())
         return contact.unflattened(self.problem)
 
     @cached_property
     def profile(self) -> xarray.Dataset:
-        """Pressure, traction, traction bound, slip and wear rate along the patch of a line, with units."""
-        if not self.laws:
-            return self._profile({})
-        return self._profile({"wear_rate": (self._law.checked_rate(self._cells()), WEAR_RATE)})
+        """Pressure, traction, traction bound, slip and outcomes along the patch of a line, with units."""
+        local = {
+            name: (self.laws[index].checked_rate(self._cells()), self.laws[index].outcome.unit)
+            for name, index in named_outcomes(self.laws).items()
+            if self.laws[index].outcome.of == "area mean"
+        }
+        return self._profile(local)
 
     def _cells(self) -> Contact:
         """Return the contact of the existing patches, on uniform cells if the model can give them."""
-        model, problem = self.contact_model, self.problem
+        model, problem = self._model, self.problem
         problem.needs("line", "profile")
         if self.scale == "cells" and isinstance(model, LineContactModel):
             there = problem.existing()
@@ -291,24 +343,22 @@ class Prediction:
         CompositionError
             If the contact is a line or is not resolved across the patch.
         """
-        model, problem = self.contact_model, self.problem
+        problem = self.problem
         radius, density = np.asarray(problem.body(body).rolling_radius), self._density(body)
         if problem.geometry == "line":
             raise CompositionError("wear_profile: a line wears evenly across its width; take depth_per_distance")
         if self.scale == "patch":
             raise CompositionError(
-                f"wear_profile: {model!r} gives means of the whole patch; take a contact model that"
+                f"wear_profile: {self._model!r} gives means of the whole patch; take a contact model that"
                 ' resolves it, such as wl.contact_model("fastsim")'
             )
         if strips is not None and (isinstance(strips, bool) or not isinstance(strips, int) or strips < 2):
             raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
-        law, solved = self._law, self._solved
-        self._warn_of(body, stacklevel=3)
-        if not (problem.density == density).all():
-            problem = problem.replaced(density=np.full_like(problem.density, density))
-            flat = problem.flatten()
-            solved = solved and solved.replaced(density=flat.density, problem=flat)
-        y, wear, slid = integrate.integrate_across(model, law, problem, strips, solved)
+        index = self._wear_law(body)
+        self._warn_of(index, body, stacklevel=3)
+        y, wear, slid = integrate.integrate_across(
+            self._model, self._law_of(index, body), problem, strips, self._solved
+        )
         turns = bool(np.isfinite(radius).any())
         once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
         units = ("um/km", "mm/m") if turns else ("nm", "um")
@@ -325,15 +375,25 @@ class Prediction:
     def wear_rate(self) -> Quantity:
         """Mass lost per metre rolled and contact area, mean over the patch [kg/m/m²].
 
-        If the law gives a volume and the densities of the bodies differ, the mass is that of body 1.
+        If the law gives a volume and the densities of the bodies differ, the mass is that of body 1. If each body has
+        its own law, take `wear_rate_of`.
         """
-        return from_si(self._wear.wear_rate, WEAR_RATE)
+        return from_si(self._solved_totals.values[self._wear_law()], WEAR_RATE)
+
+    def wear_rate_of(self, body: str) -> Quantity:
+        """Return the mass that a body loses per metre rolled and contact area, mean over the patch [kg/m/m²].
+
+        Parameters
+        ----------
+        body : str
+            Its name in the rig, such as "disc_1" or "wheel".
+        """
+        return from_si(self._of_body(self._wear_law(body), body, stacklevel=3), WEAR_RATE)
 
     @cached_property
     def wear_rate_error(self) -> Quantity:
         """Estimate of the numerical error in `wear_rate` [kg/m/m²]; slow on an ellipse, which it solves again."""
-        model, law, scale = self.contact_model, self._law, self.scale
-        return from_si(integrate.wear_rate_error(model, law, self.problem, scale, self._wear), WEAR_RATE)
+        return from_si(self.error_of_law(self._wear_law()), WEAR_RATE)
 
     def depth_per_distance(self, body: str) -> Quantity:
         """Return the depth that a body's surface loses per distance rolled, mean over the patch's width [m/m].
@@ -362,7 +422,7 @@ class Prediction:
     @property
     def mass_per_distance(self) -> Quantity:
         """Mass that a body loses per metre rolled [kg/m]; of body 1, like `wear_rate`."""
-        return from_si(self._wear.wear_rate * self._patch_area, "ug/m")
+        return from_si(self._solved_totals.values[self._wear_law()] * self._patch_area, "ug/m")
 
     def mass_lost(self, over: QuantityLike, body: str) -> Quantity:
         """Return the mass that a body loses over a distance rolled [kg]; a rail loses it along the whole distance.
@@ -380,15 +440,22 @@ class Prediction:
         """Return the mass that a body loses in one of its revolutions, over πD rolled [kg]."""
         return from_si(self._mass_per_distance(body) * self._circumference(body), "ug")
 
+    def _wear_law(self, body: str | None = None) -> int:
+        """Return the index of the wear law, for a body if it is given."""
+        return law_among(self.laws, self.contact_model, WEAR, body)
+
     @property
-    def _law(self) -> WearLaw:
-        return law_among(self.laws, self.contact_model)
+    def _some_laws(self) -> tuple[Law, ...]:
+        """The laws; a `CompositionError` if the pipeline has none."""
+        if not self.laws:
+            self._wear_law()  # raises
+        return self.laws
 
     @cached_property
     def _forces(self) -> CreepForces:
         if self._given_forces is not None:
             return self._given_forces
-        return integrate.integrate_forces(self.contact_model, self.problem)
+        return integrate.integrate_forces(self._model, self.problem)
 
     @cached_property
     def _force(self) -> Array:
@@ -405,27 +472,27 @@ class Prediction:
 
     @cached_property
     def _slip(self) -> SlipTotals:
-        if self._given_wear is not None and self._given_wear.slip is not None:
-            return self._given_wear.slip
-        return integrate.integrate_slip(self.contact_model, self.problem, self.scale, self._solved)
+        if self._totals is not None and self._totals.slip is not None:
+            return self._totals.slip
+        return integrate.integrate_slip(self._model, self.problem, self._solved)
 
     @property
     def _solved(self) -> Contact | None:
-        """The contact solved for the wear, of the batch shape or with one batch axis; None if it was not kept."""
-        return None if self._given_wear is None else self._given_wear.contact
+        """The contact solved for the laws, of the batch shape or with one batch axis; None if it was not kept."""
+        return None if self._totals is None else self._totals.contact
 
     @cached_property
     def _patch_area(self) -> Array:
-        if self._given_wear is None:
-            return integrate.patch_area(self.contact_model, self.problem, self.scale)
-        return self.problem.patch_area if self._given_wear.patch_area is None else self._given_wear.patch_area
+        if self._totals is None:
+            return integrate.patch_area(self._model, self.problem)
+        return self.problem.patch_area if self._totals.patch_area is None else self._totals.patch_area
 
-    @cached_property
-    def _wear(self) -> WearTotals:
-        """The totals of the wear law; a `CompositionError` if the pipeline has none."""
-        self._law  # noqa: B018  raises without a law
-        assert self._given_wear is not None
-        return self._given_wear
+    @property
+    def _solved_totals(self) -> Totals:
+        """The outcomes of the laws; a `CompositionError` if the pipeline has no law."""
+        self._some_laws  # noqa: B018  raises without a law
+        assert self._totals is not None
+        return self._totals
 
     def _mass_per_distance(self, body: str) -> Array:
         return self._rate(body) * self._patch_area
@@ -434,19 +501,26 @@ class Prediction:
         return self._rate(body) / self._density(body)
 
     def _rate(self, body: str) -> Array:
-        """Return the wear rate of a body; with a law of volume it is proportional to the body's density."""
-        density = np.full_like(self.problem.density, self._density(body))
-        self._warn_of(body, stacklevel=5)
-        if np.array_equal(density, self.problem.density):
-            return self._wear.wear_rate
-        of_body = self.problem.replaced(density=density)
-        return integrate.integrate_wear(self.contact_model, self._law, of_body, self.scale).wear_rate
+        return self._of_body(self._wear_law(body), body, stacklevel=5)
 
-    def _warn_of(self, body: str, stacklevel: int) -> None:
-        """Warn once if the law was fitted to the wear of the other body; `stacklevel` 1 is this method."""
-        if body not in self._asked_for:
-            self._asked_for.add(body)
-            warn_of_body(self.problem, self._law, body, stacklevel + 1)
+    def _of_body(self, index: int, body: str, stacklevel: int) -> Array:
+        """Return the outcome of a law for a body; a law for every body is evaluated again if the densities differ."""
+        density = self.problem.density_of(body)
+        self._warn_of(index, body, stacklevel + 1)
+        law = self.laws[index]
+        if law.body is not None or density is self.problem.density:
+            return self._solved_totals.values[index]
+        return integrate.integrate_laws(self._model, (self._law_of(index, body),), self.problem).values[0]
+
+    def _law_of(self, index: int, body: str) -> Law:
+        law = self.laws[index]
+        return law if law.body is not None else law.model_copy(update={"body": body})
+
+    def _warn_of(self, index: int, body: str, stacklevel: int) -> None:
+        """Warn once if a law for every body was fitted to the other body; `stacklevel` 1 is this method."""
+        if self.laws[index].body is None and (index, body) not in self._asked_for:
+            self._asked_for.add((index, body))
+            warn_of_body(self.problem.bodies, self.laws[index], body, stacklevel + 1)
 
     def _density(self, body: str) -> float:
         return scalar_si(self.problem.body(body).material.density, "kg/m^3")
@@ -458,19 +532,18 @@ class Prediction:
         return 2.0 * np.pi * radius
 
     def __repr__(self) -> str:
-        summary = SHOWN[self.problem.geometry]
-        names = ("wear_rate", *summary) if self.laws else summary
-        rows = "".join(f"\n  {name:<20} {_brief(getattr(self, name))}" for name in names)
+        names = (*named_outcomes(self.laws), *SHOWN[self.problem.geometry])
+        rows = "".join(f"\n  {name:<20} {_brief(self[name])}" for name in names)
         points = "1 operating point" if self.problem.size == 1 else f"{self.problem.size} operating points"
         return f"{type(self).__name__} of {points}{rows}"
 
 
-def unsolved(problem: Problem, contact_model: ContactModel, scale: Scale, laws: tuple[WearLaw, ...]) -> Prediction:
+def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Prediction:
     """Return a prediction of zeros, with all names and units of the solved one, at no cost."""
     none, one = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
     forces = CreepForces(longitudinal=none, lateral=none, spin_moment=none)
-    wear = WearTotals(wear_rate=none, wear_rate_error=none, patch_area=one)
-    found = Prediction(problem, contact_model, scale, laws, forces=forces, wear=wear)
+    every = (none,) * len(laws)
+    found = Prediction(problem, model, laws, forces=forces, totals=Totals(values=every, errors=every, patch_area=one))
     found._slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
     return found
 

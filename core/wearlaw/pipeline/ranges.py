@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
@@ -15,29 +15,29 @@ from wearlaw.contact.elastic_limit import Overload, first_yield, overload, shake
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.errors import CompositionError, ModelError, RangeWarning
 from wearlaw.models.contact_model import Blame
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
 from wearlaw.numerics.blocks import Columns
 from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import UNITS
 
 
 class RangeWatch:
-    """Sees operating points block by block and warns once for each variable that leaves the law's range.
+    """Sees operating points block by block and warns once for each variable that leaves the range of a law.
 
     Attributes
     ----------
     seen : dict of str to Seen
-        The points outside, by the variable that leaves its range.
+        The points outside, by the index of the law and the variable that leaves its range, as in "0 pressure".
     overload : Overload or None
         The operating point furthest beyond first yield.
     """
 
-    def __init__(self, law: WearLaw | None) -> None:
-        self.law = law
-        self.range: Mapping[str, tuple[float, float]] = {}
-        if law is not None:
+    def __init__(self, *laws: Law) -> None:
+        self.laws = laws
+        self.ranges: dict[str, tuple[float, float]] = {}
+        for index, law in enumerate(laws):
             with Blame(law):
-                self.range = law.valid_range
+                self.ranges |= {f"{index} {name}": ends for name, ends in law.valid_range.items()}
         self.seen: dict[str, Seen] = {}
         self.points = 0
         self.overload: Overload | None = None
@@ -45,22 +45,22 @@ class RangeWatch:
     def see(self, points: int, mean_over_patch: Callable[[str], Array]) -> None:
         """Record a number of operating points; `mean_over_patch` returns the mean of a variable of `Contact` in SI."""
         self.points += points
-        for name, (low, high) in self.range.items():
-            values = mean_over_patch(name)
+        for key, (low, high) in self.ranges.items():
+            values = mean_over_patch(key.partition(" ")[2])
             lowest, highest = extremes(values)
             if lowest < low or highest > high:
-                self.see_outside(name, Seen(lowest, highest, int(((values < low) | (values > high)).sum())))
+                self.see_outside(key, Seen(lowest, highest, int(((values < low) | (values > high)).sum())))
 
     def see_block(self, part: Problem, columns: Columns) -> None:
         """Record a block of operating points, with forces [N] and areas [m²] in columns."""
         self.see(part.size, partial(mean_over_patch, part, columns))
         self.see_overload(overload_of(part, tangential_force(part, columns)))
 
-    def see_outside(self, name: str, more: Seen) -> None:
-        """Record points outside the range of a variable."""
-        known = self.seen.get(name, more)
+    def see_outside(self, key: str, more: Seen) -> None:
+        """Record points outside the range of a law, by a key as in `seen`."""
+        known = self.seen.get(key, more)
         outside = more.outside if known is more else known.outside + more.outside
-        self.seen[name] = Seen(min(known.lowest, more.lowest), max(known.highest, more.highest), outside)
+        self.seen[key] = Seen(min(known.lowest, more.lowest), max(known.highest, more.highest), outside)
 
     def see_overload(self, overload: Overload | None) -> None:
         """Record an operating point beyond first yield if none so far lies further beyond."""
@@ -71,14 +71,16 @@ class RangeWatch:
         """Warn of points beyond first yield or out of range; `stacklevel` 1 is the caller."""
         if self.overload is not None:
             self.overload.warn(stacklevel + 1)
-        for name, (low, high) in self.range.items():
-            if self.law is not None and name in self.seen:
-                seen, calibration = self.seen[name], self.law.calibration
+        for key, (low, high) in self.ranges.items():
+            if key in self.seen:
+                index, _, name = key.partition(" ")
+                law, seen = self.laws[int(index)], self.seen[key]
+                calibration = law.calibration
                 farthest = seen.highest if seen.highest > high else seen.lowest
                 shown = [repr(from_si(value, UNITS[name])) for value in (low, high, farthest)]
                 source = f" ({calibration.source})" if calibration and name in calibration.range_in_si else ""
                 warnings.warn(
-                    f"wear law '{self.law.name}' has a known range of mean {name.replace('_', ' ')} from {shown[0]} to"
+                    f"{law.kind} '{law.name}' has a known range of mean {name.replace('_', ' ')} from {shown[0]} to"
                     f" {shown[1]}{source}; {seen.outside} of {self.points} operating points lie outside, as far as"
                     f" {shown[2]}",
                     RangeWarning,
@@ -114,6 +116,8 @@ def mean_over_patch(problem: Problem, columns: Columns, variable: str) -> Array:
             return tangential_force(problem, columns) / area
         case "wear_index_density":
             return _power(problem, columns) / area
+        case "frictional_power_density":
+            return _power(problem, columns) / area * problem.rolling_speed
     raise ModelError(f"`valid_range` names '{variable}', which is no variable of a contact that has a patch mean")
 
 
@@ -140,7 +144,7 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
     )
 
 
-def outside_range(problem: Problem, columns: Columns, law: WearLaw) -> NDArray[np.bool_]:
+def outside_range(problem: Problem, columns: Columns, law: Law) -> NDArray[np.bool_]:
     """Return at which operating points a mean over the patch lies outside the law's range, of the batch shape."""
     outside = np.zeros(problem.batch_shape, dtype=np.bool_)
     for name, (low, high) in law.valid_range.items():

@@ -12,6 +12,8 @@ from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema, cr
 from wearlaw.contact.material import Material
 from wearlaw.errors import ConfigurationError, Fault, InputError, PluginWarning, WearlawError, described, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.law import Law
+from wearlaw.models.stage import Stage
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import Configuration
@@ -191,6 +193,22 @@ ContactModelField = Annotated[
     _SCHEMA,
 ]
 """A field that takes a contact model, its name, or a table of its name and options."""
+
+StageField = Annotated[
+    Stage,
+    BeforeValidator(_maker(loader.stage)),
+    _AS_TABLE,
+    _SCHEMA,
+]
+"""A field that takes a stage, its name, or a table of its name and options."""
+
+LawField = Annotated[
+    Law,
+    BeforeValidator(_maker(loader.law)),
+    _AS_TABLE,
+    _SCHEMA,
+]
+"""A field that takes a law of any outcome, its name, or a table of its name and options."""
 
 WearLawField = Annotated[
     WearLaw,

@@ -23,6 +23,8 @@ from wearlaw import hookspecs
 from wearlaw.contact.material import Material
 from wearlaw.errors import PluginWarning, described
 from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.law import Law
+from wearlaw.models.stage import Stage
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins.shelf import Broken, Origin, Shelf, add_model
 from wearlaw.settings.configuration import Configuration, known_as
@@ -34,7 +36,9 @@ class Installed:
 
     rigs: Shelf[type[Any]] = field(default_factory=lambda: Shelf("rig", type))
     contact_models: Shelf[type[ContactModel]] = field(default_factory=lambda: Shelf("contact model", type))
+    stages: Shelf[type[Stage]] = field(default_factory=lambda: Shelf("stage", type))
     wear_laws: Shelf[type[WearLaw]] = field(default_factory=lambda: Shelf("wear law", type))
+    laws: Shelf[type[Law]] = field(default_factory=lambda: Shelf("law", type))
     parameter_sets: Shelf[WearLaw] = field(default_factory=lambda: Shelf("parameter set", WearLaw))  # type: ignore[type-abstract]
     materials: Shelf[Material] = field(default_factory=lambda: Shelf("material", Material))
     cases: Shelf[str] = field(default_factory=lambda: Shelf("case", str))
@@ -45,7 +49,7 @@ class Installed:
 
     def shelves(self) -> tuple[Shelf[Any], ...]:
         """Return the shelf of each kind."""
-        models = (self.rigs, self.contact_models, self.wear_laws, self.parameter_sets)
+        models = (self.rigs, self.contact_models, self.stages, self.wear_laws, self.laws, self.parameter_sets)
         return *models, self.materials, self.cases, self.test_sets, self.sections
 
     def of_kind(self, kind: str) -> Shelf[Any]:
@@ -125,6 +129,16 @@ def wear_laws() -> Mapping[str, type[WearLaw]]:
     return installed().wear_laws.items()
 
 
+def stages() -> Mapping[str, type[Stage]]:
+    """Return the installed stages by name."""
+    return installed().stages.items()
+
+
+def laws() -> Mapping[str, type[Law]]:
+    """Return the installed laws of other outcomes than wear by name."""
+    return installed().laws.items()
+
+
 def rig(name: str, /, **options: Any) -> Any:
     """Return the installed rig with a name, such as "twin_disc", and the given fields.
 
@@ -164,6 +178,31 @@ def wear_law(name: str, /, **options: Any) -> WearLaw:
     if name in found.parameter_sets.providers and name not in found.wear_laws.providers:
         return known_as(name, found.parameter_sets.find(name, found.broken).model_copy(update=options))
     return found.wear_laws.find(name, found.broken)(**options)
+
+
+def stage(name: str, /, **options: Any) -> Stage:
+    """Return the installed stage with a name, such as "patch_mean", and the given options.
+
+    Parameters and errors are those of `contact_model`.
+    """
+    found = installed()
+    return found.stages.find(name, found.broken)(**options)
+
+
+def patch_mean() -> Stage:
+    """Return the stage that replaces a resolved contact by its patch means, for laws stated for patch means."""
+    return stage("patch_mean")
+
+
+def law(name: str, /, **options: Any) -> Law:
+    """Return the installed law of any outcome with a name, and the given options; wear laws are among them.
+
+    Parameters and errors are those of `contact_model`.
+    """
+    found = installed()
+    if name in found.laws.providers and name not in {**found.wear_laws.providers, **found.parameter_sets.providers}:
+        return found.laws.find(name, found.broken)(**options)
+    return wear_law(name, **options)
 
 
 def material(name: str, /) -> Material:
@@ -263,8 +302,12 @@ def _add_models(plugin: _Plugin, origin: Origin, found: Installed) -> None:
         add_model(found.rigs, rig_class, origin)
     for model in chain.from_iterable(plugin.answers("wearlaw_contact_models")):
         add_model(found.contact_models, model, origin)
-    for law in chain.from_iterable(plugin.answers("wearlaw_wear_laws")):
-        add_model(found.wear_laws, law, origin)
+    for stage_class in chain.from_iterable(plugin.answers("wearlaw_stages")):
+        add_model(found.stages, stage_class, origin)
+    for law_class in chain.from_iterable(plugin.answers("wearlaw_wear_laws")):
+        add_model(found.wear_laws, law_class, origin)
+    for law_class in chain.from_iterable(plugin.answers("wearlaw_laws")):
+        add_model(found.laws, law_class, origin)
 
 
 def _add_named(plugin: _Plugin, origin: Origin, found: Installed) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean
 from wearlaw.models.contact_model import ContactModel
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
 from wearlaw.pipeline.composition import check_geometry
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.pipeline.prediction import Prediction
@@ -55,7 +55,7 @@ class Contents:
 
     rig: Rig
     contact_models: Mapping[str, ContactModel]
-    wear_laws: Mapping[str, WearLaw]
+    wear_laws: Mapping[str, Law]
     sweeps: Mapping[str, Grid]
     profiles: Mapping[str, Grid]
     units: Mapping[str, str]
@@ -111,7 +111,7 @@ class Contents:
             if found is not None:
                 yield found
 
-    def _prediction(self, model: ContactModel, law: WearLaw, problem: Any) -> Any:
+    def _prediction(self, model: ContactModel, law: Law, problem: Any) -> Any:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from wearlaw.errors import ConfigurationError, Fault, InputError, did_you_mean
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.settings.configuration import Configuration
 from wearlaw.study.grid import Value, wrong_conditions
@@ -114,7 +114,7 @@ class UncertainPoint(Configuration, extra="allow"):
         """Return the distributed parameters of a law."""
         return {name: _parameter(value) for name, value in self.laws.get(law, {}).items()}
 
-    def check_laws(self, known: Mapping[str, WearLaw]) -> None:
+    def check_laws(self, known: Mapping[str, Law]) -> None:
         """Raise an error for unknown laws, and for unknown or impossible parameters.
 
         Raises

@@ -81,7 +81,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     problem = job.pipeline.posed(part.conditions())
     watch = job.pipeline.range_watch()
     prediction = job.pipeline.watched(problem, watch, on_block)
-    outputs = {name: _in_unit(getattr(prediction, name), unit) for name, unit in job.units.items()}
+    outputs = {name: _in_unit(prediction[name], unit) for name, unit in job.units.items()}
     seen = BlockRecord(watch.points, watch.overload, watch.seen, checksum=0)
     return outputs, replace(seen, checksum=checksum(seen, outputs.values()))
 
@@ -156,7 +156,7 @@ def output_units(pipeline: Pipeline[...], problem: Problem, points: Points, outp
     """
     if problem.geometry == "line":
         check_traction(pipeline.contact_model, problem)
-    prediction = unsolved(problem, pipeline.contact_model, pipeline.scale, pipeline.laws)
+    prediction = unsolved(problem, pipeline.staged_model, pipeline.laws)
     given = {*points.varying, *points.fixed}
     units = {}
     for name in outputs:

@@ -11,7 +11,8 @@ from wearlaw.arrays.kernels import accelerate
 from wearlaw.contact.contact import Contact
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.wear_law import BreakpointMap, Numbers, WearLaw
+from wearlaw.models.law import BreakpointMap, Numbers
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.testing.examples import SAME, SUM, assert_close
 from wearlaw.testing.problems import TWIN_DISC, WHEEL_RAIL
 from wearlaw.testing.sampling import random_contacts, rows

@@ -10,7 +10,8 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.models.functions import VARIABLES
-from wearlaw.models.wear_law import BreakpointMap, WearLaw
+from wearlaw.models.law import BreakpointMap
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.testing.bisection import Function, Indices, find_jumps, find_kinks, lost_digits
 from wearlaw.testing.examples import SAME, assert_close
 from wearlaw.testing.sampling import aimed, at_nodes, between, e_folds, forward, random_contacts, retotalled, rows

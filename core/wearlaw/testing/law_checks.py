@@ -12,7 +12,8 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.errors import CompositionError, WearlawError
-from wearlaw.models.wear_law import Numbers, WearLaw
+from wearlaw.models.law import Numbers
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.settings.parameters import changed, number_like, numbers
 from wearlaw.testing.examples import SAME, assert_close, for_each
 from wearlaw.testing.law_shape import contacts_for

@@ -12,7 +12,7 @@ import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, UnitError, did_you_mean
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange, uniform
@@ -85,7 +85,7 @@ OTHERS = (
 """The hint for impossible samples."""
 
 
-def check_samples(law: WearLaw, samples: Mapping[str, Array]) -> None:
+def check_samples(law: Law, samples: Mapping[str, Array]) -> None:
     """Raise an error if the law does not accept some samples of parameters, in SI by name.
 
     If the law accepts all combinations of their extremes, it accepts the samples. If not, each sample is tried, the
@@ -126,7 +126,7 @@ def condition(name: str, given: Distribution) -> Uncertain:
     return Uncertain(name, given, {name: (first, second)}, False, str(given))
 
 
-def parameter(name: str, given: object, law: WearLaw) -> Uncertain:
+def parameter(name: str, given: object, law: Law) -> Uncertain:
     """Return an uncertain parameter of a law.
 
     Raises
@@ -166,7 +166,7 @@ def _uncertain(name: str, given: Distribution, unit: Unit | None, of_law: bool) 
     return Uncertain(name, given, {name: (first, second)}, of_law, str(given))
 
 
-def _published(name: str, law: WearLaw) -> Uncertain:
+def _published(name: str, law: Law) -> Uncertain:
     """Return the input that moves a field's numbers through their published ranges together."""
     band = law.band()
     if band is None:

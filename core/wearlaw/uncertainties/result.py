@@ -17,9 +17,9 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
-from wearlaw.models.wear_law import Numbers
+from wearlaw.models.law import Numbers
 from wearlaw.numerics.blocks import Columns
-from wearlaw.numerics.integrate import integrate_wear
+from wearlaw.numerics.integrate import integrate_laws
 from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
@@ -246,18 +246,18 @@ class Uncertainty:
         varied = {name: np.broadcast_to(values, shape).reshape(-1, 1) for name, values in of_law.items()}
         p: Numbers = {**self._law.numbers, **varied}
         predict, watch = self._predict, RangeWatch(self._law)
-        model, scale = predict.contact_model, predict.scale
-        check_traction(model, flat)
+        check_traction(predict.contact_model, flat)
 
         def see(part: Problem, columns: Columns) -> None:
             watch.see_block(part, columns)
 
-        wear = integrate_wear(model, self._law, flat, scale, see if stacklevel is not None else None, p)
+        watching = see if stacklevel is not None else None
+        wear = integrate_laws(predict.staged_model, (self._law,), flat, watching, [p])
         if stacklevel is not None:
             predict.warn_of_problem(flat, stacklevel + 1)
-            warn_of_unlike_materials(model, flat, stacklevel + 1)
+            warn_of_unlike_materials(predict.contact_model, flat, stacklevel + 1)
             watch.warn(stacklevel)
-        return wear.wear_rate.reshape(shape)
+        return wear.values[0].reshape(shape)
 
     def __repr__(self) -> str:
         lines = [f"Uncertainty of the wear rate, {self.samples} samples"]

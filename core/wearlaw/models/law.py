@@ -1,0 +1,407 @@
+"""The base class of laws of any outcome, `Law`, its `Outcome`, and the record of the fit of its parameters."""
+
+import inspect
+import math
+import warnings
+from abc import abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
+
+import numpy as np
+from pydantic import model_validator
+
+from wearlaw.arrays.array import Array, extremes, type_name
+from wearlaw.contact.contact import LAW_VARIABLES, Contact
+from wearlaw.contact.material import Material
+from wearlaw.contact.problem import Geometry
+from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, UnitError, did_you_mean
+from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
+from wearlaw.settings.configuration import Configuration
+from wearlaw.settings.parameters import numbers_in_si
+from wearlaw.units.quantities import Quantity, Unit, from_si
+from wearlaw.units.registry import unit_in_si
+from wearlaw.units.variables import UNITS, VARIABLES
+
+Numbers: TypeAlias = Mapping[str, float | Array]
+"""A law's numbers in SI, by the names of its fields; a number of a record within a law as "coefficient.low_speed".
+
+Each number is a float. If it differs between operating points, it is an array of shape (points, 1), on an ellipse
+(points, 1, 1), which broadcasts over the nodes. For an outcome of the patch, its shape is (points,).
+"""
+
+BreakpointMap: TypeAlias = Mapping[str, tuple[Any, ...]]
+"""Variables of a `Contact` with the SI values at which a law branches, each a float or an array as in `Numbers`."""
+
+WEAR = "wear_rate"
+"""Name of the outcome of wear laws."""
+
+TAKE_NUMBERS = {"rate": ("self", "contact", "p"), **dict.fromkeys(("breakpoints", "ramps", "jumps"), ("self", "p"))}
+"""The methods of a law that take its numbers, with their arguments."""
+
+
+class Calibration(Configuration):
+    """Record of the contact, materials and tests that the parameters of a wear law were fitted to."""
+
+    contact_model: str
+    """Name of the contact model in the fit, or "any" if the parameters are not tied to one."""
+    scale: Scale | Literal["any"]
+    """Whether the fit used patch means or cells, or "any"."""
+    options: tuple[tuple[str, str], ...] = ()
+    """Relevant settings of that contact model, as pairs of field and value."""
+    geometry: Geometry | Literal["any"] = "line"
+    """Shape of the contact patch, or "any"."""
+    materials: str
+    """Materials of the two bodies, in words."""
+    bodies: tuple[Material, ...] = ()
+    """Materials of the body that wore and of the other one. wearlaw compares them with those of the rig, and warns if
+    you ask for the wear of the other body. Empty if they are not known."""
+    stated_range: tuple[tuple[str, str, str], ...] = ()
+    """Range of the tests: patch means of `Contact` variables with lowest and highest value, such as
+    ("wear_index_density", "0 N/mm^2", "108.4 N/mm^2")."""
+    source: str
+    """Literature on the parameters and on their range."""
+
+    @model_validator(mode="after")
+    def _range_has_units(self) -> "Calibration":
+        self.range_in_si  # noqa: B018  raises if it is wrong
+        return self
+
+    @cached_property
+    def range_in_si(self) -> dict[str, tuple[float, float]]:
+        """The stated range in SI."""
+        found = {}
+        for variable, low, high in self.stated_range:
+            if variable not in LAW_VARIABLES:
+                raise InputError(f"stated_range: unknown variable '{variable}'{did_you_mean(variable, LAW_VARIABLES)}")
+            unit = Unit(UNITS[variable], positive=False)
+            found[variable] = float(unit.si(low, variable)), float(unit.si(high, variable))
+        return found
+
+    def __str__(self) -> str:
+        if self.scale == "patch":
+            return "patch means (the global model)"
+        if self.contact_model == "any":
+            return "any contact"
+        options = "".join(f", {field}={value!r}" for field, value in self.options)
+        return f"the cells of contact_model({self.contact_model!r}{options})"
+
+    def covers(self, model: ContactModel, scale: Scale, geometry: Geometry = "line") -> bool:
+        """Return whether the parameters were fitted for this contact model, scale and shape of patch."""
+        if self.scale not in ("any", scale) or self.geometry not in ("any", geometry):
+            return False
+        if scale == "patch" or self.contact_model == "any":
+            return True
+        return model.name == self.contact_model and all(
+            getattr(model, field, None) == value for field, value in self.options
+        )
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a law predicts, and its unit.
+
+    Attributes
+    ----------
+    name : str
+        Name in results, such as "rcf_damage".
+    unit : str
+        Unit in results, such as "W/mm^2"; "" for a plain number. The law itself returns SI values.
+    of : {"area mean", "patch"}
+        "area mean" if the law gives a value at each node; the result is its mean over the area of the patch. "patch" if
+        it gives one value for the whole patch, such as the damage by one passage. Such a value is never averaged over
+        the area and never summed over several patches.
+    signed : bool
+        Whether the value may be negative.
+    """
+
+    name: str
+    unit: str
+    of: Literal["area mean", "patch"]
+    signed: bool = False
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not (isinstance(self.name, str) and self.name.isidentifier()):
+            raise InputError(f"outcome: its name must be made of letters, digits and underscores, got {self.name!r}")
+        if self.of not in ("area mean", "patch"):
+            raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {self.of!r}")
+        known = VARIABLES.get(self.name)
+        if known is not None:
+            if self.name != WEAR:
+                raise InputError(f"outcome '{self.name}': this name has a meaning, {known.name}; choose another one")
+            return
+        try:
+            unit_in_si(self.unit)
+        except UnitError as error:
+            raise UnitError(f"outcome '{self.name}': {error}") from None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LocalOutcome:
+    """The outcome of a law in a contact solved elsewhere.
+
+    Attributes
+    ----------
+    contact : Contact
+        The contact.
+    rate : ndarray, (batch, nodes), or (batch) for an outcome of the patch
+        The law's values in SI.
+    outcome : Outcome
+        What the law predicts.
+    """
+
+    contact: Contact
+    rate: Array
+    outcome: Outcome
+
+    @property
+    def local_value(self) -> Quantity:
+        """The law's values at the nodes, or of the patch, in the unit of the outcome."""
+        return from_si(self.rate, self.outcome.unit)
+
+    @property
+    def value(self) -> Quantity:
+        """The outcome, a mean over the patch or the value of the patch, in its unit."""
+        of_patch = self.outcome.of == "patch"
+        return from_si(self.rate if of_patch else self.contact.mean(self.rate), self.outcome.unit)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__} with {self.outcome.name} {self.value!r}"
+
+
+class Law(Model):
+    """A law of any outcome: from a solved contact to a value at each of its nodes, or of the whole patch.
+
+    A law of wear derives from `WearLaw`.
+    """
+
+    kind: ClassVar[str] = "law"
+
+    outcome: ClassVar[Outcome]
+    """What the law predicts."""
+
+    zero_in_stick: ClassVar[bool] = False
+    """Whether the value is zero at nodes that stick."""
+
+    body: str | None = None
+    """The body that the law is for, by its name in the rig, such as "rail"; None for every body."""
+
+    scale: ClassVar[Literal["patch", "any"]] = "any"
+    """"patch" if the law is stated only for the means of the whole patch."""
+
+    monotone_in: ClassVar[tuple[str, ...]] = ()
+    """Variables of a `Contact` with which the rate never falls while the others stay the same."""
+
+    if not TYPE_CHECKING:  # type checkers already compare the methods with this class
+
+        @classmethod
+        def __pydantic_init_subclass__(cls, **options: Any) -> None:
+            """Raise an error for a law without an outcome, or with methods that do not take its numbers."""
+            super().__pydantic_init_subclass__(**options)
+            if not isinstance(getattr(cls, "outcome", None), Outcome):
+                raise TypeError(
+                    f"{cls.__name__} has no outcome; add what it predicts, as in"
+                    ' outcome = wl.Outcome("rcf_damage", unit="", of="patch"), or derive it from wl.WearLaw'
+                )
+            for name, arguments in TAKE_NUMBERS.items():
+                _check_arguments(cls, name, arguments)
+            known = cls.__pydantic_fields__
+            known["body"] = known.pop("body")  # last where fields are shown
+
+    def __repr_args__(self) -> Any:
+        return ((name, value) for name, value in super().__repr_args__() if (name, value) != ("body", None))
+
+    @abstractmethod
+    def rate(self, contact: Contact, p: Numbers) -> Array:
+        """Return the value of the outcome in SI, of the shape of the nodes; for an outcome of the patch, of the batch.
+
+        Parameters
+        ----------
+        contact : Contact
+            The solved contact.
+        p : mapping of str to float or ndarray
+            The law's numbers in SI; read them here and not from `self`. Fits and uncertainties pass arrays with one
+            value for each operating point, so write the rate with NumPy functions that broadcast: ``np.where`` instead
+            of ``if``, ``np.exp`` instead of ``math.exp``.
+        """
+
+    @cached_property
+    def numbers(self) -> Mapping[str, float]:
+        """The law's own numbers in SI, as floats; a name such as "mid" is replaced by its numbers."""
+        with Blame(self):
+            return numbers_in_si(self.explicit())
+
+    def checked_rate(self, contact: Contact, p: Numbers | None = None) -> Array:
+        """Return `rate` with the given numbers, by default the law's own.
+
+        Raises
+        ------
+        ModelError
+            If `rate` fails, or returns wrong values.
+        """
+        p = self.numbers if p is None else p
+        with Blame(self, p):
+            rate = self.rate(contact, p)
+        if type(rate) not in (np.ndarray, np.float64) or rate.dtype != np.float64:
+            raise ModelError(
+                f"{self.kind} '{self.name}' returned {self._values} of type {type_name(rate)}; it must return a float64"
+                " array"
+            )
+        of_patch = self.outcome.of == "patch"
+        shape = contact.rolling_speed.shape if of_patch else contact.pressure.shape
+        if rate.shape != shape:
+            raise ModelError(
+                f"{self.kind} '{self.name}' returned {self._values} of shape {rate.shape} for"
+                f" {'patches' if of_patch else 'nodes'} of shape {shape}; it must return one"
+                f" {'value a patch' if of_patch else f'{self._values[:-1]} a node'}"
+            )
+        low, high = extremes(rate) if rate.size else (0.0, 0.0)
+        if not (math.isfinite(low) and math.isfinite(high)):
+            raise ModelError(f"{self.kind} '{self.name}' returned a {self._values[:-1]} that is not finite")
+        if self.zero_in_stick and not of_patch and rate[contact.slip == 0.0].any():
+            raise ModelError(
+                f"{self.kind} '{self.name}' gives {'wear' if self.outcome.name == WEAR else self.outcome.name} where"
+                f" the bodies stick; the {self._values[:-1]} must be zero if the slip is zero"
+            )
+        return rate
+
+    @property
+    def _values(self) -> str:
+        """Word for the values of `rate` in messages."""
+        return "rates" if self.outcome.name == WEAR else "values"
+
+    def __ror__(self, contact: Contact) -> LocalOutcome:
+        """Return the outcome in a contact solved elsewhere, as in ``Contact.from_arrays(...) | law``.
+
+        Raises
+        ------
+        CompositionError
+            If the law is stated for the whole patch, and the contact has more than one node.
+        """
+        if not isinstance(contact, Contact):
+            raise CompositionError(f"a {self.kind} takes a contact, not {contact!r}; a pipeline begins with a rig")
+        scale: Scale = "patch" if contact.pressure.size == contact.rolling_speed.size else "cells"
+        if self.scale == "patch" and scale != "patch":
+            raise CompositionError(
+                f"{self.kind} '{self.name}' is stated for the means of the whole patch; use contact.patch_mean() | law"
+            )
+        self._warn_of_calibration(contact, scale)
+        rate = self.checked_rate(contact)
+        self.check_not_negative(rate)
+        return self._local(contact, rate)
+
+    def _local(self, contact: Contact, rate: Array) -> LocalOutcome:
+        return LocalOutcome(contact, rate, self.outcome)
+
+    def check_not_negative(self, value: Array, error: Callable[[], Array] = lambda: np.zeros(())) -> None:
+        """Raise a `ModelError` if an outcome without sign is negative by more than its numerical error, in SI.
+
+        This is a check of results for users. On its way to the best fit, a law may pass through negative values.
+        """
+        if self.outcome.signed:
+            return
+        low, _ = extremes(value)
+        if low < 0.0 and (value < -error()).any():
+            of = self.outcome.name.replace("_", " ")
+            shown = from_si(low, self.outcome.unit)
+            raise ModelError(f"{self.kind} '{self.name}' gives a negative {of}, {shown!r}; see its parameters")
+
+    def _warn_of_calibration(self, contact: Contact, scale: Scale) -> None:
+        """Warn if the parameters were fitted for another kind of contact, as far as the contact shows its kind."""
+        fitted_for = self.calibration
+        if fitted_for is None:
+            return
+        held = "the means of the patch" if scale == "patch" else "its cells"
+        if contact.on_strips and fitted_for.geometry == "line":
+            held += ", of an ellipse"
+        elif fitted_for.scale in ("any", scale):
+            return
+        warnings.warn(
+            f"the parameters of {self.kind} '{self.name}' were fitted for {fitted_for}, but the contact holds {held};"
+            " check them against data",
+            CalibrationWarning,
+            stacklevel=3,
+        )
+
+    def breakpoints(self, p: Numbers) -> BreakpointMap | None:  # noqa: ARG002
+        """Return the variables in which the law branches, with the SI values of the branch points.
+
+        {} declares a law that is smooth everywhere. None, the default, declares nothing.
+        """
+        return None
+
+    def ramps(self, p: Numbers) -> tuple[tuple[Any, Any], ...] | None:  # noqa: ARG002
+        """Return the law as pairs of threshold [N/m²] and slope [kg/m/N], if it is a sum of ramps in q·s.
+
+        The rate is Σ slope · max(q·s - threshold, 0). Contact models with a closed form of the energy above a threshold
+        then give the mean over the patch without nodes.
+        """
+        return None
+
+    @property
+    def own_variables(self) -> Mapping[str, Callable[[Contact], Array]]:
+        """Variables of the law's own in which it branches, each a function from a contact to one value for a node."""
+        return {}
+
+    def value_at(self, contact: Contact, name: str) -> Array:
+        """Return a variable of the law's own or of the contact at the nodes, in SI."""
+        own = self.own_variables.get(name)
+        value: Array = getattr(contact, name) if own is None else own(contact)
+        return value
+
+    def jumps(self, p: Numbers) -> BreakpointMap:  # noqa: ARG002
+        """Return the breakpoints at which the rate jumps."""
+        return {}
+
+    @property
+    def valid_range(self) -> Mapping[str, tuple[float, float]]:
+        """The stated range of the law: patch means of `Contact` variables with their SI bounds.
+
+        By default it is that of the `calibration`.
+        """
+        calibration = self.calibration
+        return {} if calibration is None else calibration.range_in_si
+
+    @property
+    def calibration(self) -> Calibration | None:
+        """Record of the fit of the parameters, or None."""
+        return None
+
+    def explicit(self) -> "Law":
+        """Return the same law with numbers instead of names of published values."""
+        return self
+
+    def fitted(self, calibration: Calibration) -> "Law":  # noqa: ARG002
+        """Return this law with a record of the fit of its parameters; by default the law keeps no record."""
+        return self
+
+    def band(self) -> "tuple[Law, Law, Law] | None":
+        """Return the laws at the low end, middle and high end of published parameter ranges, or None without ranges."""
+        return None
+
+
+def named_outcomes(laws: Sequence[Law]) -> dict[str, int]:
+    """Return the index of each law by the name of its outcome in results, such as "wear_rate".
+
+    If several laws have one outcome, each for a body, the name of the body follows, as in "wear_rate_rail".
+    """
+    names = [law.outcome.name for law in laws]
+    return {
+        name if names.count(name) == 1 else f"{name}_{law.body}": index
+        for index, (name, law) in enumerate(zip(names, laws, strict=True))
+    }
+
+
+def _check_arguments(law: type[Law], name: str, arguments: tuple[str, ...]) -> None:
+    """Raise a `TypeError` if a method of a law does not take these arguments."""
+    method = inspect.getattr_static(law, name)
+    rule = f"{law.__name__}.{name} must take ({', '.join(arguments)}): p holds the law's numbers in SI"
+    if isinstance(method, property | cached_property):
+        raise TypeError(f"{rule}; it is a property, make it a method")
+    if inspect.isfunction(method):
+        try:
+            inspect.signature(method).bind(*arguments)
+        except TypeError:
+            raise TypeError(f"{rule}; it takes {inspect.signature(method)}") from None

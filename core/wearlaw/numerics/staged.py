@@ -1,0 +1,122 @@
+"""A contact model with stages around it, as one contact model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import reduce
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import CompositionError, ModelError
+from wearlaw.models.contact_model import Blame, Claim, ContactModel, Scale
+from wearlaw.models.stage import Forces, Solve, Stage
+from wearlaw.numerics.solving import Solver
+
+
+class Staged(ContactModel):
+    """A contact model with one stage around it; the model may have stages of its own."""
+
+    model: ContactModel
+    """The contact model inside."""
+    stage: Stage
+    """The stage."""
+
+    @property
+    def kind(self) -> str:  # type: ignore[override]
+        """Word for the stage in messages about the contact that it returns."""
+        return self.stage.kind
+
+    @property
+    def name(self) -> str:  # type: ignore[override]
+        """Name of the stage."""
+        return self.stage.name
+
+    @property
+    def scale(self) -> Scale:  # type: ignore[override]
+        """Whether laws see the means of the patch or its cells."""
+        return "patch" if self.stage.gives_means else self.model.scale
+
+    @property
+    def accuracy(self) -> float:
+        """That of the model inside."""
+        return self.model.accuracy
+
+    @property
+    def elliptic_accuracy(self) -> float:
+        """That of the model inside."""
+        return self.model.elliptic_accuracy
+
+    @property
+    def exemptions(self) -> Mapping[Claim, str]:
+        """Those of the model inside."""
+        return self.model.exemptions
+
+    def altered(self, problem: Problem, forces: Forces) -> Problem:
+        """Return the problem that the stage makes of another one; it sees existing patches only.
+
+        Raises
+        ------
+        ModelError
+            If the stage fails, or its problem has another geometry or shape.
+        """
+        there = problem.existing()
+        with Blame(self.stage):
+            found = self.stage.altered(there, forces)
+        if not isinstance(found, Problem):
+            raise ModelError(f"`altered` of stage '{self.name}' returned {found!r}, not a wearlaw.Problem")
+        if (found.geometry, found.batch_shape) != (there.geometry, there.batch_shape):
+            raise ModelError(
+                f"`altered` of stage '{self.name}' returned a problem of geometry '{found.geometry}' and shape"
+                f" {found.batch_shape} for one of geometry '{there.geometry}' and shape {there.batch_shape}"
+            )
+        if there is problem:
+            return found
+        return found.mapped(problem.unflatten).replaced(dims=problem.dims, exists=problem.exists)
+
+    def refined(self) -> ContactModel | None:
+        """Return the stage around the refined model, or None if the model cannot be refined."""
+        fine = self.model.refined()
+        return None if fine is None else Staged(model=fine, stage=self.stage)
+
+    def solve_line(self, problem: Problem) -> Contact:
+        """Return the contact after the stage."""
+        return self._around(problem, Solver(self.model).solve)
+
+    solve_ellipse = solve_line
+    solve_strips = solve_line
+
+    def on_strips(self, problem: Problem, shares: Array) -> Contact | None:
+        """Return the contact after the stage on chosen strips, or None if the model cannot choose them."""
+
+        def inner(one: Problem) -> Contact:
+            with Blame(self.model):
+                contact = self.model.on_strips(one, shares)
+            if contact is None:
+                raise _CannotChooseError
+            return contact
+
+        try:
+            return self._around(problem, inner)
+        except _CannotChooseError:
+            return None
+
+    def _around(self, problem: Problem, inner: Solve) -> Contact:
+        with Blame(self.stage):
+            return self.stage.solve(problem, inner)
+
+
+class _CannotChooseError(CompositionError):
+    """The model cannot choose its strips."""
+
+
+def staged(model: ContactModel, stages: Iterable[Stage]) -> ContactModel:
+    """Return a contact model with stages around it, the first of them next to the model."""
+    return reduce(lambda inner, stage: Staged(model=inner, stage=stage), stages, model)
+
+
+def without_stages(model: ContactModel) -> ContactModel:
+    """Return a contact model without the stages around it."""
+    while isinstance(model, Staged):
+        model = model.model
+    return model

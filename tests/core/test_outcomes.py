@@ -1,0 +1,375 @@
+"""Laws of any outcome: several on one contact, of the patch or of its nodes, and one for each body."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.core.stages import CONDITIONS, EXACT, FASTSIM, GLOBAL, KTH, ON_RAILS, RAILS, RIG
+from wearlaw import Array, Q
+
+EPS = float(np.finfo(np.float64).eps)
+BATCH: dict[str, Any] = {**CONDITIONS, "creepage": Q([0.1, 0.5, 2.0], "%")}
+
+
+class Damage(wl.Law):
+    """Damage of a passage, linear in Tγ beyond a threshold; falls with wear, so it has a sign."""
+
+    name: ClassVar[str] = "damage"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("rcf_damage", unit="", of="patch", signed=True)
+
+    threshold: Annotated[wl.Quantity, wl.Unit("N")] = Q(15.0, "N")
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return 1e-6 * (contact.wear_index - p["threshold"])
+
+
+class Heat(wl.Law):
+    """Frictional power over area."""
+
+    name: ClassVar[str] = "heat"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("heat_flux", unit="W/mm^2", of="area mean")
+    zero_in_stick: ClassVar[bool] = True
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return contact.frictional_power_density
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {}
+
+
+class Pressure(wl.Law):
+    """The mean pressure: a value that is not zero where the bodies stick."""
+
+    name: ClassVar[str] = "pressure_law"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("mean_pressure", unit="MPa", of="area mean")
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return contact.pressure
+
+
+class Volume(wl.WearLaw):
+    """Wear of a volume, so that the mass lost grows with the density."""
+
+    name: ClassVar[str] = "volume"
+    source: ClassVar[str] = "test"
+    factor: float = 1.0
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return 1e-15 * p["factor"] * contact.per_node(contact.density) * contact.wear_index_density
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {}
+
+
+def silently(first: Any, *parts: Any) -> Any:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        for part in parts:
+            first = first | part
+        return first
+
+
+def predicted(pipeline: Any, **conditions: Any) -> Any:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        return pipeline(**conditions)
+
+
+@pytest.mark.parametrize("model", [EXACT, FASTSIM, GLOBAL], ids=lambda model: model.name)
+def test_several_laws_give_what_each_gives_alone(model: wl.ContactModel) -> None:
+    laws = (KTH, Damage(), Heat(), Pressure())
+    together = predicted(silently(RIG, model, *laws), **BATCH)
+    for law in laws:
+        alone = predicted(silently(RIG, model, law), **BATCH)
+        name = law.outcome.name
+        # Sums over nodes are compared with totals for the first law only, whose nodes then cover the stick zone too.
+        assert together[name].magnitude == pytest.approx(alone[name].magnitude, rel=64 * EPS)
+        assert together[name].units == alone[name].units
+    assert together["rcf_damage"].magnitude == pytest.approx(
+        1e-6 * (together.wear_index.m_as("N") - 15.0), rel=16 * EPS
+    )
+    assert (together["rcf_damage"].magnitude < 0.0).any()
+    power = together.wear_index_density.m_as("N/m^2") * together.problem.rolling_speed
+    assert together["heat_flux"].m_as("W/m^2") == pytest.approx(power, rel=1e-12)
+    pressure = (together.normal_force / together.patch_area).m_as("MPa")
+    error = together.outcome_error("mean_pressure").magnitude
+    assert (np.abs(together["mean_pressure"].magnitude - pressure) <= error).all()
+
+
+@pytest.mark.parametrize("model", ["fastsim", "polach"])
+def test_several_laws_on_an_ellipse(model: str) -> None:
+    laws = (wl.wear_law("usfd"), Damage(), Heat())
+    together = predicted(silently(RAILS, wl.contact_model(model), *laws), **ON_RAILS)
+    for law in laws:
+        alone = predicted(silently(RAILS, wl.contact_model(model), law), **ON_RAILS)
+        assert together[law.outcome.name] == alone[law.outcome.name]
+
+
+class Counted(type(FASTSIM)):  # type: ignore[misc]
+    """FASTSIM that counts the contacts that it solves."""
+
+    name: ClassVar[str] = "counted"
+    solved: ClassVar[list[int]] = []
+
+    def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
+        self.solved.append(problem.size)
+        contact: wl.Contact = super().solve_ellipse(problem)
+        return contact
+
+
+def test_the_contact_is_solved_once_for_all_laws() -> None:
+    Counted.solved.clear()
+    result = predicted(silently(RAILS, Counted(), wl.wear_law("usfd"), Damage(), Heat()), **ON_RAILS)
+    _ = result.wear_rate, result["rcf_damage"], result["heat_flux"], result.contact, result.stick_ratio
+    assert Counted.solved == [1]
+
+
+def test_a_damage_of_a_patch_is_neither_a_mean_over_area_nor_a_wear_rate() -> None:
+    """A patch twice as wide at twice the force has the same mean wear rate, but another Tγ."""
+    narrow, wide = (
+        predicted(
+            silently(rig, EXACT, Damage(), KTH), max_pressure="1000 MPa", creepage="1 %", friction_coefficient=0.3
+        )
+        for rig in (RIG, RIG.model_copy(update={"track_width": 2.0 * RIG.track_width}))
+    )
+    assert wide.wear_rate.magnitude == pytest.approx(narrow.wear_rate.magnitude, rel=16 * EPS)
+    beyond = wide["rcf_damage"].magnitude + 15e-6
+    assert beyond == pytest.approx(2.0 * (narrow["rcf_damage"].magnitude + 15e-6), rel=16 * EPS)
+    with pytest.raises(wl.CompositionError, match="no wear law"):
+        _ = predicted(RIG | EXACT | Damage(), **CONDITIONS).wear_rate
+
+
+# --- Bodies ----------------------------------------------------------------------------------------------------
+
+BRONZE = wl.Material(youngs_modulus="110 GPa", poisson_ratio=0.33, density="8800 kg/m^3")
+MIXED = wl.TwinDisc(
+    disc_1=wl.Disc(diameter="47 mm", material=wl.steel()),
+    disc_2=wl.Disc(diameter="47 mm", material=BRONZE),
+    track_width="10 mm",
+    rolling_speed="1 m/s",
+)
+
+
+def test_each_body_has_its_own_law() -> None:
+    predict = silently(MIXED, EXACT, Volume(body="disc_1"), Volume(body="disc_2", factor=3.0))
+    result = predicted(predict, **CONDITIONS)
+    one, two = (result.wear_rate_of(body) for body in ("disc_1", "disc_2"))
+    power = result.wear_index_density.m_as("N/m^2")
+    assert one.m_as("kg/m^3") == pytest.approx(1e-15 * 7850.0 * power, rel=1e-12)
+    assert two.m_as("kg/m^3") == pytest.approx(3e-15 * 8800.0 * power, rel=1e-12)
+    assert (result["wear_rate_disc_1"], result["wear_rate_disc_2"]) == (one, two)
+    assert result.outcome("wear_rate", "disc_2") == two
+    lost = result.mass_lost("1 km", "disc_2")
+    assert lost.m_as("kg") == pytest.approx((two * result.patch_area * Q(1, "km")).m_as("kg"), rel=16 * EPS)
+    for name in ("wear_rate", "mass_per_distance"):
+        for read in (result.__getitem__, result.__getattribute__):
+            said = r"a law for each of disc_1 and disc_2; use wear_rate_of\('disc_1'\)"
+            with pytest.raises(wl.CompositionError, match=said):
+                read(name)
+
+
+def test_a_law_for_every_body_is_evaluated_with_the_density_of_each() -> None:
+    result = predicted(silently(MIXED, EXACT, Volume()), **CONDITIONS)
+    assert result.wear_rate_of("disc_1") == result.wear_rate
+    ratio = (result.wear_rate_of("disc_2") / result.wear_rate).m_as("")
+    assert ratio == pytest.approx(8800.0 / 7850.0, rel=16 * EPS)
+
+
+def test_wear_across_an_ellipse_is_that_of_the_law_of_the_body() -> None:
+    fastsim = wl.contact_model("fastsim")
+    both = predicted(silently(RAILS, fastsim, Volume(body="wheel"), Volume(body="rail", factor=2.0)), **ON_RAILS)
+    alone = predicted(silently(RAILS, fastsim, Volume(factor=2.0)), **ON_RAILS)
+    assert np.array_equal(both.wear_profile("rail").depth, alone.wear_profile("rail").depth)
+    assert (both.wear_profile("wheel").depth < alone.wear_profile("wheel").depth).any()
+
+
+def test_a_law_of_the_other_body_that_it_was_fitted_to_is_warned_of() -> None:
+    law = wl.wear_law("usfd")
+    assert law.calibration is not None
+    assert law.calibration.bodies, "the set is fitted to one body"
+    first, second = RIG.bodies
+    with pytest.warns(wl.CalibrationWarning, match=f"are used for the wear of '{second}'"):
+        _ = RIG | GLOBAL | law.model_copy(update={"body": second})
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        _ = RIG | GLOBAL | law.model_copy(update={"body": first})
+    assert not any("used for the wear of" in str(one.message) for one in caught)
+
+
+# --- Wrong input -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("laws", "said"),
+    [
+        (
+            (KTH, wl.wear_law("usfd")),
+            "kth and usfd both predict 'wear_rate'; keep one of them, or give each its own body",
+        ),
+        ((KTH, Volume(body="disc_2")), "kth and volume both predict 'wear_rate'; keep one of them"),
+        ((Volume(body="disc_2"), Volume(body="disc_2", factor=2.0)), "both predict 'wear_rate' of 'disc_2'; keep one"),
+        (
+            (Volume(body="disk_2"),),
+            r"wear law 'volume': the rig has no body 'disk_2'; did you mean .*disc_1 and disc_2",
+        ),
+        ((Damage(), Damage(threshold=Q(1, "N"))), "damage and damage both predict 'rcf_damage'"),
+    ],
+)
+def test_laws_that_do_not_fit_each_other_are_refused(laws: tuple[wl.Law, ...], said: str) -> None:
+    with pytest.raises(wl.CompositionError, match=said):
+        silently(MIXED, EXACT, *laws)
+
+
+def test_an_outcome_that_no_law_predicts_is_refused() -> None:
+    result = predicted(RIG | GLOBAL | Damage(), **CONDITIONS)
+    with pytest.raises(
+        wl.CompositionError, match="no law of the pipeline predicts 'damage'; its laws predict: rcf_damage"
+    ):
+        _ = result["damage"]
+    with pytest.raises(wl.InputError, match="this rig has no 'wheel'"):
+        result.outcome("rcf_damage", "wheel")
+
+
+def test_a_law_without_an_outcome_is_refused() -> None:
+    with pytest.raises(TypeError, match=r"Bare has no outcome; add what it predicts, as in\s+outcome = wl.Outcome"):
+
+        class Bare(wl.Law):
+            name: ClassVar[str] = "bare"
+            source: ClassVar[str] = "test"
+
+            def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+                return contact.pressure
+
+
+@pytest.mark.parametrize(
+    ("fields", "error", "said"),
+    [
+        ({"name": "rcf damage"}, wl.InputError, "must be made of letters, digits and underscores, got 'rcf damage'"),
+        ({"name": "wear_index"}, wl.InputError, "outcome 'wear_index': this name has a meaning"),
+        ({"unit": "wattage"}, wl.UnitError, "outcome 'damage': .*wattage"),
+        ({"of": "nodes"}, wl.InputError, "of must be 'area mean' or 'patch', got 'nodes'"),
+    ],
+)
+def test_a_wrong_outcome_is_refused(fields: dict[str, Any], error: type[Exception], said: str) -> None:
+    with pytest.raises(error, match=said):
+        wl.Outcome(**{"name": "damage", "unit": "", "of": "patch", **fields})
+
+
+class Wrong(Damage):
+    """Returns what it is told to."""
+
+    name: ClassVar[str] = "wrong"
+    fault: Literal["nodes", "negative", "nan"]
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        match self.fault:
+            case "nodes":
+                return contact.pressure
+            case "nan":
+                return np.nan * contact.wear_index
+        return -contact.wear_index
+
+
+class Unsigned(Wrong):
+    """The same, for an outcome that cannot be negative."""
+
+    name: ClassVar[str] = "unsigned"
+    outcome = dataclasses.replace(Damage.outcome, signed=False)
+
+
+@pytest.mark.parametrize(
+    ("law", "said"),
+    [
+        (Wrong(fault="nodes"), r"law 'wrong' returned values of shape \(3, \d+\) for patches of shape \(3,\)"),
+        (Wrong(fault="nan"), "law 'wrong' returned a value that is not finite"),
+        (Unsigned(fault="negative"), "law 'unsigned' gives a negative rcf damage, -"),
+    ],
+    ids=["nodes", "nan", "negative"],
+)
+def test_a_wrong_law_is_named(law: wl.Law, said: str) -> None:
+    with pytest.raises(wl.ModelError, match=said):
+        predicted(RIG | EXACT | law, **BATCH)
+
+
+def test_a_contact_solved_elsewhere_goes_into_any_law() -> None:
+    contact = wl.Contact.from_arrays(
+        pressure=Q([800.0, 1000.0], "MPa"),
+        traction=Q([100.0, 300.0], "MPa"),
+        slip=Q([0.0, 1.0], "%"),
+        area=Q([1.0, 2.0], "mm^2"),
+        rolling_speed=Q(2.0, "m/s"),
+    )
+    heat, damage = contact | Heat(), contact | Damage()
+    assert heat.value.m_as("W/mm^2") == pytest.approx(300.0 * 0.01 * 2000.0 * 2.0 / 3.0 * 1e-3, rel=16 * EPS)
+    assert heat.local_value.m_as("W/mm^2") == pytest.approx([0.0, 6.0], rel=16 * EPS)
+    assert damage.value.m_as("") == pytest.approx(1e-6 * (6.0 - 15.0), rel=16 * EPS)
+
+
+# --- Borders in a variable of the law's own --------------------------------------------------------------------
+
+
+class Switch(wl.WearLaw):
+    """Wear that starts at a frictional power density, named by the table of variables or by the law itself."""
+
+    name: ClassVar[str] = "switch"
+    source: ClassVar[str] = "test"
+    variable: Literal["frictional_power_density", "power"] = "frictional_power_density"
+    border: wl.Stress = Q(1.0, "MPa")  # at 1 m/s, 1 MPa is 1 W/mm²
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        above = contact.frictional_power_density >= p["border"]
+        return np.where(above, 1e-6 * contact.wear_index_density / 1e6, 0.0)
+
+    @property
+    def own_variables(self) -> Any:
+        return {"power": lambda contact: contact.wear_index_density * contact.per_node(contact.rolling_speed)}
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {self.variable: (p["border"],)}
+
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return self.breakpoints(p)
+
+
+class Undeclared(Switch):
+    """The same law, which does not name its border."""
+
+    name: ClassVar[str] = "undeclared"
+
+    def breakpoints(self, p: wl.Numbers) -> None:  # type: ignore[override]
+        return None
+
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {}
+
+
+@pytest.mark.parametrize("model", [EXACT, FASTSIM], ids=lambda model: model.name)
+def test_a_border_in_frictional_power_is_found_on_a_line(model: wl.ContactModel) -> None:
+    """Both ways to name it agree to rounding, and with the mean over many fine cells to the size of one cell."""
+    named, own = (
+        predicted(RIG | model | Switch(variable=name), **BATCH) for name in ("frictional_power_density", "power")
+    )
+    assert named.wear_rate.magnitude == pytest.approx(own.wear_rate.magnitude, rel=1e-12)
+    assert (named.wear_rate_error <= 1e-9 * named.wear_rate).all()
+    undeclared = predicted(RIG | model | Undeclared(), **BATCH)
+    gap = np.abs(undeclared.wear_rate - named.wear_rate)
+    assert (gap <= undeclared.wear_rate_error).all()
+    assert (gap > 1e-6 * named.wear_rate).any(), "without its border the mean is coarse"
+
+
+def test_a_border_of_its_own_splits_the_cells_of_strips() -> None:
+    fastsim, border = wl.contact_model("fastsim"), Q(30.0, "MPa")
+    named, own, undeclared = (
+        predicted(RAILS | fastsim | law, **ON_RAILS).wear_rate
+        for law in (Switch(border=border), Switch(border=border, variable="power"), Undeclared(border=border))
+    )
+    assert own == named != undeclared

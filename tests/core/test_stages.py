@@ -1,0 +1,302 @@
+"""Stages around the contact model: those that change the problem or the contact, and wrong ones."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+import pytest
+from pydantic import Field
+
+import wearlaw as wl
+from tests.core.distributions import Install
+from tests.core.stages import CONDITIONS, EXACT, FASTSIM, GLOBAL, KTH, RIG
+from wearlaw import Array, Q
+from wearlaw.numerics.integrate import integrate_forces
+
+EPS = float(np.finfo(np.float64).eps)
+RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="2 m/s")
+ON_RAILS: dict[str, Any] = {
+    "normal_force": "50 kN",
+    "longitudinal_creepage": Q([0.1, 0.3], "%"),
+    "lateral_creepage": "0.1 %",
+    "spin": "0.3 1/m",
+    "friction_coefficient": 0.4,
+}
+
+
+class Lubricated(wl.Stage):
+    """Friction that falls to a share."""
+
+    name: ClassVar[str] = "lubricated"
+    source: ClassVar[str] = "test"
+
+    share: Annotated[float, Field(gt=0.0, le=1.0)] = 0.5
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        return problem.replaced(friction_coefficient=self.share * problem.friction_coefficient)
+
+
+class LubricatedBySolving(Lubricated):
+    """The same, as a stage that overrides `solve`."""
+
+    name: ClassVar[str] = "lubricated_by_solving"
+
+    def solve(self, problem: wl.Problem, inner: wl.Solve) -> wl.Contact:
+        return inner(problem.replaced(friction_coefficient=self.share * problem.friction_coefficient))
+
+
+class Softening(wl.Stage):
+    """Friction that falls with the traction coefficient, one step of a fixed point."""
+
+    name: ClassVar[str] = "softening"
+    source: ClassVar[str] = "test"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        used = forces(problem).tangential / (problem.friction_coefficient * problem.normal_force)
+        return problem.replaced(friction_coefficient=problem.friction_coefficient * (1.0 - 0.5 * used))
+
+
+def silently(first: Any, *parts: Any) -> Any:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        for part in parts:
+            first = first | part
+        return first
+
+
+def predicted(pipeline: Any, **conditions: Any) -> Any:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        return pipeline(**conditions)
+
+
+USFD = wl.wear_law("usfd", fitted_for="exact")
+HALF = {**CONDITIONS, "friction_coefficient": 0.5 * CONDITIONS["friction_coefficient"]}
+
+
+@pytest.mark.parametrize("law", [KTH, USFD], ids=lambda law: law.name)
+@pytest.mark.parametrize("model", ["exact", "fastsim", "global"])
+def test_a_stage_that_changes_the_problem_gives_the_result_of_that_problem(model: str, law: wl.WearLaw) -> None:
+    staged = predicted(silently(RIG, wl.contact_model(model), Lubricated(), law), **CONDITIONS)
+    plain = predicted(silently(RIG, wl.contact_model(model), law), **HALF)
+    for name in ("wear_rate", "wear_rate_error", "tangential_force", "wear_index", "stick_ratio", "mean_slip"):
+        assert np.array_equal(staged[name].magnitude, plain[name].magnitude), name
+    assert np.array_equal(staged.contact.traction, plain.contact.traction)
+
+
+@pytest.mark.parametrize("model", ["fastsim", "polach"])
+def test_a_stage_acts_on_ellipses(model: str) -> None:
+    law = wl.wear_law("usfd")
+    staged = predicted(silently(RAILS, wl.contact_model(model), Lubricated(), law), **ON_RAILS)
+    plain = predicted(silently(RAILS, wl.contact_model(model), law), **{**ON_RAILS, "friction_coefficient": 0.2})
+    for name in ("wear_rate", "longitudinal_force", "lateral_force", "spin_moment", "wear_index"):
+        assert np.array_equal(staged[name].magnitude, plain[name].magnitude), name
+
+
+def test_a_stage_that_overrides_solve_gives_the_same_within_its_error() -> None:
+    alters, solves = (
+        predicted(silently(RIG, EXACT, stage, USFD), **CONDITIONS) for stage in (Lubricated(), LubricatedBySolving())
+    )
+    assert solves.tangential_force.magnitude == pytest.approx(alters.tangential_force.magnitude, rel=64 * EPS)
+    gap = abs(solves.wear_rate - alters.wear_rate)
+    assert gap <= solves.wear_rate_error + alters.wear_rate_error
+    assert solves.wear_rate_error > 1e3 * alters.wear_rate_error, "its nodes do not know the law's borders"
+
+
+def test_a_stage_sees_the_forces_of_the_model_inside() -> None:
+    plain = predicted(RIG | EXACT, **CONDITIONS)
+    used = plain.traction_coefficient.magnitude / CONDITIONS["friction_coefficient"]
+    staged = predicted(RIG | EXACT | Softening(), **CONDITIONS)
+    expected = CONDITIONS["friction_coefficient"] * (1.0 - 0.5 * used)
+    assert staged.friction_coefficient.magnitude == pytest.approx(expected, rel=16 * EPS)
+
+
+def test_the_first_stage_stands_next_to_the_model() -> None:
+    inner_first = predicted(RIG | EXACT | Softening() | Lubricated(), **CONDITIONS)
+    by_hand = predicted(RIG | EXACT | Softening(), **HALF)
+    assert np.array_equal(inner_first.tangential_force.magnitude, by_hand.tangential_force.magnitude)
+    other = predicted(RIG | EXACT | Lubricated() | Softening(), **CONDITIONS)
+    assert not np.allclose(other.tangential_force.magnitude, by_hand.tangential_force.magnitude, rtol=1e-3)
+
+
+def test_patch_means_can_follow_and_precede_other_stages() -> None:
+    law = wl.wear_law("brr")
+    plain = predicted(silently(RIG, FASTSIM, wl.patch_mean(), law), **HALF)
+    for stages in ([Lubricated(), wl.patch_mean()], [wl.patch_mean(), Lubricated()]):
+        staged = predicted(silently(RIG, FASTSIM, *stages, law), **CONDITIONS)
+        assert staged.wear_rate.magnitude == pytest.approx(plain.wear_rate.magnitude, rel=16 * EPS)
+    assert silently(RIG, FASTSIM, wl.patch_mean(), LubricatedBySolving()).scale == "patch"
+
+
+def test_applications_see_the_stages() -> None:
+    """Sweeps, creepage_for and uncertainties all solve the contact with its stages."""
+    predict, plain = silently(RIG, EXACT, Lubricated(), USFD), silently(RIG, EXACT, USFD)
+    axis = Q(np.linspace(0.1, 2.0, 5), "%")
+    swept = wl.sweep(predict, **{**CONDITIONS, "creepage": axis})
+    assert np.array_equal(swept.wear_rate, wl.sweep(plain, **{**HALF, "creepage": axis}).wear_rate)
+    given = {name: value for name, value in CONDITIONS.items() if name != "creepage"}
+    half = {**given, "friction_coefficient": HALF["friction_coefficient"]}
+    found = wl.creepage_for(predict, traction_coefficient=0.1, **given)
+    assert found == wl.creepage_for(plain, traction_coefficient=0.1, **half)
+    spread = wl.normal(Q(1.0, "%"), Q(0.01, "%"))
+    uncertain = wl.uncertainty(predict, samples=16, **{**given, "creepage": spread})
+    assert uncertain.median == wl.uncertainty(plain, samples=16, **{**half, "creepage": spread}).median
+
+
+def test_a_stage_survives_json() -> None:
+    predict = RIG | EXACT | wl.patch_mean()
+    assert wl.Pipeline.model_validate_json(predict.model_dump_json()) == predict
+    assert wl.stage("patch_mean") == wl.patch_mean()
+    assert '{"model":"patch_mean"}' in predict.model_dump_json()
+
+
+class Wrong(wl.Stage):
+    """Returns what is not a problem, or another one."""
+
+    name: ClassVar[str] = "wrong"
+    source: ClassVar[str] = "test"
+    fault: str
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> Any:
+        match self.fault:
+            case "nothing":
+                return None
+            case "shape":
+                return problem[:1]
+            case "raises":
+                return 1 / 0
+            case "friction":
+                return problem.replaced(friction_coefficient=np.full_like(problem.friction_coefficient, np.nan))
+        raise AssertionError
+
+
+class WrongContact(Wrong):
+    """Returns what is not a contact, or a wrong one."""
+
+    name: ClassVar[str] = "wrong_contact"
+
+    def solve(self, problem: wl.Problem, inner: wl.Solve) -> Any:
+        contact = inner(problem)
+        match self.fault:
+            case "nothing":
+                return None
+            case "shape":
+                return contact[:1]
+            case "raises":
+                return 1 / 0
+            case "friction":
+                return contact.replaced(traction=2.0 * contact.traction)
+        raise AssertionError
+
+
+@pytest.mark.parametrize(
+    ("stage", "said"),
+    [
+        (Wrong(fault="nothing"), "`altered` of stage 'wrong' returned None, not a wearlaw.Problem"),
+        (Wrong(fault="shape"), r"`altered` of stage 'wrong' returned a problem .* shape \(1,\) for one .* \(2,\)"),
+        (Wrong(fault="raises"), "stage 'wrong' failed: ZeroDivisionError"),
+        (Wrong(fault="friction"), "not finite"),
+        (WrongContact(fault="nothing"), "stage 'wrong_contact' returned None, not a wearlaw.Contact"),
+        (WrongContact(fault="shape"), r"stage 'wrong_contact' gave a pressure of shape \(1, "),
+        (WrongContact(fault="raises"), "stage 'wrong_contact' failed: ZeroDivisionError"),
+        (WrongContact(fault="friction"), "stage 'wrong_contact' gave a traction of .* where its own bound is"),
+    ],
+    ids=lambda value: value.fault + type(value).__name__ if isinstance(value, Wrong) else "",
+)
+def test_a_wrong_stage_is_named(stage: wl.Stage, said: str) -> None:
+    predict = silently(RIG, EXACT, stage, KTH)
+    with pytest.raises(wl.ModelError, match=said):
+        predict(**{**CONDITIONS, "creepage": Q([0.3, 1.0], "%")})
+
+
+def test_a_stage_that_changes_nothing_is_refused() -> None:
+    with pytest.raises(TypeError, match="Idle changes nothing: it implements neither altered nor solve"):
+
+        class Idle(wl.Stage):
+            name: ClassVar[str] = "idle"
+            source: ClassVar[str] = "test"
+
+
+class TwoPatches(wl.WheelRail):
+    """Wheels with up to two patches, the last of which does not exist."""
+
+    def problem(self, *args: Any, **conditions: Any) -> wl.Problem:
+        one = super().problem(*args, **conditions)
+        exists = np.ones((*one.batch_shape, 2), dtype=bool)
+        exists[..., -1, 1] = False
+        wide = one.mapped(lambda array: np.repeat(array[..., None], 2, axis=-1))
+        return wide.replaced(dims=("patch",), exists=exists)
+
+
+class SeesOnlyNumbers(Lubricated):
+    """Fails where there is no patch."""
+
+    name: ClassVar[str] = "sees_only_numbers"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        assert np.isfinite(forces(problem).longitudinal).all()
+        return super().altered(problem, forces)
+
+
+def test_a_stage_sees_existing_patches_only() -> None:
+    rig = TwoPatches(**dict(RAILS))
+    staged = predicted(silently(rig, FASTSIM, SeesOnlyNumbers(), KTH), **ON_RAILS)
+    plain = predicted(silently(rig, FASTSIM, KTH), **{**ON_RAILS, "friction_coefficient": 0.2})
+    rates: Array = staged.wear_rate.magnitude
+    assert np.array_equal(rates, plain.wear_rate.magnitude, equal_nan=True)
+    assert np.isnan(rates).tolist() == [[False, False], [False, True]]
+
+
+def test_forces_of_a_staged_model_are_those_of_the_altered_problem() -> None:
+    problem = RIG.problem(**CONDITIONS)
+    staged = (RIG | EXACT | Lubricated()).staged_model
+    halved = problem.replaced(friction_coefficient=0.5 * problem.friction_coefficient)
+    assert integrate_forces(staged, problem).longitudinal == integrate_forces(EXACT, halved).longitudinal
+
+
+PLUGIN = """
+from typing import ClassVar
+import wearlaw as wl
+
+class Rubbed(wl.Stage):
+    "More friction."
+    name: ClassVar[str] = "rubbed"
+    source: ClassVar[str] = "test"
+    factor: float = 1.5
+
+    def altered(self, problem, forces):
+        return problem.replaced(friction_coefficient=self.factor * problem.friction_coefficient)
+
+class Tired(wl.Law):
+    "Damage."
+    name: ClassVar[str] = "tired"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("damage", unit="", of="patch")
+
+    def rate(self, contact, p):
+        return contact.wear_index
+
+@wl.hookimpl
+def wearlaw_stages():
+    return [Rubbed]
+
+@wl.hookimpl
+def wearlaw_laws():
+    return [Tired]
+"""
+
+
+def test_stages_and_laws_come_from_plugins(install: Install) -> None:
+    install("own", PLUGIN)
+    assert (list(wl.stages()), list(wl.laws())) == (["patch_mean", "rubbed"], ["tired"])
+    predict = RIG | GLOBAL | wl.stage("rubbed", factor=1.25) | wl.law("tired") | wl.law("brr")
+    assert wl.Pipeline.model_validate_json(predict.model_dump_json()) == predict
+    found = predict(**{**CONDITIONS, "friction_coefficient": 0.2})
+    assert found["damage"].magnitude == found.wear_index.m_as("N")
+    assert found.traction_coefficient.magnitude == pytest.approx(0.25, rel=16 * EPS)
+    with pytest.raises(wl.UnknownModelError, match="no stage is called 'rubed'; did you mean 'rubbed'"):
+        wl.stage("rubed")
+    with pytest.raises(wl.UnknownModelError, match="no wear law is called 'tired'"):
+        wl.wear_law("tired")
