@@ -137,7 +137,7 @@ VARIABLES: Mapping[str, Variable] = {
     "outside_range": Variable(
         "",
         "outside the range of the law",
-        "1 where a point lies outside the range or the materials that the law was fitted to, otherwise 0",
+        "1 where a point lies outside the range or the materials that a law was fitted to, otherwise 0",
         "",
         "not negative",
     ),
