@@ -17,7 +17,7 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.problem import CreepForces, Problem
-from wearlaw.errors import InputError
+from wearlaw.errors import CompositionError, InputError
 from wearlaw.units.quantities import Quantity, QuantityLike, from_si
 from wearlaw.units.variables import expected
 
@@ -357,6 +357,23 @@ class Contact:
     def frictional_power_density(self) -> Array:
         """Frictional power over area, qsV [W/m²], of shape (batch, nodes)."""
         return self.wear_index_density * self.per_node(self.rolling_speed)
+
+    @property
+    def rolled_distance(self) -> Array:
+        """Distance that the bodies have rolled since they were new [m], of the batch shape.
+
+        Raises
+        ------
+        CompositionError
+            If the conditions do not give it.
+        """
+        distance = None if self.problem is None else self.problem.rolled_distance
+        if distance is None:
+            raise CompositionError(
+                'rolled_distance: a law needs it, but the conditions do not give it; add rolled_distance="5 km", for'
+                " example"
+            )
+        return distance
 
     @property
     def patch_area(self) -> Array:

@@ -187,6 +187,8 @@ class Problem:
         Measured tangential over normal force, T/N [-], if the test gave one.
     contact_angle : ndarray or None
         Contact angle, δ [rad], of the surface to the axle; None if the surface is level at all operating points.
+    rolled_distance : ndarray or None
+        Distance that the bodies have rolled since they were new [m], for laws of running-in; None if it is not given.
     strips : Strips or None
         The strips and their pressure, if the patch is neither a line nor an ellipse.
     bodies : mapping of str to Body
@@ -212,6 +214,7 @@ class Problem:
     density: Array
     traction_coefficient: Array | None = None
     contact_angle: Array | None = None
+    rolled_distance: Array | None = None
     strips: Strips | None = None
     bodies: Mapping[str, Body] = field(default_factory=dict)
     dims: tuple[str, ...] = ()
