@@ -53,7 +53,7 @@ from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
 from wearlaw.models.wear_law import BreakpointMap, Calibration, LocalWear, Numbers, WearLaw
 from wearlaw.pipeline.pipeline import PatchMean, Pipeline, Rig, patch_mean
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.plugins.fields import ContactModelField, WearLawField
+from wearlaw.plugins.fields import ContactModelField, MaterialField, WearLawField
 from wearlaw.plugins.loader import (
     contact_model,
     contact_models,
@@ -114,6 +114,7 @@ __all__ = [
     "LineFields",
     "LocalWear",
     "Material",
+    "MaterialField",
     "ModelError",
     "Nodes",
     "Numbers",

@@ -50,8 +50,8 @@ def wearlaw_parameter_sets() -> Mapping[str, WearLaw]:  # type: ignore[empty-bod
 
 
 @hookspec
-def wearlaw_materials() -> Mapping[str, Material]:  # type: ignore[empty-body]
-    """Return materials by name."""
+def wearlaw_materials() -> Mapping[str, Material | type[Material]]:  # type: ignore[empty-body]
+    """Return materials by name; their classes are known to files too, and so is a class under its own name."""
 
 
 @hookspec

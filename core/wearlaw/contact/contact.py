@@ -16,7 +16,7 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz_ellipse
-from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import InputError
 from wearlaw.units.quantities import Quantity, QuantityLike, from_si
 from wearlaw.units.variables import expected
@@ -335,6 +335,45 @@ class Contact:
             wear_index=(q * s * a).sum(axis=axes),
             density=np.broadcast_to(units["density"].si(density, "density"), speed.shape),
         )
+
+    @property
+    def half_width(self) -> Array:
+        """Half the patch's length in the rolling direction, a [m], of the batch shape.
+
+        Raises
+        ------
+        InputError
+            If the contact was solved elsewhere, and has no `problem`.
+        """
+        return self._solved_problem("half_width").half_width
+
+    def body(self, name: str | None = None) -> Body:
+        """Return one of the two bodies, with its material and its rolling radius.
+
+        Parameters
+        ----------
+        name : str, optional
+            Name of the body, such as "disc_2"; by default it is the body whose wear is predicted.
+
+        Raises
+        ------
+        InputError
+            If the contact was solved elsewhere, or the rig has no such body.
+        """
+        problem = self._solved_problem("body")
+        if name is not None:
+            return problem.body(name)
+        if not problem.bodies:
+            raise InputError("body: the rig does not name its bodies, so their materials are not known")
+        return next(iter(problem.bodies.values()))
+
+    def _solved_problem(self, what: str) -> Problem:
+        if self.problem is None:
+            raise InputError(
+                f"{what}: is not known, because this contact was solved elsewhere and has no problem; give it one with"
+                " contact.replaced(problem=...)"
+            )
+        return self.problem
 
     @property
     def wear_index_density(self) -> Array:

@@ -304,8 +304,8 @@ class Prediction:
             raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
         law, solved = self._law, self._solved
         self._warn_of(body, stacklevel=3)
-        if not (problem.density == density).all():
-            problem = problem.replaced(density=np.full_like(problem.density, density))
+        problem = self._worn(body)
+        if problem is not self.problem:
             flat = problem.flatten()
             solved = solved and solved.replaced(density=flat.density, problem=flat)
         y, wear, slid = integrate.integrate_across(model, law, problem, strips, solved)
@@ -435,12 +435,20 @@ class Prediction:
 
     def _rate(self, body: str) -> Array:
         """Return the wear rate of a body; with a law of volume it is proportional to the body's density."""
-        density = np.full_like(self.problem.density, self._density(body))
         self._warn_of(body, stacklevel=5)
-        if np.array_equal(density, self.problem.density):
+        of_body = self._worn(body)
+        if of_body is self.problem:
             return self._wear.wear_rate
-        of_body = self.problem.replaced(density=density)
         return integrate.integrate_wear(self.contact_model, self._law, of_body, self.scale).wear_rate
+
+    def _worn(self, body: str) -> Problem:
+        """Return the problem with this body as the first one, or `self.problem` if that changes nothing."""
+        problem = self.problem
+        worn, first = problem.body(body), next(iter(problem.bodies.values()))
+        density = self._density(body)
+        if worn.material == first.material and (problem.density == density).all():
+            return problem
+        return problem.replaced(density=np.full_like(problem.density, density), bodies={body: worn, **problem.bodies})
 
     def _warn_of(self, body: str, stacklevel: int) -> None:
         """Warn once if the law was fitted to the wear of the other body; `stacklevel` 1 is this method."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema, create_model
 
-from wearlaw.contact.material import Material
+from wearlaw.contact.material import TYPE, Material
 from wearlaw.errors import ConfigurationError, Fault, InputError, PluginWarning, WearlawError, described, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
@@ -57,17 +57,18 @@ def _material(value: Any) -> Any:
 
 
 class _OrName:
-    """Adds to a field's JSON Schema that a name is valid too."""
+    """Adds to a field's JSON Schema that a name and a table with a type are valid too."""
 
     @staticmethod
     def __get_pydantic_json_schema__(
         schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, object]:
-        return {"anyOf": [handler(schema), {"type": "string"}]}
+        typed = {"type": "object", "properties": {TYPE: {"type": "string"}}, "required": [TYPE]}
+        return {"anyOf": [handler(schema), typed, {"type": "string"}]}
 
 
 MaterialField = Annotated[Material, BeforeValidator(_material), _OrName]
-"""A field that takes a material, its name, or a table of its fields."""
+"""A field that takes a material, its name, or a table of its fields, with its class or its name as `type`."""
 
 _AS_TABLE = PlainSerializer(specification, return_type=dict[str, Any], when_used="json")
 _SCHEMA = WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "object", "required": ["model"]}]}, mode="validation")

@@ -21,10 +21,10 @@ from packaging.utils import canonicalize_name
 
 from wearlaw import hookspecs
 from wearlaw.contact.material import Material
-from wearlaw.errors import PluginWarning, described
+from wearlaw.errors import PluginWarning, UnknownModelError, described
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.wear_law import WearLaw
-from wearlaw.plugins.shelf import Broken, Origin, Shelf, add_model
+from wearlaw.plugins.shelf import Broken, Origin, Shelf, add_model, unknown
 from wearlaw.settings.configuration import Configuration, known_as
 
 
@@ -37,6 +37,7 @@ class Installed:
     wear_laws: Shelf[type[WearLaw]] = field(default_factory=lambda: Shelf("wear law", type))
     parameter_sets: Shelf[WearLaw] = field(default_factory=lambda: Shelf("parameter set", WearLaw))  # type: ignore[type-abstract]
     materials: Shelf[Material] = field(default_factory=lambda: Shelf("material", Material))
+    material_types: Shelf[type[Material]] = field(default_factory=lambda: Shelf("material type", type))
     cases: Shelf[str] = field(default_factory=lambda: Shelf("case", str))
     test_sets: Shelf[str] = field(default_factory=lambda: Shelf("test set", str))
     sections: Shelf[Callable[..., Any]] = field(default_factory=lambda: Shelf("section", Callable))  # type: ignore[arg-type]
@@ -46,7 +47,7 @@ class Installed:
     def shelves(self) -> tuple[Shelf[Any], ...]:
         """Return the shelf of each kind."""
         models = (self.rigs, self.contact_models, self.wear_laws, self.parameter_sets)
-        return *models, self.materials, self.cases, self.test_sets, self.sections
+        return *models, self.materials, self.material_types, self.cases, self.test_sets, self.sections
 
     def of_kind(self, kind: str) -> Shelf[Any]:
         """Return the shelf of a kind, such as "wear law"."""
@@ -166,16 +167,41 @@ def wear_law(name: str, /, **options: Any) -> WearLaw:
     return found.wear_laws.find(name, found.broken)(**options)
 
 
-def material(name: str, /) -> Material:
-    """Return the installed material with a name.
+def material(name: str, /, **options: Any) -> Material:
+    """Return the installed material with a name, or a material of the installed class with a name.
+
+    Parameters
+    ----------
+    name : str
+        Name of a material, such as "steel", or of a class of materials.
+    **options
+        Fields of the material; those of an installed material are the defaults.
 
     Raises
     ------
     UnknownModelError
         If no installed plugin provides it, or more than one does.
+    ConfigurationError
+        If a field is missing or unknown, or has a wrong value.
     """
     found = installed()
-    return found.materials.find(name, found.broken)
+    if name in found.materials.providers:
+        known = found.materials.find(name, found.broken)
+        made = known.model_copy(update=options) if options else known
+        return known if made == known else made
+    if name in found.material_types.providers:
+        return found.material_types.find(name, found.broken)(**options)
+    names = [*found.materials.items(), *found.material_types.items()]
+    message = unknown("material", name, names, found.broken)
+    if options:
+        message += (
+            ". `type` names a material or a class of materials of an installed plugin; ship a class of a script in a"
+            " plugin, or leave `type` out for a plain Material"
+        )
+    raise UnknownModelError(message)
+
+
+Material._look_up = staticmethod(material)  # for tables of materials with a `type`
 
 
 def materials() -> Mapping[str, Material]:
@@ -270,11 +296,29 @@ def _add_models(plugin: _Plugin, origin: Origin, found: Installed) -> None:
 def _add_named(plugin: _Plugin, origin: Origin, found: Installed) -> None:
     shelves: dict[str, Shelf[Any]] = {
         "wearlaw_parameter_sets": found.parameter_sets,
-        "wearlaw_materials": found.materials,
         "wearlaw_cases": found.cases,
         "wearlaw_tests": found.test_sets,
         "wearlaw_sections": found.sections,
     }
+    for answer in plugin.answers("wearlaw_materials"):
+        for name, item in answer.items():
+            _add_material(name, item, origin, found)
     for hook, shelf in shelves.items():
         for name, item in chain.from_iterable(mapping.items() for mapping in plugin.answers(hook)):
             shelf.add(name, known_as(name, item) if isinstance(item, Configuration) else item, origin)
+
+
+def _add_material(name: object, item: object, origin: Origin, found: Installed) -> None:
+    """Add a material and its class, or a class of materials under its own name."""
+    if isinstance(item, type):
+        cls: type[Any] = item
+        if not issubclass(cls, Material):
+            raise TypeError(f"material {name!r} must be a Material or a class derived from it, got {item!r}")
+        if name != cls.__name__:
+            raise TypeError(f"a class of materials goes by its own name: write {cls.__name__!r} in place of {name!r}")
+    else:
+        cls = type(item)
+        found.materials.add(name, known_as(str(name), item) if isinstance(item, Configuration) else item, origin)
+    known = found.material_types.providers.get(cls.__name__, [])
+    if cls is not Material and all(one is not cls for one, _ in known):
+        found.material_types.add(cls.__name__, cls, origin)
