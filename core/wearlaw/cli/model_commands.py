@@ -37,6 +37,8 @@ def list_plugins() -> None:
     Console().print(table)
     for plugin in found.broken:
         click.echo(f"left out: {plugin}", err=True)
+    for remark in found.remarks:
+        click.echo(f"note: {remark}", err=True)
 
 
 @click.command()

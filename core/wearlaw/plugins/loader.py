@@ -24,13 +24,26 @@ from wearlaw.contact.material import Material
 from wearlaw.errors import PluginWarning, UnknownModelError, described
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.wear_law import WearLaw
+from wearlaw.plugins.isolation import Isolation
 from wearlaw.plugins.shelf import Broken, Origin, Shelf, add_model, unknown
 from wearlaw.settings.configuration import Configuration, known_as
 
 
 @dataclass
 class Installed:
-    """Everything found by discovery."""
+    """Everything found by discovery.
+
+    Attributes
+    ----------
+    rigs, contact_models, wear_laws, parameter_sets, materials, material_types, cases, test_sets, sections : Shelf
+        What the plugins provide, by kind and name.
+    plugins : list of Origin
+        All plugins.
+    broken : list of Broken
+        Plugins that raised an error, and are left out from there on.
+    remarks : list of Broken
+        Plugins with side effects while they were loaded, such as printing.
+    """
 
     rigs: Shelf[type[Any]] = field(default_factory=lambda: Shelf("rig", type))
     contact_models: Shelf[type[ContactModel]] = field(default_factory=lambda: Shelf("contact model", type))
@@ -43,6 +56,7 @@ class Installed:
     sections: Shelf[Callable[..., Any]] = field(default_factory=lambda: Shelf("section", Callable))  # type: ignore[arg-type]
     plugins: list[Origin] = field(default_factory=list)
     broken: list[Broken] = field(default_factory=list)
+    remarks: list[Broken] = field(default_factory=list)
 
     def shelves(self) -> tuple[Shelf[Any], ...]:
         """Return the shelf of each kind."""
@@ -74,6 +88,8 @@ def _search() -> Installed:
         _under_way.clear()
     for plugin in found.broken:
         warnings.warn(f"left out: {plugin}", PluginWarning, stacklevel=4)
+    for remark in found.remarks:
+        warnings.warn(str(remark), PluginWarning, stacklevel=4)
     return found
 
 
@@ -88,22 +104,24 @@ def _discover(found: Installed) -> None:
     manager = _Manager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)
     loaded: list[tuple[_Plugin, Origin]] = []
-    for entry_point, origin in _entry_points():
-        found.plugins.append(origin)
-        with _isolated(found, origin):
-            plugin = _Plugin(manager, _load(manager, entry_point, origin))
-            _add_models(plugin, origin, found)
-            loaded.append((plugin, origin))
-    for plugin, origin in loaded:
-        with _isolated(found, origin):
-            _add_named(plugin, origin, found)
+    with Isolation() as isolation:
+        for entry_point, origin in _entry_points():
+            found.plugins.append(origin)
+            with _left_out_if_broken(found, origin, isolation):
+                plugin = _Plugin(manager, _load(manager, entry_point, origin))
+                _add_models(plugin, origin, found)
+                loaded.append((plugin, origin))
+        for plugin, origin in loaded:
+            with _left_out_if_broken(found, origin, isolation):
+                _add_named(plugin, origin, found)
 
 
 @contextmanager
-def _isolated(found: Installed, origin: Origin) -> Iterator[None]:
-    """Record any exception of a plugin and go on; only Ctrl-C ends the program."""
+def _left_out_if_broken(found: Installed, origin: Origin, isolation: Isolation) -> Iterator[None]:
+    """Record any exception of a plugin and its side effects, and go on; only Ctrl-C ends the program."""
     try:
-        yield
+        with isolation.of(origin, lambda remark: found.remarks.append(Broken(origin, remark))):
+            yield
     except KeyboardInterrupt as interrupt:  # the plugin may have raised it itself, so name the plugin
         interrupt.add_note(f"wearlaw was loading {origin}")
         raise
