@@ -15,7 +15,7 @@ import wearlaw.rigs as _rigs  # noqa: F401  importing it later would overwrite t
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop, kernel
 from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
-from wearlaw.contact.contact import Contact, LineFields
+from wearlaw.contact.contact import Contact, LawVariable, LineFields
 from wearlaw.contact.friction import FallingFriction
 from wearlaw.contact.material import Material, steel
 from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem, Strips
@@ -109,6 +109,7 @@ __all__ = [
     "FrozenError",
     "Geometry",
     "InputError",
+    "LawVariable",
     "Length",
     "LineContactModel",
     "LineFields",

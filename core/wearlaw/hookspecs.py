@@ -7,7 +7,7 @@ names marked `@wearlaw.hookimpl`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 import pluggy
 
@@ -26,7 +26,22 @@ only if its own version of the interface is N.
 """
 
 hookspec = pluggy.HookspecMarker(PROJECT)
-hookimpl = pluggy.HookimplMarker(PROJECT)
+
+if TYPE_CHECKING:
+    Provided = Iterable[type[Model]] | Mapping[str, Material | type[Material]] | Mapping[str, WearLaw]
+    Implementation = TypeVar(
+        "Implementation", bound=Callable[[], Provided | Mapping[str, str | Callable[..., Any]] | None]
+    )
+    Function = TypeVar("Function", bound=Callable[..., Any])
+
+    @overload
+    def hookimpl(function: Implementation, /) -> Implementation: ...
+    @overload
+    def hookimpl(*, specname: str = ..., optionalhook: bool = ...) -> Callable[[Function], Function]: ...
+    def hookimpl(*function: Any, **options: Any) -> Any:
+        """Mark a function of a plugin as the hook of its name; checkers see if no hook returns what it does."""
+else:
+    hookimpl = pluggy.HookimplMarker(PROJECT)
 
 
 @hookspec

@@ -7,17 +7,17 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast
 
 import numpy as np
 from pydantic import model_validator
 
 from wearlaw.arrays.array import Array, extremes, type_name
-from wearlaw.contact.contact import LAW_VARIABLES, Contact
+from wearlaw.contact.contact import LAW_VARIABLES, PATCH_VARIABLES, Contact, LawVariable, check_variables
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Geometry
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, did_you_mean
-from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
+from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
 from wearlaw.units.quantities import WEAR_RATE, Quantity, Unit, from_si
@@ -32,6 +32,9 @@ Each number is a float. If it differs between operating points, it is an array o
 
 BreakpointMap: TypeAlias = Mapping[str, tuple[Any, ...]]
 """Variables of a `Contact` with the SI values at which a law branches, each a float or an array as in `Numbers`."""
+
+SCALES = ("patch", "any")
+"""What a law can declare as its `scale`."""
 
 TAKE_NUMBERS = {"rate": ("self", "contact", "p"), **dict.fromkeys(("breakpoints", "ramps", "jumps"), ("self", "p"))}
 """The methods of a law that take its numbers, with their arguments."""
@@ -143,20 +146,39 @@ class WearLaw(Model):
 
     kind: ClassVar[str] = "wear law"
 
-    scale: ClassVar[Literal["patch", "any"]] = "any"
-    """"patch" if the law is stated only for the means of the whole patch."""
+    scale: ClassVar = cast(Any, "any")  # Any: for type checkers, a subclass may make it a property
+    """"patch" if the law is stated only for the means of the whole patch, otherwise "any". A law that contains another
+    can make it a property."""
 
-    monotone_in: ClassVar[tuple[str, ...]] = ()
+    monotone_in: ClassVar[tuple[LawVariable, ...]] = ()
     """Variables of a `Contact` with which the rate never falls while the others stay the same."""
 
     if not TYPE_CHECKING:  # type checkers already compare the methods with this class
 
         @classmethod
         def __pydantic_init_subclass__(cls, **options: Any) -> None:
-            """Raise an error for methods that do not take the law's numbers."""
+            """Raise an error for methods that do not take the law's numbers, and for an unknown scale."""
             super().__pydantic_init_subclass__(**options)
+            check_scale(cls, inspect.getattr_static(cls, "scale"), SCALES)
             for name, arguments in TAKE_NUMBERS.items():
                 _check_arguments(cls, name, arguments)
+
+    @model_validator(mode="after")
+    def _has_a_scale(self) -> Self:
+        check_scale(self, self.scale, SCALES)
+        return self
+
+    def check_variables(self) -> None:
+        """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` name an unknown variable."""
+        with Blame(self):
+            declared = {
+                "breakpoints": (self.breakpoints(self.numbers) or {}, LAW_VARIABLES),
+                "jumps": (self.jumps(self.numbers), LAW_VARIABLES),
+                "monotone_in": (self.monotone_in, LAW_VARIABLES),
+                "valid_range": (self.valid_range, PATCH_VARIABLES),
+            }
+        for name, (variables, known) in declared.items():
+            check_variables(f"wear law '{self.name}': `{name}`", variables, known)
 
     @abstractmethod
     def rate(self, contact: Contact, p: Numbers) -> Array:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import NODE_VARIABLES, TOTALS, Contact
+from wearlaw.contact.contact import NODE_VARIABLES, TOTALS, Contact, variable_at_nodes
 from wearlaw.contact.problem import Problem
 from wearlaw.models.contact_model import Blame
 from wearlaw.models.wear_law import Numbers, WearLaw
@@ -50,7 +50,7 @@ def split_rates(solver: Solver, law: WearLaw, contact: Contact, problem: Problem
     step = np.diff(contact.x, axis=-2)
     slips = contact.slip != 0.0
     inside = slips[..., 1:, :] & slips[..., :-1, :] & (step > 0.0)
-    variables = {name: np.abs(getattr(contact, name)) for name, _ in levels}
+    variables = {name: np.abs(variable_at_nodes(contact, name)) for name, _ in levels}
     crossed = []
     for name, value in levels:
         above = variables[name] >= value

@@ -259,6 +259,7 @@ class Pipeline(Configuration, Generic[P]):
             raise CompositionError(f"a pipeline has one wear law, got {' and '.join(law.name for law in self.laws)}")
         for law in self.laws:
             check_scale(self.scale, self.contact_model, law)
+            law.check_variables()
         return self
 
     @property
