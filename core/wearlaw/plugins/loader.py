@@ -323,6 +323,11 @@ def _add_named(plugin: _Plugin, origin: Origin, found: Installed) -> None:
             _add_material(name, item, origin, found)
     for hook, shelf in shelves.items():
         for name, item in chain.from_iterable(mapping.items() for mapping in plugin.answers(hook)):
+            if shelf is found.parameter_sets and name in found.wear_laws.providers:  # the look-up would give the law
+                of = found.wear_laws.origin(name)
+                cause = f"parameter set '{name}' has the name of a wear law of {of}; give it another name"
+                found.broken.append(Broken(origin, cause))
+                continue
             shelf.add(name, known_as(name, item) if isinstance(item, Configuration) else item, origin)
 
 
