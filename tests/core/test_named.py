@@ -15,7 +15,7 @@ import wearlaw as wl
 from tests.core.cases import case, table, wearlaw
 from tests.core.distributions import LAB, Install
 from wearlaw.plugins import loader
-from wearlaw.study.case import Case, case_schema, case_text, load_case
+from wearlaw.study.case import Case, case_schema, case_text, load_case, written
 from wearlaw.study.study import provenance, run
 
 POINT: Any = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46}
@@ -145,6 +145,18 @@ def test_the_provenance_names_where_a_set_a_material_and_a_case_come_from(instal
         assert said["wear_laws"] == {"kth": f"wearlaw {wl.__version__}", "usfd": f"wearlaw {wl.__version__}"}
     (sweep,) = run(loaded).sweeps.values()
     assert json.loads(sweep.attrs["provenance"]) == provenance(loaded)
+
+
+def test_the_case_of_a_run_has_the_same_provenance_as_the_run(install: Install, tmp_path: Path) -> None:
+    install("lab", LAB, version="1.2.3")
+    first = Case(**tomllib.loads(LAB_STUDY))
+    for name, text in written(first).items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    again = load_case(str(tmp_path / "case.toml"))
+    assert again == first
+    assert provenance(again) == provenance(first)
+    assert provenance(again)["parameter_sets"] == {"lab_2026": "lab 1.2.3"}
+    assert provenance(again)["materials"] == {"soft_steel": "lab 1.2.3"}
 
 
 def test_a_material_under_two_names_and_a_set_from_the_list_of_all_keep_the_name_they_were_found_by(

@@ -14,7 +14,7 @@ from wearlaw.errors import ConfigurationError, Fault, InputError, PluginWarning,
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
-from wearlaw.settings.configuration import Configuration
+from wearlaw.settings.configuration import Configuration, known_name
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.units.quantities import shortened
 
@@ -32,9 +32,16 @@ def _is_rig(value: object) -> bool:
 
 
 def specification(model: Model) -> dict[str, Any]:
-    """Return a model as a table of its name and fields; the table makes an equal model."""
+    """Return a model as a table of its name and fields; the table makes an equal model.
+
+    The name of a law that was looked up as a parameter set is that of the set.
+    """
     key = "type" if model.kind == RIGS else "model"
-    return {key: model.name, **model.model_dump(mode="json", exclude_none=True)}
+    fields = model.model_dump(mode="json", exclude_none=True)
+    known = known_name(model)
+    if known is not None and known in loader.parameter_sets() and loader.wear_law(known, **fields) == model:
+        return {key: known, **fields}
+    return {key: model.name, **fields}
 
 
 def _maker(look_up: Callable[..., Model]) -> Callable[[Any], Any]:
