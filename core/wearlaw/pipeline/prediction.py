@@ -435,8 +435,8 @@ class Prediction:
 
     def _rate(self, body: str) -> Array:
         """Return the wear rate of a body; with a law of volume it is proportional to the body's density."""
+        of_body = self._worn(body)  # raises first if there is no such body
         self._warn_of(body, stacklevel=5)
-        of_body = self._worn(body)
         if of_body is self.problem:
             return self._wear.wear_rate
         return integrate.integrate_wear(self.contact_model, self._law, of_body, self.scale).wear_rate

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from threading import Event, Thread
 from time import monotonic
-from typing import Any, NamedTuple, TextIO
+from typing import IO, Any, NamedTuple, TextIO
 
 import numpy as np
 
@@ -127,7 +127,10 @@ class _Output:
     """Standard output, diverted into a file, also for subprocesses and C code."""
 
     def divert(self) -> None:
-        self._file = tempfile.TemporaryFile()  # noqa: SIM115  closed by `restore`
+        try:
+            self._file: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115  closed by `restore`
+        except OSError:  # the disk is full; what is printed is then dropped without a remark
+            self._file = open(os.devnull, "r+b")  # noqa: SIM115
         self._real: TextIO = sys.stdout
         self._aside: Any = _Aside(sys.stdout, self._file.fileno())
         self._c_code: ctypes.CDLL | None = None
