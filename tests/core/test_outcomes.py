@@ -400,5 +400,5 @@ def test_a_law_reads_the_distance_rolled(rig: Any, conditions: dict[str, Any]) -
     assert rates / rates[0] == pytest.approx((1.0 + 3.0 * np.exp([0.0, -0.5, -1.0])) / 4.0, rel=64 * EPS)
     with pytest.raises(wl.CompositionError, match="rolled_distance: a law needs it, but the conditions do not give it"):
         predicted(predict, **conditions)
-    with pytest.raises(wl.UnitError, match="rolled_distance: .*must not be negative"):
+    with pytest.raises(wl.UnitError, match=r"rolled_distance: .*must not be negative"):
         predicted(predict, **conditions, rolled_distance="-1 km")
