@@ -113,7 +113,7 @@ def test_an_unknown_scale_is_refused_where_it_is_written(base: type[Any], words:
         (
             "valid_range",
             "x",
-            NO_PATCH_MEAN),
+            NO_PATCH_MEAN,
         ),
     ],
 )
