@@ -12,11 +12,13 @@ import pint
 
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.law import Law
+from wearlaw.models.law import Law, Outcome
+from wearlaw.models.stage import Stage
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.units.quantities import from_si, text_of
+from wearlaw.units.quantities import Q, from_si, text_of
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
 
@@ -36,8 +38,8 @@ def describe(model: type[Model], parameter_set: str | None = None) -> str:
     if issubclass(model, Rig):
         conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
         return "\n".join([*lines, *conditions, *_example(model)])
-    lines += ["", "declares:", *(f"  {text}" for text in _declared(default))]
-    return "\n".join(lines)
+    declared = [f"  {text}" for text in (_of_stage(model) if issubclass(model, Stage) else _declared(default))]
+    return "\n".join([*lines, *(["", "declares:", *declared] if declared else [])])
 
 
 def _headline(model: type[Model], parameter_set: str | None) -> Iterator[str]:
@@ -125,14 +127,21 @@ def _declared(default: Model | None) -> Iterator[str]:
         yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
 
 
+def _of_stage(stage: type[Stage]) -> Iterator[str]:
+    if stage.gives_means:
+        yield "gives: the means of the patch"
+
+
 def _of_law(law: Law) -> Iterator[str]:
+    if not isinstance(law, WearLaw):
+        yield f"predicts: {_predicted(law.outcome)}"
     yield "scale: means of the whole patch only" if law.scale == "patch" else "scale: patch means or cells"
     if law.calibration is not None:
         yield f"fitted for: {law.calibration}; {law.calibration.materials}; {law.calibration.source}"
     if law.monotone_in:
         yield f"never falls with: {', '.join(law.monotone_in)}"
     breakpoints = law.breakpoints(law.numbers)
-    if breakpoints is None:
+    if breakpoints is None and law.outcome.of == "area mean":
         yield "branches: not declared"
     for variable, values in (breakpoints or {}).items():
         yield f"branches in {variable} at {', '.join(_si(variable, value) for value in values)}"
@@ -142,6 +151,12 @@ def _of_law(law: Law) -> Iterator[str]:
         yield f"known range of mean {variable} from {_si(variable, low)} to {_si(variable, high)}"
     if law.band() is not None:
         yield "band: published parameter ranges give a low, a middle and a high law"
+
+
+def _predicted(outcome: Outcome) -> str:
+    unit = f" [{symbol(Q(1.0, outcome.unit).units, '~P')}]" if outcome.unit else ""
+    of = "of the whole patch" if outcome.of == "patch" else "as a mean over the patch"
+    return f"{outcome.name}{unit}, {of}{', positive or negative' if outcome.signed else ''}"
 
 
 def _si(variable: str, value: float) -> str:

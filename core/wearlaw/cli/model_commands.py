@@ -6,21 +6,21 @@ import shlex
 import warnings
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 from rich.console import Console
 from rich.table import Table
 
 from wearlaw.cli.describe import describe
-from wearlaw.cli.scaffold import Kind, Licence, write_plugin
+from wearlaw.cli.scaffold import Kind, Licence, next_commands, write_plugin
 from wearlaw.cli.shared import fields
 from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
-from wearlaw.plugins.shelf import unknown
+from wearlaw.plugins.shelf import Shelf, unknown
 
 if TYPE_CHECKING:
     from wearlaw.testing import Check
@@ -45,7 +45,7 @@ def list_plugins() -> None:
 @click.command()
 @click.argument("name")
 def show(name: str) -> None:
-    """Explain a rig, contact model, wear law or parameter set: its fields with units, its source and its range."""
+    """Explain a model of any kind or a parameter set: its fields with units, its source and its range."""
     model = _installed(name)
     click.echo(describe(model) if isinstance(model, type) else describe(type(model), name))
 
@@ -53,8 +53,11 @@ def show(name: str) -> None:
 @click.command("new-plugin")
 @click.argument("name")
 @click.option("--wear-law", "kind", flag_value="wear_law", help="Start from a wear law: Archard's.")
+@click.option("--law", "kind", flag_value="law", help="Start from a law of another outcome: fatigue damage.")
 @click.option("--contact-model", "kind", flag_value="contact_model", help="Start from a contact model: full slip.")
+@click.option("--stage", "kind", flag_value="stage", help="Start from a stage: friction lowered by a factor.")
 @click.option("--rig", "kind", flag_value="rig", help="Start from a rig: a weight on two rollers.")
+@click.option("--material", "kind", flag_value="material", help="Start from a material: a steel with its hardness.")
 @click.option(
     "-o",
     "--output",
@@ -71,18 +74,19 @@ def show(name: str) -> None:
     help="Licence of the plugin; with none, LICENSE says how to choose one.",
 )
 def new_plugin(name: str, kind: Kind | None, output: Path, licence: Licence) -> None:
-    """Begin a plugin: write a small distribution, wearlaw-NAME, with a wear law, a contact model or a rig to replace.
+    """Begin a plugin: write a small distribution, wearlaw-NAME, with a model or a material to replace.
 
-    It holds a module of about 30 lines, its entry point, its tests with the conformance checks, a README, a licence
-    and a CI workflow, and passes its tests, ruff and mypy --strict as it is. NAME is what the model will be called in
-    wearlaw.wear_law("NAME") or wearlaw.rig("NAME") and in case files: lower-case letters, digits and underscores.
+    It holds a module of about 30 lines, its entry point, its tests, a README, a licence and a CI workflow, and passes
+    its tests, ruff and mypy --strict as it is. NAME is what the model will be called in wearlaw.wear_law("NAME") or
+    wearlaw.rig("NAME") and in case files: lower-case letters, digits and underscores.
     """
     if kind is None:
-        raise click.UsageError("say what the plugin provides: --wear-law, --contact-model or --rig")
+        *others, last = (f"--{one.replace('_', '-')}" for one in get_args(Kind))
+        raise click.UsageError(f"say what the plugin provides: {', '.join(others)} or {last}")
     folder = write_plugin(name, kind, output, licence)
     click.echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}.py. Next:")
-    click.echo(f"  cd {shlex.quote(str(folder))}")
-    for line in ('python -m pip install -e ".[test]"', "pytest", "wearlaw plugins", f"wearlaw check {name}"):
+    commands = (f"cd {shlex.quote(str(folder))}", 'python -m pip install -e ".[test]"', "pytest", "wearlaw plugins")
+    for line in dict.fromkeys([*commands, next_commands(name, kind)[-1]]):
         click.echo(f"  {line}")
 
 
@@ -149,9 +153,10 @@ def _outcome(check: Check) -> bool:
 
 
 def _installed(name: str) -> type[Model] | WearLaw:
-    """Return the class of the rig, contact model or wear law with this name, or the law of a parameter set."""
+    """Return the class of the model of any kind with this name, or the law of a parameter set."""
     found = loader.installed()
-    shelves = (found.wear_laws, found.contact_models, found.rigs, found.parameter_sets)
+    models = (found.wear_laws, found.contact_models, found.rigs, found.stages, found.laws)
+    shelves: tuple[Shelf[Any], ...] = (*models, found.parameter_sets)
     for shelf in shelves:
         if name in shelf.providers:
             model: type[Model] | WearLaw = shelf.find(name, found.broken)
