@@ -116,6 +116,7 @@ def _declared(default: Model | None) -> Iterator[str]:
         yield "scale: the means of the patch" if default.scale == "patch" else "scale: the patch resolved into cells"
         if default.uses_measured_traction:
             yield "takes a measured traction_coefficient"
+    if default is not None:
         yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
 
 
