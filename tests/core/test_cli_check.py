@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterator
-from types import SimpleNamespace
 
 import pytest
 
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import InstallModel, assert_refused, wearlaw
-from wearlaw.testing import checks
+from wearlaw.testing import checks, kit
 
 
 class SaidCheck:
@@ -42,7 +41,7 @@ def said(monkeypatch: pytest.MonkeyPatch) -> tuple[list[SaidCheck], Checked]:
         checked.append(model)
         yield from given
 
-    monkeypatch.setitem(sys.modules, "wearlaw.testing", SimpleNamespace(checks=checks))
+    monkeypatch.setattr(kit, "checks", checks)
     return given, checked
 
 
@@ -154,7 +153,7 @@ def test_a_law_that_ends_the_program_fails_the_checks(
 
     install_model(Ending)
     name = "no_slip_no_wear"
-    monkeypatch.setattr("wearlaw.testing.checks", lambda law: [one for one in checks(law) if one.name == name])
+    monkeypatch.setattr("wearlaw.testing.kit.checks", lambda law: [one for one in checks(law) if one.name == name])
     result = wearlaw("check", "ending", "--option", "slope=1 m")
     assert result.exit_code == 1
     reason = f"the model raised {type(error).__name__}: {error}"
@@ -173,7 +172,7 @@ def test_a_law_that_breaks_its_contract_fails_the_checks(
     install_model(Negative)
     # Two checks of the kit: hypothesis takes seconds to find the smallest example of each failure.
     chosen = ("rate_is_never_negative", "no_slip_no_wear")
-    monkeypatch.setattr("wearlaw.testing.checks", lambda law: [one for one in checks(law) if one.name in chosen])
+    monkeypatch.setattr("wearlaw.testing.kit.checks", lambda law: [one for one in checks(law) if one.name in chosen])
     result = wearlaw("check", "negative", "--option", "slope=1 m")
     assert result.exit_code == 1
     assert "FAILED rate_is_never_negative: " in result.stdout
@@ -183,7 +182,7 @@ def test_a_law_that_breaks_its_contract_fails_the_checks(
 
 def with_checks(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
     """Let `wearlaw check` run some of the checks only."""
-    monkeypatch.setattr("wearlaw.testing.checks", lambda law: [one for one in checks(law) if one.name in names])
+    monkeypatch.setattr("wearlaw.testing.kit.checks", lambda law: [one for one in checks(law) if one.name in names])
 
 
 def test_an_expected_failure_is_counted_apart(monkeypatch: pytest.MonkeyPatch, install_model: InstallModel) -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import shlex
 import warnings
-from collections.abc import Iterable
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import click
@@ -104,12 +104,10 @@ def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> Non
     wearlaw check my_law --expect-failure "rate_is_finite=divides by zero at zero pressure"
     """  # noqa: D301
     model = _made(_model_class(name), fields("--option", options))
-    reasons, found = fields("--expect-failure", expected, "CHECK=REASON"), list(_checks(model))
-    if reasons:
-        from wearlaw.testing.kit import validate_expected
-
-        validate_expected("--expect-failure", model, found, reasons)
-    outcomes = [_outcome(one, reasons.get(one.name)) for one in found]
+    reasons, kit = fields("--expect-failure", expected, "CHECK=REASON"), _kit()
+    found = list(kit.checks(model))
+    kit.validate_expected("--expect-failure", model, found, reasons)
+    outcomes = [_outcome(one, reasons.get(one.name), kit.NotRunError) for one in found]
     for claim, reason in model.exemptions.items():
         click.echo(f"not claimed {claim}: {reason}")
     counted: dict[str, int] = {word: outcomes.count(word) for word in OUTCOMES}
@@ -142,24 +140,22 @@ def _made(model: type[Model], options: dict[str, str]) -> Model:
         raise InputError(f"{error}\n{hint}") from None
 
 
-def _checks(model: Model) -> Iterable[Check]:
+def _kit() -> ModuleType:
     try:
-        from wearlaw.testing import checks
+        from wearlaw.testing import kit
     except ModuleNotFoundError as error:
         if error.name != "hypothesis":
             raise
         raise click.ClickException(str(error)) from None
-    return checks(model)
+    return kit
 
 
-def _outcome(check: Check, expected: str | None) -> Outcome:
+def _outcome(check: Check, expected: str | None, not_run: type[AssertionError]) -> Outcome:
     """Run a check and print its line, with the reason if it is expected to fail; one that is not run has no line."""
     try:
         check()
     except AssertionError as error:
-        from wearlaw.testing.kit import NotRunError
-
-        if isinstance(error, NotRunError):
+        if isinstance(error, not_run):
             return "not run"
         if expected is not None:
             click.echo(f"failed as expected {check.name}: {expected}")
