@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.testing.wrong_contacts import WrongBatchShape
+from tests.testing.wrong_laws import Raises
 from tests.testing.wrong_nodes import Memory, PairOfPoints
 from wearlaw.testing import checks
-from wearlaw.testing.examples import EXAMPLES, _examples
+from wearlaw.testing.examples import _examples
 from wearlaw.testing.kit import NotRunError
 from wearlaw.testing.law_contacts import (
     Border,
@@ -40,13 +43,13 @@ def test_every_border_has_contacts_with_nodes_on_both_sides(
     of_law = borders(law)
     examples = _examples(mixed(of_law))
     for border in of_law:
-        assert sum(straddles(contact, border) for contact in examples) >= SHARE * EXAMPLES
+        assert sum(straddles(contact, border) for contact in examples) >= SHARE * len(examples)
 
 
 @pytest.mark.parametrize("mixed", MIXED, ids=lambda mixed: mixed.__name__)
 def test_enough_mixed_contacts_stick_in_part(mixed: Callable[[tuple[Border, ...]], Contacts]) -> None:
     examples = _examples(mixed(borders(wl.wear_law("usfd"))))
-    assert sum(map(sticks_in_part, examples)) >= SHARE * EXAMPLES
+    assert sum(map(sticks_in_part, examples)) >= SHARE * len(examples)
 
 
 def test_contacts_on_strips_are_of_all_kinds() -> None:
@@ -56,8 +59,10 @@ def test_contacts_on_strips_are_of_all_kinds() -> None:
     assert np.mean(cosines < 0.9) > SHARE
     assert np.mean(cosines > 1.0 - 1e-12) > 0.2
     gaps = [np.diff(contact.y[:, 0, :], axis=-1).max(initial=0.0) for contact in examples]
-    assert sum(gap > 1e-2 for gap in gaps) > 0.2 * EXAMPLES  # half of those of several strips have a gap in the middle
-    assert sum(bool((contact.area == 0.0).any()) for contact in examples) >= SHARE * EXAMPLES
+    assert sum(gap > 1e-2 for gap in gaps) > 0.2 * len(
+        examples
+    )  # half of those of several strips have a gap in the middle
+    assert sum(bool((contact.area == 0.0).any()) for contact in examples) >= SHARE * len(examples)
     assert all((contact.patch_area > 0.0).all() for contact in examples)
     assert any(len(set(contact.strip_width[0])) > 1 for contact in examples)
 
@@ -125,15 +130,33 @@ def test_each_check_has_a_law_of_its_own() -> None:
     assert not law._calls
 
 
-def test_a_wrong_shape_ends_the_run() -> None:
+@pytest.mark.parametrize(
+    ("model", "of_shape", "message"),
+    [
+        (PairOfPoints(), "rate_has_the_shape_of_the_nodes", "rates of shape"),
+        (WrongBatchShape(), "contact_has_the_shape_of_the_problem", "on a line: "),
+    ],
+    ids=["law", "contact_model"],
+)
+def test_a_wrong_shape_ends_the_run(model: Any, of_shape: str, message: str) -> None:
     outcomes = {}
-    for check in checks(PairOfPoints()):
+    for check in checks(model):
         try:
             check()
         except AssertionError as error:
             outcomes[check.name] = error
-    shape = outcomes.pop("rate_has_the_shape_of_the_nodes")
-    assert not isinstance(shape, NotRunError)
+    assert not isinstance(outcomes.pop(of_shape), NotRunError)
     assert all(isinstance(error, NotRunError) for error in outcomes.values())
     assert len(outcomes) > 30
-    assert "not run, since the model returns a wrong shape: rates of shape" in str(outcomes["rate_is_finite"])
+    reasons = {str(error) for error in outcomes.values()}
+    assert len(reasons) == 1
+    assert reasons.pop().startswith(f"not run, since the model returns a wrong shape: {message}")
+
+
+def test_a_model_that_raises_has_no_wrong_shape() -> None:
+    found = {check.name: check for check in checks(Raises())}
+    with pytest.raises(AssertionError, match="the model raised ZeroDivisionError: no slip"):
+        found["rate_has_the_shape_of_the_nodes"]()
+    with pytest.raises(AssertionError, match="the model raised ZeroDivisionError: no slip"):
+        found["no_slip_no_wear"]()
+    found["declared_names_are_variables"]()

@@ -192,16 +192,18 @@ class _Shape:
 
     def run(self, function: Callable[..., None]) -> None:
         """Run a check on a new instance of the model; a round trip has its own."""
-        if function is not self.of_shape and self.failure is not None:
+        if function is self.of_shape and self.failure is not None:
+            raise self.failure
+        if self.failure is not None and not isinstance(self.failure, ModelRaisedError):
             raise NotRunError(f"not run, since the model returns a wrong shape: {self.failure}")
         if inspect.ismethod(function):
             function()
-        else:
+        elif function is not self.of_shape:
             function(self.model.model_copy())
 
     @cached_property
     def failure(self) -> AssertionError | None:
-        """The failure of the check of shapes, or None; what a model raises is not a wrong shape."""
+        """The failure of the check of shapes, which is run once, or None."""
         try:
             if self.of_shape is not None:
                 self.of_shape(self.model.model_copy())
@@ -209,7 +211,8 @@ class _Shape:
             raise
         except BaseException as error:
             failure = as_failure(error)
-            return None if isinstance(failure, ModelRaisedError) else failure
+            failure.__cause__ = None if failure is error else error
+            return failure
         return None
 
 

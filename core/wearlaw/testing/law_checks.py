@@ -210,17 +210,23 @@ def parameters_may_vary(law: WearLaw) -> None:
     law = law.explicit()
     of_each = {name: _of_values(law, name, number) for name, number in numbers(law).items()}
 
+    def with_values(name: str, node_axes: int) -> Numbers:
+        return {**law.numbers, name: (law.numbers[name] * np.array(STEPS)).reshape(-1, *[1] * node_axes)}
+
+    for name, laws in of_each.items():
+        for node_axes in (1, 2):
+            borders_of_points = _borders(law, with_values(name, node_axes))
+            for point, one in laws.items():
+                for found, expected, of in zip(borders_of_points, _borders(one, one.numbers), BORDERS, strict=True):
+                    assert_close(_at(found, point), _at(expected, 0), f"the {of} with {name} for each point")
+
     def examine(contact: Contact) -> None:
-        batch = rows(contact, [0] * len(STEPS))
+        batch, alone = rows(contact, [0] * len(STEPS)), rows(contact, [0])
         for name, laws in of_each.items():
-            p: Numbers = {**law.numbers, name: batch.per_node(law.numbers[name] * np.array(STEPS))}
-            rate = law.rate(batch, p)
+            rate = law.rate(batch, with_values(name, batch.pressure.ndim - 1))
             assert np.shape(rate) == batch.pressure.shape, f"rates of shape {np.shape(rate)} when {name} varies"
             for point, one in laws.items():
-                what = f"with {name} for each point"
-                assert_close(rate[point], one.rate(rows(batch, [point]), one.numbers)[0], f"the rate {what}")
-                for found, expected, of in zip(_borders(law, p), _borders(one, one.numbers), BORDERS, strict=True):
-                    assert_close(_at(found, point), _at(expected, 0), f"the {of} {what}")
+                assert_close(rate[point], one.rate(alone, one.numbers)[0], f"the rate with {name} for each point")
 
     for_each_contact(law, examine)
 
