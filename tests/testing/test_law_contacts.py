@@ -10,7 +10,7 @@ import pytest
 
 import wearlaw as wl
 from tests.testing.wrong_contacts import WrongBatchShape
-from tests.testing.wrong_laws import Raises
+from tests.testing.wrong_laws import SLOPE, Linear, Raises
 from tests.testing.wrong_nodes import Memory, PairOfPoints
 from wearlaw.testing import checks
 from wearlaw.testing.examples import _examples
@@ -108,6 +108,52 @@ def test_the_wear_index_is_set_by_the_area(mixed: Callable[[tuple[Border, ...]],
 def test_positions_and_bounds_are_set_as_they_are(variable: str) -> None:
     contact = random_contacts(3, nodes=4)
     assert (getattr(aimed(contact, variable, 2.5), variable) == 2.5).all()
+
+
+class Behind(Linear):
+    """Twice the wear far behind the leading edge."""
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"x": (1e-3,)}
+
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return self.breakpoints(p)
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return SLOPE * contact.wear_index_density * np.where(contact.x < 1e-3, 1.0, 2.0)
+
+
+class ByTheBound(Linear):
+    """Wear that rises faster above a traction bound."""
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"traction_bound": (1e8,)}
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        bound = np.minimum(contact.traction_bound, 1e12)  # it may be infinite
+        return SLOPE * contact.wear_index_density * (1.0 + np.maximum(bound - 1e8, 0.0) / 1e8)
+
+
+@pytest.mark.parametrize("law", [Behind(), ByTheBound()], ids=lambda law: type(law).__name__)
+def test_a_law_may_branch_by_position_and_by_the_traction_bound(law: wl.WearLaw) -> None:
+    for check in checks(law):
+        if not check.name.startswith("round_trip"):
+            check()
+
+
+class ByTemperature(Linear):
+    """It branches in what a contact does not have, and where nothing is."""
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"temperature": (500.0,), "pressure": (np.inf,)}
+
+
+def test_an_unknown_variable_is_found_by_the_check_of_names_alone() -> None:
+    assert borders(ByTemperature()) == ()
+    found = {check.name: check for check in checks(ByTemperature())}
+    found["rate_is_finite"]()
+    with pytest.raises(AssertionError, match="`breakpoints` names 'temperature'; the variables are: pressure, "):
+        found["declared_names_are_variables"]()
 
 
 def test_a_law_of_the_patch_gets_one_node() -> None:

@@ -152,6 +152,13 @@ class CountsStrips(Linear):
         return SLOPE * contact.wear_index_density / max(contact.strip_width.shape[-1], 1)
 
 
+class MoreOnStrips(Linear):
+    """A tenth more on an ellipse."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return SLOPE * contact.wear_index_density * (1.1 if contact.on_strips else 1.0)
+
+
 class Memory(Linear):
     """Base of laws that count their calls in a list of their own."""
 
@@ -210,6 +217,7 @@ CAUGHT: dict[type[wl.WearLaw], str] = {
     PairOfPoints: "rate_has_the_shape_of_the_nodes",
     NumbersOfLines: "parameters_may_vary",
     CountsStrips: "splitting_a_node_does_not_matter",
+    MoreOnStrips: "strips_wear_as_lines_do",
     Counts: "calls_agree_to_the_bit",
     RunsInAtOnce: "calls_agree_to_the_bit",
     RunsInLater: "calls_agree_to_the_bit",

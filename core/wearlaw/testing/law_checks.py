@@ -18,6 +18,7 @@ from wearlaw.models.wear_law import Numbers, WearLaw
 from wearlaw.settings.parameters import changed, number_like, numbers
 from wearlaw.testing.examples import SAME, assert_close
 from wearlaw.testing.law_contacts import borders, for_each_contact, for_each_of_nodes
+from wearlaw.testing.law_shape import with_slip_across
 from wearlaw.testing.sampling import NODE_FIELDS, aimed, arrays_of, at_nodes, forward, random_contacts, retotalled, rows
 from wearlaw.units.quantities import Quantity
 
@@ -114,6 +115,23 @@ def each_node_wears_by_itself(law: WearLaw) -> None:
             alike = {name: np.broadcast_to(getattr(contact, name)[at], rate.shape).copy() for name in names}
             found = law.rate(contact.replaced(**alike), law.numbers)[at]
             assert_close(found, rate[at], f"the rate at node {_named(node)} among others like it")
+
+    for_each_of_nodes(law, examine)
+
+
+def strips_wear_as_lines_do(law: WearLaw) -> None:
+    """Nodes on strips wear at the rate of the same nodes on a line, where traction and slip are parallel to x."""
+
+    def examine(contact: Contact) -> None:
+        if not contact.on_strips:
+            return
+        along = with_slip_across(contact, 0.0)
+        nodes = ("pressure", "traction", "slip", "traction_bound", "area", "x")
+        totals = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
+        values = {name: getattr(along, name).reshape(contact.rolling_speed.size, -1) for name in nodes}
+        line = Contact(**values, **{name: getattr(along, name) for name in totals})
+        rate = law.rate(along, law.numbers).reshape(line.pressure.shape)
+        assert_close(rate, law.rate(line, law.numbers), "the rate on strips, against a line")
 
     for_each_of_nodes(law, examine)
 
@@ -260,6 +278,7 @@ OF_SEVERAL_NODES = (
     splitting_a_node_does_not_matter,
     nodes_without_area_do_not_matter,
     each_node_wears_by_itself,
+    strips_wear_as_lines_do,
 )
 """Checks of laws that are not of the whole patch."""
 

@@ -16,7 +16,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import Contact
+from wearlaw.contact.contact import LAW_VARIABLES, Contact
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.testing.examples import beginning, for_each
 from wearlaw.testing.sampling import (
@@ -52,8 +52,16 @@ LINE, STRIPS, MEANS = "", "on strips: ", "on the means of an ellipse: "
 
 
 def borders(law: WearLaw) -> tuple[Border, ...]:
-    """Return where a law branches, the wear index last, since the values at the nodes change it."""
-    found = [(name, value) for name, values in (law.breakpoints(law.numbers) or {}).items() for value in values]
+    """Return where a law branches, the wear index last, since the values at the nodes change it.
+
+    `declared_names_are_variables` refuses other names and values.
+    """
+    found = [
+        (name, float(value))
+        for name, values in (law.breakpoints(law.numbers) or {}).items()
+        for value in values
+        if name in LAW_VARIABLES and np.isfinite(value)
+    ]
     return tuple(sorted(found, key=lambda border: border[0] == "wear_index"))
 
 

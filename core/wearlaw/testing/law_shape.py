@@ -129,7 +129,7 @@ def vectors_dissipate_their_product(law: WearLaw) -> None:
     def examine(contact: Contact) -> None:
         if not contact.on_strips:
             return
-        straight, across = _across(contact, 0.0), _across(contact, 1.0)
+        straight, across = with_slip_across(contact, 0.0), with_slip_across(contact, 1.0)
         assert_close(
             law.rate(across, law.numbers), law.rate(straight, law.numbers), "the rate with slip across the traction"
         )
@@ -151,7 +151,7 @@ def _is_of_the_energy(law: WearLaw) -> bool:
     return all(same)
 
 
-def _across(contact: Contact, share: float) -> Contact:
+def with_slip_across(contact: Contact, share: float) -> Contact:
     """Return a contact with traction along x, and with slip across it of a share of that along it."""
     none = np.zeros_like(contact.slip)
     return contact.replaced(
@@ -208,7 +208,7 @@ def integer_input_does_not_matter(law: WearLaw) -> None:
         names = ["pressure", "traction", "slip", "rolling_speed", "density"]
         if contact.on_strips:  # with vectors along x, so that their components are whole too
             magnitudes = {name: np.rint(getattr(whole, name)) for name in ("traction", "slip")}
-            whole = _across(whole.replaced(**magnitudes), 0.0)
+            whole = with_slip_across(whole.replaced(**magnitudes), 0.0)
             names += ["traction_x", "traction_y", "slip_x", "slip_y"]
         integers = {name: getattr(whole, name).astype(np.int64) for name in names}
         rate = law.rate(whole.replaced(**integers), law.numbers)

@@ -151,7 +151,7 @@ def retotalled(contact: Contact, **changed: Array) -> Contact:
     """
     values: dict[str, Any] = {name: getattr(contact, name) for name in _VALUES} | changed
     if not contact.on_strips:
-        return with_totals(**values)
+        return with_totals(**values).replaced(x=contact.x)
     factors = {name: _ratio(values[name], getattr(contact, name)) for name in ("traction", "slip", "area")}
     for name in ("traction", "slip"):
         old = getattr(contact, name)
