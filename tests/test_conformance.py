@@ -12,8 +12,9 @@ import wearlaw as wl
 from tests.testing.cells import Cells
 from tests.testing.strips import Means, Strips
 from tests.testing.wrong_contacts import Wrapped
-from tests.testing.wrong_declarations import Ramps, Smooth
+from tests.testing.wrong_declarations import HottestNode, Ramps, Smooth
 from tests.testing.wrong_laws import Linear
+from tests.testing.wrong_nodes import Memory, Severe
 from tests.testing.wrong_rigs import Delegating, Weight
 from wearlaw.models.contact_model import Model
 from wearlaw.testing import Check, checks
@@ -80,7 +81,8 @@ def named(model: Model) -> str:
     return "-".join([name, *options, *own])
 
 
-RIGHT: list[Model] = [Cells(), Strips(), Means(), Wrapped(), Linear(), Smooth(), Ramps(), Weight(), Delegating()]
+RIGHT: list[Model] = [Cells(), Strips(), Means(), Wrapped(), Linear(), Smooth(), Ramps()]
+RIGHT += [Severe(), Memory(), HottestNode(), Weight(), Delegating()]
 MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *RIGS.values(), *RIGHT]
 
 CASES = [

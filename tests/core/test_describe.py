@@ -202,3 +202,35 @@ def test_the_example_of_a_rig_is_a_script_that_runs(name: str, monkeypatch: pyte
     assert made["found"].problem.normal_force == made["rig"].problem(**rig.example).normal_force
     monkeypatch.setattr(rig, "example", {})
     assert describe(rig).endswith(f"\n  {rig.conditions()[-1]}")
+
+
+class Exempt(wl.WearLaw):
+    """A law with an exemption."""
+
+    name = "exempt"
+    source = "made up for the tests"
+
+    @property
+    def exemptions(self) -> dict[str, str]:
+        return {"each_node_wears_by_itself": "the hottest node heats the patch"}
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return 0.0 * contact.pressure
+
+
+class Pressed(Weight):
+    """A rig with an exemption."""
+
+    name = "pressed"
+
+    @property
+    def exemptions(self) -> dict[str, str]:
+        return {"pressure_carries_the_load": "its pressure is not Hertz's"}
+
+
+def test_what_a_law_or_a_rig_does_not_keep_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    install = cases.installer(monkeypatch)
+    install(Exempt)
+    install(Pressed)
+    assert said(Exempt).endswith("does not keep each_node_wears_by_itself: the hottest node heats the patch")
+    assert said(Pressed).endswith("declares: does not keep pressure_carries_the_load: its pressure is not Hertz's")

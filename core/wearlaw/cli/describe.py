@@ -35,7 +35,8 @@ def describe(model: type[Model], parameter_set: str | None = None) -> str:
     lines += [] if schema else ["  none"]
     if issubclass(model, Rig):
         conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
-        return "\n".join([*lines, *conditions, *_example(model)])
+        declared = ["", "declares:", *(f"  {text}" for text in _not_kept(default))]
+        return "\n".join([*lines, *conditions, *_example(model), *(declared if len(declared) > 2 else [])])
     lines += ["", "declares:", *(f"  {text}" for text in _declared(default))]
     return "\n".join(lines)
 
@@ -122,6 +123,11 @@ def _declared(default: Model | None) -> Iterator[str]:
         yield "scale: the means of the patch" if default.scale == "patch" else "scale: the patch resolved into cells"
         if default.uses_measured_traction:
             yield "takes a measured traction_coefficient"
+    yield from _not_kept(default)
+
+
+def _not_kept(default: Model | None) -> Iterator[str]:
+    if default is not None:
         yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
 
 

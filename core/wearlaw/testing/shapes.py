@@ -26,7 +26,7 @@ from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.models.contact_model import QUADRATURE, Claim, ContactModel
 from wearlaw.models.line_contact_model import LineContactModel
-from wearlaw.testing.examples import SAME, SUM, as_failure, assert_close
+from wearlaw.testing.examples import SAME, SUM, assert_close, beginning
 from wearlaw.testing.problems import (
     at_magnitude,
     creeping,
@@ -450,13 +450,7 @@ def on_each_shape(check: Callable[[ContactModel, Shape], None]) -> Callable[[Con
         for shape in SHAPES:
             if shape.geometry not in model.geometries():
                 continue
-            try:
+            with beginning(f"{shape.where}: "):
                 check(model, shape)
-            except KeyboardInterrupt:
-                raise
-            except BaseException as error:
-                failure = as_failure(error)
-                failure.args = (f"{shape.where}: {failure}",)
-                raise failure from (None if failure is error else error)
 
     return on_all
