@@ -22,6 +22,7 @@ from tests.testing import (
     wrong_ellipses,
     wrong_fields,
     wrong_laws,
+    wrong_nodes,
     wrong_rigs,
     wrong_strips,
 )
@@ -37,6 +38,7 @@ WRONG: dict[Any, str] = {
     **wrong_ellipses.CAUGHT,
     **wrong_strips.CAUGHT,
     **wrong_creep_forces.CAUGHT,
+    **wrong_nodes.CAUGHT,
     **wrong_rigs.CAUGHT,
 }
 
@@ -68,7 +70,7 @@ ON_EACH_SHAPE = set.intersection(*map(names_of, RIGHT_ON.values())) - names_of(R
 WRONG |= {
     strips.on_strips(mutant): check
     for mutant, check in WRONG.items()
-    if issubclass(mutant, strips.Strips) and check in ON_EACH_SHAPE
+    if issubclass(mutant, strips.Strips) and check in ON_EACH_SHAPE | wrong_nodes.ON_GIVEN_STRIPS
 }
 
 

@@ -12,7 +12,7 @@ import click
 from rich.console import Console
 from rich.table import Table
 
-from wearlaw.cli.describe import describe
+from wearlaw.cli.describe import accuracies, describe
 from wearlaw.cli.scaffold import Kind, Licence, write_plugin
 from wearlaw.cli.shared import fields
 from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
@@ -97,6 +97,9 @@ def check(name: str, options: tuple[str, ...]) -> None:
     """  # noqa: D301
     model = _made(_model_class(name), fields("--option", options))
     outcomes = [_outcome(one) for one in _checks(model)]
+    if isinstance(model, ContactModel):
+        for line in accuracies(model):
+            click.echo(line)
     not_claimed = model.exemptions if isinstance(model, ContactModel) else {}
     for claim, reason in not_claimed.items():
         click.echo(f"not claimed {claim}: {reason}")

@@ -18,7 +18,10 @@ from wearlaw.settings.configuration import Configuration
 Scale: TypeAlias = Literal["patch", "cells"]
 """Whether a contact holds the means of the whole patch in one node, or resolves the patch into many nodes."""
 
-Claim: TypeAlias = Literal["traction_bound", "stick", "energy_balance", "saturation", "initial_slope", "similarity"]
+Claim: TypeAlias = Literal[
+    "traction_bound", "friction", "stick", "leading_edge", "energy_balance", "saturation", "initial_slope",
+    "similarity", "symmetry", "direction", "growth", "continuity", "spin", "pressure", "accuracy",
+]  # fmt: skip
 """An invariant that a contact model keeps unless it declares itself exempt; see `ContactModel.exemptions`."""
 
 QUADRATURE = 5e-8

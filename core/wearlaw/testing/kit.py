@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TypeAlias, TypeVar
 
 from wearlaw.errors import InputError, did_you_mean
@@ -19,6 +20,7 @@ from wearlaw.testing import (
     contact_fields,
     contact_force,
     contact_limits,
+    contact_nodes,
     declarations,
     law_branches,
     law_checks,
@@ -96,11 +98,12 @@ def checks(model: Model) -> Iterator[Check]:
         raise InputError(
             f"checks: needs a rig, a contact model or a wear law, such as wl.wear_law('usfd'); got {model!r}"
         )
+    gate = _Gate(model)
     for function in found:
-        yield _check(function, model)
+        yield Check(function.__name__, inspect.getdoc(function) or "", partial(gate.run, partial(function, model)))
     trip = RoundTrip(model)
     for way in (trip.through_toml, trip.through_json, trip.through_pickle):
-        yield Check(f"round_trip_{way.__name__}", inspect.getdoc(way) or "", way)
+        yield Check(f"round_trip_{way.__name__}", inspect.getdoc(way) or "", partial(gate.run, way))
 
 
 def conformance(
@@ -163,19 +166,22 @@ def _of_law(law: WearLaw) -> list[CheckFunction]:
 
 
 def _of_contact_model(model: ContactModel) -> list[CheckFunction]:
-    claims = [*contact_limits.CLAIMS.items(), *contact_energy.CLAIMS.items()]
+    modules = (contact_nodes, contact_checks, contact_force, contact_limits, contact_energy, contact_fields)
+    claims = [item for module in modules for item in module.CLAIMS.items()]
     idle = [function for claim, of in claims if claim in model.exemptions for function in of]
     if "line" not in model.geometries():
         idle += [*contact_checks.OF_LINES, *contact_limits.OF_LINES]
     if "ellipse" not in model.geometries():
         idle += [*contact_checks.OF_ELLIPSES, *contact_force.OF_ELLIPSES, *contact_limits.OF_ELLIPSES]
         idle += contact_energy.OF_REFINED_STRIPS
+    if model.geometries() == ("line",):
+        idle += [*contact_nodes.OF_STRIPS, *contact_force.OF_STRIPS]
     if model.refined() is None:
         idle += [*contact_energy.OF_REFINED, *contact_energy.OF_REFINED_STRIPS]
     if type(model).on_strips is ContactModel.on_strips:
         idle += contact_energy.OF_STRIPS
     if not isinstance(model, LineContactModel):
-        idle += [*contact_energy.OF_FIELDS, *contact_fields.CHECKS]
+        idle += [*contact_energy.OF_FIELDS, *contact_fields.OF_FIELDS]
     else:
         if type(model).crossings is LineContactModel.crossings:
             idle += contact_fields.OF_CROSSINGS
@@ -183,8 +189,9 @@ def _of_contact_model(model: ContactModel) -> list[CheckFunction]:
             idle += contact_fields.OF_EXCESS
     functions: list[CheckFunction] = [
         *contact_checks.CHECKS,
+        *contact_nodes.CHECKS,
         *contact_force.CHECKS,
-        *(function for _, of in claims for function in of),
+        *dict.fromkeys(function for _, of in claims for function in of),  # one check may belong to two claims
         *contact_energy.CHECKS,
         *contact_fields.CHECKS,
     ]
@@ -196,5 +203,24 @@ def _of_contact_model(model: ContactModel) -> list[CheckFunction]:
     ]
 
 
-def _check(function: CheckFunction, model: Model) -> Check:
-    return Check(function.__name__, inspect.getdoc(function) or "", lambda: function(model))
+class _Gate:
+    """Runs checks until the model gives a contact of a wrong shape; then all fail with that message.
+
+    On a contact of shape (batch, batch, nodes), the checks would fill the memory.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._wrong: str | None = None
+
+    def run(self, check: Callable[[], None]) -> None:
+        """Run a check, the first one after a look at the shapes of a few contacts."""
+        if self._wrong is None:
+            self._wrong = contact_checks.wrong_shape(self._model) if isinstance(self._model, ContactModel) else ""
+        if self._wrong:
+            raise AssertionError(self._wrong)
+        try:
+            check()
+        except contact_checks.ShapeError as error:
+            self._wrong = str(error)
+            raise
