@@ -20,7 +20,7 @@ from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelE
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.numerics.blocks import Columns
-from wearlaw.numerics.integrate import integrate_forces, integrate_wear
+from wearlaw.numerics.integrate import integrate_forces, integrate_wear, wear_rate_error
 from wearlaw.pipeline.composition import (
     check_geometry,
     check_one_patch,
@@ -399,7 +399,7 @@ class Pipeline(Configuration, Generic[P]):
 
         wear = integrate_wear(model, law, problem, scale, see)
         found = Prediction(problem, model, scale, self.laws, forces=wear.forces, wear=wear)
-        law.check_not_negative(wear.wear_rate, lambda: found.wear_rate_error.to("kg/m^3").magnitude)
+        law.check_not_negative(wear.wear_rate, lambda: wear_rate_error(model, law, problem, scale, wear))
         return found
 
     def _without_wear(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None) -> Prediction:

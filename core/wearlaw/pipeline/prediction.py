@@ -331,9 +331,24 @@ class Prediction:
 
     @cached_property
     def wear_rate_error(self) -> Quantity:
-        """Estimate of the numerical error in `wear_rate` [kg/m/m²]; slow on an ellipse, which it solves again."""
+        """Estimate of the error in `wear_rate` [kg/m/m²]; slow on an ellipse, which it solves again.
+
+        It is the numerical error. If the contact model does not claim the energy balance, the rate of the energy that
+        its nodes lack is added, as for a law in proportion to q·s; it is infinite if no node dissipates any energy.
+        """
         model, law, scale = self.contact_model, self._law, self.scale
-        return from_si(integrate.wear_rate_error(model, law, self.problem, scale, self._wear), WEAR_RATE)
+        error = integrate.wear_rate_error(model, law, self.problem, scale, self._wear)
+        if scale == "cells" and "energy_balance" in model.exemptions:
+            error = error + self._rate_of_lacking_energy()
+        return from_si(error, WEAR_RATE)
+
+    def _rate_of_lacking_energy(self) -> Array:
+        """Return the wear rate that the energy lacking at the nodes would add [kg/m/m²]."""
+        found = self._slip.cell_wear_index
+        lacking = np.abs(self.problem.power(self._forces) - found)
+        none = found <= 0.0  # False for the NaN of a missing patch
+        share = np.divide(lacking, found, out=np.zeros_like(found), where=~none)
+        return np.where(none & (lacking > 0.0), np.inf, np.abs(self._wear.wear_rate) * share)
 
     def depth_per_distance(self, body: str) -> Quantity:
         """Return the depth that a body's surface loses per distance rolled, mean over the patch's width [m/m].
