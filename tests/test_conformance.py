@@ -9,8 +9,10 @@ from importlib.metadata import distribution
 import pytest
 
 import wearlaw as wl
+from tests.testing.brushes import Brush, BrushOnCells
 from tests.testing.cells import Cells
-from tests.testing.strips import Means, Strips
+from tests.testing.grids import Grid
+from tests.testing.strips import Means, Strips, StripsOnStrips
 from tests.testing.wrong_contacts import Wrapped
 from tests.testing.wrong_declarations import Ramps, Smooth
 from tests.testing.wrong_laws import Linear
@@ -80,7 +82,10 @@ def named(model: Model) -> str:
     return "-".join([name, *options, *own])
 
 
-RIGHT: list[Model] = [Cells(), Strips(), Means(), Wrapped(), Linear(), Smooth(), Ramps(), Weight(), Delegating()]
+RIGHT: list[Model] = [
+    *(Cells(), Strips(), StripsOnStrips(), Grid(), Means(), Wrapped(), Brush(), BrushOnCells()),
+    *(Linear(), Smooth(), Ramps(), Weight(), Delegating()),
+]
 MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *RIGS.values(), *RIGHT]
 
 CASES = [

@@ -205,6 +205,9 @@ class _Band(Exact):  # type: ignore[misc]
     def band(self, problem: wl.Problem, nodes: wl.Nodes) -> Any:
         return np.where(np.abs(nodes.x / problem.half_width - 0.3) < 0.0025, 1.001, 1.0)
 
+    def excess_dissipation(self, problem: wl.Problem, threshold: Any) -> Any:
+        return None
+
 
 class TractionInABand(_Band):
     """The traction is too large by 0.1 % in a narrow band."""

@@ -178,7 +178,7 @@ def _of_contact_model(model: ContactModel) -> list[CheckFunction]:
         idle += [*contact_nodes.OF_STRIPS, *contact_force.OF_STRIPS]
     if model.refined() is None:
         idle += [*contact_energy.OF_REFINED, *contact_energy.OF_REFINED_STRIPS]
-    if type(model).on_strips is ContactModel.on_strips:
+    if type(model).on_strips is ContactModel.on_strips or "ellipse" not in model.geometries():
         idle += contact_energy.OF_STRIPS
     if not isinstance(model, LineContactModel):
         idle += [*contact_energy.OF_FIELDS, *contact_fields.OF_FIELDS]
