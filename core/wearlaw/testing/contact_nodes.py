@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from wearlaw.arrays.array import Array
@@ -13,7 +11,7 @@ from wearlaw.contact.problem import Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.testing.examples import SAME, assert_close, for_each
 from wearlaw.testing.problems import friction_limit, without_spin
-from wearlaw.testing.shapes import ELLIPSE, LINE, PATCH, Claims, Shape, on_each_shape
+from wearlaw.testing.shapes import LINE, Claims, Shape, on_each_shape, on_patches_of_strips
 
 POINTS = 32
 """Number of patches checked at once."""
@@ -81,7 +79,8 @@ def _moments(problem: Problem) -> list[tuple[str, Array, tuple[Array, Array]]]:
     return [("x", strips.half_length.max(axis=-1), (none, along)), ("y", b, across)]
 
 
-def strips_have_their_widths(model: ContactModel) -> None:
+@on_patches_of_strips
+def strips_have_their_widths(model: ContactModel, shape: Shape) -> None:
     """Strips with an area lie side by side across the patch, and each has the area of its width times its length.
 
     Strips of a problem keep their width. On an ellipse, a strip may be longer or shorter by a cell, and the patch wider
@@ -89,34 +88,32 @@ def strips_have_their_widths(model: ContactModel) -> None:
     """
     if model.scale == "patch":
         return
-    for shape in (ELLIPSE, PATCH):
-        if shape.geometry in model.geometries():
-            for_each(shape.problems, partial(_compare_widths, model, shape))
+    error = shape.error_of_sums(model)
 
+    def examine(problem: Problem) -> None:
+        contact, strips, a, b = model.solve(problem), problem.strips, problem.a[..., None], problem.b[..., None]
+        y, area = contact.y[..., 0, :], contact.area.sum(axis=-2)
+        there = area > 0.0
+        width = np.where(there, contact.strip_width, 0.0)
+        length, cell = (
+            np.divide(part, width, out=np.zeros_like(area), where=width > 0.0)
+            for part in (area, contact.area.max(axis=-2))
+        )
+        if strips is not None:
+            assert_close(width, strips.width, "the width of a strip")
+            assert_close(length, 2.0 * strips.half_length, "the area of a strip over its width", error)
+            return
+        assert_close(width.sum(axis=-1), 2.0 * problem.b, "the sum of the widths of strips", error, width.max(axis=-1))
+        chord = np.where(there, 2.0 * a * np.sqrt(np.maximum(1.0 - (y / b) ** 2, 0.0)), 0.0)
+        assert_close(length, chord, "the area of a strip over its width", 0.0, error * 2.0 * a + cell)
+        order = np.argsort(y, axis=-1)
+        y, width, there = (np.take_along_axis(array, order, axis=-1) for array in (y, width, there))
+        middle = np.where(there, width.cumsum(axis=-1) - 0.5 * width - b, y)
+        assert_close(
+            y, middle, "the position of a strip between the widths of the others", 0.0, 0.5 * width + error * b
+        )
 
-def _compare_widths(model: ContactModel, shape: Shape, problem: Problem) -> None:
-    contact, error = model.solve(problem), shape.error_of_sums(model)
-    area, y = contact.area.sum(axis=-2), contact.y[..., 0, :]
-    width = np.where(area > 0.0, contact.strip_width, 0.0)
-    a, b = problem.a[..., None], problem.b[..., None]
-    length = np.divide(area, width, out=np.zeros_like(area), where=width > 0.0)
-    if problem.strips is not None:
-        assert_close(width, problem.strips.width, f"{shape.where}: the width of a strip")
-        whole = 2.0 * problem.strips.half_length
-        assert_close(length, whole, f"{shape.where}: the length of a strip", 0.0, error * whole)
-        return
-    strip = width.max(axis=-1)
-    message = f"{shape.where}: the sum of the widths of strips"
-    assert_close(width.sum(axis=-1), 2.0 * problem.b, message, error, strip)
-    cell = np.divide(contact.area.max(axis=-2), width, out=np.zeros_like(area), where=width > 0.0)
-    chord = 2.0 * a * np.sqrt(np.maximum(1.0 - (y / b) ** 2, 0.0))
-    allowed = np.where(width > 0.0, error * 2.0 * a + cell, np.inf)
-    assert_close(length, chord, f"{shape.where}: the area of a strip over its width", 0.0, allowed)
-    order = np.argsort(y, axis=-1)
-    y, width = (np.take_along_axis(array, order, axis=-1) for array in (y, width))
-    middle = width.cumsum(axis=-1) - 0.5 * width - b
-    allowed = np.where(width > 0.0, 0.5 * width + error * b, np.inf)
-    assert_close(y, middle, f"{shape.where}: the position of a strip between the widths of the others", 0.0, allowed)
+    for_each(shape.problems, examine)
 
 
 @on_each_shape
