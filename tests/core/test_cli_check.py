@@ -69,11 +69,22 @@ def test_what_a_contact_model_does_not_claim_is_said(said: tuple[list[SaidCheck]
     said[0][:] = [SaidCheck("shape")]
     result = wearlaw("check", "exact", "--option", "slip=as_printed")
     assert result.stdout == (
-        "ok shape\nnot claimed energy_balance: the printed slip lacks a term in partial slip\n"
+        "ok shape\naccuracy of sums over line contacts: 5e-08\n"
+        "not claimed energy_balance: the printed slip lacks a term in partial slip\n"
         "1 ok, 0 failed, 1 not claimed\n"
     )
     assert result.exit_code == 0
     assert said[1] == [wl.contact_model("exact", slip="as_printed")]
+
+
+def test_the_declared_accuracy_is_shown_for_each_shape_of_patch(said: tuple[list[SaidCheck], Checked]) -> None:
+    said[0][:] = [SaidCheck("shape")]
+    result = wearlaw("check", "fastsim")
+    assert result.stdout == (
+        "ok shape\naccuracy of sums over line contacts: 5e-08\naccuracy of sums over elliptic contacts: 0.05\n"
+        "accuracy of sums over patches of strips: 0.05\n1 ok, 0 failed, 0 not claimed\n"
+    )
+    assert wearlaw("check", "polach").stdout.count("accuracy") == 0  # one node holds the means
 
 
 def test_options_may_be_repeated_and_hold_an_equals_sign(said: tuple[list[SaidCheck], Checked]) -> None:

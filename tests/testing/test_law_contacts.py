@@ -10,8 +10,8 @@ import pytest
 
 import wearlaw as wl
 from tests.testing.wrong_contacts import WrongBatchShape
+from tests.testing.wrong_law_nodes import Memory, PairOfPoints
 from tests.testing.wrong_laws import SLOPE, Linear, Raises
-from tests.testing.wrong_nodes import Memory, PairOfPoints
 from wearlaw.testing import checks
 from wearlaw.testing.examples import _examples
 from wearlaw.testing.kit import NotRunError

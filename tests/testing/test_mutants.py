@@ -21,6 +21,7 @@ from tests.testing import (
     wrong_declarations,
     wrong_ellipses,
     wrong_fields,
+    wrong_law_nodes,
     wrong_laws,
     wrong_nodes,
     wrong_rigs,
@@ -33,13 +34,14 @@ from wearlaw.testing.roundtrip import RoundTrip
 WRONG: dict[Any, str] = {
     **wrong_laws.CAUGHT,
     **wrong_declarations.CAUGHT,
-    **wrong_nodes.CAUGHT,
+    **wrong_law_nodes.CAUGHT,
     **wrong_contacts.CAUGHT,
     **wrong_fields.CAUGHT,
     **cells.CAUGHT,
     **wrong_ellipses.CAUGHT,
     **wrong_strips.CAUGHT,
     **wrong_creep_forces.CAUGHT,
+    **wrong_nodes.CAUGHT,
     **wrong_rigs.CAUGHT,
 }
 
@@ -71,7 +73,7 @@ ON_EACH_SHAPE = set.intersection(*map(names_of, RIGHT_ON.values())) - names_of(R
 WRONG |= {
     strips.on_strips(mutant): check
     for mutant, check in WRONG.items()
-    if issubclass(mutant, strips.Strips) and check in ON_EACH_SHAPE
+    if issubclass(mutant, strips.Strips) and check in ON_EACH_SHAPE | wrong_nodes.ON_GIVEN_STRIPS
 }
 
 

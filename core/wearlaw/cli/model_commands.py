@@ -12,11 +12,11 @@ import click
 from rich.console import Console
 from rich.table import Table
 
-from wearlaw.cli.describe import describe
+from wearlaw.cli.describe import accuracies, describe
 from wearlaw.cli.scaffold import Kind, Licence, write_plugin
 from wearlaw.cli.shared import fields
 from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
-from wearlaw.models.contact_model import Model
+from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
@@ -114,6 +114,9 @@ def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> Non
     found = list(kit.checks(model))
     kit.validate_expected("--expect-failure", model, found, reasons)
     outcomes = [_outcome(one, reasons.get(one.name), kit.NotRunError) for one in found]
+    if isinstance(model, ContactModel):
+        for line in accuracies(model):
+            click.echo(line)
     for claim, reason in model.exemptions.items():
         click.echo(f"not claimed {claim}: {reason}")
     counted: dict[str, int] = {word: outcomes.count(word) for word in OUTCOMES}

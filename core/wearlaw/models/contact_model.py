@@ -25,7 +25,7 @@ Claim: TypeAlias = str
 """Name of an invariant that a model keeps unless it declares itself exempt; see `Model.exemptions`.
 
 It is the name of a check of the conformance kit, such as "each_node_wears_by_itself". For contact models, some claims
-have several checks: "traction_bound", "stick", "energy_balance", "saturation", "initial_slope" and "similarity".
+have several checks, such as "energy_balance" or "spin".
 """
 
 QUADRATURE = 5e-8

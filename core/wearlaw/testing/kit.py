@@ -20,6 +20,7 @@ from wearlaw.testing import (
     contact_fields,
     contact_force,
     contact_limits,
+    contact_nodes,
     declarations,
     law_branches,
     law_checks,
@@ -38,7 +39,12 @@ TestFunction = TypeVar("TestFunction", bound="Callable[[Check], None]")
 COMMON: tuple[CheckFunction, ...] = (*declarations.COMMON, *unit_checks.CHECKS)
 """Checks of every model."""
 
-CLAIMS: Claims = {**contact_limits.CLAIMS, **contact_energy.CLAIMS}
+OF_CONTACTS = (contact_nodes, contact_checks, contact_force, contact_limits, contact_energy, contact_fields)
+
+CLAIMS: Claims = {
+    claim: tuple(function for module in OF_CONTACTS for function in module.CLAIMS.get(claim, ()))
+    for claim in dict.fromkeys(claim for module in OF_CONTACTS for claim in module.CLAIMS)
+}
 """Claims of contact models that have a name of their own, with their checks; any other claim is the name of a check."""
 
 OF_SHAPES = (law_shape.rate_has_the_shape_of_the_nodes, contact_checks.contact_has_the_shape_of_the_problem)
@@ -249,12 +255,14 @@ def _of_contact_model(model: ContactModel) -> tuple[list[CheckFunction], list[Ch
     if "ellipse" not in model.geometries():
         idle += [*contact_checks.OF_ELLIPSES, *contact_force.OF_ELLIPSES, *contact_limits.OF_ELLIPSES]
         idle += contact_energy.OF_REFINED_STRIPS
+    if model.geometries() == ("line",):
+        idle += [*contact_nodes.OF_STRIPS, *contact_force.OF_STRIPS]
     if model.refined() is None:
         idle += [*contact_energy.OF_REFINED, *contact_energy.OF_REFINED_STRIPS]
-    if type(model).on_strips is ContactModel.on_strips:
+    if type(model).on_strips is ContactModel.on_strips or "ellipse" not in model.geometries():
         idle += contact_energy.OF_STRIPS
     if not isinstance(model, LineContactModel):
-        idle += [*contact_energy.OF_FIELDS, *contact_fields.CHECKS]
+        idle += [*contact_energy.OF_FIELDS, *contact_fields.OF_FIELDS]
     else:
         if type(model).crossings is LineContactModel.crossings:
             idle += contact_fields.OF_CROSSINGS
@@ -262,8 +270,9 @@ def _of_contact_model(model: ContactModel) -> tuple[list[CheckFunction], list[Ch
             idle += contact_fields.OF_EXCESS
     functions: list[CheckFunction] = [
         *contact_checks.CHECKS,
+        *contact_nodes.CHECKS,
         *contact_force.CHECKS,
-        *(function for of in CLAIMS.values() for function in of),
+        *dict.fromkeys(function for of in CLAIMS.values() for function in of),  # one check may belong to two claims
         *contact_energy.CHECKS,
         *contact_fields.CHECKS,
     ]
