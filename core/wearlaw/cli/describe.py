@@ -10,6 +10,7 @@ from typing import Any
 
 import pint
 
+from wearlaw.contact.problem import PATCHES
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.law import Law, Outcome
@@ -37,8 +38,8 @@ def describe(model: type[Model], parameter_set: str | None = None) -> str:
     lines += [] if schema else ["  none"]
     if issubclass(model, Rig):
         conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
-        return "\n".join([*lines, *conditions, *_example(model)])
-    declared = [f"  {text}" for text in (_of_stage(model) if issubclass(model, Stage) else _declared(default))]
+        lines += [*conditions, *_example(model)]
+    declared = [f"  {text}" for text in _declared(model, default)]
     return "\n".join([*lines, *(["", "declares:", *declared] if declared else [])])
 
 
@@ -115,21 +116,29 @@ def _choices(schema: Mapping[str, Any]) -> list[str]:
     return [repr(word) for option in options for word in option.get("enum", [])]
 
 
-def _declared(default: Model | None) -> Iterator[str]:
+def _declared(model: type[Model], default: Model | None) -> Iterator[str]:
+    if issubclass(model, Stage) and model.gives_means:
+        yield "gives: the means of the patch"
     if default is None:
-        yield "what depends on its fields"
-    elif isinstance(default, Law):
+        if issubclass(model, (Law, ContactModel)):
+            yield "what depends on its fields"
+        return
+    if isinstance(default, Law):
         yield from _of_law(default)
     elif isinstance(default, ContactModel):
         yield "scale: the means of the patch" if default.scale == "patch" else "scale: the patch resolved into cells"
         if default.uses_measured_traction:
             yield "takes a measured traction_coefficient"
-        yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
+        yield from accuracies(default)
+    yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
 
 
-def _of_stage(stage: type[Stage]) -> Iterator[str]:
-    if stage.gives_means:
-        yield "gives: the means of the patch"
+def accuracies(model: ContactModel) -> Iterator[str]:
+    """Yield the declared errors of sums over the nodes, by the shape of the patch; one node of means has none."""
+    if model.scale == "cells":
+        for geometry in model.geometries():
+            error = model.accuracy if geometry == "line" else model.elliptic_accuracy
+            yield f"accuracy of sums over {PATCHES[geometry]}: {error:.2g}"
 
 
 def _of_law(law: Law) -> Iterator[str]:
