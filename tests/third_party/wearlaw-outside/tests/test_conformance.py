@@ -1,7 +1,9 @@
-"""The outside law and model keep what wearlaw relies on."""
+"""The outside rig, contact model and wear law keep what wearlaw relies on."""
 
 from wearlaw_outside.contact import Rigid
 from wearlaw_outside.law import MadeUp
+from wearlaw_outside.material import MADE_UP_STEEL
+from wearlaw_outside.rig import Weighted
 
 from wearlaw.testing import Check, conformance
 
@@ -13,4 +15,9 @@ def test_made_up(check: Check) -> None:
 
 @conformance(Rigid(), expected_failures={})
 def test_rigid(check: Check) -> None:
+    check()
+
+
+@conformance(Weighted(material=MADE_UP_STEEL), expected_failures={})
+def test_weighted(check: Check) -> None:
     check()
