@@ -6,7 +6,7 @@ import shlex
 import warnings
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import click
 from rich.console import Console
@@ -20,7 +20,7 @@ from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
-from wearlaw.plugins.shelf import unknown
+from wearlaw.plugins.shelf import Shelf, unknown
 
 if TYPE_CHECKING:
     from wearlaw.testing import Check
@@ -180,9 +180,10 @@ def _outcome(check: Check, expected: str | None, not_run: type[AssertionError]) 
 
 
 def _installed(name: str) -> type[Model] | WearLaw:
-    """Return the class of the rig, contact model or wear law with this name, or the law of a parameter set."""
+    """Return the class of the model with this name, or the law of a parameter set."""
     found = loader.installed()
-    shelves = (found.wear_laws, found.contact_models, found.rigs, found.parameter_sets)
+    models = (found.wear_laws, found.laws, found.contact_models, found.stages, found.rigs)
+    shelves: tuple[Shelf[Any], ...] = (*models, found.parameter_sets)
     for shelf in shelves:
         if name in shelf.providers:
             model: type[Model] | WearLaw = shelf.find(name, found.broken)
