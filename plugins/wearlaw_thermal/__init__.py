@@ -98,7 +98,8 @@ class Thermal(wl.Stage):
     patch begins to slip, and 0.57 at half that creepage.
 
     wearlaw warns where the Péclet number Va/(2κ), with the larger diffusivity κ = λ/(ρc) of the bodies, is below 5, or
-    below 5 (a/b)² on a long patch. From there on the mean rise is within 6 % of that with conduction in all directions.
+    below 5 (a/b)² on a long patch. From there on the mean rise of like bodies is within 6 % of that with conduction in
+    all directions.
     """
 
     name: ClassVar[str] = "thermal"

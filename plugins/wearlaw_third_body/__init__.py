@@ -32,7 +32,8 @@ class ThirdBody(wl.Stage):
     For a locomotive at 10 m/s the example of CONTACT has k0 = 0.54, k∞ = 0.0108 and β = 0.62, together with friction
     that falls with the creep speed. It can't change a measured traction, which replaces the force of the model.
 
-    The stage changes E* of the problem alone. The patch, its pressure and μ stay as they are.
+    The stage changes E* of the problem alone, to k E*. The patch, its pressure and μ stay as they are. Of the solved
+    contact's problem, do not read E* and what follows from it, such as `relative_radius`.
     """
 
     name: ClassVar[str] = "third_body"
