@@ -50,7 +50,7 @@ def test_a_method_that_goes_or_comes_or_takes_other_arguments_changes_the_interf
         "WearLaw.cooled(self)",
         "WearLaw.rate(self, contact, p, *, warm=False)",
     }
-    assert {"WearLaw.rate(self, contact, p) required", "WearLaw.band(self)"} <= lines_of("WearLaw", wl.WearLaw)
+    assert {"Law.rate(self, contact, p) required", "Law.band(self)"} <= lines_of("Law", wl.Law)
 
 
 def test_a_field_that_a_record_needs_and_a_default_change_the_interface() -> None:

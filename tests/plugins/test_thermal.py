@@ -274,6 +274,36 @@ def test_no_heat_leaves_the_friction_to_the_bit() -> None:
     assert hot(thermal(hot_ratio=1.0), "exact", line()).friction_coefficient == 0.46
 
 
+class Counted:
+    """A function of μ that counts its evaluations."""
+
+    def __init__(self, function: Callable[[Array], Array]) -> None:
+        self.function = function
+        self.times = 0
+
+    def __call__(self, friction: Array) -> Array:
+        self.times += 1
+        return self.function(friction)
+
+
+@pytest.mark.parametrize(
+    ("shape", "most"),
+    [
+        (lambda away: np.sin(away) + 0.5 * away, 10),
+        (lambda away: np.expm1(50.0 * away), 20),
+        (lambda away: np.arctan(1e6 * away), 40),
+        (lambda away: np.where(away >= 0.0, 1.0, -1.0), 60),  # a bisection
+    ],
+)
+def test_the_root_is_found_to_rounding(shape: Callable[[Array], Array], most: int) -> None:
+    places = np.array([0.1, 0.11, 0.2, 0.37, 0.49, 0.5])
+    function = Counted(lambda friction: shape(friction - places))
+    found = wearlaw_thermal._root(function, np.full(6, 0.1), np.full(6, 0.5))
+    assert found == pytest.approx(places, rel=8 * EPS)
+    assert function.times <= most
+    assert found[[0, -1]].tolist() == [0.1, 0.5]  # the ends of the bracket to the bit
+
+
 def test_a_measured_traction_leaves_the_forces() -> None:
     measured = line(0.002).replaced(traction_coefficient=np.float64(0.1))
     found = hot(thermal(), "global", measured)

@@ -152,7 +152,7 @@ class FallsWithSlip(Linear):
 class FallsWithSpeed(Linear):
     """It says that it wears more where it slips faster, and wears less."""
 
-    monotone_in: ClassVar[tuple[str, ...]] = ("slip_speed",)
+    monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("slip_speed",)
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density / (1.0 + contact.slip_speed)

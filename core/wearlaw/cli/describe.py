@@ -21,10 +21,14 @@ from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
 
 
-def describe(model: type[Model]) -> str:
-    """Return the description of a model: theory, source, fields with defaults, and declarations."""
-    lines = [_headline(model), "", inspect.getdoc(model) or "", "", *_wrapped("source: ", model.source), "", "fields:"]
-    default = _default(model)
+def describe(model: type[Model], parameter_set: str | None = None) -> str:
+    """Return the description of a model: theory, source, fields with defaults, and declarations.
+
+    With the name of a parameter set of the law, the fields and declarations are those of the set.
+    """
+    default = _default(model) if parameter_set is None else loader.wear_law(parameter_set)
+    lines = [*_headline(model, parameter_set), "", inspect.getdoc(model) or ""]
+    lines += ["", *_wrapped("source: ", model.source), "", "fields:"]
     schema = model.model_json_schema(by_alias=False).get("properties", {})
     for name, text in field_docstrings(model).items():
         lines += _field(name, _value(model, default, name), _choices(schema[name]), text)
@@ -36,9 +40,11 @@ def describe(model: type[Model]) -> str:
     return "\n".join(lines)
 
 
-def _headline(model: type[Model]) -> str:
+def _headline(model: type[Model], parameter_set: str | None) -> Iterator[str]:
     found = loader.installed()
-    return f"{model.name}: a {model.kind} of {found.of_kind(model.kind).origin(model.name)}"
+    if parameter_set is not None:
+        yield f"{parameter_set}: a parameter set of {found.parameter_sets.origin(parameter_set)}, for"
+    yield f"{model.name}: a {model.kind} of {found.of_kind(model.kind).origin(model.name)}"
 
 
 def _example(rig: type[Rig]) -> Iterator[str]:

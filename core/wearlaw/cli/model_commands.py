@@ -17,6 +17,7 @@ from wearlaw.cli.scaffold import Kind, Licence, write_plugin
 from wearlaw.cli.shared import fields
 from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
 from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import unknown
@@ -37,13 +38,16 @@ def list_plugins() -> None:
     Console().print(table)
     for plugin in found.broken:
         click.echo(f"left out: {plugin}", err=True)
+    for remark in found.remarks:
+        click.echo(f"note: {remark}", err=True)
 
 
 @click.command()
 @click.argument("name")
 def show(name: str) -> None:
-    """Explain a rig, a contact model or a wear law: its fields with units and defaults, its source and its range."""
-    click.echo(describe(_model_class(name)))
+    """Explain a rig, contact model, wear law or parameter set: its fields with units, its source and its range."""
+    model = _installed(name)
+    click.echo(describe(model) if isinstance(model, type) else describe(type(model), name))
 
 
 @click.command("new-plugin")
@@ -93,9 +97,11 @@ def check(name: str, options: tuple[str, ...]) -> None:
     \b
     wearlaw check usfd
     wearlaw check usfd --option fitted_for=exact
+    wearlaw check my_set                            a parameter set of a plugin
     wearlaw check twin_disc --option track_width="8 mm"
     """  # noqa: D301
-    model = _made(_model_class(name), fields("--option", options))
+    found, given = _installed(name), fields("--option", options)
+    model = _made(found, given) if isinstance(found, type) else loader.wear_law(name, **given)
     outcomes = [_outcome(one) for one in _checks(model)]
     not_claimed = model.exemptions if isinstance(model, ContactModel) else {}
     for claim, reason in not_claimed.items():
@@ -142,13 +148,13 @@ def _outcome(check: Check) -> bool:
     return True
 
 
-def _model_class(name: str) -> type[Model]:
-    """Return the class of the rig, contact model or wear law with this name."""
+def _installed(name: str) -> type[Model] | WearLaw:
+    """Return the class of the rig, contact model or wear law with this name, or the law of a parameter set."""
     found = loader.installed()
-    shelves = (found.wear_laws, found.contact_models, found.rigs)
+    shelves = (found.wear_laws, found.contact_models, found.rigs, found.parameter_sets)
     for shelf in shelves:
         if name in shelf.providers:
-            model: type[Model] = shelf.find(name, found.broken)
+            model: type[Model] | WearLaw = shelf.find(name, found.broken)
             return model
     known = [one for shelf in shelves for one in shelf.items()]
     raise UnknownModelError(unknown("model", name, known, found.broken))

@@ -241,6 +241,7 @@ class Pipeline(Configuration, Generic[P]):
         check_geometry(self.rig, self.contact_model, self.rig.geometry)
         for law in self.laws:
             check_scale(self.scale, self.contact_model, law)
+            law.check_variables()
         if self.laws:
             check_laws(self.laws, self.rig.bodies)
         return self

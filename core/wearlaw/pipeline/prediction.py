@@ -504,11 +504,11 @@ class Prediction:
         return self._of_body(self._wear_law(body), body, stacklevel=5)
 
     def _of_body(self, index: int, body: str, stacklevel: int) -> Array:
-        """Return the outcome of a law for a body; a law for every body is evaluated again if the densities differ."""
-        density = self.problem.density_of(body)
+        """Return the outcome of a law for a body; a law for every body is evaluated again if the materials differ."""
+        of_body = self.problem.worn_on(body)
         self._warn_of(index, body, stacklevel + 1)
         law = self.laws[index]
-        if law.body is not None or density is self.problem.density:
+        if law.body is not None or of_body is self.problem:
             return self._solved_totals.values[index]
         return integrate.integrate_laws(self._model, (self._law_of(index, body),), self.problem).values[0]
 

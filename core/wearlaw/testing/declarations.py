@@ -8,9 +8,8 @@ from typing import Any, get_args
 import numpy as np
 import pint
 
-from wearlaw.contact.contact import Contact
+from wearlaw.contact.contact import PATCH_VARIABLES, Contact
 from wearlaw.models.contact_model import Claim, ContactModel, Model
-from wearlaw.models.functions import VARIABLES
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.testing.examples import for_each
@@ -50,13 +49,15 @@ def declared_names_are_variables(law: WearLaw) -> None:
     }
     for subject, variables in declared.items():
         for name, values in variables.items():
-            assert name in VARIABLES, f"`{subject}` names '{name}'; the variables are: {', '.join(VARIABLES)}"
+            assert name in PATCH_VARIABLES, (
+                f"`{subject}` names '{name}'; the variables are: {', '.join(PATCH_VARIABLES)}"
+            )
             bad = np.isnan(values).any() or (subject != "valid_range" and not np.isfinite(values).all())
             assert not bad, f"`{subject}` has {name} = {values}"
     for name, (low, high) in law.valid_range.items():
         assert low < high, f"`valid_range` of {name} goes from {low:g} to {high:g}"
     for name in law.monotone_in:
-        assert name in VARIABLES, f"`monotone_in` names '{name}'; the variables are: {', '.join(VARIABLES)}"
+        assert name in PATCH_VARIABLES, f"`monotone_in` names '{name}'; the variables are: {', '.join(PATCH_VARIABLES)}"
 
 
 def band_is_ordered(law: WearLaw) -> None:

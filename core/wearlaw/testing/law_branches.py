@@ -8,8 +8,7 @@ from functools import partial
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import Contact
-from wearlaw.models.functions import VARIABLES
+from wearlaw.contact.contact import PATCH_VARIABLES, Contact
 from wearlaw.models.law import BreakpointMap
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.testing.bisection import Function, Indices, find_jumps, find_kinks, lost_digits
@@ -85,7 +84,7 @@ def _declared(values: BreakpointMap, start: Contact, end: Contact) -> bool:
 
 
 def _at(contact: Contact) -> str:
-    return ", ".join(f"{name} {float(at_nodes(contact, name)[0, 0]):.6g}" for name in VARIABLES) + " in SI units"
+    return ", ".join(f"{name} {float(at_nodes(contact, name)[0, 0]):.6g}" for name in PATCH_VARIABLES) + " in SI units"
 
 
 def declared_jumps_exist(law: WearLaw) -> None:

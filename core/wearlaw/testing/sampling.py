@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import Contact
+from wearlaw.contact.contact import Contact, variable_at_nodes
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -166,5 +166,5 @@ def rows(contact: Contact, index: object) -> Contact:
 
 def at_nodes(contact: Contact, variable: str) -> Array:
     """Return the magnitude of a variable at the nodes."""
-    value: Array = np.abs(getattr(contact, variable))
-    return np.broadcast_to(contact.per_node(value), contact.pressure.shape)
+    magnitude: Array = np.abs(variable_at_nodes(contact, variable))
+    return magnitude
