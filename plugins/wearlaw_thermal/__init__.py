@@ -20,6 +20,9 @@ Rise = Annotated[wl.Quantity, wl.Unit("K")]
 
 EPS = float(np.finfo(np.float64).eps)
 
+MOST_STEPS = 120
+"""Twice the bisections from 1 to a rounding, and some."""
+
 TOTAL_OF_STRIP = (
     (math.pi / 4.0) ** 1.5 * math.gamma(2.5) * math.gamma(0.25) / (math.gamma(1.75) ** 2 * math.gamma(2.75))
 )
@@ -204,7 +207,9 @@ def _root(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
     before, f_before, share = x, f, np.full(x.shape, 0.5)
     best = np.where(np.abs(f) <= np.abs(f_last), x, last)
     done = (f == 0.0) | (f_last == 0.0)
-    while not done.all():
+    for _ in range(MOST_STEPS):
+        if done.all():
+            break
         new = np.where(done, best, x + share * (last - x))
         f_new = function(new[()])
         same = np.sign(f_new) == np.sign(f)
