@@ -216,8 +216,7 @@ def _root(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
         before, f_before = np.where(same, x, last), np.where(same, f, f_last)
         last, f_last = np.where(same, last, x), np.where(same, f_last, f)
         x, f = new, f_new
-        nearest, smallest = np.where(np.abs(f) < np.abs(f_last), x, last), np.minimum(np.abs(f), np.abs(f_last))
-        best = np.where(done, best, nearest)
+        best, smallest = np.where(np.abs(f) < np.abs(f_last), x, last), np.minimum(np.abs(f), np.abs(f_last))
         with np.errstate(divide="ignore", invalid="ignore"):  # where an interval or a difference is zero
             least = 2.0 * EPS * np.abs(best) / np.abs(last - x)
             place, height = (x - last) / (before - last), (f - f_last) / (f_before - f_last)
