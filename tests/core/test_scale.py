@@ -87,6 +87,11 @@ def test_a_contact_model_around_another_has_its_scale() -> None:
         RIG | Checked(inner=Coarse()) | wl.wear_law("brr")
 
 
+NO_PATCH_MEAN = (
+    ". There are: pressure, traction, slip, slip_speed, wear_index_density, frictional_power_density, wear_index"
+)
+
+
 @pytest.mark.parametrize(
     ("base", "words"), [(Declares, "'patch' or 'any'"), (Coarse, "'patch' or 'cells'")], ids=["law", "contact model"]
 )
@@ -108,7 +113,7 @@ def test_an_unknown_scale_is_refused_where_it_is_written(base: type[Any], words:
         (
             "valid_range",
             "x",
-            r". There are: pressure, traction, slip, slip_speed, wear_index_density, frictional_power_density, wear_index",
+            NO_PATCH_MEAN,
         ),
     ],
 )

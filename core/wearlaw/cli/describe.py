@@ -10,6 +10,7 @@ from typing import Any
 
 import pint
 
+from wearlaw.contact.problem import PATCHES
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.law import Law
@@ -35,7 +36,8 @@ def describe(model: type[Model], parameter_set: str | None = None) -> str:
     lines += [] if schema else ["  none"]
     if issubclass(model, Rig):
         conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
-        return "\n".join([*lines, *conditions, *_example(model)])
+        declared = ["", "declares:", *(f"  {text}" for text in _not_kept(default))]
+        return "\n".join([*lines, *conditions, *_example(model), *(declared if len(declared) > 2 else [])])
     lines += ["", "declares:", *(f"  {text}" for text in _declared(default))]
     return "\n".join(lines)
 
@@ -122,7 +124,21 @@ def _declared(default: Model | None) -> Iterator[str]:
         yield "scale: the means of the patch" if default.scale == "patch" else "scale: the patch resolved into cells"
         if default.uses_measured_traction:
             yield "takes a measured traction_coefficient"
+        yield from accuracies(default)
+    yield from _not_kept(default)
+
+
+def _not_kept(default: Model | None) -> Iterator[str]:
+    if default is not None:
         yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
+
+
+def accuracies(model: ContactModel) -> Iterator[str]:
+    """Yield the declared errors of sums over the nodes, by the shape of the patch; one node of means has none."""
+    if model.scale == "cells":
+        for geometry in model.geometries():
+            error = model.accuracy if geometry == "line" else model.elliptic_accuracy
+            yield f"accuracy of sums over {PATCHES[geometry]}: {error:.2g}"
 
 
 def _of_law(law: Law) -> Iterator[str]:

@@ -237,10 +237,9 @@ class Contact:
         traction: tuple[Array, Array],
         slip: tuple[Array, Array],
         traction_bound: Array,
+        pressure: Array | None = None,
     ) -> Self:
         """Return the contact for a model's solution on strips of an ellipse, or on the strips of the problem.
-
-        The pressure is Hertz's pressure, or the given pressure of the strips.
 
         Parameters
         ----------
@@ -256,17 +255,12 @@ class Contact:
             Components along x and y [Pa], [-].
         traction_bound : ndarray, (batch, nodes, strips)
             The largest magnitude that the model allows for the traction [Pa].
+        pressure : ndarray, (batch, nodes, strips), optional
+            The model's own normal pressure [Pa]; by default Hertz's, or the given one of the strips.
         """
         across = y[..., None, :]
-        if problem.strips is None:
-            a, b, p0 = (array[..., None, None] for array in (problem.a, problem.b, problem.max_pressure))
-            pressure = hertz_ellipse.pressure(x, across, a, b, p0)
-        else:
-            share = x / problem.strips.half_length[..., None, :]
-            p0 = problem.strips.max_pressure[..., None, :]
-            pressure = p0 * np.sqrt(np.maximum((1.0 - share) * (1.0 + share), 0.0))
         return cls(
-            pressure=pressure,
+            pressure=_given_pressure(problem, x, across) if pressure is None else pressure,
             traction=_magnitude(*traction),
             slip=_magnitude(*slip),
             traction_bound=traction_bound,
@@ -600,6 +594,17 @@ def _magnitude(x: Array, y: Array) -> Array:
     """Return √(x² + y²), five times as fast as `np.hypot`, which guards against overflow that cannot happen here."""
     magnitude: Array = np.sqrt(x * x + y * y)
     return magnitude
+
+
+def _given_pressure(problem: Problem, x: Array, y: Array) -> Array:
+    """Return Hertz's pressure on an ellipse, or the given one of strips [Pa]."""
+    if problem.strips is None:
+        a, b, p0 = (array[..., None, None] for array in (problem.a, problem.b, problem.max_pressure))
+        return hertz_ellipse.pressure(x, y, a, b, p0)
+    share = x / problem.strips.half_length[..., None, :]
+    p0 = problem.strips.max_pressure[..., None, :]
+    pressure: Array = p0 * np.sqrt(np.maximum((1.0 - share) * (1.0 + share), 0.0))
+    return pressure
 
 
 def _totals(problem: Problem, forces: CreepForces) -> dict[str, Array]:

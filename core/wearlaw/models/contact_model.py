@@ -21,8 +21,12 @@ from wearlaw.settings.configuration import Configuration
 Scale: TypeAlias = Literal["patch", "cells"]
 """Whether a contact holds the means of the whole patch in one node, or resolves the patch into many nodes."""
 
-Claim: TypeAlias = Literal["traction_bound", "stick", "energy_balance", "saturation", "initial_slope", "similarity"]
-"""An invariant that a contact model keeps unless it declares itself exempt; see `ContactModel.exemptions`."""
+Claim: TypeAlias = str
+"""Name of an invariant that a model keeps unless it declares itself exempt; see `Model.exemptions`.
+
+It is the name of a check of the conformance kit, such as "each_node_wears_by_itself". For contact models, some claims
+have several checks, such as "energy_balance" or "spin".
+"""
 
 QUADRATURE = 5e-8
 """Accuracy of the quadrature of `LineContactModel`; its worst case is a slip zone just short of the whole patch."""
@@ -53,6 +57,11 @@ class Model(Configuration, ABC):
     def subject(cls) -> str:
         """Return the name of this model in messages."""
         return cls.name
+
+    @property
+    def exemptions(self) -> Mapping[Claim, str]:
+        """The invariants that this model does not keep, each with the reason."""
+        return {}
 
     if not TYPE_CHECKING:  # checkers reject this order by themselves
 
@@ -215,8 +224,3 @@ class ContactModel(Model):
     def elliptic_accuracy(self) -> float:
         """Error of sums over the nodes of an elliptic contact, as a share of the sums in full slip."""
         return ELLIPTIC
-
-    @property
-    def exemptions(self) -> Mapping[Claim, str]:
-        """The invariants that this model does not keep, each with the reason."""
-        return {}

@@ -254,7 +254,8 @@ class Pipeline(Configuration, Generic[P]):
     @property
     def scale(self) -> Scale:
         """Whether a law sees the means of the patch or its cells."""
-        return self.staged_model.scale
+        scale: Scale = self.staged_model.scale
+        return scale
 
     def without_law(self) -> Pipeline[P]:
         """Return the pipeline that predicts the contact alone."""

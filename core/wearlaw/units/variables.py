@@ -154,7 +154,7 @@ VARIABLES: Mapping[str, Variable] = {
         WEAR_RATE, "wear rate high", "Wear rate at the high end of the law's published range", "", "not negative"
     ),
     "wear_rate_error": Variable(
-        WEAR_RATE, "wear rate error", "Estimate of the numerical error in `wear_rate`", "", "not negative"
+        WEAR_RATE, "wear rate error", "Estimate of the error in `wear_rate`", "", "not negative"
     ),
     "wear_rate_uncertainty": Variable(
         WEAR_RATE, "wear rate uncertainty", "Standard uncertainty of a measured wear rate"
