@@ -23,7 +23,7 @@ EPS = float(np.finfo(np.float64).eps)
 MOST_STEPS = 120
 """Twice the bisections from 1 to a rounding, and some."""
 
-TOTAL_OF_STRIP = (
+TOTAL_OF_STRIP: float = (
     (math.pi / 4.0) ** 1.5 * math.gamma(2.5) * math.gamma(0.25) / (math.gamma(1.75) ** 2 * math.gamma(2.75))
 )
 """∬ √(1-s²) √(1-t²)/√(t-s) ds dt over -1 < s < t < 1: how a strip under Hertz's pressure heats itself."""
