@@ -202,6 +202,9 @@ class Law(Model):
     """"patch" if the law is stated only for the means of the whole patch, otherwise "any". A law that contains another
     can make it a property."""
 
+    example_material: ClassVar[Material | None] = None
+    """A material to try the law with, if it reads fields of a class of materials; by default steel."""
+
     monotone_in: ClassVar[tuple[LawVariable, ...]] = ()
     """Variables of a `Contact` with which the rate never falls while the others stay the same."""
 

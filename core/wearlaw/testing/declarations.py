@@ -10,7 +10,7 @@ import pint
 
 from wearlaw.contact.contact import LAW_VARIABLES, PATCH_VARIABLES, Contact
 from wearlaw.models.contact_model import Model
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.testing.law_contacts import for_each_contact
 from wearlaw.testing.sampling import forward
@@ -39,7 +39,7 @@ def json_schema_is_complete(model: Model) -> None:
         assert properties[key].get("description"), f"the schema does not describe the field '{key}'"
 
 
-def declared_names_are_variables(law: WearLaw) -> None:
+def declared_names_are_variables(law: Law) -> None:
     """`breakpoints`, `jumps`, `monotone_in` and `valid_range` name variables of a contact, with finite values."""
     declared = {
         "breakpoints": law.breakpoints(law.numbers) or {},
@@ -58,7 +58,7 @@ def declared_names_are_variables(law: WearLaw) -> None:
         assert name in LAW_VARIABLES, f"`monotone_in` names '{name}'; the variables are: {', '.join(LAW_VARIABLES)}"
 
 
-def band_is_ordered(law: WearLaw) -> None:
+def band_is_ordered(law: Law) -> None:
     """The law at the low end of published parameters wears no more than at their middle, and that than at the high."""
     band = law.band()
     if band is None:

@@ -14,8 +14,7 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.errors import CompositionError, WearlawError
-from wearlaw.models.law import Numbers
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law, Numbers
 from wearlaw.settings.parameters import changed, number_like, numbers
 from wearlaw.testing.examples import SAME, assert_close
 from wearlaw.testing.law_contacts import borders, for_each_contact, for_each_of_nodes
@@ -27,7 +26,7 @@ STEPS = (1.0, 1.001, 0.999)
 """Factors of a parameter at one operating point after the other; small, since laws refuse parameters out of order."""
 
 
-def order_of_nodes_does_not_matter(law: WearLaw) -> None:
+def order_of_nodes_does_not_matter(law: Law) -> None:
     """Each node keeps its rate when the nodes are listed in another order, and each strip its rates."""
 
     def examine(contact: Contact) -> None:
@@ -44,7 +43,7 @@ def order_of_nodes_does_not_matter(law: WearLaw) -> None:
     for_each_of_nodes(law, examine)
 
 
-def position_does_not_matter(law: WearLaw) -> None:
+def position_does_not_matter(law: Law) -> None:
     """The rate is the same if the nodes lie elsewhere, and pressure, traction and slip are as before.
 
     A law that branches at positions `x` is not checked.
@@ -62,7 +61,7 @@ def position_does_not_matter(law: WearLaw) -> None:
     for_each_contact(law, examine)
 
 
-def batching_does_not_matter(law: WearLaw) -> None:
+def batching_does_not_matter(law: Law) -> None:
     """One operating point at a time gives the same as all at once."""
 
     def examine(contact: Contact) -> None:
@@ -74,7 +73,7 @@ def batching_does_not_matter(law: WearLaw) -> None:
     for_each_contact(law, examine)
 
 
-def splitting_a_node_does_not_matter(law: WearLaw) -> None:
+def splitting_a_node_does_not_matter(law: Law) -> None:
     """Two halves of a node wear at the rate of the whole, and so do two halves of a strip."""
 
     def examine(contact: Contact) -> None:
@@ -89,7 +88,7 @@ def splitting_a_node_does_not_matter(law: WearLaw) -> None:
     for_each_of_nodes(law, examine)
 
 
-def nodes_without_area_do_not_matter(law: WearLaw) -> None:
+def nodes_without_area_do_not_matter(law: Law) -> None:
     """Nodes that stand for no area, as in a zone that has shrunk to nothing, leave the other rates as they are."""
 
     def examine(contact: Contact) -> None:
@@ -104,7 +103,7 @@ def nodes_without_area_do_not_matter(law: WearLaw) -> None:
     for_each_of_nodes(law, examine)
 
 
-def each_node_wears_by_itself(law: WearLaw) -> None:
+def each_node_wears_by_itself(law: Law) -> None:
     """The rate at a node depends on its own values and the totals of the patch, not on its neighbours."""
 
     def examine(contact: Contact) -> None:
@@ -120,7 +119,7 @@ def each_node_wears_by_itself(law: WearLaw) -> None:
     for_each_of_nodes(law, examine)
 
 
-def strips_wear_as_lines_do(law: WearLaw) -> None:
+def strips_wear_as_lines_do(law: Law) -> None:
     """Nodes on strips wear at the rate of the same nodes on a line, where traction and slip are parallel to x."""
 
     def examine(contact: Contact) -> None:
@@ -130,7 +129,7 @@ def strips_wear_as_lines_do(law: WearLaw) -> None:
         nodes = ("pressure", "traction", "slip", "traction_bound", "area", "x")
         totals = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
         values = {name: getattr(along, name).reshape(contact.rolling_speed.size, -1) for name in nodes}
-        line = Contact(**values, **{name: getattr(along, name) for name in totals})
+        line = Contact(**values, **{name: getattr(along, name) for name in totals}, problem=contact.problem)
         rate = law.rate(along, law.numbers).reshape(line.pressure.shape)
         assert_close(rate, law.rate(line, law.numbers), "the rate on strips, against a line")
 
@@ -152,10 +151,10 @@ def _axes(contact: Contact) -> tuple[int, ...]:
     return (-2, -1) if contact.on_strips else (-1,)
 
 
-def scale_is_respected(law: WearLaw) -> None:
+def scale_is_respected(law: Law) -> None:
     """A law of the patch means is refused on cells, and was not fitted to cells."""
     try:
-        _ = random_contacts(2, nodes=3) | law
+        _ = random_contacts(2, nodes=3, law=law) | law
     except CompositionError:
         pass
     else:
@@ -164,7 +163,7 @@ def scale_is_respected(law: WearLaw) -> None:
     assert calibration is None or calibration.scale == "patch", "its calibration is for cells, its scale 'patch'"
 
 
-def is_monotone_as_declared(law: WearLaw) -> None:
+def is_monotone_as_declared(law: Law) -> None:
     """The rate never falls when a variable in `monotone_in` grows, from anywhere to anywhere, over all decades.
 
     The wear-index density grows by the traction and by the slip.
@@ -187,9 +186,9 @@ GROWN_BY = {"wear_index_density": ("traction", "slip")}
 """Fields of a contact that are raised to raise a variable; others are raised directly."""
 
 
-def _many(law: WearLaw, points: int = 512) -> Contact:
+def _many(law: Law, points: int = 512) -> Contact:
     """Return many contacts of one node, a third of them at the breakpoints of the law."""
-    contact = forward(random_contacts(points))
+    contact = forward(random_contacts(points, law=law))
     targets = [(name, value) for name, values in (law.breakpoints(law.numbers) or {}).items() for value in values]
     for number, (name, value) in enumerate(targets):
         chosen = np.arange(points) % (3 * len(targets)) == number
@@ -224,10 +223,10 @@ def _nodes(contact: Contact, change: Callable[[Array], Array], axis: int) -> Con
     return contact.replaced(**{name: change(getattr(contact, name)) for name in names})
 
 
-def parameters_may_vary(law: WearLaw) -> None:
+def parameters_may_vary(law: Law) -> None:
     """A number that varies from point to point gives the same rate, breakpoints and ramps as a law for each value."""
     law = law.explicit()
-    of_each = {name: _of_values(law, name, number) for name, number in numbers(law).items()}
+    of_each = laws_of_values(law)
 
     def with_values(name: str, node_axes: int) -> Numbers:
         return {**law.numbers, name: (law.numbers[name] * np.array(STEPS)).reshape(-1, *[1] * node_axes)}
@@ -250,7 +249,12 @@ def parameters_may_vary(law: WearLaw) -> None:
     for_each_contact(law, examine)
 
 
-def _of_values(law: WearLaw, name: str, number: Quantity | float) -> dict[int, WearLaw]:
+def laws_of_values(law: Law) -> dict[str, dict[int, Law]]:
+    """Return for each number of a law the laws with that number at each of `STEPS`, by the index of the step."""
+    return {name: _of_values(law, name, number) for name, number in numbers(law).items()}
+
+
+def _of_values(law: Law, name: str, number: Quantity | float) -> dict[int, Law]:
     """Return the laws with a number at each of `STEPS`, without values that the law does not take."""
     laws = {}
     for point, value in enumerate(law.numbers[name] * np.array(STEPS)):
@@ -262,7 +266,7 @@ def _of_values(law: WearLaw, name: str, number: Quantity | float) -> dict[int, W
 BORDERS = ("breakpoints", "ramps")
 
 
-def _borders(law: WearLaw, p: Numbers) -> tuple[list[Any], list[Any]]:
+def _borders(law: Law, p: Numbers) -> tuple[list[Any], list[Any]]:
     """Return the numbers of breakpoints and of ramps, each in one list."""
     breakpoints, ramps = law.breakpoints(p) or {}, law.ramps(p) or ()
     return [value for name in sorted(breakpoints) for value in breakpoints[name]], [n for ramp in ramps for n in ramp]

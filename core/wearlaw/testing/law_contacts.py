@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import LAW_VARIABLES, Contact
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
 from wearlaw.testing.examples import beginning, for_each
 from wearlaw.testing.sampling import (
     CONDITIONS_DRAWN,
@@ -26,6 +26,7 @@ from wearlaw.testing.sampling import (
     at_nodes,
     contact_from_shares,
     retotalled,
+    with_problem,
     with_totals_of_strips,
 )
 from wearlaw.testing.strategies import contacts
@@ -51,7 +52,7 @@ LINE, STRIPS, MEANS = "", "on strips: ", "on the means of an ellipse: "
 """How messages begin."""
 
 
-def borders(law: WearLaw) -> tuple[Border, ...]:
+def borders(law: Law) -> tuple[Border, ...]:
     """Return where a law branches, the wear index last, since the values at the nodes change it.
 
     `declared_names_are_variables` refuses other names and values.
@@ -65,19 +66,19 @@ def borders(law: WearLaw) -> tuple[Border, ...]:
     return tuple(sorted(found, key=lambda border: border[0] == "wear_index"))
 
 
-def for_each_contact(law: WearLaw, examine: Callable[[Contact], None]) -> None:
+def for_each_contact(law: Law, examine: Callable[[Contact], None]) -> None:
     """Run a function on contacts of the scale of a law."""
     for where, strategy in _of_law(law.scale == "patch", borders(law)):
         with beginning(where):
-            for_each(strategy, examine)
+            for_each(strategy, lambda contact: examine(with_problem(contact, law)))
 
 
-def for_each_of_nodes(law: WearLaw, examine: Callable[[Contact], None]) -> None:
+def for_each_of_nodes(law: Law, examine: Callable[[Contact], None]) -> None:
     """Run a function on contacts whose nodes can be listed anew; the means of an ellipse have one node only."""
     for where, strategy in _of_law(False, borders(law)):
         if where != MEANS:
             with beginning(where):
-                for_each(strategy, examine)
+                for_each(strategy, lambda contact: examine(with_problem(contact, law)))
 
 
 @cache  # draws once for each law

@@ -9,6 +9,9 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact, variable_at_nodes
+from wearlaw.contact.material import steel
+from wearlaw.contact.problem import Body, Problem
+from wearlaw.models.law import Law
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -24,6 +27,12 @@ _PRESSURE = (1e5, 1e10)
 _TRACTION = (1e-6, 1.0)
 _SLIP = (1e-8, 1.0)
 _AREA = (1e-10, 1e-4)
+HALF_LENGTH = 1e-3
+"""Half the length of the patch of a contact of the kit [m]."""
+
+STEEL = steel(shear_yield_stress=None)
+"""The material of its bodies, unless a law is tried with another."""
+
 NODE_VALUES_DRAWN = 4
 """Shares per node: pressure, traction over its bound, slip, area."""
 CONDITIONS_DRAWN = 4
@@ -76,7 +85,7 @@ def with_totals(
         slip=slip,
         traction_bound=traction_bound,
         area=area,
-        x=np.broadcast_to(np.linspace(-1e-3, 1e-3, area.shape[-1]), area.shape),
+        x=np.broadcast_to(np.linspace(-HALF_LENGTH, HALF_LENGTH, area.shape[-1]), area.shape),
         rolling_speed=rolling_speed,
         normal_force=(pressure * area).sum(-1),
         tangential_force=(traction * area).sum(-1),
@@ -125,8 +134,41 @@ def with_totals_of_strips(
     )
 
 
-def random_contacts(points: int, nodes: int = 1, seed: int = 0, loaded: bool = False) -> Contact:
-    """Return contacts at many random operating points, reproducible by seed.
+def with_problem(contact: Contact, law: Law | None = None) -> Contact:
+    """Return the contact with a problem of like size and load, of two bodies of the material to try the law with.
+
+    The bodies are called "body_1" and "body_2", and one of them as the law's `body`.
+    """
+    area, force = contact.patch_area, contact.normal_force
+    a = np.full_like(area, HALF_LENGTH)
+    ellipse = contact.on_strips
+    material = STEEL if law is None or law.example_material is None else law.example_material
+    own = [law.body] if law is not None and law.body else []
+    names = [*own, *(name for name in ("body_1", "body_2") if name not in own)][:2]
+    problem = Problem(
+        geometry="ellipse" if ellipse else "line",
+        a=a,
+        b=area / (np.pi * a) if ellipse else 0.25 * area / a,
+        normal_force=force,
+        max_pressure=(1.5 if ellipse else 4.0 / np.pi) * force / area,
+        effective_modulus=np.full_like(area, 1.12e11),
+        poisson_ratio=np.full_like(area, 0.28),
+        friction_coefficient=np.full_like(area, 0.3),
+        longitudinal_creepage=contact.mean_slip,
+        lateral_creepage=np.zeros_like(area),
+        spin=np.zeros_like(area),
+        rolling_speed=contact.rolling_speed,
+        density=contact.density,
+        rolled_distance=np.full_like(area, 1e3),
+        bodies={name: Body(material, 0.25) for name in names},
+    )
+    return contact.replaced(problem=problem)
+
+
+def random_contacts(
+    points: int, nodes: int = 1, seed: int = 0, loaded: bool = False, law: Law | None = None
+) -> Contact:
+    """Return contacts at many random operating points, reproducible by seed, each with a problem as of `with_problem`.
 
     With `loaded`, every other one has node values in the upper half of their ranges, those of discs at work: from
     30 MPa, 1e-4 of slip and 0.1 mm².
@@ -135,7 +177,7 @@ def random_contacts(points: int, nodes: int = 1, seed: int = 0, loaded: bool = F
     shares, conditions = random.random((points, nodes, NODE_VALUES_DRAWN)), random.random((points, CONDITIONS_DRAWN))
     if loaded:
         shares[::2] = 0.5 + 0.5 * shares[::2]
-    return contact_from_shares(shares, conditions)
+    return with_problem(contact_from_shares(shares, conditions), law)
 
 
 def arrays_of(contact: Contact) -> dict[str, Array]:
@@ -151,13 +193,14 @@ def retotalled(contact: Contact, **changed: Array) -> Contact:
     """
     values: dict[str, Any] = {name: getattr(contact, name) for name in _VALUES} | changed
     if not contact.on_strips:
-        return with_totals(**values).replaced(x=contact.x)
+        return with_totals(**values).replaced(x=contact.x, problem=contact.problem)
     factors = {name: _ratio(values[name], getattr(contact, name)) for name in ("traction", "slip", "area")}
     for name in ("traction", "slip"):
         old = getattr(contact, name)
         along, across = (getattr(contact, f"{name}_{axis}") * factors[name] for axis in "xy")
         values[name] = np.where(old == 0.0, values[name], along), across
     found = with_totals_of_strips(**values, x=contact.x, y=contact.y, strip_width=contact.strip_width)
+    found = found.replaced(problem=contact.problem)
     if not of_means(contact):
         return found
     # The Tγ of means is not the product of their traction and slip.
@@ -194,6 +237,8 @@ def aimed(contact: Contact, variable: str, value: Array | float) -> Contact:
         return retotalled(contact, slip=sign * target)
     if variable == "slip_speed":
         return retotalled(contact, slip=sign * target / contact.per_node(contact.rolling_speed))
+    if variable == "frictional_power_density":
+        return aimed(contact, "wear_index_density", target / contact.per_node(contact.rolling_speed))
     if variable in ("x", "traction_bound"):
         return contact.replaced(**{variable: target.copy()})
     if variable == "wear_index":
@@ -227,7 +272,7 @@ def between(first: Contact, second: Contact, share: Array) -> Contact:
         value: Array = start * (end / start) ** part
         return value
 
-    return with_totals(**{name: mixed(name) for name in _VALUES})
+    return with_totals(**{name: mixed(name) for name in _VALUES}).replaced(problem=first.problem)
 
 
 def e_folds(first: Contact, second: Contact) -> Array:

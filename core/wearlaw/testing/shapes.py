@@ -27,6 +27,9 @@ from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.models.contact_model import QUADRATURE, Claim, ContactModel
 from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.stage import Stage
+from wearlaw.numerics.staged import staged
+from wearlaw.plugins import loader
 from wearlaw.testing.examples import SAME, SUM, assert_close, beginning
 from wearlaw.testing.problems import (
     at_magnitude,
@@ -441,6 +444,12 @@ def _scaled(problem: Problem, length: float, modulus: float, friction: float, cr
         rolling_speed=speed * problem.rolling_speed,
     )
     return creeping(other, creepage, creepage, creepage / length)
+
+
+def of_stage(stage: Stage, points: int) -> list[tuple[ContactModel, Problem]]:
+    """Return a stage around contact models of wearlaw, each with random problems of a shape that the model solves."""
+    models = {"line": "exact", "ellipse": "fastsim", "strips": "fastsim"}
+    return [(staged(loader.contact_model(models[shape.geometry]), (stage,)), shape.random(points)) for shape in SHAPES]
 
 
 def on_shapes(*shapes: Shape) -> Callable[[Callable[[ContactModel, Shape], None]], Callable[[ContactModel], None]]:

@@ -62,16 +62,12 @@ class Example:
 
 EXAMPLES: dict[Kind, Example] = {
     "wear_law": Example("Archard's law", 'wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("{}")'),
-    "law": Example(
-        "fatigue damage of the patch",
-        'wl.TwinDisc.suros() | wl.contact_model("exact") | wl.law("{}")',
-        next_commands=("wearlaw show {}",),
-    ),
+    "law": Example("fatigue damage of the patch", 'wl.TwinDisc.suros() | wl.contact_model("exact") | wl.law("{}")'),
     "contact_model": Example("full slip", 'wl.TwinDisc.suros() | wl.contact_model("{}") | wl.wear_law("usfd")'),
     "stage": Example(
         "friction lowered by a factor",
         'wl.TwinDisc.suros() | wl.contact_model("exact") | wl.stage("{}", factor=0.5)',
-        next_commands=("wearlaw show {}",),
+        next_commands=("wearlaw show {}", "wearlaw check {} --option factor=0.5"),
     ),
     "rig": Example(
         "a weight on two rollers",
