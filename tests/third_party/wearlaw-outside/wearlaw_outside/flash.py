@@ -5,7 +5,7 @@ from typing import ClassVar
 import numpy as np
 
 import wearlaw as wl
-from wearlaw_outside.material import HeatedSteel
+from wearlaw_outside.material import MADE_UP_STEEL, HeatedSteel
 
 
 class Flash(wl.Law):
@@ -17,6 +17,7 @@ class Flash(wl.Law):
     name: ClassVar[str] = "flash"
     source: ClassVar[str] = "H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., Oxford 1959, 2.9"
     outcome: ClassVar[wl.Outcome] = wl.Outcome("flash_temperature", unit="K", of="patch")
+    example_material: ClassVar[wl.Material | None] = MADE_UP_STEEL
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
         """Return the rise at the trailing edge [K]."""
