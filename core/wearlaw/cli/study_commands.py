@@ -45,8 +45,8 @@ def run(
 ) -> None:
     """Run a study: CASE is a case file, or the name of one that is shipped (tassini2010, wheel_on_rail).
 
-    Every contact model of the case is paired with every wear law. Results are written as report.html, a page to open in
-    a browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default
+    Every contact model of the case is paired with every law. Results are written as report.html, a page to open in a
+    browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default
     spelt out.
     """
     loaded = load_case(case)
@@ -92,15 +92,15 @@ def _print_used(study: Study) -> None:
 
 
 def _summary(summary: NamedTable) -> Table:
-    """Return a short table of wear rates for the screen."""
+    """Return a short table of an outcome for the screen."""
     what, *values = summary.frame.columns
     title = Text(f"{summary.title}: {what}")
     table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE, pad_edge=False)
     table.add_column("", overflow="fold")
     for value in values:
         table.add_column(value, justify="right", no_wrap=True)
-    for pair, *rates in summary.frame.itertuples(index=False, name=None):
-        table.add_row(Text(pair), *(f"{rate:.4g}" for rate in rates))
+    for pair, *values_of_pair in summary.frame.itertuples(index=False, name=None):
+        table.add_row(Text(pair), *(f"{value:.4g}" for value in values_of_pair))
     return table
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import xarray
 
 from wearlaw.errors import InputError, did_you_mean
+from wearlaw.models.law import Outcome
 from wearlaw.pipeline.composition import fitted_to_other_body
 from wearlaw.study.case import Case
 from wearlaw.study.pairs import Pair
@@ -41,6 +43,14 @@ class Results:
         """Return the pair with a label."""
         (found,) = (pair for pair in self.pairs if pair.label == label)
         return found
+
+    def predicting(self, outcome: str, labels: Sequence[str]) -> list[str]:
+        """Return the pairs among these whose law predicts an outcome."""
+        return [label for label in labels if self.pair(label).outcome.name == outcome]
+
+    def outcomes(self, sweep: xarray.Dataset) -> list[Outcome]:
+        """Return the outcomes in the results of a sweep, wear first."""
+        return [outcome for name, outcome in self.case.outcomes.items() if name in sweep]
 
     def is_outside(self, profile: xarray.Dataset, label: str, body: str) -> bool:
         """Return whether the depth that a pair gives for a body lies outside what its law was fitted to."""
