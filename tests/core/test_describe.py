@@ -5,12 +5,15 @@ from __future__ import annotations
 import inspect
 import textwrap
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import pytest
+from pydantic import Field
 
 import wearlaw as wl
 from tests.core import cases
+from tests.core.test_outcomes import Damage as BaseOfDamage
+from tests.core.test_outcomes import Heat
 from tests.testing.wrong_rigs import Weight
 from wearlaw.cli.describe import describe
 from wearlaw.models.contact_model import Model
@@ -180,6 +183,60 @@ def test_a_law_that_declares_nothing_or_must_be_given_a_field_is_described(monke
     assert said(Bounded).endswith("scale: patch means or cells known range of mean pressure from 1.000 MPa to 2000 MPa")
     must = said(cases.Linear)
     assert "slope (must be given) Wear rate over p s [m], of no meaning. declares: what depends on its fields" in must
+
+
+class Damage(BaseOfDamage):
+    """Damage of a passage."""
+
+    threshold: Annotated[wl.Quantity, wl.Unit("N")] = Field(default="15 N", validate_default=True)
+
+
+class Cooling(wl.Stage):
+    """Friction that falls."""
+
+    name = "cooling"
+    source = "A test, 3. ed., 2026"
+
+    share: float
+    """Share of the friction that is left [-]."""
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        return problem.replaced(friction_coefficient=self.share * problem.friction_coefficient)
+
+
+def test_a_stage_is_described(monkeypatch: pytest.MonkeyPatch) -> None:
+    mean = said(wl.stages()["patch_mean"])
+    assert mean.startswith("patch_mean: a stage of wearlaw")
+    assert mean.endswith(
+        "fields: none declares: works around the contact model, and may change the solved contact gives the means of"
+        " the whole patch, for laws stated for them"
+    )
+    cases.installer(monkeypatch)(Cooling)
+    cooling = said(Cooling)
+    assert "share (must be given) Share of the friction that is left [-]." in cooling
+    assert "declares: changes the problem before the contact model solves it, and leaves the solved" in cooling
+
+
+def test_a_law_of_another_outcome_is_described_with_unit_and_sign(monkeypatch: pytest.MonkeyPatch) -> None:
+    for law in (Damage, Heat):
+        cases.installer(monkeypatch)(law)
+    damage, heat = said(Damage), said(Heat)
+    assert damage.startswith("damage: a law of wearlaw-testing 9.8.7 (plugin 'testing') Damage of a passage")
+    assert "body = None The body that the law is for, by its name in the rig" in damage
+    assert "declares: predicts: rcf_damage [-], one value for the whole patch, may be negative scale:" in damage
+    assert "declares: predicts: heat_flux [W/mm²], mean over the area of the patch scale:" in heat
+
+
+def test_stages_and_laws_are_shown_and_listed_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    for model in (Cooling, Heat):
+        cases.installer(monkeypatch)(model)
+    listing = cases.wearlaw("plugins").stdout
+    for kind, name in (("stage", "cooling"), ("law", "heat"), ("stage", "patch_mean")):
+        shown = cases.wearlaw("show", name)
+        assert shown.exit_code == 0
+        assert shown.stdout.startswith(f"{name}: a {kind} of ")
+        assert any(line.split()[:2] == [kind, name] for line in listing.splitlines())
+    assert "did you mean 'cooling'?" in cases.wearlaw("show", "coolin").stderr
 
 
 def test_a_rig_shows_which_fields_have_a_default() -> None:

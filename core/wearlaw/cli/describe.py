@@ -12,11 +12,12 @@ import pint
 
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.law import Law
+from wearlaw.models.law import WEAR, Law
+from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.units.quantities import from_si, text_of
+from wearlaw.units.quantities import Q, from_si, text_of
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
 
@@ -32,7 +33,7 @@ def describe(model: type[Model]) -> str:
     if issubclass(model, Rig):
         conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
         return "\n".join([*lines, *conditions, *_example(model)])
-    lines += ["", "declares:", *(f"  {text}" for text in _declared(default))]
+    lines += ["", "declares:", *(f"  {text}" for text in (*_of_class(model), *_declared(default)))]
     return "\n".join(lines)
 
 
@@ -107,6 +108,22 @@ def _choices(schema: Mapping[str, Any]) -> list[str]:
     return [repr(word) for option in options for word in option.get("enum", [])]
 
 
+def _of_class(model: type[Model]) -> Iterator[str]:
+    """Yield the declarations of a stage, and the outcome of a law unless it is wear."""
+    if issubclass(model, Stage):
+        if model.alters_problem_only():
+            yield "changes the problem before the contact model solves it, and leaves the solved contact as it is"
+        else:
+            yield "works around the contact model, and may change the solved contact"
+        if model.gives_means:
+            yield "gives the means of the whole patch, for laws stated for them"
+    elif issubclass(model, Law) and model.outcome.name != WEAR:
+        outcome = model.outcome
+        of = "mean over the area of the patch" if outcome.of == "area mean" else "one value for the whole patch"
+        unit = symbol(Q(1.0, outcome.unit).units, "~P") or "-"
+        yield f"predicts: {outcome.name} [{unit}], {of}{', may be negative' if outcome.signed else ''}"
+
+
 def _declared(default: Model | None) -> Iterator[str]:
     if default is None:
         yield "what depends on its fields"
@@ -120,6 +137,8 @@ def _declared(default: Model | None) -> Iterator[str]:
 
 
 def _of_law(law: Law) -> Iterator[str]:
+    if law.body is not None:
+        yield f"for one body: {law.body}"
     yield "scale: means of the whole patch only" if law.scale == "patch" else "scale: patch means or cells"
     if law.calibration is not None:
         yield f"fitted for: {law.calibration}; {law.calibration.materials}; {law.calibration.source}"

@@ -6,7 +6,7 @@ import shlex
 import warnings
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 from rich.console import Console
@@ -19,7 +19,7 @@ from wearlaw.errors import ConfigurationError, InputError, PluginWarning, Unknow
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
-from wearlaw.plugins.shelf import unknown
+from wearlaw.plugins.shelf import Shelf, unknown
 
 if TYPE_CHECKING:
     from wearlaw.testing import Check
@@ -42,7 +42,7 @@ def list_plugins() -> None:
 @click.command()
 @click.argument("name")
 def show(name: str) -> None:
-    """Explain a rig, a contact model or a wear law: its fields with units and defaults, its source and its range."""
+    """Explain a rig, contact model, stage or law: its fields with units and defaults, its source and its range."""
     click.echo(describe(_model_class(name)))
 
 
@@ -143,9 +143,9 @@ def _outcome(check: Check) -> bool:
 
 
 def _model_class(name: str) -> type[Model]:
-    """Return the class of the rig, contact model or wear law with this name."""
+    """Return the class of the rig, contact model, stage or law with this name."""
     found = loader.installed()
-    shelves = (found.wear_laws, found.contact_models, found.rigs)
+    shelves: tuple[Shelf[Any], ...] = (found.wear_laws, found.laws, found.contact_models, found.stages, found.rigs)
     for shelf in shelves:
         if name in shelf.providers:
             model: type[Model] = shelf.find(name, found.broken)

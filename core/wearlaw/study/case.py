@@ -81,17 +81,28 @@ def _some_models(value: Any) -> Any:
     return value
 
 
-def _other_law(law: Law) -> Law:
-    if law.outcome.name == WEAR:
-        raise InputError(f"{law.name} predicts the wear rate; list it under wear_laws")
-    return law
+def _name_of(value: Any) -> str:
+    """Return the name of a model in a list, or "" if it is not a name or a table with one."""
+    name = value.get("model") if isinstance(value, dict) else value
+    return name if isinstance(name, str) else ""
+
+
+def _other_law(value: Any) -> Any:
+    """Raise an error for the name of a wear law, or of no law."""
+    found, name = loader.installed(), _name_of(value)
+    wear = {*found.wear_laws.providers, *found.parameter_sets.providers}
+    if name in wear or (isinstance(value, Law) and value.outcome.name == WEAR):
+        raise InputError(f"{name or value.name} predicts the wear rate; list it under wear_laws")
+    if name:
+        found.laws.find(name, found.broken)
+    return value
 
 
 def _wear_law(value: Any) -> Any:
     """Raise an error for a law of another outcome."""
-    name, others = value.get("model") if isinstance(value, dict) else value, loader.laws()
-    law = value if isinstance(value, Law) else others.get(name) if isinstance(name, str) else None
-    if law is not None and law.outcome.name != WEAR and law.name not in loader.wear_laws():
+    found, name = loader.installed(), _name_of(value)
+    law = value if isinstance(value, Law) else None if name in found.wear_laws.providers else loader.laws().get(name)
+    if law is not None and law.outcome.name != WEAR:
         raise InputError(f"{law.name} predicts {law.outcome.name}, not wear; list it under laws")
     return value
 
@@ -157,7 +168,7 @@ class Case(Configuration):
     """The contact models, each a name or a table of its name and options."""
     stages: Annotated[tuple[StageField, ...], BeforeValidator(_models)] = ()
     """Stages around every contact model, such as "patch_mean", likewise; the first one stands next to the model."""
-    laws: Annotated[tuple[Annotated[LawField, AfterValidator(_other_law)], ...], BeforeValidator(_models)] = ()
+    laws: Annotated[tuple[Annotated[LawField, BeforeValidator(_other_law)], ...], BeforeValidator(_models)] = ()
     """Laws of other outcomes than wear, such as damage by fatigue, likewise."""
     wear_laws: Annotated[tuple[Annotated[WearLawField, BeforeValidator(_wear_law)], ...], BeforeValidator(_models)] = ()
     """The wear laws, likewise; they can be left out if there are `laws`."""
@@ -310,6 +321,8 @@ class Case(Configuration):
                 yield Fault(
                     path, f"{law.name} gives {outcome.name} in {units} {other.outcome.of}; put one in a case of its own"
                 )
+            if outcome.name == WEAR:
+                yield Fault(path, f"{law.name} predicts the wear rate; derive it from wl.WearLaw, for wear_laws")
             if outcome.name in (*RESERVED, *conditions):
                 yield Fault(path, f"its outcome '{outcome.name}' is the name of another column of results; rename it")
             if any(law.name == wear_law.name for wear_law in self.wear_laws):

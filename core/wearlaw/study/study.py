@@ -333,7 +333,7 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
         before = contacts.get(pair.contact_model, of_contact)  # laws of the two bodies show a part each
         more = [v for v in before.data_vars if v not in of_contact]
         contacts[pair.contact_model] = of_contact.merge(before[more]) if more else of_contact
-        of_pairs.append(whole[of_pair])
+        of_pairs.append(whole.drop_vars(of_contact.data_vars))
         shown.append(pair.label)
     if not shown:
         return xarray.Dataset()
