@@ -9,10 +9,13 @@ from importlib.metadata import distribution
 import pytest
 
 import wearlaw as wl
+from tests.testing.brushes import Brush, BrushOnCells
 from tests.testing.cells import Cells
-from tests.testing.strips import Means, Strips
+from tests.testing.grids import Grid
+from tests.testing.strips import Means, Strips, StripsOnStrips
 from tests.testing.wrong_contacts import Wrapped
-from tests.testing.wrong_declarations import Ramps, Smooth
+from tests.testing.wrong_declarations import HottestNode, Ramps, Smooth
+from tests.testing.wrong_law_nodes import Memory, Severe
 from tests.testing.wrong_laws import Linear
 from tests.testing.wrong_rigs import Delegating, Weight
 from wearlaw.models.contact_model import Model
@@ -80,7 +83,10 @@ def named(model: Model) -> str:
     return "-".join([name, *options, *own])
 
 
-RIGHT: list[Model] = [Cells(), Strips(), Means(), Wrapped(), Linear(), Smooth(), Ramps(), Weight(), Delegating()]
+RIGHT: list[Model] = [
+    *(Cells(), Strips(), StripsOnStrips(), Grid(), Means(), Wrapped(), Brush(), BrushOnCells()),
+    *(Linear(), Smooth(), Ramps(), Severe(), Memory(), HottestNode(), Weight(), Delegating()),
+]
 MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *RIGS.values(), *RIGHT]
 
 CASES = [

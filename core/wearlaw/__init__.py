@@ -15,7 +15,7 @@ import wearlaw.rigs as _rigs  # noqa: F401  importing it later would overwrite t
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop, kernel
 from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
-from wearlaw.contact.contact import Contact, LineFields
+from wearlaw.contact.contact import Contact, LawVariable, LineFields
 from wearlaw.contact.friction import FallingFriction
 from wearlaw.contact.material import Material, steel
 from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem, Strips
@@ -55,7 +55,7 @@ from wearlaw.models.stage import Forces, Solve, Stage
 from wearlaw.models.wear_law import LocalWear, WearLaw
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField
+from wearlaw.plugins.fields import ContactModelField, LawField, MaterialField, StageField, WearLawField
 from wearlaw.plugins.loader import (
     contact_model,
     contact_models,
@@ -119,12 +119,14 @@ __all__ = [
     "InputError",
     "Law",
     "LawField",
+    "LawVariable",
     "Length",
     "LineContactModel",
     "LineFields",
     "LocalOutcome",
     "LocalWear",
     "Material",
+    "MaterialField",
     "ModelError",
     "Nodes",
     "Numbers",

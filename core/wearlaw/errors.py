@@ -148,7 +148,7 @@ class ResumeWarning(WearlawWarning):
 
 
 class PluginWarning(WearlawWarning):
-    """An installed plugin, or a part of it, could not be used and is left out."""
+    """A plugin, or a part of it, could not be used and is left out, or it changed the process while it was loaded."""
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

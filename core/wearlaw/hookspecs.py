@@ -7,7 +7,7 @@ names marked `@wearlaw.hookimpl`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 import pluggy
 
@@ -28,7 +28,22 @@ only if its own version of the interface is N.
 """
 
 hookspec = pluggy.HookspecMarker(PROJECT)
-hookimpl = pluggy.HookimplMarker(PROJECT)
+
+if TYPE_CHECKING:
+    Provided = Iterable[type[Model]] | Mapping[str, Material | type[Material]] | Mapping[str, WearLaw]
+    Implementation = TypeVar(
+        "Implementation", bound=Callable[[], Provided | Mapping[str, str | Callable[..., Any]] | None]
+    )
+    Function = TypeVar("Function", bound=Callable[..., Any])
+
+    @overload
+    def hookimpl(function: Implementation, /) -> Implementation: ...
+    @overload
+    def hookimpl(*, specname: str = ..., optionalhook: bool = ...) -> Callable[[Function], Function]: ...
+    def hookimpl(*function: Any, **options: Any) -> Any:
+        """Mark a function of a plugin as the hook of its name; checkers see if no hook returns what it does."""
+else:
+    hookimpl = pluggy.HookimplMarker(PROJECT)
 
 
 @hookspec
@@ -62,8 +77,8 @@ def wearlaw_parameter_sets() -> Mapping[str, WearLaw]:  # type: ignore[empty-bod
 
 
 @hookspec
-def wearlaw_materials() -> Mapping[str, Material]:  # type: ignore[empty-body]
-    """Return materials by name."""
+def wearlaw_materials() -> Mapping[str, Material | type[Material]]:  # type: ignore[empty-body]
+    """Return materials by name; their classes are known to files too, and so is a class under its own name."""
 
 
 @hookspec

@@ -50,7 +50,7 @@ class BRR(wl.WearLaw):
         " Table 1"
     )
     scale: ClassVar[Literal["patch", "any"]] = "patch"
-    monotone_in: ClassVar[tuple[str, ...]] = ("wear_index",)
+    monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("wear_index",)
 
     mild_slope: SectionPerForce = Field(default="0.25 mm^3/km/N", validate_default=True)
     """Slope of the mild regime, section × D over Tγ [mm³/km/N]."""

@@ -75,7 +75,7 @@ class Fastsim(wl.LineContactModel):
 
     @property
     def exemptions(self) -> Mapping[wl.Claim, str]:
-        """The elliptic bound never saturates; other flexibilities have another initial slope."""
+        """The elliptic bound never saturates; other flexibilities have another initial slope; few strips are coarse."""
         exempt: dict[wl.Claim, str] = {}
         if self.bound == "elliptic":
             exempt["saturation"] = "the bound rises infinitely steeply at the leading edge, which always sticks"
@@ -83,6 +83,8 @@ class Fastsim(wl.LineContactModel):
             exempt["initial_slope"] = "the flexibility is that of a long ellipse"
         if self.interpolation == "contact":
             exempt["initial_slope"] = "between the rows of Kalker's table long patches differ"
+        if self.elliptic_accuracy > 0.1:
+            exempt["accuracy"] = f"{self.strips} strips give a first idea of an ellipse"
         return exempt
 
     @property

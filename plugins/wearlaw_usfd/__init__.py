@@ -72,7 +72,7 @@ class USFD(wl.WearLaw):
 
     name: ClassVar[str] = "usfd"
     source: ClassVar[str] = f"{TASSINI}, Tables 3 and 4"
-    monotone_in: ClassVar[tuple[str, ...]] = ("wear_index_density",)
+    monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("wear_index_density",)
 
     fitted_for: Literal["global", "exact", "fastsim"] | wl.Calibration = "global"
     """The contact solution to which the parameters were fitted. A name also chooses a published set, which fills in

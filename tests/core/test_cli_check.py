@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator
-from types import SimpleNamespace
 
 import pytest
 
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import InstallModel, assert_refused, wearlaw
-from wearlaw.testing import checks
+from wearlaw.testing import checks, kit
 
 
 class SaidCheck:
@@ -41,7 +41,7 @@ def said(monkeypatch: pytest.MonkeyPatch) -> tuple[list[SaidCheck], Checked]:
         checked.append(model)
         yield from given
 
-    monkeypatch.setitem(sys.modules, "wearlaw.testing", SimpleNamespace(checks=checks))
+    monkeypatch.setattr(kit, "checks", checks)
     return given, checked
 
 
@@ -69,11 +69,22 @@ def test_what_a_contact_model_does_not_claim_is_said(said: tuple[list[SaidCheck]
     said[0][:] = [SaidCheck("shape")]
     result = wearlaw("check", "exact", "--option", "slip=as_printed")
     assert result.stdout == (
-        "ok shape\nnot claimed energy_balance: the printed slip lacks a term in partial slip\n"
+        "ok shape\naccuracy of sums over line contacts: 5e-08\n"
+        "not claimed energy_balance: the printed slip lacks a term in partial slip\n"
         "1 ok, 0 failed, 1 not claimed\n"
     )
     assert result.exit_code == 0
     assert said[1] == [wl.contact_model("exact", slip="as_printed")]
+
+
+def test_the_declared_accuracy_is_shown_for_each_shape_of_patch(said: tuple[list[SaidCheck], Checked]) -> None:
+    said[0][:] = [SaidCheck("shape")]
+    result = wearlaw("check", "fastsim")
+    assert result.stdout == (
+        "ok shape\naccuracy of sums over line contacts: 5e-08\naccuracy of sums over elliptic contacts: 0.05\n"
+        "accuracy of sums over patches of strips: 0.05\n1 ok, 0 failed, 0 not claimed\n"
+    )
+    assert wearlaw("check", "polach").stdout.count("accuracy") == 0  # one node holds the means
 
 
 def test_options_may_be_repeated_and_hold_an_equals_sign(said: tuple[list[SaidCheck], Checked]) -> None:
@@ -153,7 +164,7 @@ def test_a_law_that_ends_the_program_fails_the_checks(
 
     install_model(Ending)
     name = "no_slip_no_wear"
-    monkeypatch.setattr("wearlaw.testing.checks", lambda law: [one for one in checks(law) if one.name == name])
+    monkeypatch.setattr("wearlaw.testing.kit.checks", lambda law: [one for one in checks(law) if one.name == name])
     result = wearlaw("check", "ending", "--option", "slope=1 m")
     assert result.exit_code == 1
     reason = f"the model raised {type(error).__name__}: {error}"
@@ -172,9 +183,93 @@ def test_a_law_that_breaks_its_contract_fails_the_checks(
     install_model(Negative)
     # Two checks of the kit: hypothesis takes seconds to find the smallest example of each failure.
     chosen = ("rate_is_never_negative", "no_slip_no_wear")
-    monkeypatch.setattr("wearlaw.testing.checks", lambda law: [one for one in checks(law) if one.name in chosen])
+    monkeypatch.setattr("wearlaw.testing.kit.checks", lambda law: [one for one in checks(law) if one.name in chosen])
     result = wearlaw("check", "negative", "--option", "slope=1 m")
     assert result.exit_code == 1
     assert "FAILED rate_is_never_negative: " in result.stdout
     assert "ok no_slip_no_wear\n" in result.stdout
     assert "1 ok, 1 failed" in result.stdout
+
+
+def with_checks(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
+    """Let `wearlaw check` run some of the checks only."""
+    monkeypatch.setattr("wearlaw.testing.kit.checks", lambda law: [one for one in checks(law) if one.name in names])
+
+
+def test_an_expected_failure_is_counted_apart(monkeypatch: pytest.MonkeyPatch, install_model: InstallModel) -> None:
+    install_model(Offset)
+    with_checks(monkeypatch, "rate_is_finite", "no_slip_no_wear")
+    given = ("check", "offset", "--option", "slope=1 m", "--expect-failure")
+    result = wearlaw(*given, "no_slip_no_wear=it has an offset = 1e-7")
+    assert result.stdout == (
+        "ok rate_is_finite\nfailed as expected no_slip_no_wear: it has an offset = 1e-7\n"
+        "1 ok, 0 failed, 1 failed as expected, 0 not claimed\n"
+    )
+    assert result.exit_code == 0
+
+
+def test_an_expected_failure_that_passes_is_a_failure(said: tuple[list[SaidCheck], Checked]) -> None:
+    said[0][:] = [SaidCheck("shape"), SaidCheck("finite", "NaN")]
+    result = wearlaw("check", "usfd", "--expect-failure", "shape=odd", "--expect-failure", "finite=known")
+    assert result.stdout == (
+        "FAILED shape: it passes, but is expected to fail: odd\nfailed as expected finite: known\n"
+        "0 ok, 1 failed, 1 failed as expected, 0 not claimed\n"
+    )
+    assert result.exit_code == 1
+
+
+@pytest.mark.parametrize(
+    ("expected", "message", "exit_code"),
+    [
+        ("shap=odd", "--expect-failure: no check of 'usfd' is called 'shap'; did you mean 'shape'?", 1),
+        ("shape= ", "--expect-failure: the expected failure of 'shape' has no reason", 1),
+        ("shape", "--expect-failure: write it as CHECK=REASON, got 'shape'", 2),
+    ],
+)
+def test_an_expected_failure_that_cannot_be_is_one_clear_error(
+    said: tuple[list[SaidCheck], Checked], expected: str, message: str, exit_code: int
+) -> None:
+    said[0][:] = [SaidCheck("shape")]
+    assert_refused(wearlaw("check", "usfd", "--expect-failure", expected), message, exit_code)
+
+
+def test_what_a_law_does_not_claim_is_said(monkeypatch: pytest.MonkeyPatch, install_model: InstallModel) -> None:
+    class NonLocal(cases.Linear):
+        name = "non_local"
+
+        @property
+        def exemptions(self) -> dict[str, str]:
+            return {"each_node_wears_by_itself": "the hottest node heats the patch"}
+
+    install_model(NonLocal)
+    with_checks(monkeypatch, "rate_is_finite", "each_node_wears_by_itself")
+    result = wearlaw("check", "non_local", "--option", "slope=1 m")
+    assert result.stdout == (
+        "ok rate_is_finite\nnot claimed each_node_wears_by_itself: the hottest node heats the patch\n"
+        "1 ok, 0 failed, 1 not claimed\n"
+    )
+
+
+def test_a_wrong_shape_ends_the_run_of_the_checks(install_model: InstallModel) -> None:
+    class Pairs(cases.Linear):
+        name = "pairs"
+
+        def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+            return super().rate(contact, p)[..., None]
+
+    install_model(Pairs)
+    result = wearlaw("check", "pairs", "--option", "slope=1 m")
+    first, second, last = result.stdout.splitlines()
+    assert first.startswith("FAILED rate_has_the_shape_of_the_nodes: rates of shape ")
+    assert second == "ok exemptions_are_claims"
+    assert re.fullmatch(r"1 ok, 1 failed, 3\d not run, 0 not claimed", last)
+    assert result.exit_code == 1
+
+
+class Offset(cases.Linear):
+    """Wear without slip."""
+
+    name = "offset"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return super().rate(contact, p) + 1e-7

@@ -15,7 +15,7 @@ import wearlaw as wl
 from tests.core.cases import case, table, wearlaw
 from tests.core.distributions import LAB, Install
 from wearlaw.plugins import loader
-from wearlaw.study.case import Case, case_schema, case_text, load_case
+from wearlaw.study.case import Case, case_schema, case_text, load_case, written
 from wearlaw.study.study import provenance, run
 
 POINT: Any = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46}
@@ -147,6 +147,18 @@ def test_the_provenance_names_where_a_set_a_material_and_a_case_come_from(instal
     assert json.loads(sweep.attrs["provenance"]) == provenance(loaded)
 
 
+def test_the_case_of_a_run_has_the_same_provenance_as_the_run(install: Install, tmp_path: Path) -> None:
+    install("lab", LAB, version="1.2.3")
+    first = Case(**tomllib.loads(LAB_STUDY))
+    for name, text in written(first).items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    again = load_case(str(tmp_path / "case.toml"))
+    assert again == first
+    assert provenance(again) == provenance(first)
+    assert provenance(again)["parameter_sets"] == {"lab_2026": "lab 1.2.3"}
+    assert provenance(again)["materials"] == {"soft_steel": "lab 1.2.3"}
+
+
 def test_a_material_under_two_names_and_a_set_from_the_list_of_all_keep_the_name_they_were_found_by(
     install: Install,
 ) -> None:
@@ -225,3 +237,43 @@ def test_parameters_of_ones_own_need_all_four() -> None:
     own = wl.Calibration(contact_model="exact", scale="cells", materials="-", source="-")
     with pytest.raises(wl.ConfigurationError, match="m_m: is missing"):
         wl.wear_law("usfd", fitted_for=own)
+
+
+def test_a_parameter_set_is_explained_with_its_numbers(install: Install) -> None:
+    install("lab", LAB, version="1.2.3")
+    shown = wearlaw("show", "lab_2026").stdout
+    assert shown.startswith(
+        "lab_2026: a parameter set of lab 1.2.3 (plugin 'lab'), for\n"
+        f"usfd: a wear law of wearlaw {wl.__version__} (plugin 'usfd')\n"
+    )
+    assert "\n  q_s = 60.0 µg/m/mm²\n" in shown
+    assert "fitted for: the cells of contact_model('exact'); two steels of a test; made up for a test" in shown
+    assert "known range of mean wear_index_density from 0.000 N/mm² to 40.00 N/mm²" in shown
+
+
+def test_a_parameter_set_is_checked_like_a_law(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:
+    install("lab", LAB)
+    checked: list[Any] = []
+
+    def checks(model: Any) -> list[Any]:
+        checked.append(model)
+        return []
+
+    monkeypatch.setattr("wearlaw.cli.model_commands._checks", checks)
+    assert wearlaw("check", "lab_2026").stdout == "0 ok, 0 failed, 0 not claimed\n"
+    wearlaw("check", "lab_2026", "--option", "m_c=75 ug/m/N")
+    assert checked == [wl.wear_law("lab_2026"), wl.wear_law("lab_2026", m_c="75 ug/m/N")]
+    refused = wearlaw("check", "lab_2025")
+    assert "no model is called 'lab_2025'; did you mean 'lab_2026'?" in refused.stderr
+
+
+def test_a_parameter_set_with_the_name_of_a_law_is_left_out_by_name(install: Install) -> None:
+    install("lab", LAB.replace('"lab_2026"', '"kth"'))
+    with pytest.warns(wl.PluginWarning) as caught:
+        assert wl.wear_law("kth").name == "kth"
+    assert [str(one.message) for one in caught] == [
+        "left out: lab 1.0 (plugin 'lab'): parameter set 'kth' has the name of a wear law of"
+        f" wearlaw {wl.__version__} (plugin 'kth'); give it another name"
+    ]
+    assert "kth" not in wl.parameter_sets()
+    assert wl.material("soft_steel").density == wl.Q(7800, "kg/m^3")

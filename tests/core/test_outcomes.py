@@ -373,3 +373,32 @@ def test_a_border_of_its_own_splits_the_cells_of_strips() -> None:
         for law in (Switch(border=border), Switch(border=border, variable="power"), Undeclared(border=border))
     )
     assert own == named != undeclared
+
+
+# --- Memory: the distance rolled -------------------------------------------------------------------------------
+
+
+class RunningIn(wl.WearLaw):
+    """Wear that falls from an initial to a final rate with the distance rolled."""
+
+    name: ClassVar[str] = "running_in"
+    source: ClassVar[str] = "test"
+    distance: wl.Length = Q(2.0, "km")
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        share = np.exp(-contact.per_node(contact.rolled_distance) / p["distance"])
+        return 1e-9 * (1.0 + 3.0 * share) * contact.wear_index_density
+
+
+@pytest.mark.parametrize(("rig", "conditions"), [(RIG, CONDITIONS), (RAILS, ON_RAILS)], ids=["line", "ellipse"])
+def test_a_law_reads_the_distance_rolled(rig: Any, conditions: dict[str, Any]) -> None:
+    predict = silently(rig, FASTSIM, RunningIn())
+    new, run_in = predicted(predict, **conditions, rolled_distance=Q([0.0, 1e3], "km")).wear_rate
+    assert (new / run_in).m_as("") == pytest.approx(4.0, rel=64 * EPS)
+    swept = wl.sweep(predict, **conditions, rolled_distance=Q([0.0, 1.0, 2.0], "km"))
+    rates = swept.wear_rate.values.ravel()
+    assert rates / rates[0] == pytest.approx((1.0 + 3.0 * np.exp([0.0, -0.5, -1.0])) / 4.0, rel=64 * EPS)
+    with pytest.raises(wl.CompositionError, match="rolled_distance: a law needs it, but the conditions do not give it"):
+        predicted(predict, **conditions)
+    with pytest.raises(wl.UnitError, match=r"rolled_distance: .*must not be negative"):
+        predicted(predict, **conditions, rolled_distance="-1 km")

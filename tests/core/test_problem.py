@@ -73,7 +73,12 @@ def test_every_array_of_a_problem_takes_part_in_its_batch() -> None:
         wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s",
         contact_angle="40 deg",
     )  # fmt: skip
-    found = rig.problem(normal_force="80 kN", longitudinal_creepage=Q([0.1, 0.2, 0.3], "%"), friction_coefficient=0.3)
+    found = rig.problem(
+        normal_force="80 kN",
+        longitudinal_creepage=Q([0.1, 0.2, 0.3], "%"),
+        friction_coefficient=0.3,
+        rolled_distance="5 km",
+    )
     given = found.replaced(
         traction_coefficient=np.array([0.1, 0.2, 0.3]), exists=np.array([True, True, False]), dims=("patch",)
     )

@@ -192,6 +192,9 @@ def test_exemptions_are_those_of_the_settings() -> None:
         (("flexibility", "kalker"),): {"initial_slope"},
         (("interpolation", "contact"),): {"initial_slope"},
         (("bound", "elliptic"), ("flexibility", "kalker")): {"saturation", "initial_slope"},
+        (("strips", 4),): {"accuracy"},
+        (("strips", 5),): set(),
+        (("march", "uniform"), ("strips", 9)): {"accuracy"},
     }
     for settings, claims in exempt.items():
         assert set(wl.contact_model("fastsim", **dict(settings)).exemptions) == claims

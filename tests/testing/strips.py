@@ -129,6 +129,10 @@ def on_strips(model: Any) -> Any:
     return type(f"{model.__name__}OnStrips", (model,), {**methods, "__module__": __name__, "__doc__": model.__doc__})
 
 
+StripsOnStrips: Any = on_strips(Strips)
+"""The right model on given strips alone."""
+
+
 class Means(wl.CreepForceModel):
     """Shen, Hedrick and Elkins's forces: those of linear theory times one factor, so that they reach μN and no more."""
 

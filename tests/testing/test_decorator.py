@@ -4,15 +4,19 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 
 import wearlaw as wl
-from tests.testing.wrong_laws import WrongSign
+from tests.testing import cells
+from tests.testing.wrong_declarations import NoReason, UnknownClaim
+from tests.testing.wrong_laws import Linear, WrongSign
 from tests.testing.wrong_rigs import Weight
 from wearlaw.testing import Check, checks, conformance
 
 SUITE = """
+from tests.testing.wrong_declarations import HottestNode
 from tests.testing.wrong_laws import Linear, Offset, Raises, WrongSign
 from wearlaw.testing import conformance
 
@@ -27,6 +31,10 @@ def test_unknown(check):
 @conformance(Offset())
 def test_wrong(check):
     check()
+
+@conformance(HottestNode())
+def test_exempt(check):
+    check()
 """
 
 
@@ -35,7 +43,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> str:
     """What pytest prints about a suite of one expected failure, one that passes, and one failure."""
     folder = tmp_path_factory.mktemp("suite")
     (folder / "test_suite.py").write_text(SUITE)
-    chosen = "never_negative or is_finite or no_slip"
+    chosen = "never_negative or is_finite or no_slip or wears_by_itself"
     command = [sys.executable, "-m", "pytest", "-v", "-rA", "-k", chosen, "-p", "no:cacheprovider", str(folder)]
     root = Path(__file__).parents[2]
     done = subprocess.run(
@@ -56,6 +64,12 @@ def test_an_expected_failure_that_passes_fails(report: str) -> None:
     assert "[XPASS(strict)] it passes, in truth" in report
 
 
+def test_a_claim_that_a_model_is_exempt_from_is_skipped_with_its_reason(report: str) -> None:
+    assert "test_exempt[each_node_wears_by_itself] SKIPPED" in report
+    assert "not claimed: the hottest node heats the patch" in report
+    assert "test_exempt[rate_is_finite] PASSED" in report
+
+
 def test_a_failure_shows_the_counter_example_and_the_values(report: str) -> None:
     assert "test_wrong[no_slip_no_wear] FAILED" in report
     assert "without slip the rate is array([[1.e-07]]), not zero" in report
@@ -67,6 +81,48 @@ def test_a_failure_shows_the_counter_example_and_the_values(report: str) -> None
 def test_an_unknown_expected_failure_is_an_error_with_a_hint() -> None:
     with pytest.raises(wl.InputError, match=r"'no_slip_no_war'.*'no_slip_no_wear'"):
         conformance(wl.wear_law("usfd"), expected_failures={"no_slip_no_war": "misspelt"})
+
+
+def test_an_expected_failure_needs_a_reason() -> None:
+    with pytest.raises(
+        wl.InputError, match=r"expected_failures: the expected failure of 'no_slip_no_wear' has no reason"
+    ):
+        conformance(wl.wear_law("usfd"), expected_failures={"no_slip_no_wear": " "})
+
+
+def failure_of(model: wl.WearLaw | wl.Rig, name: str) -> str:
+    check = {check.name: check for check in checks(model)}[name]
+    with pytest.raises(AssertionError) as failure:
+        check()
+    return str(failure.value).splitlines()[0]
+
+
+def test_a_wrong_exemption_says_what_is_wrong() -> None:
+    assert failure_of(UnknownClaim(), "exemptions_are_claims") == (
+        "`exemptions`: no claim is called 'each_node_wears_by_itsel'; did you mean 'each_node_wears_by_itself'?"
+    )
+    reason = "the exemption from 'each_node_wears_by_itself' has no reason"
+    assert failure_of(NoReason(), "exemptions_are_claims") == reason
+
+
+@pytest.mark.parametrize("claim", ["each_node_wears_by_itself", "round_trip_through_pickle", "model_is_documented"])
+def test_any_check_of_a_law_can_be_exempt(claim: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    all_of_them = [check.name for check in checks(Linear())]
+    monkeypatch.setattr(Linear, "exemptions", {claim: "for a test"})
+    assert [check.name for check in checks(Linear())] == [name for name in all_of_them if name != claim]
+
+
+def test_a_check_of_a_rig_and_a_single_one_of_a_contact_model_can_be_exempt() -> None:
+    class OwnPressure(Weight):
+        exemptions: ClassVar = {"pressure_carries_the_load": "the pressure is not Hertz's"}
+
+    class FallingFriction(cells.Cells):
+        exemptions: ClassVar = {"force_grows_with_creepage": "friction falls"}
+
+    for exempt, model in ((OwnPressure(), Weight()), (FallingFriction(), cells.Cells())):
+        left_out = {check.name for check in checks(model)} - {check.name for check in checks(exempt)}
+        assert left_out == set(exempt.exemptions)
+        next(check for check in checks(exempt) if check.name == "exemptions_are_claims")()
 
 
 def test_a_check_of_what_a_model_does_not_claim_is_not_there_to_fail() -> None:

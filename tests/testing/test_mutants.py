@@ -21,22 +21,27 @@ from tests.testing import (
     wrong_declarations,
     wrong_ellipses,
     wrong_fields,
+    wrong_law_nodes,
     wrong_laws,
+    wrong_nodes,
     wrong_rigs,
     wrong_strips,
 )
 from wearlaw.testing import Check, checks, conformance, examples, fresh
+from wearlaw.testing.kit import NotRunError
 from wearlaw.testing.roundtrip import RoundTrip
 
 WRONG: dict[Any, str] = {
     **wrong_laws.CAUGHT,
     **wrong_declarations.CAUGHT,
+    **wrong_law_nodes.CAUGHT,
     **wrong_contacts.CAUGHT,
     **wrong_fields.CAUGHT,
     **cells.CAUGHT,
     **wrong_ellipses.CAUGHT,
     **wrong_strips.CAUGHT,
     **wrong_creep_forces.CAUGHT,
+    **wrong_nodes.CAUGHT,
     **wrong_rigs.CAUGHT,
 }
 
@@ -62,13 +67,13 @@ def names_of(models: list[Any]) -> set[str]:
 BEGINS = {"line": "on a line: ", "ellipse": "on an ellipse: ", "strips": "on strips: "}
 """How messages begin."""
 
-ON_EACH_SHAPE = set.intersection(*map(names_of, RIGHT_ON.values())) - names_of(RIGHT_LAWS) - {"exemptions_are_claims"}
+ON_EACH_SHAPE = set.intersection(*map(names_of, RIGHT_ON.values())) - names_of(RIGHT_LAWS)
 """Checks that run on each shape which a contact model solves."""
 
 WRONG |= {
     strips.on_strips(mutant): check
     for mutant, check in WRONG.items()
-    if issubclass(mutant, strips.Strips) and check in ON_EACH_SHAPE
+    if issubclass(mutant, strips.Strips) and check in ON_EACH_SHAPE | wrong_nodes.ON_GIVEN_STRIPS
 }
 
 
@@ -92,6 +97,7 @@ def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any, monkey
     with pytest.raises(AssertionError) as failure:
         check()
     assert len(str(failure.value)) > 10
+    assert not isinstance(failure.value, NotRunError)
     if check.name in ON_EACH_SHAPE:
         assert str(failure.value).startswith(tuple(BEGINS[shape] for shape in mutant.geometries()))
 

@@ -64,6 +64,19 @@ class SlipAgainstTraction(Wrapped):
         return dataclasses.replace(contact, slip=-contact.slip)
 
 
+class GainsEnergyInOneNode(Wrapped):
+    """One node slips against its traction, in a model that does not claim their signs."""
+
+    @property
+    def exemptions(self) -> Any:
+        return {"direction": "for the tests"}
+
+    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
+        slip = contact.slip.copy()
+        slip[..., -1] *= -1.0
+        return dataclasses.replace(contact, slip=slip)
+
+
 class _ForceScaled(Wrapped):
     """Base of models whose force is wrong by a factor, consistently."""
 
@@ -266,6 +279,7 @@ CAUGHT: dict[Any, str] = {
     LosesEnergy: "slip_dissipates_the_energy_fed_in",
     LosesEnergyAnywhere: "energy_balance_improves_with_refinement",
     SlipAgainstTraction: "traction_and_slip_follow_the_creepage",
+    GainsEnergyInOneNode: "no_node_gains_energy",
     NotQuiteFullSlip: "full_slip_is_reached",
     AboveFriction: "force_stays_below_friction",
     JumpsIntoFullSlip: "forces_are_continuous",

@@ -152,7 +152,7 @@ class FallsWithSlip(Linear):
 class FallsWithSpeed(Linear):
     """It says that it wears more where it slips faster, and wears less."""
 
-    monotone_in: ClassVar[tuple[str, ...]] = ("slip_speed",)
+    monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("slip_speed",)
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density / (1.0 + contact.slip_speed)
@@ -225,6 +225,35 @@ class BandUpsideDown(Linear):
         return low, middle, high
 
 
+class UnknownClaim(Linear):
+    """Exempt from a check that is misspelt."""
+
+    @property
+    def exemptions(self) -> dict[str, str]:
+        return {"each_node_wears_by_itsel": "the hottest node counts"}
+
+
+class NoReason(Linear):
+    """Exempt without a reason."""
+
+    @property
+    def exemptions(self) -> dict[str, str]:
+        return {"each_node_wears_by_itself": " "}
+
+
+class HottestNode(Linear):
+    """A right one with an exemption: the node that dissipates most makes the whole patch wear more."""
+
+    @property
+    def exemptions(self) -> dict[str, str]:
+        return {"each_node_wears_by_itself": "the hottest node heats the patch"}
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        w = contact.wear_index_density
+        hottest = w.max(axis=tuple(range(contact.rolling_speed.ndim, w.ndim)), keepdims=True)
+        return SLOPE * w * (1.0 + hottest / (hottest + 4e6))
+
+
 CAUGHT: dict[type[wl.WearLaw], str] = {
     HiddenJump: "rate_jumps_only_where_declared",
     SmallHiddenJump: "rate_jumps_only_where_declared",
@@ -250,5 +279,7 @@ CAUGHT: dict[type[wl.WearLaw], str] = {
     FieldWithoutDocstring: "json_schema_is_complete",
     Unpicklable: "round_trip_through_pickle",
     BandUpsideDown: "band_is_ordered",
+    UnknownClaim: "exemptions_are_claims",
+    NoReason: "exemptions_are_claims",
 }
 """The check that must catch each."""

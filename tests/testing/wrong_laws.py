@@ -17,7 +17,7 @@ class Linear(wl.WearLaw):
 
     name: ClassVar[str] = "linear"
     source: ClassVar[str] = "made up for the tests"
-    monotone_in: ClassVar[tuple[str, ...]] = ("wear_index_density",)
+    monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("wear_index_density",)
 
     slope: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = Field(default="5 ug/m/N", validate_default=True)
     """Slope [kg/m/N]."""

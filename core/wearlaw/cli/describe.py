@@ -10,6 +10,7 @@ from typing import Any
 
 import pint
 
+from wearlaw.contact.problem import PATCHES
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.law import WEAR, Law
@@ -22,24 +23,31 @@ from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
 
 
-def describe(model: type[Model]) -> str:
-    """Return the description of a model: theory, source, fields with defaults, and declarations."""
-    lines = [_headline(model), "", inspect.getdoc(model) or "", "", *_wrapped("source: ", model.source), "", "fields:"]
-    default = _default(model)
+def describe(model: type[Model], parameter_set: str | None = None) -> str:
+    """Return the description of a model: theory, source, fields with defaults, and declarations.
+
+    With the name of a parameter set of the law, the fields and declarations are those of the set.
+    """
+    default = _default(model) if parameter_set is None else loader.wear_law(parameter_set)
+    lines = [*_headline(model, parameter_set), "", inspect.getdoc(model) or ""]
+    lines += ["", *_wrapped("source: ", model.source), "", "fields:"]
     schema = model.model_json_schema(by_alias=False).get("properties", {})
     for name, text in field_docstrings(model).items():
         lines += _field(name, _value(model, default, name), _choices(schema[name]), text)
     lines += [] if schema else ["  none"]
     if issubclass(model, Rig):
         conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
-        return "\n".join([*lines, *conditions, *_example(model)])
+        declared = ["", "declares:", *(f"  {text}" for text in _not_kept(default))]
+        return "\n".join([*lines, *conditions, *_example(model), *(declared if len(declared) > 2 else [])])
     lines += ["", "declares:", *(f"  {text}" for text in (*_of_class(model), *_declared(default)))]
     return "\n".join(lines)
 
 
-def _headline(model: type[Model]) -> str:
+def _headline(model: type[Model], parameter_set: str | None) -> Iterator[str]:
     found = loader.installed()
-    return f"{model.name}: a {model.kind} of {found.of_kind(model.kind).origin(model.name)}"
+    if parameter_set is not None:
+        yield f"{parameter_set}: a parameter set of {found.parameter_sets.origin(parameter_set)}, for"
+    yield f"{model.name}: a {model.kind} of {found.of_kind(model.kind).origin(model.name)}"
 
 
 def _example(rig: type[Rig]) -> Iterator[str]:
@@ -133,7 +141,21 @@ def _declared(default: Model | None) -> Iterator[str]:
         yield "scale: the means of the patch" if default.scale == "patch" else "scale: the patch resolved into cells"
         if default.uses_measured_traction:
             yield "takes a measured traction_coefficient"
+        yield from accuracies(default)
+    yield from _not_kept(default)
+
+
+def _not_kept(default: Model | None) -> Iterator[str]:
+    if default is not None:
         yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
+
+
+def accuracies(model: ContactModel) -> Iterator[str]:
+    """Yield the declared errors of sums over the nodes, by the shape of the patch; one node of means has none."""
+    if model.scale == "cells":
+        for geometry in model.geometries():
+            error = model.accuracy if geometry == "line" else model.elliptic_accuracy
+            yield f"accuracy of sums over {PATCHES[geometry]}: {error:.2g}"
 
 
 def _of_law(law: Law) -> Iterator[str]:

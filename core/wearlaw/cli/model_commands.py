@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import shlex
 import warnings
-from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import click
 from rich.console import Console
 from rich.table import Table
 
-from wearlaw.cli.describe import describe
+from wearlaw.cli.describe import accuracies, describe
 from wearlaw.cli.scaffold import Kind, Licence, write_plugin
 from wearlaw.cli.shared import fields
 from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
 from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import Shelf, unknown
@@ -37,13 +38,16 @@ def list_plugins() -> None:
     Console().print(table)
     for plugin in found.broken:
         click.echo(f"left out: {plugin}", err=True)
+    for remark in found.remarks:
+        click.echo(f"note: {remark}", err=True)
 
 
 @click.command()
 @click.argument("name")
 def show(name: str) -> None:
-    """Explain a rig, contact model, stage or law: its fields with units and defaults, its source and its range."""
-    click.echo(describe(_model_class(name)))
+    """Explain a model: its fields with units and defaults, its source, and what it declares."""
+    model = _installed(name)
+    click.echo(describe(model) if isinstance(model, type) else describe(type(model), name))
 
 
 @click.command("new-plugin")
@@ -87,22 +91,47 @@ def new_plugin(name: str, kind: Kind | None, output: Path, licence: Licence) -> 
 @click.option(
     "--option", "options", metavar="FIELD=VALUE", multiple=True, help="Set a field of the model; may be repeated."
 )
-def check(name: str, options: tuple[str, ...]) -> None:
+@click.option(
+    "--expect-failure",
+    "expected",
+    metavar="CHECK=REASON",
+    multiple=True,
+    help="A check that is known to fail, with the reason; if it passes, that is a failure. May be repeated.",
+)
+def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> None:
     """Check that an installed model keeps what wearlaw relies on. Prints a line a check; exit code 1 if any fails.
 
     \b
     wearlaw check usfd
     wearlaw check usfd --option fitted_for=exact
+    wearlaw check my_set                            a parameter set of a plugin
     wearlaw check twin_disc --option track_width="8 mm"
+    wearlaw check my_law --expect-failure "rate_is_finite=divides by zero at zero pressure"
     """  # noqa: D301
-    model = _made(_model_class(name), fields("--option", options))
-    outcomes = [_outcome(one) for one in _checks(model)]
-    not_claimed = model.exemptions if isinstance(model, ContactModel) else {}
-    for claim, reason in not_claimed.items():
+    source, given = _installed(name), fields("--option", options)
+    model = _made(source, given) if isinstance(source, type) else loader.wear_law(name, **given)
+    reasons, kit = fields("--expect-failure", expected, "CHECK=REASON"), _kit()
+    found = list(kit.checks(model))
+    kit.validate_expected("--expect-failure", model, found, reasons)
+    outcomes = [_outcome(one, reasons.get(one.name), kit.NotRunError) for one in found]
+    if isinstance(model, ContactModel):
+        for line in accuracies(model):
+            click.echo(line)
+    for claim, reason in model.exemptions.items():
         click.echo(f"not claimed {claim}: {reason}")
-    click.echo(f"{outcomes.count(True)} ok, {outcomes.count(False)} failed, {len(not_claimed)} not claimed")
-    if not all(outcomes):
+    counted: dict[str, int] = {word: outcomes.count(word) for word in OUTCOMES}
+    counted["not claimed"] = len(model.exemptions)
+    click.echo(", ".join(f"{count} {word}" for word, count in counted.items() if count or word in ALWAYS_COUNTED))
+    if counted["failed"] or counted["not run"]:
         click.get_current_context().exit(1)
+
+
+Outcome: TypeAlias = Literal["ok", "failed", "failed as expected", "not run"]
+
+OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
+
+ALWAYS_COUNTED = ("ok", "failed", "not claimed")
+"""What `wearlaw check` counts in its last line even if there is none."""
 
 
 def _made(model: type[Model], options: dict[str, str]) -> Model:
@@ -120,35 +149,44 @@ def _made(model: type[Model], options: dict[str, str]) -> Model:
         raise InputError(f"{error}\n{hint}") from None
 
 
-def _checks(model: Model) -> Iterable[Check]:
+def _kit() -> ModuleType:
     try:
-        from wearlaw.testing import checks
+        from wearlaw.testing import kit
     except ModuleNotFoundError as error:
         if error.name != "hypothesis":
             raise
         raise click.ClickException(str(error)) from None
-    return checks(model)
+    return kit
 
 
-def _outcome(check: Check) -> bool:
-    """Run a check, print its line, and return whether it passed."""
+def _outcome(check: Check, expected: str | None, not_run: type[AssertionError]) -> Outcome:
+    """Run a check and print its line, with the reason if it is expected to fail; one that is not run has no line."""
     try:
         check()
     except AssertionError as error:
+        if isinstance(error, not_run):
+            return "not run"
+        if expected is not None:
+            click.echo(f"failed as expected {check.name}: {expected}")
+            return "failed as expected"
         reason = message_of(error) or check.doc
         click.echo(f"FAILED {check.name}: {reason.strip().splitlines()[0]}")
-        return False
+        return "failed"
+    if expected is not None:
+        click.echo(f"FAILED {check.name}: it passes, but is expected to fail: {expected}")
+        return "failed"
     click.echo(f"ok {check.name}")
-    return True
+    return "ok"
 
 
-def _model_class(name: str) -> type[Model]:
-    """Return the class of the rig, contact model, stage or law with this name."""
+def _installed(name: str) -> type[Model] | WearLaw:
+    """Return the class of the model with this name, or the law of a parameter set."""
     found = loader.installed()
-    shelves: tuple[Shelf[Any], ...] = (found.wear_laws, found.laws, found.contact_models, found.stages, found.rigs)
+    models = (found.wear_laws, found.laws, found.contact_models, found.stages, found.rigs)
+    shelves: tuple[Shelf[Any], ...] = (*models, found.parameter_sets)
     for shelf in shelves:
         if name in shelf.providers:
-            model: type[Model] = shelf.find(name, found.broken)
+            model: type[Model] | WearLaw = shelf.find(name, found.broken)
             return model
     known = [one for shelf in shelves for one in shelf.items()]
     raise UnknownModelError(unknown("model", name, known, found.broken))

@@ -66,11 +66,11 @@ def listed(option: str, text: str) -> list[str]:
     return found
 
 
-def fields(option: str, settings: tuple[str, ...]) -> dict[str, str]:
-    """Return settings such as "q_s=56 ug/m/mm^2" by field."""
+def fields(option: str, settings: tuple[str, ...], form: str = "FIELD=VALUE") -> dict[str, str]:
+    """Return settings of a form such as "q_s=56 ug/m/mm^2" by field."""
     for setting in settings:
         if "=" not in setting:
-            raise click.UsageError(f"{option}: write it as FIELD=VALUE, got '{setting}'")
+            raise click.UsageError(f"{option}: write it as {form}, got '{setting}'")
     return dict(setting.split("=", 1) for setting in settings)
 
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeGuard
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import ConditionsError, did_you_mean
+from wearlaw.errors import ConditionsError, UnitError, did_you_mean
 from wearlaw.units.quantities import Unit, coefficient
-from wearlaw.units.variables import expected
+from wearlaw.units.variables import VARIABLES, expected
 
 if TYPE_CHECKING:
     pass
@@ -100,6 +100,9 @@ def condition_arrays(
         elif name in table.coefficients:
             arrays[name] = coefficient(value, name)
     _check_names(conditions, arrays, table)
+    for name in table.others:
+        if name in arrays and VARIABLES[name].sign == "not negative" and arrays[name].min() < 0.0:
+            raise UnitError(f"{name}: must not be negative, got {given[name]!r}")
     for name in table.creepages:
         if name not in arrays:
             arrays[name] = np.zeros(())

@@ -8,24 +8,56 @@ of them, along a strip and from strip to strip.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, Literal, Self, TypeAlias, get_args
 
 import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz_ellipse
-from wearlaw.contact.problem import CreepForces, Problem
-from wearlaw.errors import InputError
+from wearlaw.contact.problem import Body, CreepForces, Problem
+from wearlaw.errors import CompositionError, InputError, ModelError, did_you_mean
 from wearlaw.units.quantities import Quantity, QuantityLike, from_si
 from wearlaw.units.variables import expected
 
 NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density", "frictional_power_density")
 """The variables of a `Contact` with a value at each node."""
 
-LAW_VARIABLES = (*NODE_VARIABLES, "traction_bound", "wear_index", "x")
-"""The variables of a `Contact` in which a law can branch, or have its range."""
+PATCH_VARIABLES = (*NODE_VARIABLES, "wear_index")
+"""The variables of a `Contact` with a mean over the patch."""
+
+LawVariable: TypeAlias = Literal[
+    "pressure",
+    "traction",
+    "slip",
+    "slip_speed",
+    "wear_index_density",
+    "frictional_power_density",
+    "wear_index",
+    "traction_bound",
+    "x",
+]
+"""A variable of a `Contact` in which a law can branch, jump or be monotone."""
+
+LAW_VARIABLES: tuple[str, ...] = get_args(LawVariable)
+
+
+def check_variables(subject: str, names: Iterable[str], known: Collection[str] = LAW_VARIABLES) -> None:
+    """Raise a `ModelError` for the first name that is not one of the known variables."""
+    for name in names:
+        if name not in known:
+            hint = did_you_mean(str(name), known)
+            raise ModelError(
+                f"{subject} names the variable '{name}', which is unknown{hint} There are: {', '.join(known)}"
+            )
+
+
+def variable_at_nodes(contact: Contact, name: str) -> Array:
+    """Return a variable of a contact by its name, of the shape of the nodes; a total is the same at all nodes."""
+    value: Array = getattr(contact, name)
+    return np.broadcast_to(contact.per_node(value), contact.pressure.shape)
+
 
 ONE_SIGN = 1e-9
 """Share of traction of the other sign that counts as rounding; it changes the mean slip by no more."""
@@ -205,10 +237,9 @@ class Contact:
         traction: tuple[Array, Array],
         slip: tuple[Array, Array],
         traction_bound: Array,
+        pressure: Array | None = None,
     ) -> Self:
         """Return the contact for a model's solution on strips of an ellipse, or on the strips of the problem.
-
-        The pressure is Hertz's pressure, or the given pressure of the strips.
 
         Parameters
         ----------
@@ -224,17 +255,12 @@ class Contact:
             Components along x and y [Pa], [-].
         traction_bound : ndarray, (batch, nodes, strips)
             The largest magnitude that the model allows for the traction [Pa].
+        pressure : ndarray, (batch, nodes, strips), optional
+            The model's own normal pressure [Pa]; by default Hertz's, or the given one of the strips.
         """
         across = y[..., None, :]
-        if problem.strips is None:
-            a, b, p0 = (array[..., None, None] for array in (problem.a, problem.b, problem.max_pressure))
-            pressure = hertz_ellipse.pressure(x, across, a, b, p0)
-        else:
-            share = x / problem.strips.half_length[..., None, :]
-            p0 = problem.strips.max_pressure[..., None, :]
-            pressure = p0 * np.sqrt(np.maximum((1.0 - share) * (1.0 + share), 0.0))
         return cls(
-            pressure=pressure,
+            pressure=_given_pressure(problem, x, across) if pressure is None else pressure,
             traction=_magnitude(*traction),
             slip=_magnitude(*slip),
             traction_bound=traction_bound,
@@ -337,6 +363,45 @@ class Contact:
         )
 
     @property
+    def half_width(self) -> Array:
+        """Half the patch's length in the rolling direction, a [m], of the batch shape.
+
+        Raises
+        ------
+        InputError
+            If the contact was solved elsewhere, and has no `problem`.
+        """
+        return self._solved_problem("half_width").half_width
+
+    def body(self, name: str | None = None) -> Body:
+        """Return one of the two bodies, with its material and its rolling radius.
+
+        Parameters
+        ----------
+        name : str, optional
+            Name of the body, such as "disc_2"; by default it is the body whose wear is predicted.
+
+        Raises
+        ------
+        InputError
+            If the contact was solved elsewhere, or the rig has no such body.
+        """
+        problem = self._solved_problem("body")
+        if name is not None:
+            return problem.body(name)
+        if not problem.bodies:
+            raise InputError("body: the rig does not name its bodies, so their materials are not known")
+        return next(iter(problem.bodies.values()))
+
+    def _solved_problem(self, what: str) -> Problem:
+        if self.problem is None:
+            raise InputError(
+                f"{what}: is not known, because this contact was solved elsewhere and has no problem; give it one with"
+                " contact.replaced(problem=...)"
+            )
+        return self.problem
+
+    @property
     def wear_index_density(self) -> Array:
         """Energy dissipated per metre rolled and area, q·s [N/m²], of shape (batch, nodes).
 
@@ -357,6 +422,23 @@ class Contact:
     def frictional_power_density(self) -> Array:
         """Frictional power over area, qsV [W/m²], of shape (batch, nodes)."""
         return self.wear_index_density * self.per_node(self.rolling_speed)
+
+    @property
+    def rolled_distance(self) -> Array:
+        """Distance that the bodies have rolled since they were new [m], of the batch shape.
+
+        Raises
+        ------
+        CompositionError
+            If the conditions do not give it.
+        """
+        distance = self._solved_problem("rolled_distance").rolled_distance
+        if distance is None:
+            raise CompositionError(
+                'rolled_distance: a law needs it, but the conditions do not give it; add rolled_distance="5 km", for'
+                " example"
+            )
+        return distance
 
     @property
     def patch_area(self) -> Array:
@@ -512,6 +594,17 @@ def _magnitude(x: Array, y: Array) -> Array:
     """Return √(x² + y²), five times as fast as `np.hypot`, which guards against overflow that cannot happen here."""
     magnitude: Array = np.sqrt(x * x + y * y)
     return magnitude
+
+
+def _given_pressure(problem: Problem, x: Array, y: Array) -> Array:
+    """Return Hertz's pressure on an ellipse, or the given one of strips [Pa]."""
+    if problem.strips is None:
+        a, b, p0 = (array[..., None, None] for array in (problem.a, problem.b, problem.max_pressure))
+        return hertz_ellipse.pressure(x, y, a, b, p0)
+    share = x / problem.strips.half_length[..., None, :]
+    p0 = problem.strips.max_pressure[..., None, :]
+    pressure: Array = p0 * np.sqrt(np.maximum((1.0 - share) * (1.0 + share), 0.0))
+    return pressure
 
 
 def _totals(problem: Problem, forces: CreepForces) -> dict[str, Array]:

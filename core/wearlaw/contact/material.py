@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Field
+from pydantic_core import core_schema
 
-from wearlaw.settings.configuration import Configuration
+from wearlaw.settings.configuration import Configuration, known_name
 from wearlaw.units.quantities import Density, QuantityLike, Stress, scalar_si
 
 ALIKE = 0.1
@@ -14,8 +17,19 @@ ALIKE = 0.1
 iron, titanium and aluminium differ from steel by more."""
 
 
+TYPE = "type"
+"""The key of a material's table that names its class, or the installed material that it is."""
+
+
 class Material(Configuration):
-    """An isotropic elastic material."""
+    """An isotropic elastic material.
+
+    Derive a class to give a material further properties; each field with a unit is kept by JSON, pickles, case files
+    and reports. Files name the class in `type`, and a plugin makes it known there with the hook `wearlaw_materials`.
+    """
+
+    _look_up: ClassVar[Callable[..., Any]]
+    """Returns the installed material with a name and the given fields; set by the loader of plugins, which knows it."""
 
     youngs_modulus: Stress
     """Young's modulus, E [Pa]."""
@@ -37,6 +51,35 @@ class Material(Configuration):
             shear_yield_stress: QuantityLike | None = None,
         ) -> None: ...
 
+    else:
+
+        @classmethod
+        def __pydantic_init_subclass__(cls, **options: Any) -> None:
+            """Raise an error for a field that would take the place of the class's name in files."""
+            super().__pydantic_init_subclass__(**options)
+            if TYPE in cls.model_fields:
+                raise TypeError(f"{cls.__name__}.{TYPE}: names the class in files; call the field something else")
+
+        @classmethod
+        def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
+            """Return the schema of the class; it reads and writes materials of derived classes as what they are."""
+            schema = handler(source)
+            return core_schema.no_info_before_validator_function(
+                cls._of_table,
+                schema,
+                serialization=core_schema.wrap_serializer_function_ser_schema(
+                    partial(_table, cls), schema=schema, info_arg=True
+                ),
+            )
+
+    @classmethod
+    def _of_table(cls, value: Any) -> Any:
+        """Return the material of a table that names its type, or its fields if the type is this class."""
+        if not isinstance(value, Mapping) or TYPE not in value:
+            return value
+        fields = {name: one for name, one in value.items() if name != TYPE}
+        return fields if value[TYPE] == cls.__name__ else cls._look_up(value[TYPE], **fields)
+
     def resembles(self, other: Material) -> bool:
         """Return whether E and ρ differ from those of another material by at most a tenth.
 
@@ -47,6 +90,19 @@ class Material(Configuration):
             (scalar_si(self.density, "kg/m^3"), scalar_si(other.density, "kg/m^3")),
         )
         return all(abs(one - two) <= ALIKE * two for one, two in pairs)
+
+
+def _table(
+    cls: type[Material],
+    material: Material,
+    handler: core_schema.SerializerFunctionWrapHandler,
+    info: core_schema.SerializationInfo,
+) -> dict[str, Any]:
+    """Return a material as a table of all its fields, with `type` unless it is a plain material without a name."""
+    if type(material) is not cls:  # the handler would leave out the fields of a derived class
+        return material.model_dump(mode=info.mode, by_alias=info.by_alias, exclude_none=info.exclude_none)
+    name = known_name(material) or (None if cls is Material else cls.__name__)
+    return {**({TYPE: name} if name else {}), **handler(material)}
 
 
 def steel(

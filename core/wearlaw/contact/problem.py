@@ -187,6 +187,8 @@ class Problem:
         Measured tangential over normal force, T/N [-], if the test gave one.
     contact_angle : ndarray or None
         Contact angle, δ [rad], of the surface to the axle; None if the surface is level at all operating points.
+    rolled_distance : ndarray or None
+        Distance that the bodies have rolled since they were new [m], for laws of running-in; None if it is not given.
     strips : Strips or None
         The strips and their pressure, if the patch is neither a line nor an ellipse.
     bodies : mapping of str to Body
@@ -212,6 +214,7 @@ class Problem:
     density: Array
     traction_coefficient: Array | None = None
     contact_angle: Array | None = None
+    rolled_distance: Array | None = None
     strips: Strips | None = None
     bodies: Mapping[str, Body] = field(default_factory=dict)
     dims: tuple[str, ...] = ()
@@ -472,13 +475,16 @@ class Problem:
             raise InputError(f"body: this rig has no '{name}'; its bodies are {names}")
         return self.bodies[name]
 
-    def density_of(self, body: str | None) -> Array:
-        """Return the mass density of a body [kg/m³], of the batch shape; for None, `density` itself."""
+    def worn_on(self, body: str | None) -> Self:
+        """Return the problem for the wear of a body, which is then the first one; `self` if that changes nothing."""
         if body is None:
-            return self.density
-        density = scalar_si(self.body(body).material.density, "kg/m^3")
+            return self
+        worn, first = self.body(body), next(iter(self.bodies.values()))
+        density = scalar_si(worn.material.density, "kg/m^3")
         same = (self.density == density) | np.isnan(self.density)  # NaN where there is no patch
-        return self.density if same.all() else np.full_like(self.density, density)
+        if same.all() and (worn is first or worn.material == first.material):
+            return self
+        return self.replaced(density=np.full_like(self.density, density), bodies={body: worn, **self.bodies})
 
     def needs(self, geometry: Geometry, what: str) -> None:
         """Raise an error if `what` belongs to patches of another shape."""

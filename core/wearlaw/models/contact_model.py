@@ -3,23 +3,30 @@
 A model is its configuration: a frozen pydantic record. Its fields carry units, and its methods compute.
 """
 
+import inspect
 from abc import ABC
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeAlias, final
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast, final, get_args
 
 import numpy as np
+from pydantic import model_validator
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import PATCHES, CreepForces, Geometry, Problem
-from wearlaw.errors import CompositionError, ModelError, WearlawError, described
+from wearlaw.errors import CompositionError, ModelError, WearlawError, described, did_you_mean
 from wearlaw.settings.configuration import Configuration
 
 Scale: TypeAlias = Literal["patch", "cells"]
 """Whether a contact holds the means of the whole patch in one node, or resolves the patch into many nodes."""
 
-Claim: TypeAlias = Literal["traction_bound", "stick", "energy_balance", "saturation", "initial_slope", "similarity"]
-"""An invariant that a contact model keeps unless it declares itself exempt; see `ContactModel.exemptions`."""
+Claim: TypeAlias = str
+"""Name of an invariant that a model keeps unless it declares itself exempt; see `Model.exemptions`.
+
+It is the name of a check of the conformance kit, such as "each_node_wears_by_itself". For contact models, some claims
+have several checks, such as "energy_balance" or "spin".
+"""
 
 QUADRATURE = 5e-8
 """Accuracy of the quadrature of `LineContactModel`; its worst case is a slip zone just short of the whole patch."""
@@ -50,6 +57,11 @@ class Model(Configuration, ABC):
     def subject(cls) -> str:
         """Return the name of this model in messages."""
         return cls.name
+
+    @property
+    def exemptions(self) -> Mapping[Claim, str]:
+        """The invariants that this model does not keep, each with the reason."""
+        return {}
 
     if not TYPE_CHECKING:  # checkers reject this order by themselves
 
@@ -90,6 +102,14 @@ class Blame:
         ) from error
 
 
+def check_scale(model: Model | type[Model], scale: object, known: tuple[str, ...]) -> None:
+    """Raise a `ModelError` if a model declares an unknown scale; a property is checked for each instance."""
+    if not isinstance(scale, property | cached_property) and scale not in known:
+        cls = model if isinstance(model, type) else type(model)
+        words = " or ".join(repr(one) for one in known)
+        raise ModelError(f"{cls.__name__}.scale: is {scale!r}{did_you_mean(str(scale), known)} It must be {words}")
+
+
 class ContactModel(Model):
     """A theory of the tangential contact: from a contact problem to traction and slip in the patch.
 
@@ -99,8 +119,9 @@ class ContactModel(Model):
 
     kind: ClassVar[str] = "contact model"
 
-    scale: ClassVar[Scale] = "cells"
-    """"patch" if the model gives only the means of the whole patch."""
+    scale: ClassVar = cast(Any, "cells")  # Any: for type checkers, a subclass may make it a property
+    """"patch" if the model gives only the means of the whole patch, otherwise "cells". A model that contains another
+    can make it a property."""
 
     uses_measured_traction: ClassVar[bool] = False
     """Whether the model can use a measured traction coefficient."""
@@ -111,11 +132,22 @@ class ContactModel(Model):
 
     if not TYPE_CHECKING:
 
+        @classmethod
+        def __pydantic_init_subclass__(cls, **options: Any) -> None:
+            """Raise an error for an unknown scale."""
+            super().__pydantic_init_subclass__(**options)
+            check_scale(cls, inspect.getattr_static(cls, "scale"), get_args(Scale))
+
         def __new__(cls, *_: object, **__: object) -> Self:
             """Raise an error for a class that solves neither geometry."""
             if not cls.geometries():
                 raise TypeError(f"{cls.__name__} is abstract: it implements neither solve_line nor solve_ellipse")
             return super().__new__(cls)
+
+    @model_validator(mode="after")
+    def _has_a_scale(self) -> Self:
+        check_scale(self, self.scale, get_args(Scale))
+        return self
 
     @final
     def solve(self, problem: Problem) -> Contact:
@@ -192,8 +224,3 @@ class ContactModel(Model):
     def elliptic_accuracy(self) -> float:
         """Error of sums over the nodes of an elliptic contact, as a share of the sums in full slip."""
         return ELLIPTIC
-
-    @property
-    def exemptions(self) -> Mapping[Claim, str]:
-        """The invariants that this model does not keep, each with the reason."""
-        return {}

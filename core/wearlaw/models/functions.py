@@ -12,16 +12,13 @@ import numpy as np
 from pydantic import Field, create_model
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import NODE_VARIABLES, Contact
+from wearlaw.contact.contact import PATCH_VARIABLES, Contact, variable_at_nodes
 from wearlaw.errors import ConfigurationError, Fault, UnitError, did_you_mean
 from wearlaw.models.law import BreakpointMap, Numbers
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, Unit, in_unit, text_of
 from wearlaw.units.registry import unit_in_si
 from wearlaw.units.variables import UNITS
-
-VARIABLES = (*NODE_VARIABLES, "wear_index")
-"""The variables of a `Contact` that a function can take."""
 
 Function = Callable[..., Any]
 
@@ -45,15 +42,10 @@ class FunctionLaw(WearLaw):
 
     def rate(self, contact: Contact, p: Numbers) -> Array:
         """Return the function's value at the nodes [kg/m/m²]."""
-        arguments = [in_unit(self._at_nodes(contact, name), unit) for name, unit in self.inputs.items()]
+        arguments = [in_unit(variable_at_nodes(contact, name), unit) for name, unit in self.inputs.items()]
         parameters = {name: p[name] / unit_in_si(unit) for name, unit in self.units.items()}
         value = np.asarray(type(self).function(*arguments, **parameters), dtype=np.float64)
         return np.broadcast_to(value * unit_in_si(self.returns), contact.pressure.shape)
-
-    @staticmethod
-    def _at_nodes(contact: Contact, name: str) -> Array:
-        value: Array = getattr(contact, name)
-        return np.broadcast_to(contact.per_node(value), contact.pressure.shape) if name == "wear_index" else value
 
     def __reduce__(self) -> tuple[Any, ...]:
         fields = {name: text_of(getattr(self, name)) for name in self.units}
@@ -168,9 +160,9 @@ def _jumps(
 def _check(subject: str, function: Function, inputs: Mapping[str, str], units: Mapping[str, str], returns: str) -> None:
     """Raise an error for a declaration that does not fit the function."""
     for name, unit in inputs.items():
-        if name not in VARIABLES:
-            hint = did_you_mean(name, VARIABLES)
-            raise _error(subject, f"inputs.{name}", f"unknown variable{hint} There are: {', '.join(VARIABLES)}")
+        if name not in PATCH_VARIABLES:
+            hint = did_you_mean(name, PATCH_VARIABLES)
+            raise _error(subject, f"inputs.{name}", f"unknown variable{hint} There are: {', '.join(PATCH_VARIABLES)}")
         _check_unit(subject, f"inputs.{name}", unit, UNITS[name])
     _check_unit(subject, "returns", returns, WEAR_RATE)
     signature = inspect.signature(function).parameters

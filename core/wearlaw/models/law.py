@@ -7,17 +7,24 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast
 
 import numpy as np
 from pydantic import model_validator
 
 from wearlaw.arrays.array import Array, extremes, type_name
-from wearlaw.contact.contact import LAW_VARIABLES, Contact
+from wearlaw.contact.contact import (
+    LAW_VARIABLES,
+    PATCH_VARIABLES,
+    Contact,
+    LawVariable,
+    check_variables,
+    variable_at_nodes,
+)
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Geometry
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, UnitError, did_you_mean
-from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
+from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
 from wearlaw.units.quantities import Quantity, Unit, from_si
@@ -33,6 +40,9 @@ Each number is a float. If it differs between operating points, it is an array o
 
 BreakpointMap: TypeAlias = Mapping[str, tuple[Any, ...]]
 """Variables of a `Contact` with the SI values at which a law branches, each a float or an array as in `Numbers`."""
+
+SCALES = ("patch", "any")
+"""What a law can declare as its `scale`."""
 
 WEAR = "wear_rate"
 """Name of the outcome of wear laws."""
@@ -188,10 +198,14 @@ class Law(Model):
     body: str | None = None
     """The body that the law is for, by its name in the rig, such as "rail"; None for every body."""
 
-    scale: ClassVar[Literal["patch", "any"]] = "any"
-    """"patch" if the law is stated only for the means of the whole patch."""
+    scale: ClassVar = cast(Any, "any")  # Any: for type checkers, a subclass may make it a property
+    """"patch" if the law is stated only for the means of the whole patch, otherwise "any". A law that contains another
+    can make it a property."""
 
-    monotone_in: ClassVar[tuple[str, ...]] = ()
+    example_material: ClassVar[Material | None] = None
+    """A material to try the law with, if it reads fields of a class of materials; by default steel."""
+
+    monotone_in: ClassVar[tuple[LawVariable, ...]] = ()
     """Variables of a `Contact` with which the rate never falls while the others stay the same."""
 
     if not TYPE_CHECKING:  # type checkers already compare the methods with this class
@@ -205,10 +219,29 @@ class Law(Model):
                     f"{cls.__name__} has no outcome; add what it predicts, as in"
                     ' outcome = wl.Outcome("rcf_damage", unit="", of="patch"), or derive it from wl.WearLaw'
                 )
+            check_scale(cls, inspect.getattr_static(cls, "scale"), SCALES)
             for name, arguments in TAKE_NUMBERS.items():
                 _check_arguments(cls, name, arguments)
             known = cls.__pydantic_fields__
             known["body"] = known.pop("body")  # last where fields are shown
+
+    @model_validator(mode="after")
+    def _has_a_scale(self) -> Self:
+        check_scale(self, self.scale, SCALES)
+        return self
+
+    def check_variables(self) -> None:
+        """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` name an unknown variable."""
+        with Blame(self):
+            known = (*LAW_VARIABLES, *self.own_variables)
+            declared = {
+                "breakpoints": (self.breakpoints(self.numbers) or {}, known),
+                "jumps": (self.jumps(self.numbers), known),
+                "monotone_in": (self.monotone_in, LAW_VARIABLES),
+                "valid_range": (self.valid_range, PATCH_VARIABLES),
+            }
+        for name, (variables, allowed) in declared.items():
+            check_variables(f"{self.kind} '{self.name}': `{name}`", variables, allowed)
 
     def __repr_args__(self) -> Any:
         return ((name, value) for name, value in super().__repr_args__() if (name, value) != ("body", None))
@@ -348,8 +381,7 @@ class Law(Model):
     def value_at(self, contact: Contact, name: str) -> Array:
         """Return a variable of the law's own or of the contact at the nodes, in SI."""
         own = self.own_variables.get(name)
-        value: Array = getattr(contact, name) if own is None else own(contact)
-        return value
+        return variable_at_nodes(contact, name) if own is None else own(contact)
 
     def jumps(self, p: Numbers) -> BreakpointMap:  # noqa: ARG002
         """Return the breakpoints at which the rate jumps."""

@@ -262,7 +262,7 @@ def _over_line(
             if not (fields and law.zero_in_stick and law.outcome.of == "area mean"):
                 on_nodes[index] = law, _at_points(p, points)
                 continue
-            of, slopes = _problem_of(law, part), ramps[index]
+            of, slopes = part.worn_on(law.body), ramps[index]
             mean = None if slopes is None else closed_form(fields, slopes, of, points)
             mean = mean or _over_zones(solver, law, _at_points(p, points), of)
             found |= {f"{name} {index}" if name in OF_LAW else name: values for name, values in mean.items()}
@@ -285,16 +285,10 @@ def _ramps(law: Law, p: Numbers) -> tuple[tuple[Any, Any], ...] | None:
         return law.ramps(p)
 
 
-def _problem_of(law: Law, problem: Problem) -> Problem:
-    """Return the problem with the density of the body that the law is for."""
-    density = problem.density_of(law.body)
-    return problem if density is problem.density else problem.replaced(density=density)
-
-
 def _contact_of(law: Law, contact: Contact, problem: Problem) -> Contact:
-    """Return the contact with the density of the body that the law is for."""
-    density = problem.density_of(law.body)
-    return contact if density is problem.density else contact.replaced(density=density)
+    """Return the contact for the body that the law is for."""
+    of_body = problem.worn_on(law.body)
+    return contact if of_body is problem else contact.replaced(density=of_body.density, problem=of_body)
 
 
 def outcome_error(model: ContactModel, law: Law, problem: Problem, totals: Totals, index: int) -> Array:

@@ -33,9 +33,10 @@ class Staged(ContactModel):
         return self.stage.name
 
     @property
-    def scale(self) -> Scale:  # type: ignore[override]
+    def scale(self) -> Scale:
         """Whether laws see the means of the patch or its cells."""
-        return "patch" if self.stage.gives_means else self.model.scale
+        inside: Scale = self.model.scale
+        return "patch" if self.stage.gives_means else inside
 
     @property
     def accuracy(self) -> float:

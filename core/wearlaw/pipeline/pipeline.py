@@ -241,6 +241,7 @@ class Pipeline(Configuration, Generic[P]):
         check_geometry(self.rig, self.contact_model, self.rig.geometry)
         for law in self.laws:
             check_scale(self.scale, self.contact_model, law)
+            law.check_variables()
         if self.laws:
             check_laws(self.laws, self.rig.bodies)
         return self
@@ -253,7 +254,8 @@ class Pipeline(Configuration, Generic[P]):
     @property
     def scale(self) -> Scale:
         """Whether a law sees the means of the patch or its cells."""
-        return self.staged_model.scale
+        scale: Scale = self.staged_model.scale
+        return scale
 
     def without_law(self) -> Pipeline[P]:
         """Return the pipeline that predicts the contact alone."""

@@ -98,7 +98,7 @@ class Prediction:
             return from_si(self._solved_totals.values[index], self.laws[index].outcome.unit)
         if isinstance(name, str) and name.endswith(ERROR) and name.removesuffix(ERROR) in named:
             index = named[name.removesuffix(ERROR)]
-            return from_si(self.error_of_law(index), self.laws[index].outcome.unit)
+            return from_si(self._whole_error(index), self.laws[index].outcome.unit)
         if isinstance(name, str) and not name.startswith("_") and hasattr(type(self), name):
             value = getattr(self, name)
             if isinstance(value, pint.Quantity):
@@ -125,9 +125,9 @@ class Prediction:
         return from_si(value, self.laws[index].outcome.unit)
 
     def outcome_error(self, name: str, body: str | None = None) -> Quantity:
-        """Return an estimate of the numerical error of an outcome; slow on an ellipse, which it solves again."""
+        """Return an estimate of the error of an outcome, as in `wear_rate_error`."""
         index = law_among(self.laws, self.contact_model, name, body)
-        return from_si(self.error_of_law(index), self.laws[index].outcome.unit)
+        return from_si(self._whole_error(index), self.laws[index].outcome.unit)
 
     def error_of_law(self, index: int) -> Array:
         """Return an estimate of the numerical error of the outcome of a law in SI, by the index of the law."""
@@ -401,8 +401,24 @@ class Prediction:
 
     @cached_property
     def wear_rate_error(self) -> Quantity:
-        """Estimate of the numerical error in `wear_rate` [kg/m/m²]; slow on an ellipse, which it solves again."""
-        return from_si(self.error_of_law(self._wear_law()), WEAR_RATE)
+        """Estimate of the error in `wear_rate` [kg/m/m²]; slow on an ellipse, which it solves again.
+
+        It is the numerical error. If the contact model does not claim the energy balance, the rate of the energy that
+        its nodes lack is added, as for a law in proportion to q·s; it is infinite if no node dissipates any energy.
+        """
+        return from_si(self._whole_error(self._wear_law()), WEAR_RATE)
+
+    def _whole_error(self, index: int) -> Array:
+        """Return the numerical error of an outcome and, without energy balance, that of the energy that nodes lack."""
+        error = self.error_of_law(index)
+        lacks = self.laws[index].outcome.of == "area mean" and "energy_balance" in self.contact_model.exemptions
+        if not lacks or self.scale != "cells":
+            return error
+        found = self._slip.cell_wear_index
+        lacking = np.abs(self.problem.power(self._forces) - found)
+        none = found <= 0.0  # False for the NaN of a missing patch
+        share = np.divide(lacking, found, out=np.zeros_like(found), where=~none)
+        return error + np.where(none & (lacking > 0.0), np.inf, np.abs(self._solved_totals.values[index]) * share)
 
     def depth_per_distance(self, body: str) -> Quantity:
         """Return the depth that a body's surface loses per distance rolled, mean over the patch's width [m/m].
@@ -513,11 +529,11 @@ class Prediction:
         return self._of_body(self._wear_law(body), body, stacklevel=5)
 
     def _of_body(self, index: int, body: str, stacklevel: int) -> Array:
-        """Return the outcome of a law for a body; a law for every body is evaluated again if the densities differ."""
-        density = self.problem.density_of(body)
+        """Return the outcome of a law for a body; a law for every body is evaluated again if the materials differ."""
+        of_body = self.problem.worn_on(body)
         self._warn_of(index, body, stacklevel + 1)
         law = self.laws[index]
-        if law.body is not None or density is self.problem.density:
+        if law.body is not None or of_body is self.problem:
             return self._solved_totals.values[index]
         return integrate.integrate_laws(self._model, (self._law_of(index, body),), self.problem).values[0]
 

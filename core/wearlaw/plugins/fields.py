@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema, create_model
 
-from wearlaw.contact.material import Material
+from wearlaw.contact.material import TYPE, Material
 from wearlaw.errors import ConfigurationError, Fault, InputError, PluginWarning, WearlawError, described, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
-from wearlaw.settings.configuration import Configuration
+from wearlaw.settings.configuration import Configuration, known_name
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.units.quantities import shortened
 
@@ -34,9 +34,16 @@ def _is_rig(value: object) -> bool:
 
 
 def specification(model: Model) -> dict[str, Any]:
-    """Return a model as a table of its name and fields; the table makes an equal model."""
+    """Return a model as a table of its name and fields; the table makes an equal model.
+
+    The name of a law that was looked up as a parameter set is that of the set.
+    """
     key = "type" if model.kind == RIGS else "model"
-    return {key: model.name, **model.model_dump(mode="json", exclude_none=True)}
+    fields = model.model_dump(mode="json", exclude_none=True)
+    known = known_name(model)
+    if known is not None and known in loader.parameter_sets() and loader.wear_law(known, **fields) == model:
+        return {key: known, **fields}
+    return {key: model.name, **fields}
 
 
 def _maker(look_up: Callable[..., Model]) -> Callable[[Any], Any]:
@@ -59,17 +66,18 @@ def _material(value: Any) -> Any:
 
 
 class _OrName:
-    """Adds to a field's JSON Schema that a name is valid too."""
+    """Adds to a field's JSON Schema that a name and a table with a type are valid too."""
 
     @staticmethod
     def __get_pydantic_json_schema__(
         schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, object]:
-        return {"anyOf": [handler(schema), {"type": "string"}]}
+        typed = {"type": "object", "properties": {TYPE: {"type": "string"}}, "required": [TYPE]}
+        return {"anyOf": [handler(schema), typed, {"type": "string"}]}
 
 
 MaterialField = Annotated[Material, BeforeValidator(_material), _OrName]
-"""A field that takes a material, its name, or a table of its fields."""
+"""A field that takes a material, its name, or a table of its fields, with its class or its name as `type`."""
 
 _AS_TABLE = PlainSerializer(specification, return_type=dict[str, Any], when_used="json")
 _SCHEMA = WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "object", "required": ["model"]}]}, mode="validation")

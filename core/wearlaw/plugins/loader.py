@@ -21,18 +21,31 @@ from packaging.utils import canonicalize_name
 
 from wearlaw import hookspecs
 from wearlaw.contact.material import Material
-from wearlaw.errors import PluginWarning, described
+from wearlaw.errors import PluginWarning, UnknownModelError, described
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
 from wearlaw.models.wear_law import WearLaw
-from wearlaw.plugins.shelf import Broken, Origin, Shelf, add_model
+from wearlaw.plugins.isolation import Isolation
+from wearlaw.plugins.shelf import Broken, Origin, Shelf, add_model, unknown
 from wearlaw.settings.configuration import Configuration, known_as
 
 
 @dataclass
 class Installed:
-    """Everything found by discovery."""
+    """Everything found by discovery.
+
+    Attributes
+    ----------
+    rigs, contact_models, wear_laws, parameter_sets, materials, material_types, cases, test_sets, sections : Shelf
+        What the plugins provide, by kind and name.
+    plugins : list of Origin
+        All plugins.
+    broken : list of Broken
+        Plugins that raised an error, and are left out from there on.
+    remarks : list of Broken
+        Plugins with side effects while they were loaded, such as printing.
+    """
 
     rigs: Shelf[type[Any]] = field(default_factory=lambda: Shelf("rig", type))
     contact_models: Shelf[type[ContactModel]] = field(default_factory=lambda: Shelf("contact model", type))
@@ -41,16 +54,18 @@ class Installed:
     laws: Shelf[type[Law]] = field(default_factory=lambda: Shelf("law", type))
     parameter_sets: Shelf[WearLaw] = field(default_factory=lambda: Shelf("parameter set", WearLaw))  # type: ignore[type-abstract]
     materials: Shelf[Material] = field(default_factory=lambda: Shelf("material", Material))
+    material_types: Shelf[type[Material]] = field(default_factory=lambda: Shelf("material type", type))
     cases: Shelf[str] = field(default_factory=lambda: Shelf("case", str))
     test_sets: Shelf[str] = field(default_factory=lambda: Shelf("test set", str))
     sections: Shelf[Callable[..., Any]] = field(default_factory=lambda: Shelf("section", Callable))  # type: ignore[arg-type]
     plugins: list[Origin] = field(default_factory=list)
     broken: list[Broken] = field(default_factory=list)
+    remarks: list[Broken] = field(default_factory=list)
 
     def shelves(self) -> tuple[Shelf[Any], ...]:
         """Return the shelf of each kind."""
         models = (self.rigs, self.contact_models, self.stages, self.wear_laws, self.laws, self.parameter_sets)
-        return *models, self.materials, self.cases, self.test_sets, self.sections
+        return *models, self.materials, self.material_types, self.cases, self.test_sets, self.sections
 
     def of_kind(self, kind: str) -> Shelf[Any]:
         """Return the shelf of a kind, such as "wear law"."""
@@ -77,6 +92,8 @@ def _search() -> Installed:
         _under_way.clear()
     for plugin in found.broken:
         warnings.warn(f"left out: {plugin}", PluginWarning, stacklevel=4)
+    for remark in found.remarks:
+        warnings.warn(str(remark), PluginWarning, stacklevel=4)
     return found
 
 
@@ -91,22 +108,24 @@ def _discover(found: Installed) -> None:
     manager = _Manager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)
     loaded: list[tuple[_Plugin, Origin]] = []
-    for entry_point, origin in _entry_points():
-        found.plugins.append(origin)
-        with _isolated(found, origin):
-            plugin = _Plugin(manager, _load(manager, entry_point, origin))
-            _add_models(plugin, origin, found)
-            loaded.append((plugin, origin))
-    for plugin, origin in loaded:
-        with _isolated(found, origin):
-            _add_named(plugin, origin, found)
+    with Isolation() as isolation:
+        for entry_point, origin in _entry_points():
+            found.plugins.append(origin)
+            with _left_out_if_broken(found, origin, isolation):
+                plugin = _Plugin(manager, _load(manager, entry_point, origin))
+                _add_models(plugin, origin, found)
+                loaded.append((plugin, origin))
+        for plugin, origin in loaded:
+            with _left_out_if_broken(found, origin, isolation):
+                _add_named(plugin, origin, found)
 
 
 @contextmanager
-def _isolated(found: Installed, origin: Origin) -> Iterator[None]:
-    """Record any exception of a plugin and go on; only Ctrl-C ends the program."""
+def _left_out_if_broken(found: Installed, origin: Origin, isolation: Isolation) -> Iterator[None]:
+    """Record any exception of a plugin and its side effects, and go on; only Ctrl-C ends the program."""
     try:
-        yield
+        with isolation.of(origin, lambda remark: found.remarks.append(Broken(origin, remark))):
+            yield
     except KeyboardInterrupt as interrupt:  # the plugin may have raised it itself, so name the plugin
         interrupt.add_note(f"wearlaw was loading {origin}")
         raise
@@ -205,16 +224,41 @@ def law(name: str, /, **options: Any) -> Law:
     return wear_law(name, **options)
 
 
-def material(name: str, /) -> Material:
-    """Return the installed material with a name.
+def material(name: str, /, **options: Any) -> Material:
+    """Return the installed material with a name, or a material of the installed class with a name.
+
+    Parameters
+    ----------
+    name : str
+        Name of a material, such as "steel", or of a class of materials.
+    **options
+        Fields of the material; those of an installed material are the defaults.
 
     Raises
     ------
     UnknownModelError
         If no installed plugin provides it, or more than one does.
+    ConfigurationError
+        If a field is missing or unknown, or has a wrong value.
     """
     found = installed()
-    return found.materials.find(name, found.broken)
+    if name in found.materials.providers:
+        known = found.materials.find(name, found.broken)
+        made = known.model_copy(update=options) if options else known
+        return known if made == known else made
+    if name in found.material_types.providers:
+        return found.material_types.find(name, found.broken)(**options)
+    names = [*found.materials.items(), *found.material_types.items()]
+    message = unknown("material", name, names, found.broken)
+    if options:
+        message += (
+            ". `type` names a material or a class of materials of an installed plugin; ship a class of a script in a"
+            " plugin, or leave `type` out for a plain Material"
+        )
+    raise UnknownModelError(message)
+
+
+Material._look_up = staticmethod(material)  # for tables of materials with a `type`
 
 
 def materials() -> Mapping[str, Material]:
@@ -313,11 +357,34 @@ def _add_models(plugin: _Plugin, origin: Origin, found: Installed) -> None:
 def _add_named(plugin: _Plugin, origin: Origin, found: Installed) -> None:
     shelves: dict[str, Shelf[Any]] = {
         "wearlaw_parameter_sets": found.parameter_sets,
-        "wearlaw_materials": found.materials,
         "wearlaw_cases": found.cases,
         "wearlaw_tests": found.test_sets,
         "wearlaw_sections": found.sections,
     }
+    for answer in plugin.answers("wearlaw_materials"):
+        for name, item in answer.items():
+            _add_material(name, item, origin, found)
     for hook, shelf in shelves.items():
         for name, item in chain.from_iterable(mapping.items() for mapping in plugin.answers(hook)):
+            if shelf is found.parameter_sets and name in found.wear_laws.providers:  # the look-up would give the law
+                of = found.wear_laws.origin(name)
+                cause = f"parameter set '{name}' has the name of a wear law of {of}; give it another name"
+                found.broken.append(Broken(origin, cause))
+                continue
             shelf.add(name, known_as(name, item) if isinstance(item, Configuration) else item, origin)
+
+
+def _add_material(name: object, item: object, origin: Origin, found: Installed) -> None:
+    """Add a material and its class, or a class of materials under its own name."""
+    if isinstance(item, type):
+        cls: type[Any] = item
+        if not issubclass(cls, Material):
+            raise TypeError(f"material {name!r} must be a Material or a class derived from it, got {item!r}")
+        if name != cls.__name__:
+            raise TypeError(f"a class of materials goes by its own name: write {cls.__name__!r} in place of {name!r}")
+    else:
+        cls = type(item)
+        found.materials.add(name, known_as(str(name), item) if isinstance(item, Configuration) else item, origin)
+    known = found.material_types.providers.get(cls.__name__, [])
+    if cls is not Material and all(one is not cls for one, _ in known):
+        found.material_types.add(cls.__name__, cls, origin)

@@ -55,6 +55,8 @@ class TwinDiscConditions(TypedDict, total=False):
         Friction coefficient, μ [-].
     traction_coefficient : array_like of float
         Measured tangential over normal force, T/N [-], for contact models that can use it.
+    rolled_distance : Quantity or str
+        Distance that the bodies have rolled since they were new [m], for laws of running-in.
     """
 
     normal_force: QuantityLike
@@ -63,10 +65,15 @@ class TwinDiscConditions(TypedDict, total=False):
     creepage: Required[QuantityLike]
     friction_coefficient: Required[ArrayLike | FrictionLaw]
     traction_coefficient: ArrayLike
+    rolled_distance: QuantityLike
 
 
 TWIN_DISC = ConditionTable(
-    LOADS, ("creepage",), COEFFICIENTS, {"creepage": 'Q(1, "%")', "friction_coefficient": "0.46"}
+    LOADS,
+    ("creepage",),
+    COEFFICIENTS,
+    {"creepage": 'Q(1, "%")', "friction_coefficient": "0.46"},
+    ("rolled_distance",),
 )
 """The conditions of a twin-disc test."""
 
@@ -220,6 +227,8 @@ class TwinDisc(Rig):
             μ [-].
         traction_coefficient : array_like of float, optional
             Measured T/N [-], for contact models that can use it.
+        rolled_distance : Quantity or str, optional
+            Distance rolled since the discs were new [m], for laws of running-in.
 
         Raises
         ------
@@ -253,6 +262,7 @@ class TwinDisc(Rig):
             longitudinal_creepage=creepage,
             rolling_speed=rolling_speed,
             traction_coefficient=arrays.get("traction_coefficient"),
+            rolled_distance=arrays.get("rolled_distance"),
             bodies=self._bodies,
             **same,
         )

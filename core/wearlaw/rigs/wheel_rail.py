@@ -49,6 +49,8 @@ class WheelRailConditions(TypedDict, total=False):
         Contact angle, δ [rad], between -90 and 90 deg; that of the rig if not given.
     friction_coefficient : array_like of float, or FallingFriction
         Friction coefficient, μ [-].
+    rolled_distance : Quantity or str
+        Distance that the bodies have rolled since they were new [m], for laws of running-in.
     """
 
     normal_force: QuantityLike
@@ -58,6 +60,7 @@ class WheelRailConditions(TypedDict, total=False):
     spin: QuantityLike
     contact_angle: QuantityLike
     friction_coefficient: Required[ArrayLike | FrictionLaw]
+    rolled_distance: QuantityLike
 
 
 WHEEL_RAIL = ConditionTable(
@@ -65,7 +68,7 @@ WHEEL_RAIL = ConditionTable(
     ("longitudinal_creepage", "lateral_creepage", "spin"),
     COEFFICIENTS[:1],
     {"longitudinal_creepage": 'Q(0.2, "%")', "friction_coefficient": "0.3"},
-    ("contact_angle",),
+    ("contact_angle", "rolled_distance"),
 )
 """The conditions of a wheel on a rail."""
 
@@ -204,6 +207,8 @@ class WheelRail(Rig):
             δ [rad], between -90 and 90 deg; that of the rig if not given.
         friction_coefficient : array_like of float, or FallingFriction
             μ [-].
+        rolled_distance : Quantity or str, optional
+            Distance rolled since the bodies were new [m], for laws of running-in.
 
         Raises
         ------

@@ -161,6 +161,9 @@ def used(case: Case) -> dict[str, dict[str, str]]:
         if name is not None:
             (shelf,) = (shelf for kind, shelf in named.items() if isinstance(part, kind))
             origins[shelf.kind][name] = shelf.distribution(name)
+        if isinstance(part, Material) and type(part) is not Material:
+            types, cls = found.material_types, type(part)
+            origins[types.kind][cls.__name__] = types.distribution(cls.__name__, cls)
     if case.measured is not None and case.measured.shipped:
         origins[found.test_sets.kind] = {case.measured.tests: found.test_sets.distribution(case.measured.tests)}
     origins[found.sections.kind] = {name: found.sections.distribution(name) for name in case.sections}

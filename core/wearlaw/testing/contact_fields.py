@@ -1,4 +1,4 @@
-"""Checks of a contact model's slip zone: its length, crossings of variables, and energy."""
+"""Checks of closed-form fields on a line: their sums, the slip zone, crossings of variables, and energy."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from typing import get_args
 import numpy as np
 
 from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
-from wearlaw.contact.quadrature import Nodes
+from wearlaw.contact.quadrature import Nodes, join
+from wearlaw.models.contact_model import QUADRATURE
 from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
 from wearlaw.testing.examples import SAME, SUM, assert_close
-from wearlaw.testing.problems import random_lines
+from wearlaw.testing.problems import friction_limit, random_lines
+from wearlaw.testing.shapes import Claims
 
 POINTS = 64
 """Operating points, from almost all stick to full slip."""
@@ -21,6 +24,9 @@ SAMPLES = 400
 
 BISECTIONS = 60
 """Bisections from the distance between samples to rounding."""
+
+PANELS = 64
+"""Panels of a zone: on 64 lines, every part of the patch that is longer than a thousandth of it has nodes."""
 
 PANEL_NODES = 16
 """Gauss-Legendre nodes of a panel. Singularities lie no nearer to a panel than its own length, so that the
@@ -40,6 +46,42 @@ def slip_lies_in_the_slip_zone(model: LineContactModel) -> None:
     slip = np.where(in_front, model.fields(problem[..., None], nodes).slip, 0.0)
     distance, zone = (np.broadcast_to(value, slip.shape)[slip != 0] for value in (nodes.from_trailing, length[:, None]))
     assert (slip == 0).all(), f"slip of {slip[slip != 0]} at {distance} m from the trailing edge, zones of {zone} m"
+
+
+def fields_sum_to_the_totals(model: LineContactModel) -> None:
+    """On many panels of nodes, pressure sums to N and traction to T."""
+    problem = random_lines(POINTS)
+    contact, error = _on_panels(model, problem), _error_on_panels(model)
+    for name, value, due in (
+        ("pressure", contact.pressure, problem.normal_force),
+        ("traction", contact.traction, contact.tangential_force),
+    ):
+        size = problem.normal_force if name == "pressure" else friction_limit(problem)
+        assert_close(contact.integral(value), due, f"the sum of the {name} on {PANELS} panels", 0.0, error * size)
+
+
+def fields_dissipate_the_energy_fed_in(model: LineContactModel) -> None:
+    """On many panels of nodes, traction times slip sums to ξT."""
+    problem = random_lines(POINTS)
+    contact = _on_panels(model, problem)
+    due = contact.tangential_force * problem.creepage
+    # Positions are exact to the rounding of a, so in a short slip zone q·s is that much less exact.
+    slipping = np.maximum(contact.slip_area / contact.patch_area, SUM)
+    error = _error_on_panels(model) / slipping
+    assert_close(contact.cell_wear_index, due, f"the energy dissipated on {PANELS} panels", error)
+
+
+def _on_panels(model: LineContactModel, problem: Problem) -> Contact:
+    stick, slip = (zone.nodes(panels=PANELS) for zone in model.zones(problem))
+    return model.at(problem, join(stick.reversed(), slip))
+
+
+def _error_on_panels(model: LineContactModel) -> float:
+    """Return the accuracy that a model declares, or rounding and what is left of the accuracy of one panel.
+
+    A square root just outside a zone, or at its end, adds an error in proportion to the cube of the panel's length.
+    """
+    return SUM + QUADRATURE / PANELS**3 if model.accuracy == QUADRATURE else model.accuracy
 
 
 class _SlipZone:
@@ -170,10 +212,15 @@ def _integral(zone: _SlipZone, threshold: Array, edges: Array) -> Array:
 
 
 CHECKS = (
+    fields_sum_to_the_totals,
     slip_lies_in_the_slip_zone,
     crossings_are_where_the_fields_cross,
     excess_dissipation_is_that_of_the_fields,
 )
+
+CLAIMS: Claims = {"energy_balance": (fields_dissipate_the_energy_fed_in,)}
+
+OF_FIELDS = (*CHECKS, fields_dissipate_the_energy_fed_in)
 """Checks of models with fields at any position."""
 
 OF_CROSSINGS = (crossings_are_where_the_fields_cross,)

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import json
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import pint
 
-from wearlaw.contact.contact import Contact
-from wearlaw.models.contact_model import Claim, ContactModel, Model
-from wearlaw.models.functions import VARIABLES
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.contact.contact import LAW_VARIABLES, PATCH_VARIABLES, Contact
+from wearlaw.models.contact_model import Model
+from wearlaw.models.law import Law
 from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.testing.examples import for_each
-from wearlaw.testing.law_shape import contacts_for
+from wearlaw.testing.law_contacts import for_each_contact
 from wearlaw.testing.sampling import forward
 
 
@@ -41,7 +39,7 @@ def json_schema_is_complete(model: Model) -> None:
         assert properties[key].get("description"), f"the schema does not describe the field '{key}'"
 
 
-def declared_names_are_variables(law: WearLaw) -> None:
+def declared_names_are_variables(law: Law) -> None:
     """`breakpoints`, `jumps`, `monotone_in` and `valid_range` name variables of a contact, with finite values."""
     declared = {
         "breakpoints": law.breakpoints(law.numbers) or {},
@@ -50,16 +48,17 @@ def declared_names_are_variables(law: WearLaw) -> None:
     }
     for subject, variables in declared.items():
         for name, values in variables.items():
-            assert name in VARIABLES, f"`{subject}` names '{name}'; the variables are: {', '.join(VARIABLES)}"
+            known = PATCH_VARIABLES if subject == "valid_range" else (*LAW_VARIABLES, *law.own_variables)
+            assert name in known, f"`{subject}` names '{name}'; the variables are: {', '.join(known)}"
             bad = np.isnan(values).any() or (subject != "valid_range" and not np.isfinite(values).all())
             assert not bad, f"`{subject}` has {name} = {values}"
     for name, (low, high) in law.valid_range.items():
         assert low < high, f"`valid_range` of {name} goes from {low:g} to {high:g}"
     for name in law.monotone_in:
-        assert name in VARIABLES, f"`monotone_in` names '{name}'; the variables are: {', '.join(VARIABLES)}"
+        assert name in LAW_VARIABLES, f"`monotone_in` names '{name}'; the variables are: {', '.join(LAW_VARIABLES)}"
 
 
-def band_is_ordered(law: WearLaw) -> None:
+def band_is_ordered(law: Law) -> None:
     """The law at the low end of published parameters wears no more than at their middle, and that than at the high."""
     band = law.band()
     if band is None:
@@ -70,16 +69,8 @@ def band_is_ordered(law: WearLaw) -> None:
         assert (low <= middle).all(), f"the low end {low!r} lies above the middle {middle!r}"
         assert (middle <= high).all(), f"the middle {middle!r} lies above the high end {high!r}"
 
-    for_each(contacts_for(law), examine)
-
-
-def exemptions_are_claims(model: ContactModel) -> None:
-    """`exemptions` names claims that there are, each with a reason."""
-    for claim, reason in model.exemptions.items():
-        assert claim in get_args(Claim), f"'{claim}' is not a claim; there are: {', '.join(get_args(Claim))}"
-        assert reason.strip(), f"the exemption from '{claim}' has no reason"
+    for_each_contact(law, examine)
 
 
 COMMON = (model_is_documented, json_schema_is_complete)
 OF_LAWS = (declared_names_are_variables, band_is_ordered)
-OF_CONTACT_MODELS = (exemptions_are_claims,)

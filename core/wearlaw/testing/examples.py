@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 import numpy as np
@@ -74,16 +75,33 @@ def _search(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> Non
     check()
 
 
+class ModelRaisedError(AssertionError):
+    """The failure of a check in which the model raised an error of its own."""
+
+
 def as_failure(error: BaseException) -> AssertionError:
     """Return an error as the failure of a check: of a model's own, one with its name, message and notes."""
     while isinstance(error, BaseExceptionGroup):  # of several different failures, the first
         error = error.exceptions[0]
     if isinstance(error, AssertionError):
         return error
-    failure = AssertionError(f"the model raised {described(error)}")
+    failure = ModelRaisedError(f"the model raised {described(error)}")
     for note in getattr(error, "__notes__", []):
         failure.add_note(note)
     return failure
+
+
+@contextmanager
+def beginning(where: str) -> Iterator[None]:
+    """Begin the message of a failure with the place where the model fails."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        failure = as_failure(error)
+        failure.args = (f"{where}{failure}",)
+        raise failure from (None if failure is error else error)
 
 
 def assert_close(

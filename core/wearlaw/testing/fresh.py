@@ -15,16 +15,21 @@ from collections.abc import Callable
 from typing import Any
 
 from wearlaw.errors import described
+from wearlaw.numerics.staged import staged
+from wearlaw.plugins.loader import contact_model
 
 
 def computed(model: Any, arguments: list[Any]) -> list[Any]:
-    """Return the results of a wear law for contacts, of a contact model for problems, or of a rig for conditions."""
+    """Return the results of a law for contacts, of a contact model or a stage for problems, of a rig for conditions."""
     if hasattr(model, "problem"):
         problems = [model.problem(**conditions) for conditions in arguments]
         values = [getattr(problem, field.name) for problem in problems for field in dataclasses.fields(problem)]
         return [value for value in values if hasattr(value, "dtype")]
     if hasattr(model, "rate"):
         return [model.rate(contact, model.numbers) for contact in arguments]
+    if hasattr(model, "altered"):
+        solved = [staged(contact_model("exact"), (model,)).solve(problem) for problem in arguments]
+        return [contact.tangential_force for contact in solved]
     contacts = [model.solve(problem) for problem in arguments]
     return [value for found in contacts for value in (found.tangential_force, found.traction, found.slip)]
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property, partial
 from typing import TypeAlias, TypeVar
 
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.law import Law
 from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.stage import Stage
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.testing import (
@@ -19,15 +22,19 @@ from wearlaw.testing import (
     contact_fields,
     contact_force,
     contact_limits,
+    contact_nodes,
     declarations,
     law_branches,
     law_checks,
     law_shape,
+    patch_laws,
     rig_checks,
+    stage_checks,
     unit_checks,
 )
-from wearlaw.testing.examples import as_failure
+from wearlaw.testing.examples import ModelRaisedError, as_failure
 from wearlaw.testing.roundtrip import RoundTrip
+from wearlaw.testing.shapes import Claims
 
 CheckFunction: TypeAlias = Callable[..., None]
 
@@ -35,6 +42,25 @@ TestFunction = TypeVar("TestFunction", bound="Callable[[Check], None]")
 
 COMMON: tuple[CheckFunction, ...] = (*declarations.COMMON, *unit_checks.CHECKS)
 """Checks of every model."""
+
+OF_CONTACTS = (contact_nodes, contact_checks, contact_force, contact_limits, contact_energy, contact_fields)
+
+CLAIMS: Claims = {
+    claim: tuple(function for module in OF_CONTACTS for function in module.CLAIMS.get(claim, ()))
+    for claim in dict.fromkeys(claim for module in OF_CONTACTS for claim in module.CLAIMS)
+}
+"""Claims of contact models that have a name of their own, with their checks; any other claim is the name of a check."""
+
+OF_SHAPES = (
+    law_shape.rate_has_the_shape_of_the_nodes,
+    patch_laws.value_has_the_shape_of_the_batch,
+    contact_checks.contact_has_the_shape_of_the_problem,
+)
+"""Checks without which no other check is run: arrays of a wrong shape may broadcast, and fill the memory."""
+
+
+class NotRunError(AssertionError):
+    """A check was not run, because what the model returns has a wrong shape."""
 
 
 @dataclass(frozen=True)
@@ -71,14 +97,14 @@ class Check:
 
 
 def checks(model: Model) -> Iterator[Check]:
-    """Yield the checks of a rig, a contact model or a wear law.
+    """Yield the checks of a model, each on a new instance with the fields of the model.
 
-    Checks that do not apply to the model are left out: those of claims in `ContactModel.exemptions`, of nodes for a law
-    of the whole patch, of geometries that a contact model does not solve, and of optional methods that are missing.
+    Checks that do not apply to the model are left out: those of claims in `Model.exemptions`, of nodes for a law of the
+    whole patch, of geometries that a contact model does not solve, and of optional methods that are missing.
 
     Parameters
     ----------
-    model : Rig, ContactModel or WearLaw
+    model : Rig, ContactModel, Stage or Law
         The model, with the options to check.
 
     Raises
@@ -86,21 +112,29 @@ def checks(model: Model) -> Iterator[Check]:
     InputError
         If this is not a model, or is a rig without an `example`.
     """
-    if isinstance(model, Rig):
-        found = _of_rig(model)
-    elif isinstance(model, WearLaw):
-        found = _of_law(model)
-    elif isinstance(model, ContactModel):
-        found = _of_contact_model(model)
-    else:
-        raise InputError(
-            f"checks: needs a rig, a contact model or a wear law, such as wl.wear_law('usfd'); got {model!r}"
-        )
-    for function in found:
-        yield _check(function, model)
+    functions, idle = _of(model)
     trip = RoundTrip(model)
-    for way in (trip.through_toml, trip.through_json, trip.through_pickle):
-        yield Check(f"round_trip_{way.__name__}", inspect.getdoc(way) or "", way)
+    ways = {f"round_trip_{way.__name__}": way for way in (trip.through_toml, trip.through_json, trip.through_pickle)}
+    known = [*(function.__name__ for function in functions), *ways]
+    left_out = {function.__name__ for function in idle}
+    for claim in model.exemptions:
+        left_out |= {function.__name__ for function in CLAIMS.get(claim, ())} or {claim}
+
+    def exemptions_are_claims() -> None:
+        """`exemptions` names claims of the kit, each with a reason."""
+        for claim, reason in model.exemptions.items():
+            hint = did_you_mean(claim, [*known, *CLAIMS])
+            assert claim in known or claim in CLAIMS, f"`exemptions`: no claim is called '{claim}'{hint}"
+            assert str(reason or "").strip(), f"the exemption from '{claim}' has no reason"
+
+    shape = _Shape(model, functions)
+    for function in functions:
+        if function.__name__ not in left_out:
+            yield _check(function.__name__, function, partial(shape.run, function))
+    yield _check(exemptions_are_claims.__name__, exemptions_are_claims, exemptions_are_claims)
+    for name, way in ways.items():
+        if name not in left_out:
+            yield _check(name, way, partial(shape.run, way))
 
 
 def conformance(
@@ -110,7 +144,7 @@ def conformance(
 
     Parameters
     ----------
-    model : Rig, ContactModel or WearLaw
+    model : Rig, ContactModel, Stage or Law
         The model, with the options to check.
     expected_failures : mapping of str to str, optional
         Checks that are known to fail, each with the reason. The test fails once one of them passes.
@@ -118,64 +152,138 @@ def conformance(
     Raises
     ------
     InputError
-        If an expected failure is not a check of this model.
+        If an expected failure is not a check of this model, or has no reason.
+
+    Notes
+    -----
+    A claim in `Model.exemptions` becomes a skipped test with its reason.
     """
     import pytest
 
     expected = dict(expected_failures or {})
     found = list(checks(model))
-    names = [check.name for check in found]
-    for name in expected:
-        if name not in names:
-            hint = did_you_mean(name, names)
-            raise InputError(f"expected_failures: no check of '{model.name}' is called '{name}'{hint}")
+    validate_expected("expected_failures", model, found, expected)
 
     def parameter(check: Check) -> object:
         marks = [pytest.mark.xfail(strict=True, reason=expected[check.name])] if check.name in expected else []
         return pytest.param(check, id=check.name, marks=marks)
 
+    exempt = [
+        pytest.param(None, id=claim, marks=pytest.mark.skip(reason=f"not claimed: {reason}"))
+        for claim, reason in model.exemptions.items()
+    ]
+
     def decorate(test: TestFunction) -> TestFunction:
-        mark = pytest.mark.parametrize("check", [parameter(check) for check in found])
+        mark = pytest.mark.parametrize("check", [*(parameter(check) for check in found), *exempt])
         decorated: TestFunction = mark(test)
         return decorated
 
     return decorate
 
 
-def _of_rig(rig: Rig) -> list[CheckFunction]:
-    of_creepage = rig_checks.OF_CREEPAGE if rig.creepage in rig_checks.varied(rig) else ()
-    return [*rig_checks.CHECKS, *of_creepage, *COMMON]
+def validate_expected(subject: str, model: Model, found: Iterable[Check], expected: Mapping[str, str]) -> None:
+    """Raise an `InputError` for an expected failure that is not one of the checks found, or has no reason.
+
+    Parameters
+    ----------
+    subject : str
+        What the user wrote, to begin the message.
+    """
+    names = [check.name for check in found]
+    for name, reason in expected.items():
+        if name not in names:
+            raise InputError(f"{subject}: no check of '{model.name}' is called '{name}'{did_you_mean(name, names)}")
+        if not reason.strip():
+            raise InputError(f"{subject}: the expected failure of '{name}' has no reason")
 
 
-def _of_law(law: WearLaw) -> list[CheckFunction]:
+class _Shape:
+    """Runs the checks of one model, and none of them if what it returns has a wrong shape."""
+
+    def __init__(self, model: Model, functions: Iterable[CheckFunction]) -> None:
+        self.model = model
+        self.of_shape = next((function for function in functions if function in OF_SHAPES), None)
+
+    def run(self, function: Callable[..., None]) -> None:
+        """Run a check on a new instance of the model; a round trip has its own."""
+        if function is self.of_shape and self.failure is not None:
+            raise self.failure
+        if self.failure is not None and not isinstance(self.failure, ModelRaisedError):
+            raise NotRunError(f"not run, since the model returns a wrong shape: {self.failure}")
+        if inspect.ismethod(function):
+            function()
+        elif function is not self.of_shape:
+            function(self.model.model_copy())
+
+    @cached_property
+    def failure(self) -> AssertionError | None:
+        """The failure of the check of shapes, which is run once, or None."""
+        try:
+            if self.of_shape is not None:
+                self.of_shape(self.model.model_copy())
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
+            failure = as_failure(error)
+            failure.__cause__ = None if failure is error else error
+            return failure
+        return None
+
+
+def _of(model: Model) -> tuple[list[CheckFunction], list[CheckFunction]]:
+    """Return the checks of models of this kind, and those that do not apply to the model."""
+    if isinstance(model, Rig):
+        return _of_rig(model)
+    if isinstance(model, Law):
+        return _of_patch_law(model) if model.outcome.of == "patch" else _of_law(model)
+    if isinstance(model, Stage):
+        return [*stage_checks.CHECKS, *COMMON], []
+    if isinstance(model, ContactModel):
+        return _of_contact_model(model)
+    raise InputError(
+        f"checks: needs a rig, a contact model, a stage or a law, such as wl.wear_law('usfd'); got {model!r}"
+    )
+
+
+def _of_rig(rig: Rig) -> tuple[list[CheckFunction], list[CheckFunction]]:
+    idle = [] if rig.creepage in rig_checks.varied(rig) else [*rig_checks.OF_CREEPAGE]
+    return [*rig_checks.CHECKS, *rig_checks.OF_CREEPAGE, *COMMON], idle
+
+
+def _of_patch_law(law: Law) -> tuple[list[CheckFunction], list[CheckFunction]]:
+    idle = [law_shape.rate_is_never_negative] if law.outcome.signed else []
+    return [*patch_laws.CHECKS, *law_shape.OF_ANY_LAW, *COMMON], idle
+
+
+def _of_law(law: Law) -> tuple[list[CheckFunction], list[CheckFunction]]:
     idle = [*(law_checks.OF_SEVERAL_NODES if law.scale == "patch" else law_checks.OF_THE_PATCH)]
+    if not isinstance(law, WearLaw):
+        idle += [*law_shape.OF_WEAR, declarations.band_is_ordered]
+        idle += [law_shape.no_slip_no_wear] * (not law.zero_in_stick)
+        idle += [law_shape.rate_is_never_negative] * law.outcome.signed
     if law.breakpoints(law.numbers) is None:
         idle += law_branches.OF_BREAKPOINTS
     if law.ramps(law.numbers) is None:
         idle += law_branches.OF_RAMPS
     functions = [*law_shape.CHECKS, *law_checks.CHECKS, *law_branches.CHECKS]
-    return [
-        *(function for function in functions if function not in idle),
-        *COMMON,
-        *acceleration.CHECKS,
-        *declarations.OF_LAWS,
-    ]
+    return [*functions, *COMMON, *acceleration.CHECKS, *declarations.OF_LAWS], idle
 
 
-def _of_contact_model(model: ContactModel) -> list[CheckFunction]:
-    claims = [*contact_limits.CLAIMS.items(), *contact_energy.CLAIMS.items()]
-    idle = [function for claim, of in claims if claim in model.exemptions for function in of]
+def _of_contact_model(model: ContactModel) -> tuple[list[CheckFunction], list[CheckFunction]]:
+    idle: list[CheckFunction] = []
     if "line" not in model.geometries():
         idle += [*contact_checks.OF_LINES, *contact_limits.OF_LINES]
     if "ellipse" not in model.geometries():
         idle += [*contact_checks.OF_ELLIPSES, *contact_force.OF_ELLIPSES, *contact_limits.OF_ELLIPSES]
         idle += contact_energy.OF_REFINED_STRIPS
+    if model.geometries() == ("line",):
+        idle += [*contact_nodes.OF_STRIPS, *contact_force.OF_STRIPS]
     if model.refined() is None:
         idle += [*contact_energy.OF_REFINED, *contact_energy.OF_REFINED_STRIPS]
-    if type(model).on_strips is ContactModel.on_strips:
+    if type(model).on_strips is ContactModel.on_strips or "ellipse" not in model.geometries():
         idle += contact_energy.OF_STRIPS
     if not isinstance(model, LineContactModel):
-        idle += [*contact_energy.OF_FIELDS, *contact_fields.CHECKS]
+        idle += [*contact_energy.OF_FIELDS, *contact_fields.OF_FIELDS]
     else:
         if type(model).crossings is LineContactModel.crossings:
             idle += contact_fields.OF_CROSSINGS
@@ -183,18 +291,14 @@ def _of_contact_model(model: ContactModel) -> list[CheckFunction]:
             idle += contact_fields.OF_EXCESS
     functions: list[CheckFunction] = [
         *contact_checks.CHECKS,
+        *contact_nodes.CHECKS,
         *contact_force.CHECKS,
-        *(function for _, of in claims for function in of),
+        *dict.fromkeys(function for of in CLAIMS.values() for function in of),  # one check may belong to two claims
         *contact_energy.CHECKS,
         *contact_fields.CHECKS,
     ]
-    return [
-        *(function for function in functions if function not in idle),
-        *COMMON,
-        *acceleration.CHECKS,
-        *declarations.OF_CONTACT_MODELS,
-    ]
+    return [*functions, *COMMON, *acceleration.CHECKS], idle
 
 
-def _check(function: CheckFunction, model: Model) -> Check:
-    return Check(function.__name__, inspect.getdoc(function) or "", lambda: function(model))
+def _check(name: str, function: Callable[..., None], run: Callable[[], None]) -> Check:
+    return Check(name, inspect.getdoc(function) or "", run)

@@ -8,10 +8,8 @@ from functools import partial
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import Contact
-from wearlaw.models.functions import VARIABLES
-from wearlaw.models.law import BreakpointMap
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.contact.contact import PATCH_VARIABLES, Contact
+from wearlaw.models.law import BreakpointMap, Law
 from wearlaw.testing.bisection import Function, Indices, find_jumps, find_kinks, lost_digits
 from wearlaw.testing.examples import SAME, assert_close
 from wearlaw.testing.sampling import aimed, at_nodes, between, e_folds, forward, random_contacts, retotalled, rows
@@ -33,13 +31,13 @@ STEP = 1e-12
 class _Paths:
     """Paths from one random contact to another, straight in the logarithm of every value."""
 
-    def __init__(self) -> None:
-        self.first, self.second = (forward(random_contacts(PATHS, seed=seed, loaded=True)) for seed in (1, 2))
+    def __init__(self, law: Law) -> None:
+        self.first, self.second = (forward(random_contacts(PATHS, seed=seed, loaded=True, law=law)) for seed in (1, 2))
 
     def contact(self, index: Indices, share: Array) -> Contact:
         return between(rows(self.first, index), rows(self.second, index), share)
 
-    def rate(self, law: WearLaw) -> Function:
+    def rate(self, law: Law) -> Function:
         return lambda index, share: law.rate(self.contact(index, share), law.numbers)[:, 0]
 
     def ends(self, path: int, low: float, high: float) -> tuple[Contact, Contact]:
@@ -48,9 +46,9 @@ class _Paths:
         return start, end
 
 
-def rate_jumps_only_where_declared(law: WearLaw) -> None:
+def rate_jumps_only_where_declared(law: Law) -> None:
     """Between any two contacts the rate is continuous, except where a variable passes a value in `jumps`."""
-    paths, jumps = _Paths(), law.jumps(law.numbers)
+    paths, jumps = _Paths(law), law.jumps(law.numbers)
     for path, share, before, behind in find_jumps(paths.rate(law), PATHS):
         values, _ = paths.ends(path, share, share)
         assert _declared(jumps, values, values), (
@@ -58,14 +56,14 @@ def rate_jumps_only_where_declared(law: WearLaw) -> None:
         )
 
 
-def rate_has_kinks_only_where_declared(law: WearLaw) -> None:
+def rate_has_kinks_only_where_declared(law: Law) -> None:
     """Where a law declares its `breakpoints`, its slope is continuous everywhere else.
 
     A kink is found if the slope changes by a thousandth of the rate per e-fold of the variable in which it lies: on
     many paths that variable has more than a fifth of the e-folds of all values, and half of the change shows. What
     turns smoothly over less than a ten-thousandth of a variable counts as a kink too.
     """
-    paths, breakpoints = _Paths(), law.breakpoints(law.numbers) or {}
+    paths, breakpoints = _Paths(law), law.breakpoints(law.numbers) or {}
     for path, low, high, change in find_kinks(paths.rate(law), KINK * e_folds(paths.first, paths.second)):
         start, end = paths.ends(path, low, high)
         assert _declared(breakpoints, start, end), (
@@ -85,12 +83,12 @@ def _declared(values: BreakpointMap, start: Contact, end: Contact) -> bool:
 
 
 def _at(contact: Contact) -> str:
-    return ", ".join(f"{name} {float(at_nodes(contact, name)[0, 0]):.6g}" for name in VARIABLES) + " in SI units"
+    return ", ".join(f"{name} {float(at_nodes(contact, name)[0, 0]):.6g}" for name in PATCH_VARIABLES) + " in SI units"
 
 
-def declared_jumps_exist(law: WearLaw) -> None:
+def declared_jumps_exist(law: Law) -> None:
     """At every value in `jumps` there is a contact at which the rate jumps."""
-    contact = forward(random_contacts(512, seed=3))
+    contact = forward(random_contacts(512, seed=3, law=law))
     for name, jumps in law.jumps(law.numbers).items():
         for jump in jumps:
             below, above = (law.rate(aimed(contact, name, jump * (1.0 + side * STEP)), law.numbers) for side in (-1, 1))
@@ -98,7 +96,7 @@ def declared_jumps_exist(law: WearLaw) -> None:
             assert step.any(), f"`jumps` declares a jump at {name} = {jump:g}, but the rate is continuous there"
 
 
-def jumps_are_breakpoints(law: WearLaw) -> None:
+def jumps_are_breakpoints(law: Law) -> None:
     """A declared jump is also a breakpoint, where the integration puts the border of a panel."""
     breakpoints = law.breakpoints(law.numbers) or {}
     for name, jumps in law.jumps(law.numbers).items():
@@ -106,9 +104,9 @@ def jumps_are_breakpoints(law: WearLaw) -> None:
         assert not missing, f"`jumps` has {name} = {sorted(missing)}, which `breakpoints` lacks"
 
 
-def precision_is_double(law: WearLaw) -> None:
+def precision_is_double(law: Law) -> None:
     """The rate is a float64 and exact to rounding, in steps of 1e-8 of each value of the contact."""
-    contact = random_contacts(256, seed=4)
+    contact = random_contacts(256, seed=4, law=law)
     rate = law.rate(contact, law.numbers)
     assert rate.dtype == np.float64, f"the rate is of type {rate.dtype}, not float64"
     for name in ("pressure", "traction", "slip", "rolling_speed", "density"):
@@ -119,11 +117,11 @@ def precision_is_double(law: WearLaw) -> None:
     )
 
 
-def _rate_with(law: WearLaw, contact: Contact, name: str, factor: float) -> Array:
+def _rate_with(law: Law, contact: Contact, name: str, factor: float) -> Array:
     return law.rate(retotalled(contact, **{name: getattr(contact, name) * factor}), law.numbers)
 
 
-def ramps_sum_to_the_rate(law: WearLaw) -> None:
+def ramps_sum_to_the_rate(law: Law) -> None:
     """The ramps are the law: Σ slope · max(q·s - threshold, 0), with thresholds at zero or at breakpoints."""
     ramps = law.ramps(law.numbers) or ()
     declared = np.array((law.breakpoints(law.numbers) or {}).get("wear_index_density", ()))
@@ -132,7 +130,7 @@ def ramps_sum_to_the_rate(law: WearLaw) -> None:
         assert threshold >= 0, f"`ramps` has a negative threshold, {threshold:g}"
         at_breakpoint = (np.abs(declared - threshold) <= SAME * threshold).any()
         assert threshold == 0 or at_breakpoint, f"`ramps` has a threshold at {threshold:g}, which `breakpoints` lacks"
-    contact = random_contacts(512)
+    contact = random_contacts(512, law=law)
     for near in (None, *(threshold for threshold, _ in ramps if threshold > 0)):
         if near is not None:
             contact = aimed(contact, "wear_index_density", near * np.logspace(-1, 1, 512)[:, None])

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import itertools
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,32 +14,54 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.errors import CompositionError, WearlawError
-from wearlaw.models.law import Numbers
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law, Numbers
 from wearlaw.settings.parameters import changed, number_like, numbers
-from wearlaw.testing.examples import SAME, assert_close, for_each
-from wearlaw.testing.law_shape import contacts_for
-from wearlaw.testing.sampling import aimed, arrays_of, at_nodes, forward, random_contacts, retotalled, rows
+from wearlaw.testing.examples import SAME, assert_close
+from wearlaw.testing.law_contacts import borders, for_each_contact, for_each_of_nodes
+from wearlaw.testing.law_shape import with_slip_across
+from wearlaw.testing.sampling import NODE_FIELDS, aimed, arrays_of, at_nodes, forward, random_contacts, retotalled, rows
+from wearlaw.units.quantities import Quantity
 
 STEPS = (1.0, 1.001, 0.999)
 """Factors of a parameter at one operating point after the other; small, since laws refuse parameters out of order."""
 
 
-def order_of_nodes_does_not_matter(law: WearLaw) -> None:
-    """Each node keeps its rate when the nodes are listed in another order."""
+def order_of_nodes_does_not_matter(law: Law) -> None:
+    """Each node keeps its rate when the nodes are listed in another order, and each strip its rates."""
 
     def examine(contact: Contact) -> None:
-        turned = _nodes(contact, lambda array: array[..., ::-1])
-        assert_close(
-            law.rate(turned, law.numbers)[..., ::-1],
-            law.rate(contact, law.numbers),
-            "the rate with the nodes in reverse order",
-        )
+        for axis in _axes(contact):
+            count = contact.pressure.shape[axis]
+            for order in (np.arange(count)[::-1], np.random.default_rng(count).permutation(count)):
+                listed = partial(np.take, indices=order, axis=axis)
+                assert_close(
+                    law.rate(_nodes(contact, listed, axis), law.numbers),
+                    listed(law.rate(contact, law.numbers)),
+                    f"the rate with the nodes in the order {order.tolist()}",
+                )
 
-    for_each(contacts_for(law), examine)
+    for_each_of_nodes(law, examine)
 
 
-def batching_does_not_matter(law: WearLaw) -> None:
+def position_does_not_matter(law: Law) -> None:
+    """The rate is the same if the nodes lie elsewhere, and pressure, traction and slip are as before.
+
+    A law that branches at positions `x` is not checked.
+    """
+    if any(name == "x" for name, _ in borders(law)):
+        return
+
+    def examine(contact: Contact) -> None:
+        rate = law.rate(contact, law.numbers)
+        for message, factor, shift in (("at zero", 0.0, 0.0), ("mirrored", -1.0, 0.0), ("shifted", 1.0, 1e-3)):
+            for name in ("x", "y") if contact.on_strips else ("x",):
+                moved = contact.replaced(**{name: factor * getattr(contact, name) + shift})
+                assert_close(law.rate(moved, law.numbers), rate, f"the rate with {name} {message}")
+
+    for_each_contact(law, examine)
+
+
+def batching_does_not_matter(law: Law) -> None:
     """One operating point at a time gives the same as all at once."""
 
     def examine(contact: Contact) -> None:
@@ -46,52 +70,91 @@ def batching_does_not_matter(law: WearLaw) -> None:
             alone = law.rate(rows(contact, [point]), law.numbers)[0]
             assert_close(together[point], alone, f"the rate at operating point {point} of a batch")
 
-    for_each(contacts_for(law), examine)
+    for_each_contact(law, examine)
 
 
-def splitting_a_node_does_not_matter(law: WearLaw) -> None:
-    """Two halves of a node wear at the rate of the whole."""
+def splitting_a_node_does_not_matter(law: Law) -> None:
+    """Two halves of a node wear at the rate of the whole, and so do two halves of a strip."""
 
     def examine(contact: Contact) -> None:
-        halves = _nodes(contact, lambda array: np.repeat(array, 2, axis=-1))
-        halves = dataclasses.replace(halves, area=0.5 * halves.area)
-        rate = np.repeat(law.rate(contact, law.numbers), 2, axis=-1)
-        assert_close(law.rate(halves, law.numbers), rate, "the rate of the halves of a node")
+        for axis in _axes(contact):
+            halved = partial(np.repeat, repeats=2, axis=axis)
+            halves = _nodes(contact, halved, axis)
+            width = 0.5 * halves.strip_width if _of_strips(contact, axis) else halves.strip_width
+            halves = halves.replaced(area=0.5 * halves.area, strip_width=width)
+            rate = halved(law.rate(contact, law.numbers))
+            assert_close(law.rate(halves, law.numbers), rate, "the rate of the halves of a node")
 
-    for_each(contacts_for(law), examine)
+    for_each_of_nodes(law, examine)
 
 
-def nodes_without_area_do_not_matter(law: WearLaw) -> None:
+def nodes_without_area_do_not_matter(law: Law) -> None:
     """Nodes that stand for no area, as in a zone that has shrunk to nothing, leave the other rates as they are."""
 
     def examine(contact: Contact) -> None:
-        more = _nodes(contact, lambda array: np.concatenate([array, array[..., :1] * 0.5], axis=-1))
-        area = np.concatenate([contact.area, np.zeros_like(contact.area[..., :1])], axis=-1)
-        rate = law.rate(dataclasses.replace(more, area=area), law.numbers)[..., :-1]
-        assert_close(rate, law.rate(contact, law.numbers), "the rate beside a node without area")
+        axis = _axes(contact)[0]
+        first = partial(np.take, indices=[0], axis=axis)
+        more = _nodes(contact, lambda array: np.concatenate([array, first(array) * 0.5], axis=axis), axis)
+        area = np.concatenate([contact.area, np.zeros_like(first(contact.area))], axis=axis)
+        rate = law.rate(more.replaced(area=area), law.numbers)
+        kept = np.take(rate, range(contact.area.shape[axis]), axis=axis)
+        assert_close(kept, law.rate(contact, law.numbers), "the rate beside a node without area")
 
-    for_each(contacts_for(law), examine)
+    for_each_of_nodes(law, examine)
 
 
-def each_node_wears_by_itself(law: WearLaw) -> None:
+def each_node_wears_by_itself(law: Law) -> None:
     """The rate at a node depends on its own values and the totals of the patch, not on its neighbours."""
 
     def examine(contact: Contact) -> None:
         rate = law.rate(contact, law.numbers)
-        for node in range(rate.shape[-1]):
-            names = ("pressure", "traction", "slip", "traction_bound", "x")
-            own = {name: getattr(contact, name)[..., node : node + 1] for name in names}
-            alike = {name: np.broadcast_to(value, rate.shape).copy() for name, value in own.items()}
-            found = law.rate(contact.replaced(**alike), law.numbers)[..., node]
-            assert_close(found, rate[..., node], f"the rate at node {node} among others like it")
+        names = [name for name in NODE_FIELDS if name != "area"]
+        of_nodes = rate.shape[contact.rolling_speed.ndim :]
+        for node in np.ndindex(of_nodes):
+            at: Any = (..., *(slice(index, index + 1) for index in node))
+            alike = {name: np.broadcast_to(getattr(contact, name)[at], rate.shape).copy() for name in names}
+            found = law.rate(contact.replaced(**alike), law.numbers)[at]
+            assert_close(found, rate[at], f"the rate at node {_named(node)} among others like it")
 
-    for_each(contacts_for(law), examine)
+    for_each_of_nodes(law, examine)
 
 
-def scale_is_respected(law: WearLaw) -> None:
+def strips_wear_as_lines_do(law: Law) -> None:
+    """Nodes on strips wear at the rate of the same nodes on a line, where traction and slip are parallel to x."""
+
+    def examine(contact: Contact) -> None:
+        if not contact.on_strips:
+            return
+        along = with_slip_across(contact, 0.0)
+        nodes = ("pressure", "traction", "slip", "traction_bound", "area", "x")
+        totals = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
+        values = {name: getattr(along, name).reshape(contact.rolling_speed.size, -1) for name in nodes}
+        line = Contact(**values, **{name: getattr(along, name) for name in totals}, problem=contact.problem)
+        rate = law.rate(along, law.numbers).reshape(line.pressure.shape)
+        assert_close(rate, law.rate(line, law.numbers), "the rate on strips, against a line")
+
+    for_each_of_nodes(law, examine)
+
+
+def _named(node: tuple[int, ...]) -> str:
+    """Return the index of a node as text."""
+    return str(node[0]) if len(node) == 1 else f"{node[0]} of strip {node[1]}"
+
+
+def _of_strips(contact: Contact, axis: int) -> bool:
+    """Return whether an axis is that of the strips."""
+    return contact.on_strips and axis == -1
+
+
+def _axes(contact: Contact) -> tuple[int, ...]:
+    """Return the axes of nodes; the first of them runs along a strip."""
+    return (-2, -1) if contact.on_strips else (-1,)
+
+
+def scale_is_respected(law: Law) -> None:
     """A law of the patch means is refused on cells, and was not fitted to cells."""
     try:
-        _ = random_contacts(2, nodes=3) | law
+        _ = random_contacts(2, nodes=3, law=law) | law
     except CompositionError:
         pass
     else:
@@ -100,7 +163,7 @@ def scale_is_respected(law: WearLaw) -> None:
     assert calibration is None or calibration.scale == "patch", "its calibration is for cells, its scale 'patch'"
 
 
-def is_monotone_as_declared(law: WearLaw) -> None:
+def is_monotone_as_declared(law: Law) -> None:
     """The rate never falls when a variable in `monotone_in` grows, from anywhere to anywhere, over all decades.
 
     The wear-index density grows by the traction and by the slip.
@@ -123,9 +186,9 @@ GROWN_BY = {"wear_index_density": ("traction", "slip")}
 """Fields of a contact that are raised to raise a variable; others are raised directly."""
 
 
-def _many(law: WearLaw, points: int = 512) -> Contact:
+def _many(law: Law, points: int = 512) -> Contact:
     """Return many contacts of one node, a third of them at the breakpoints of the law."""
-    contact = forward(random_contacts(points))
+    contact = forward(random_contacts(points, law=law))
     targets = [(name, value) for name, values in (law.breakpoints(law.numbers) or {}).items() for value in values]
     for number, (name, value) in enumerate(targets):
         chosen = np.arange(points) % (3 * len(targets)) == number
@@ -154,40 +217,56 @@ def _where(chosen: Array, first: Contact, second: Contact) -> Contact:
     return first.replaced(**{name: mixed(name) for name in arrays_of(first)})
 
 
-def _nodes(contact: Contact, change: Callable[[Array], Array]) -> Contact:
-    """Return the contact with its arrays of nodes changed and its totals kept."""
-    names = ("pressure", "traction", "slip", "traction_bound", "area", "x")
+def _nodes(contact: Contact, change: Callable[[Array], Array], axis: int) -> Contact:
+    """Return the contact with its arrays of nodes changed along an axis, and its totals kept."""
+    names = (*NODE_FIELDS, "strip_width") if _of_strips(contact, axis) else NODE_FIELDS
     return contact.replaced(**{name: change(getattr(contact, name)) for name in names})
 
 
-def parameters_may_vary(law: WearLaw) -> None:
+def parameters_may_vary(law: Law) -> None:
     """A number that varies from point to point gives the same rate, breakpoints and ramps as a law for each value."""
     law = law.explicit()
+    of_each = laws_of_values(law)
+
+    def with_values(name: str, node_axes: int) -> Numbers:
+        return {**law.numbers, name: (law.numbers[name] * np.array(STEPS)).reshape(-1, *[1] * node_axes)}
+
+    for name, laws in of_each.items():
+        for node_axes in (1, 2):
+            borders_of_points = _borders(law, with_values(name, node_axes))
+            for point, one in laws.items():
+                for found, expected, of in zip(borders_of_points, _borders(one, one.numbers), BORDERS, strict=True):
+                    assert_close(_at(found, point), _at(expected, 0), f"the {of} with {name} for each point")
 
     def examine(contact: Contact) -> None:
-        batch = rows(contact, [0] * len(STEPS))
-        for name, number in numbers(law).items():
-            values = law.numbers[name] * np.array(STEPS)
-            p: Numbers = {**law.numbers, name: values[:, None]}
-            rate = law.rate(batch, p)
+        batch, alone = rows(contact, [0] * len(STEPS)), rows(contact, [0])
+        for name, laws in of_each.items():
+            rate = law.rate(batch, with_values(name, batch.pressure.ndim - 1))
             assert np.shape(rate) == batch.pressure.shape, f"rates of shape {np.shape(rate)} when {name} varies"
-            for point, value in enumerate(values):
-                try:
-                    one = changed(law, {name: number_like(number, float(value))})
-                except WearlawError:  # not a value that the law takes
-                    continue
-                what = f"with {name} for each point"
-                assert_close(rate[point], one.rate(rows(batch, [point]), one.numbers)[0], f"the rate {what}")
-                for found, expected, of in zip(_borders(law, p), _borders(one, one.numbers), BORDERS, strict=True):
-                    assert_close(_at(found, point), _at(expected, 0), f"the {of} {what}")
+            for point, one in laws.items():
+                assert_close(rate[point], one.rate(alone, one.numbers)[0], f"the rate with {name} for each point")
 
-    for_each(contacts_for(law), examine)
+    for_each_contact(law, examine)
+
+
+def laws_of_values(law: Law) -> dict[str, dict[int, Law]]:
+    """Return for each number of a law the laws with that number at each of `STEPS`, by the index of the step."""
+    return {name: _of_values(law, name, number) for name, number in numbers(law).items()}
+
+
+def _of_values(law: Law, name: str, number: Quantity | float) -> dict[int, Law]:
+    """Return the laws with a number at each of `STEPS`, without values that the law does not take."""
+    laws = {}
+    for point, value in enumerate(law.numbers[name] * np.array(STEPS)):
+        with contextlib.suppress(WearlawError):
+            laws[point] = changed(law, {name: number_like(number, float(value))})
+    return laws
 
 
 BORDERS = ("breakpoints", "ramps")
 
 
-def _borders(law: WearLaw, p: Numbers) -> tuple[list[Any], list[Any]]:
+def _borders(law: Law, p: Numbers) -> tuple[list[Any], list[Any]]:
     """Return the numbers of breakpoints and of ramps, each in one list."""
     breakpoints, ramps = law.breakpoints(p) or {}, law.ramps(p) or ()
     return [value for name in sorted(breakpoints) for value in breakpoints[name]], [n for ramp in ramps for n in ramp]
@@ -204,10 +283,18 @@ OF_SEVERAL_NODES = (
     splitting_a_node_does_not_matter,
     nodes_without_area_do_not_matter,
     each_node_wears_by_itself,
+    strips_wear_as_lines_do,
 )
 """Checks of laws that are not of the whole patch."""
 
 OF_THE_PATCH = (scale_is_respected,)
 """Checks of laws of the whole patch."""
 
-CHECKS = (parameters_may_vary, batching_does_not_matter, *OF_SEVERAL_NODES, *OF_THE_PATCH, is_monotone_as_declared)
+CHECKS = (
+    parameters_may_vary,
+    batching_does_not_matter,
+    position_does_not_matter,
+    *OF_SEVERAL_NODES,
+    *OF_THE_PATCH,
+    is_monotone_as_declared,
+)

@@ -1,6 +1,7 @@
 """The shapes of a contact patch, as the checks see them: what to draw, what saturates, and how exact a model is.
 
-A check that says the same of all shapes takes the model and a shape, and is marked `on_each_shape`.
+A check that says the same of several shapes takes the model and a shape, and is marked `on_each_shape` or
+`on_patches_of_strips`.
 
 Tolerances on a line: a position is exact to the rounding of the half-width a, so an integral over a slip zone is exact
 to rounding over the zone's share of the patch. Models with nodes of their own, whose sums are only as exact as their
@@ -26,7 +27,10 @@ from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.models.contact_model import QUADRATURE, Claim, ContactModel
 from wearlaw.models.line_contact_model import LineContactModel
-from wearlaw.testing.examples import SAME, SUM, as_failure, assert_close
+from wearlaw.models.stage import Stage
+from wearlaw.numerics.staged import staged
+from wearlaw.plugins import loader
+from wearlaw.testing.examples import SAME, SUM, assert_close, beginning
 from wearlaw.testing.problems import (
     at_magnitude,
     creeping,
@@ -442,21 +446,31 @@ def _scaled(problem: Problem, length: float, modulus: float, friction: float, cr
     return creeping(other, creepage, creepage, creepage / length)
 
 
-def on_each_shape(check: Callable[[ContactModel, Shape], None]) -> Callable[[ContactModel], None]:
-    """Return the check that runs on each shape which the model solves, and begins its message with that shape."""
+def of_stage(stage: Stage, points: int) -> list[tuple[ContactModel, Problem]]:
+    """Return a stage around contact models of wearlaw, each with random problems of a shape that the model solves."""
+    models = {"line": "exact", "ellipse": "fastsim", "strips": "fastsim"}
+    return [(staged(loader.contact_model(models[shape.geometry]), (stage,)), shape.random(points)) for shape in SHAPES]
 
-    @functools.wraps(check)
-    def on_all(model: ContactModel) -> None:
-        for shape in SHAPES:
-            if shape.geometry not in model.geometries():
-                continue
-            try:
-                check(model, shape)
-            except KeyboardInterrupt:
-                raise
-            except BaseException as error:
-                failure = as_failure(error)
-                failure.args = (f"{shape.where}: {failure}",)
-                raise failure from (None if failure is error else error)
 
-    return on_all
+def on_shapes(*shapes: Shape) -> Callable[[Callable[[ContactModel, Shape], None]], Callable[[ContactModel], None]]:
+    """Return a decorator that runs a check on those of these shapes which the model solves.
+
+    Its messages begin with the shape.
+    """
+
+    def decorate(check: Callable[[ContactModel, Shape], None]) -> Callable[[ContactModel], None]:
+        @functools.wraps(check)
+        def on_all(model: ContactModel) -> None:
+            for shape in shapes:
+                if shape.geometry not in model.geometries():
+                    continue
+                with beginning(f"{shape.where}: "):
+                    check(model, shape)
+
+        return on_all
+
+    return decorate
+
+
+on_each_shape = on_shapes(*SHAPES)
+on_patches_of_strips = on_shapes(ELLIPSE, PATCH)

@@ -18,13 +18,14 @@ from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry
 from wearlaw.errors import WearlawError
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
+from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.testing.examples import SAME, assert_close
 from wearlaw.testing.problems import TWIN_DISC, WHEEL_RAIL
 from wearlaw.testing.rig_checks import values_of, varied
-from wearlaw.testing.sampling import EPS, random_contacts
-from wearlaw.testing.shapes import SHAPES
+from wearlaw.testing.sampling import EPS, random_contacts, with_problem
+from wearlaw.testing.shapes import SHAPES, of_stage
 from wearlaw.units.quantities import Q
 from wearlaw.units.registry import application_registry
 
@@ -70,8 +71,10 @@ def _near(model: Model, name: str, value: Any) -> Iterator[Model]:
 def _computed(model: Model) -> Array:
     if isinstance(model, Rig):
         return _made(model, dict(model.example))
-    if isinstance(model, WearLaw):
-        return model.rate(random_contacts(POINTS), model.numbers)
+    if isinstance(model, Law):
+        return model.rate(random_contacts(POINTS, law=model), model.numbers)
+    if isinstance(model, Stage):
+        return np.stack([staged.solve(problem).tangential_force for staged, problem in of_stage(model, POINTS)])
     assert isinstance(model, ContactModel)
     return np.stack(
         [model.solve(shape.random(POINTS)).tangential_force for shape in SHAPES if shape.geometry in model.geometries()]
@@ -86,8 +89,10 @@ def units_of_conditions_do_not_matter(model: Model) -> None:
     if isinstance(model, Rig):
         _compare_conditions(model)
         return
-    if isinstance(model, WearLaw):
-        _compare(_contacts(), lambda given: model.rate(Contact.from_arrays(**given), model.numbers), OF_CONTACTS)
+    if isinstance(model, Law):
+        _compare(_contacts(), lambda given: _rate(model, given), OF_CONTACTS)
+        return
+    if isinstance(model, Stage):  # it sees the same problem whatever the units
         return
     assert isinstance(model, ContactModel)
     for rig, loads, creepages in (given for geometry, given in GIVEN.items() if geometry in model.geometries()):
@@ -118,6 +123,10 @@ def _compare_conditions(rig: Rig) -> None:
 def _solved(pipeline: Any, given: dict[str, Any]) -> Array:
     solution = pipeline(**given, friction_coefficient=0.46)
     return np.stack([solution.tangential_force.m_as("N"), solution.mean_slip.m_as("")])
+
+
+def _rate(law: Law, given: dict[str, Any]) -> Array:
+    return law.rate(with_problem(Contact.from_arrays(**given), law), law.numbers)
 
 
 def _contacts() -> Values:

@@ -62,6 +62,9 @@ VARIABLES: Mapping[str, Variable] = {
     "friction_coefficient": Variable("", "friction coefficient", "Friction coefficient", "μ"),
     "traction_coefficient": Variable("", "traction coefficient T/N", "Tangential over normal force", "T/N"),
     "rolling_speed": Variable("m/s", "rolling speed", "Rolling speed", "V"),
+    "rolled_distance": Variable(
+        "km", "distance rolled", "Distance that the bodies have rolled since they were new", "", "not negative"
+    ),
     # bodies and patch
     "a": Variable("mm", "half length of the patch a", "Half the patch's length in the rolling direction", "a"),
     "b": Variable("mm", "half width of the patch b", "Half the patch's width across the rolling direction", "b"),
@@ -151,7 +154,7 @@ VARIABLES: Mapping[str, Variable] = {
         WEAR_RATE, "wear rate high", "Wear rate at the high end of the law's published range", "", "not negative"
     ),
     "wear_rate_error": Variable(
-        WEAR_RATE, "wear rate error", "Estimate of the numerical error in `wear_rate`", "", "not negative"
+        WEAR_RATE, "wear rate error", "Estimate of the error in `wear_rate`", "", "not negative"
     ),
     "wear_rate_uncertainty": Variable(
         WEAR_RATE, "wear rate uncertainty", "Standard uncertainty of a measured wear rate"
@@ -161,7 +164,7 @@ VARIABLES: Mapping[str, Variable] = {
 
 GIVEN = (
     *("a", "b", "area", "track_width", "relative_radius", "shear_modulus", "density", "rolling_speed"),
-    *("frictional_heat", "wear_rate_uncertainty"),
+    *("rolled_distance", "frictional_heat", "wear_rate_uncertainty"),
 )
 """Variables that are inputs only, never results."""
 

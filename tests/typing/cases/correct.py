@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, assert_type
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, assert_type
 
 import numpy as np
 
@@ -82,3 +83,118 @@ class Roller(wl.Rig):
 
 rolled = Roller() | wl.contact_model("fastsim") | wl.wear_law("kth")
 assert_type(rolled(mass="20 kg", creepage="1 %"), wl.Prediction)
+
+
+class Patch(wl.WearLaw):
+    """A law of the whole patch."""
+
+    name: ClassVar[str] = "patch"
+    source: ClassVar[str] = "made up"
+    scale: ClassVar[Literal["patch", "any"]] = "patch"
+    monotone_in = ("wear_index",)
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return p["slope"] * contact.wear_index_density
+
+    slope: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = Q(6, "ug/m/N")
+    """A quantity in Python, so that a default or an argument is one, not a text."""
+
+
+Patch(slope=Q(7, "ug/m/N"))
+Patch(slope=wl.parse("7 ug/m/N"))
+
+
+class Half(wl.WearLaw):
+    """A law around another one, whose scale it has."""
+
+    name: ClassVar[str] = "half"
+    source: ClassVar[str] = "made up"
+    monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("wear_index", "slip")
+
+    inner: wl.WearLawField
+
+    @property
+    def scale(self) -> Literal["patch", "any"]:
+        return "patch" if self.inner.scale == "patch" else "any"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return 0.5 * self.inner.rate(contact, self.inner.numbers)
+
+
+class Same(wl.ContactModel):
+    """A contact model around another one."""
+
+    name: ClassVar[str] = "same"
+    source: ClassVar[str] = "made up"
+
+    inner: wl.ContactModelField
+
+    @property
+    def scale(self) -> wl.Scale:
+        return "patch" if self.inner.scale == "patch" else "cells"
+
+    def solve_line(self, problem: wl.Problem) -> wl.Contact:
+        return self.inner.solve_line(problem)
+
+
+class Forces(wl.CreepForceModel):
+    """A model of forces."""
+
+    scale = "patch"
+
+    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
+        return wl.contact_model("polach").creep_forces(problem)
+
+
+class RailSteel(wl.Material):
+    """A material with a property of its own; text for its quantities is accepted as the signature says."""
+
+    hardness: Annotated[wl.Quantity, wl.Unit("GPa")]
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            youngs_modulus: wl.QuantityLike,
+            poisson_ratio: float,
+            density: wl.QuantityLike,
+            shear_yield_stress: wl.QuantityLike | None = None,
+            hardness: wl.QuantityLike,
+        ) -> None: ...
+
+
+hard = RailSteel(youngs_modulus="210 GPa", poisson_ratio=0.3, density="7800 kg/m^3", hardness="3.5 GPa")
+assert_type(hard.hardness, wl.Quantity)
+assert_type(contact(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4).contact.body().material, wl.Material)
+assert_type(wl.material("steel", density="7800 kg/m^3"), wl.Material)
+
+
+@wl.hookimpl
+def wearlaw_rigs() -> Iterable[type[wl.Rig]]:
+    """Return rigs."""
+    return [Roller]
+
+
+@wl.hookimpl
+def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
+    """Return laws."""
+    return [Patch, Half]
+
+
+@wl.hookimpl
+def wearlaw_materials() -> dict[str, wl.Material | type[wl.Material]]:
+    """Return a material and a class."""
+    return {"hard": hard, "RailSteel": RailSteel}
+
+
+@wl.hookimpl(specname="wearlaw_parameter_sets")
+def sets() -> Mapping[str, wl.WearLaw]:
+    """Return a parameter set."""
+    return {"lab": Patch()}
+
+
+@wl.hookimpl(optionalhook=True)
+def wearlaw_of_tomorrow() -> int:
+    """Return what a later version of wearlaw asks for."""
+    return 3

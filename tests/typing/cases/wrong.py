@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import wearlaw as wl
 from wearlaw import Q
 
@@ -59,3 +61,36 @@ rolled = Roller() | model | law
 rolled(mass=20, creepage="1 %")  # expect-error
 rolled(mass="20 kg")  # expect-error
 rolled(mas="20 kg", creepage="1 %")  # expect-error
+
+
+class Law(wl.WearLaw):
+    """A law with a wrong name of a variable."""
+
+    monotone_in = ("wear_indx",)  # expect-error
+
+    slope: Annotated[wl.Quantity, wl.Unit("ug/m/N")]
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return p["slope"] * contact.wear_index_density
+
+
+Law(slope=6.0)  # expect-error
+Law(slope="6 ug/m/N")  # expect-error
+
+
+@wl.hookimpl  # expect-error
+def wearlaw_wear_laws() -> int:
+    """Return no laws."""
+    return 3
+
+
+@wl.hookimpl  # expect-error
+def wearlaw_contact_models() -> list[wl.ContactModel]:
+    """Return instances in place of classes."""
+    return [model]
+
+
+@wl.hookimpl  # expect-error
+def wearlaw_cases() -> dict[str, float]:
+    """Return numbers in place of texts."""
+    return {"case": 1.0}

@@ -79,7 +79,7 @@ def write_plugin(name: str, kind: Kind, parent: Path, licence: Licence = "none")
     OutputError
         If the folder exists, or cannot be written.
     """
-    _check_name(name, kind)
+    _check_name(name)
     folder = parent / f"wearlaw-{name}"
     if os.path.lexists(folder):
         raise OutputError(f"output: '{folder}' exists and is left as it is; choose another parent folder with -o")
@@ -94,7 +94,7 @@ def _class_name(name: str) -> str:
     return "".join(word.capitalize() for word in name.split("_"))
 
 
-def _check_name(name: str, kind: Kind) -> None:
+def _check_name(name: str) -> None:
     if not _NAME.fullmatch(name) or keyword.iskeyword(name):
         raise InputError(
             f"name: must be a Python name of lower-case letters, digits and single underscores between them,"
@@ -105,20 +105,18 @@ def _check_name(name: str, kind: Kind) -> None:
     made = _class_name(name)
     if made.startswith("Test") or made in {"None", "True", "False", "Any", "Check", "ClassVar", "Field", "Mapping"}:
         raise InputError(f"name: {name!r} would name its class {made}, which means something else; choose another")
-    for taker in _takers(name, kind):
+    for taker in _takers(name):
         raise InputError(f"name: '{name}' is taken by {taker}; choose another")
 
 
-def _takers(name: str, kind: Kind) -> Iterator[str]:
+def _takers(name: str) -> Iterator[str]:
     """Yield what already has a name, where a look-up would confuse the two.
 
-    `wearlaw show` and `check` take rigs, contact models and wear laws alike, and a wear law hides the parameter set of
-    its name. Materials and cases are looked up apart. A distribution replaces that of its name.
+    `wearlaw show` and `check` take rigs, contact models, wear laws and parameter sets alike, and a wear law hides the
+    parameter set of its name. Materials and cases are looked up apart. A distribution replaces that of its name.
     """
     found = loader.installed()
-    shelves: list[Shelf[Any]] = [found.wear_laws, found.contact_models, found.rigs]
-    if kind == "wear_law":
-        shelves.append(found.parameter_sets)
+    shelves: list[Shelf[Any]] = [found.wear_laws, found.contact_models, found.rigs, found.parameter_sets]
     for shelf in shelves:
         if name in shelf.providers:
             yield f"the {shelf.kind} of {shelf.origin(name)}"

@@ -15,7 +15,7 @@ class MadeUp(wl.WearLaw):
 
     name: ClassVar[str] = "made_up"
     source: ClassVar[str] = "made up for tests; it fits no material"
-    monotone_in: ClassVar[tuple[str, ...]] = ("wear_index_density",)
+    monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("wear_index_density",)
 
     slope: Slope = Field(default="5 ug/m/N", validate_default=True)
     """Slope below the limit [kg/m/N]."""

@@ -1,0 +1,264 @@
+"""The kit checks stages, and laws of other outcomes than wear: right ones pass, wrong ones are caught."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+import pytest
+from pydantic import Field
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw.testing import checks
+
+
+def failures(model: Any) -> set[str]:
+    """Return the names of the checks that fail, without those of round trips, which take a process each."""
+    found = set()
+    for check in checks(model):
+        if check.name.startswith("round_trip"):
+            continue
+        try:
+            check()
+        except AssertionError:
+            found.add(check.name)
+    return found
+
+
+class Lubricated(wl.Stage):
+    """Friction that falls to a share."""
+
+    name: ClassVar[str] = "lubricated"
+    source: ClassVar[str] = "test"
+    share: float = 0.5
+    """Share of the friction coefficient that is left [-]."""
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        return problem.replaced(friction_coefficient=self.share * problem.friction_coefficient)
+
+
+class Counts(Lubricated):
+    """Friction that falls from call to call."""
+
+    name: ClassVar[str] = "counts"
+    calls: ClassVar[list[int]] = []
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        self.calls.append(1)
+        return problem.replaced(friction_coefficient=problem.friction_coefficient / (1.0 + 0.01 * len(self.calls)))
+
+
+class OfTheBatch(Lubricated):
+    """Friction that depends on the other operating points."""
+
+    name: ClassVar[str] = "of_the_batch"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        share = 1.0 / (1.0 + np.ptp(problem.friction_coefficient))
+        return problem.replaced(friction_coefficient=share * problem.friction_coefficient)
+
+
+class Sided(Lubricated):
+    """Less friction forwards than backwards."""
+
+    name: ClassVar[str] = "sided"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        share = np.where(problem.longitudinal_creepage > 0.0, 0.5, 1.0)
+        return problem.replaced(friction_coefficient=share * problem.friction_coefficient)
+
+
+class Reversed(Lubricated):
+    """Turns the creepages, so that forces drive the creep."""
+
+    name: ClassVar[str] = "reversed"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        return problem.replaced(longitudinal_creepage=-problem.longitudinal_creepage)
+
+    def solve(self, problem: wl.Problem, inner: wl.Solve) -> wl.Contact:
+        contact = inner(self.altered(problem, lambda one: inner(one).forces))
+        return contact.replaced(wear_index=-contact.wear_index)
+
+
+class Forgets(Lubricated):
+    """Returns one operating point only."""
+
+    name: ClassVar[str] = "forgets"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        return problem[:1]
+
+
+class AtRest(Lubricated):
+    """Divides by the creepage."""
+
+    name: ClassVar[str] = "at_rest"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        with np.errstate(all="ignore"):
+            share = problem.longitudinal_creepage / problem.longitudinal_creepage
+        return problem.replaced(friction_coefficient=share * problem.friction_coefficient)
+
+
+@pytest.mark.parametrize("stage", [Lubricated(), wl.patch_mean()], ids=lambda stage: stage.name)
+def test_right_stages_pass(stage: wl.Stage) -> None:
+    assert failures(stage) == set()
+
+
+@pytest.mark.parametrize(
+    ("stage", "caught"),
+    [
+        (Counts(), "calls_agree"),
+        (OfTheBatch(), "points_are_independent"),
+        (Sided(), "opposite_creepages_have_opposite_forces"),
+        (Reversed(), "contact_does_not_gain_energy"),
+        (Forgets(), "pipelines_take_the_contact"),
+        (AtRest(), "contact_is_finite"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else value.name,
+)
+def test_wrong_stages_are_caught(stage: wl.Stage, caught: str) -> None:
+    assert caught in failures(stage)
+
+
+class Damage(wl.Law):
+    """Damage beyond a threshold, with the sign of the traction."""
+
+    name: ClassVar[str] = "damage"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("rcf_damage", unit="", of="patch", signed=True)
+    threshold: Annotated[wl.Quantity, wl.Unit("N")] = Field(default="15 N", validate_default=True)
+    """Threshold of Tγ [N]."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return np.sign(contact.tangential_force) * np.maximum(contact.wear_index - p["threshold"], 0.0)
+
+
+class OfNodes(Damage):
+    """Returns a value for each node."""
+
+    name: ClassVar[str] = "of_nodes"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return contact.wear_index_density
+
+
+class Remembers(Damage):
+    """Grows from call to call."""
+
+    name: ClassVar[str] = "remembers"
+    calls: ClassVar[list[int]] = []
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        self.calls.append(1)
+        return super().rate(contact, p) + len(self.calls)
+
+
+class ReadsItself(Damage):
+    """Reads its own number in place of the one it is given."""
+
+    name: ClassVar[str] = "reads_itself"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return contact.wear_index - self.threshold.m_as("N")
+
+
+class Unsigned(Damage):
+    """States an outcome without sign, but has one."""
+
+    name: ClassVar[str] = "unsigned"
+    outcome = wl.Outcome("rcf_damage", unit="", of="patch")
+
+
+class Summed(Damage):
+    """Sums over the batch."""
+
+    name: ClassVar[str] = "summed"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return contact.wear_index / (contact.wear_index.sum() + 1.0)
+
+
+class Conducting(wl.Material):
+    """A material with a conductivity."""
+
+    conductivity: Annotated[wl.Quantity, wl.Unit("W/m/K")]
+    """Thermal conductivity [W/m/K]."""
+
+
+class Flash(wl.Law):
+    """A temperature of the patch from the frictional power and the material."""
+
+    name: ClassVar[str] = "flash"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("temperature_rise", unit="K", of="patch")
+    example_material: ClassVar[wl.Material | None] = Conducting(**dict(wl.steel()), conductivity=wl.parse("50 W/m/K"))
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        material: Any = contact.body(self.body).material
+        power = contact.wear_index * contact.rolling_speed / contact.patch_area
+        return power * contact.half_width / wl.scalar_si(material.conductivity, "W/m/K")
+
+
+class Power(wl.Law):
+    """Frictional power over area."""
+
+    name: ClassVar[str] = "power"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("heat_flux", unit="W/mm^2", of="area mean")
+    zero_in_stick: ClassVar[bool] = True
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return contact.frictional_power_density
+
+
+class RunningIn(wl.WearLaw):
+    """Wear that falls with the distance rolled."""
+
+    name: ClassVar[str] = "running_in"
+    source: ClassVar[str] = "test"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        share = np.exp(-contact.per_node(contact.rolled_distance) / 2e3)
+        return 1e-9 * (1.0 + share) * contact.wear_index_density
+
+
+class Switch(wl.WearLaw):
+    """Wear that starts at a frictional power density."""
+
+    name: ClassVar[str] = "switch"
+    source: ClassVar[str] = "test"
+    border: Annotated[wl.Quantity, wl.Unit("W/mm^2")] = Field(default="5 W/mm^2", validate_default=True)
+    """Power at which wear starts [W/m²]."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        above = contact.frictional_power_density >= p["border"]
+        return np.where(above, 1e-9 * contact.wear_index_density, 0.0)
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"frictional_power_density": (p["border"],)}
+
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return self.breakpoints(p)
+
+
+@pytest.mark.parametrize("law", [Damage(), Flash(), Power(), RunningIn(), Switch()], ids=lambda law: law.name)
+def test_right_laws_pass(law: wl.Law) -> None:
+    assert failures(law) == set()
+
+
+@pytest.mark.parametrize(
+    ("law", "caught"),
+    [
+        (OfNodes(), "value_has_the_shape_of_the_batch"),
+        (Remembers(), "calls_agree_to_the_bit"),
+        (ReadsItself(), "numbers_may_vary"),
+        (Unsigned(), "rate_is_never_negative"),
+        (Summed(), "patches_are_independent"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else value.name,
+)
+def test_wrong_laws_are_caught(law: wl.Law, caught: str) -> None:
+    assert caught in failures(law)
