@@ -124,12 +124,12 @@ def uncertainty(
 ) -> None:
     """Say how uncertain predictions are: CASE is a case file with tables [uncertainty.NAME].
 
-    Every contact model of the case is paired with every wear law. Written are wear_rates.csv with medians and 95 %
+    Every contact model of the case is paired with every law. Written are wear_rates.csv with medians and 95 %
     intervals, sobol_indices.csv with the share of the variance that each input explains, and a figure of each pair.
     """
     loaded = load_case(case)
     folder = output if output is not None else Path(f"{Path(case).stem}-uncertainty")
-    total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.wear_laws)
+    total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.laws_by_label)
     with fresh_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as shown:
         found = uncertainty_of(loaded, samples, seed, shown)
         shown.stage("writing results")

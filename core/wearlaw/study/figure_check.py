@@ -10,7 +10,7 @@ from typing import Any
 
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean
-from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import WEAR, Law, Outcome
 from wearlaw.models.stage import Stage
 from wearlaw.numerics.staged import staged
@@ -160,7 +160,8 @@ class Contents:
 
     def _resolves(self, model: ContactModel) -> bool:
         """Return whether laws see the cells of a contact model after its stages."""
-        return staged(model, self.stages).scale == "cells"
+        scale: Scale = staged(model, self.stages).scale
+        return scale == "cells"
 
     def _of_window(self, x: str, window: Window, known: Variables, across: bool) -> Iterator[tuple[str, str]]:
         """Yield the faults of a panel."""
