@@ -19,7 +19,7 @@ from wearlaw.models.contact_model import Model
 from wearlaw.models.labels import labelled
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.study.results import along_main_axis, axes_of, beyond_limits, main_axis
+from wearlaw.study.results import along_main_axis, axes_of, beyond_limits, main_axis, outcomes_of, predicting
 from wearlaw.study.study import Study, used
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import label as label_of
@@ -93,10 +93,10 @@ def summaries(study: Study) -> list[NamedTable]:
         _marked(
             f"{outcome.name}_{name}",
             f"Sweep '{name}'{_fixed(sweep, creepage)}",
-            summary(sweep, creepage, outcome.name, study.predicting(outcome.name, sweep.pair.values.tolist())),
+            summary(sweep, creepage, outcome.name, predicting(study, outcome.name, sweep.pair.values.tolist())),
         )
         for name, sweep in study.sweeps.items()
-        for outcome in study.outcomes(sweep)
+        for outcome in outcomes_of(study, sweep)
     ]
 
 

@@ -17,9 +17,9 @@ from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, offered
+from wearlaw.study.composed import composed
 from wearlaw.study.figure_spec import ACROSS, OF_LOAD, OF_PROFILE, FigureSpec, Window, axis_along, wrong_range
 from wearlaw.study.grid import Grid
-from wearlaw.study.pairs import composed
 from wearlaw.units.variables import UNITS
 
 

@@ -18,7 +18,7 @@ from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis, Sh
 from wearlaw.models.law import WEAR
 from wearlaw.study.figure_spec import ACROSS, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
 from wearlaw.study.measured import measured_points
-from wearlaw.study.results import LIMITS, Results, along, beyond_limits, main_axis
+from wearlaw.study.results import LIMITS, Results, along, beyond_limits, main_axis, outcomes_of, predicting
 from wearlaw.units.variables import UNITS, label, name_of
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
     creepage = results.case.rig.creepage
     for name, sweep in results.sweeps.items():
         axis = main_axis(sweep, creepage)
-        for outcome in results.outcomes(sweep):
+        for outcome in outcomes_of(results, sweep):
             for x in ("wear_index", axis):
                 y_scale: Scale = "linear" if outcome.signed else "log"
                 spec = FigureSpec(sweep=name, x=x, y=(outcome.name,), x_scale="log", y_scale=y_scale)
@@ -107,7 +107,7 @@ def _over_sweep(results: Results, spec: FigureSpec, window: Window, axis: str) -
     curves = []
     for y in shown:
         if "pair" in line[y].dims:
-            pairs = results.predicting(y, spec.pairs or line.pair.values.tolist())
+            pairs = predicting(results, y, spec.pairs or line.pair.values.tolist())
             curves += [_outcome(results, line, spec.x, shown, y, pair) for pair in pairs]
         else:
             alike = None if "contact_model" in line[y].dims or "contact_model" in line[spec.x].dims else 1
@@ -136,7 +136,7 @@ def _over_limits(results: Results, spec: FigureSpec, window: Window, axis: str) 
     line = along(results.sweeps[spec.sweep or ""], axis)
     models = spec.contact_models or line.contact_model.values.tolist()
     if all("pair" in line[y].dims for y in window.shown):
-        pairs = [pair for y in window.shown for pair in results.predicting(y, spec.pairs or line.pair.values.tolist())]
+        pairs = [pair for y in window.shown for pair in predicting(results, y, spec.pairs or line.pair.values.tolist())]
         models = line.pair_contact_model.sel(pair=pairs).values.tolist()
     tracks = [(_magnitude(line, spec.x, model), model) for model in dict.fromkeys(models)]
     shades = []
@@ -236,7 +236,7 @@ def _along_the_patch(results: Results, spec: FigureSpec, window: Window) -> list
             level = np.full(2, grid.level(results.case.rig.creepage, results.case.units))
             curves.append(Curve(name_of(variable), profile.x.values[[0, -1]], level, OF_PROFILE.index(variable)))
         elif "pair" in profile[variable].dims:
-            for pair in results.predicting(variable, spec.pairs or profile.pair.values.tolist()):
+            for pair in predicting(results, variable, spec.pairs or profile.pair.values.tolist()):
                 one = profile[variable].sel(pair=pair).dropna("x")
                 outside = np.full(one.shape, profile.outside_range.sel(pair=pair).item() > 0.0)
                 named = pair if len(window.shown) == 1 or variable == WEAR else f"{name_of(variable)}, {pair}"

@@ -44,19 +44,21 @@ class Results:
         (found,) = (pair for pair in self.pairs if pair.label == label)
         return found
 
-    def predicting(self, outcome: str, labels: Sequence[str]) -> list[str]:
-        """Return the pairs among these whose law predicts an outcome."""
-        return [label for label in labels if self.pair(label).outcome.name == outcome]
-
-    def outcomes(self, sweep: xarray.Dataset) -> list[Outcome]:
-        """Return the outcomes in the results of a sweep, wear first."""
-        return [outcome for name, outcome in self.case.outcomes.items() if name in sweep]
-
     def is_outside(self, profile: xarray.Dataset, label: str, body: str) -> bool:
         """Return whether the depth that a pair gives for a body lies outside what its law was fitted to."""
         law = self.pair(label).pipeline.wear_law
         other = fitted_to_other_body(self.case.rig.bodies, law, body)
         return other or bool(profile.outside_range.sel(pair=label).item())
+
+
+def predicting(results: Results, outcome: str, labels: Sequence[str]) -> list[str]:
+    """Return the pairs among these whose law predicts an outcome."""
+    return [label for label in labels if results.pair(label).outcome.name == outcome]
+
+
+def outcomes_of(results: Results, sweep: xarray.Dataset) -> list[Outcome]:
+    """Return the outcomes in the results of a sweep, wear first."""
+    return [outcome for name, outcome in results.case.outcomes.items() if name in sweep]
 
 
 def axes_of(sweep: xarray.Dataset) -> list[str]:
