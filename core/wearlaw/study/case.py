@@ -1,8 +1,7 @@
 """Case files: studies in TOML, with units.
 
 A case names a rig, contact models with stages around them, laws, and the operating points at which every pair of a
-contact model and a law is evaluated.
-`load_case` reads one from a file, or by the name of a case that a plugin ships.
+contact model and a law is evaluated. `load_case` reads one from a file, or by the name of a case that a plugin ships.
 """
 
 from __future__ import annotations
@@ -67,6 +66,7 @@ CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
 
 
 LISTED = "must be a list of names, or of tables with a name and options"
+"""Error about a list of models."""
 
 
 def _models(value: Any) -> Any:
@@ -207,7 +207,8 @@ class Case(Configuration):
     @classmethod
     def _of_known_bodies(cls, laws: tuple[Law, ...], info: ValidationInfo) -> tuple[Law, ...]:
         """Check the bodies of laws when the case is read; a rig need not name its bodies."""
-        bodies = tuple(info.data["rig"].bodies) if "rig" in info.data else ()
+        named = any(law.body is not None for law in laws)
+        bodies = tuple(info.data["rig"].bodies) if named and "rig" in info.data else ()
         has = f"Its bodies are {' and '.join(bodies)}"
         wrong = [
             Fault((str(number), "body"), f"the rig has no body '{law.body}'{did_you_mean(law.body, bodies)} {has}")

@@ -218,8 +218,10 @@ def _check_body(name: str, laws: Sequence[Law]) -> None:
 def long_name(output: str, laws: Sequence[Law]) -> str:
     """Return the readable name of an output, such as "wear rate of rail"."""
     index = named_outcomes(laws).get(output)
-    name = output if index is None else laws[index].outcome.name
-    return name_of(output) if name == output else f"{name_of(name)} of {laws[index or 0].body}"
+    if index is None:
+        return name_of(output)
+    law = laws[index]
+    return name_of(law.outcome.name) + (f" of {law.body}" if law.body is not None else "")
 
 
 def _output(prediction: Prediction, name: str) -> Quantity | None:
