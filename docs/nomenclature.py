@@ -56,7 +56,7 @@ def documented() -> Iterator[Documented]:
     for record in (wl.TwinDisc.suros(), wheel_rail(), falling_friction()):
         for holder, name in fields(record):
             yield read(name, type(holder).__name__, field_docstrings(type(holder))[name])
-    for model in shipped_models():
+    for model in (*shipped_models(), *shipped_stages()):
         for holder, name in fields(model):
             yield read(name, model.name, field_docstrings(type(holder))[name])
 
@@ -80,6 +80,14 @@ def shipped_models() -> Iterator[wl.Law | wl.ContactModel]:
     for name, law in found.wear_laws.items().items():
         if found.wear_laws.origin(name).distribution == "wearlaw":
             yield law().explicit()
+
+
+def shipped_stages() -> tuple[wl.Stage, ...]:
+    """Return the stages with numbers that ship with wearlaw, all of their numbers given."""
+    return (
+        wl.stage("thermal", hot_ratio=0.4, temperature_range="800 K"),
+        wl.stage("third_body", reduction=0.54, limit_reduction=0.0108, reduction_decay=0.62),
+    )
 
 
 def attributes(cls: type) -> Iterator[tuple[str, str]]:

@@ -46,6 +46,8 @@ TESTS = {
     " plugins/test_sheffield_local_claims.py plugins/test_sheffield_contact_claims.py"
     " plugins/test_sheffield_verdicts.py plugins/test_sheffield_tables.py plugins/test_sheffield_report.py",
     "wearlaw_shen_hedrick_elkins": "plugins/test_shen_hedrick_elkins.py",
+    "wearlaw_thermal": "plugins/test_thermal.py",
+    "wearlaw_third_body": "plugins/test_third_body.py",
     "wearlaw_usfd": "plugins/test_usfd.py",
     "wearlaw.pipeline.composition": "core/test_composition.py core/test_pipeline.py core/test_wheel_rail.py"
     " core/test_wheel_rail_result.py core/test_unlike_materials.py core/test_several_patches.py",

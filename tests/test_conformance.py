@@ -61,6 +61,13 @@ WEAR_LAWS: list[wl.WearLaw] = [
     wl.wear_law("brr"),
 ]
 
+STAGES: list[wl.Stage] = [
+    wl.patch_mean(),
+    wl.stage("third_body", reduction=0.7),
+    wl.stage("third_body", reduction=0.54, limit_reduction=0.0108, reduction_decay=0.62),
+    wl.stage("thermal", hot_ratio=0.4, temperature_range="500 K"),
+]
+
 FLAT = wl.Disc(diameter="inf mm", material=wl.steel(youngs_modulus="70 GPa", poisson_ratio=0.33))
 RIGS: dict[str, wl.Rig] = {
     "suros": wl.TwinDisc.suros(),
@@ -87,7 +94,7 @@ RIGHT: list[Model] = [
     *(Cells(), Strips(), StripsOnStrips(), Grid(), Means(), Wrapped(), Brush(), BrushOnCells()),
     *(Linear(), Smooth(), Ramps(), Severe(), Memory(), HottestNode(), Weight(), Delegating()),
 ]
-MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *RIGS.values(), *RIGHT]
+MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *STAGES, *RIGS.values(), *RIGHT]
 
 CASES = [
     pytest.param(check, id=f"{named(model)}-{check.name}")
@@ -100,7 +107,7 @@ CASES = [
 @pytest.mark.validates(
     "invariants",
     (
-        "Every rig, contact model and wear law, in all its options, passes the conformance kit: signs, units, "
+        "Every rig, contact model, stage and wear law, in all its options, passes the conformance kit: signs, units, "
         "limits, energy, jumps, slopes, full slip, batches"
     ),
     source="what must hold of any model (see the page on the kit)",
@@ -125,7 +132,7 @@ def test_all_models_make_the_round_trip(way: Callable[[RoundTrip], None], trip: 
 
 def test_every_model_that_comes_with_wearlaw_is_checked() -> None:
     own = {entry_point.value for entry_point in distribution("wearlaw").entry_points if entry_point.group == "wearlaw"}
-    installed = {**wl.contact_models(), **wl.wear_laws(), **wl.rigs()}
-    assert {model.name for model in [*CONTACT_MODELS, *WEAR_LAWS, *RIGS.values()]} == {
+    installed = {**wl.contact_models(), **wl.stages(), **wl.wear_laws(), **wl.rigs()}
+    assert {model.name for model in [*CONTACT_MODELS, *WEAR_LAWS, *STAGES, *RIGS.values()]} == {
         name for name, cls in installed.items() if cls.__module__ in own or cls.__module__.rpartition(".")[0] in own
     }

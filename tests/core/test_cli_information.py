@@ -89,7 +89,7 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
             ["contact", "model", name, "wearlaw", wl.__version__]
             for name in ("exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins")
         ),
-        ["stage", "patch_mean", "wearlaw", wl.__version__],
+        *(["stage", name, "wearlaw", wl.__version__] for name in ("patch_mean", "thermal", "third_body")),
         *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("brr", "kth", "usfd")),
         ["material", "steel", "wearlaw", wl.__version__],
         *(["case", name, "wearlaw", wl.__version__] for name in ("tassini2010", "wheel_on_rail")),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
@@ -108,7 +109,7 @@ def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> Non
     wearlaw check twin_disc --option track_width="8 mm"
     wearlaw check my_law --expect-failure "rate_is_finite=divides by zero at zero pressure"
     """  # noqa: D301
-    source, given = _installed(name), fields("--option", options)
+    source, given = _installed(name), {field: _value(text) for field, text in fields("--option", options).items()}
     model = _made(source, given) if isinstance(source, type) else loader.wear_law(name, **given)
     reasons, kit = fields("--expect-failure", expected, "CHECK=REASON"), _kit()
     found = list(kit.checks(model))
@@ -134,7 +135,15 @@ ALWAYS_COUNTED = ("ok", "failed", "not claimed")
 """What `wearlaw check` counts in its last line even if there is none."""
 
 
-def _made(model: type[Model], options: dict[str, str]) -> Model:
+def _value(text: str) -> str | float:
+    """Return the number that a text is, or else the text."""
+    try:
+        return int(text) if text.lstrip("+-").isdecimal() else float(text)
+    except ValueError:
+        return text
+
+
+def _made(model: type[Model], options: Mapping[str, object]) -> Model:
     """Return the model with these fields; a rig takes others from its `example_fields`."""
     own = model.example_fields if issubclass(model, Rig) else {}
     try:

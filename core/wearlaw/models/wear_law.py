@@ -55,14 +55,10 @@ class WearLaw(Law):
 
     if TYPE_CHECKING:  # for checkers, these methods of `Law` return wear and wear laws
 
-        def __ror__(self, contact: Contact) -> LocalWear:
-            """Return the wear in a contact solved elsewhere."""
+        def __ror__(self, contact: Contact) -> LocalWear: ...
 
-        def explicit(self) -> WearLaw:
-            """Return the same law with numbers instead of names of published values."""
+        def explicit(self) -> WearLaw: ...  # noqa: D102
 
-        def fitted(self, calibration: Calibration) -> WearLaw:
-            """Return this law with a record of the fit of its parameters."""
+        def fitted(self, calibration: Calibration) -> WearLaw: ...  # noqa: D102
 
-        def band(self) -> tuple[WearLaw, WearLaw, WearLaw] | None:
-            """Return the laws at the low end, middle and high end of published parameter ranges."""
+        def band(self) -> tuple[WearLaw, WearLaw, WearLaw] | None: ...  # noqa: D102

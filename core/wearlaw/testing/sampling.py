@@ -143,7 +143,8 @@ def with_problem(contact: Contact, law: Law | None = None) -> Contact:
     a = np.full_like(area, HALF_LENGTH)
     ellipse = contact.on_strips
     material = STEEL if law is None or law.example_material is None else law.example_material
-    names = dict.fromkeys([*([law.body] if law is not None and law.body else []), "body_1", "body_2"])
+    own = [law.body] if law is not None and law.body else []
+    names = [*own, *(name for name in ("body_1", "body_2") if name not in own)][:2]
     problem = Problem(
         geometry="ellipse" if ellipse else "line",
         a=a,
@@ -159,7 +160,7 @@ def with_problem(contact: Contact, law: Law | None = None) -> Contact:
         rolling_speed=contact.rolling_speed,
         density=contact.density,
         rolled_distance=np.full_like(area, 1e3),
-        bodies={name: Body(material, 0.25) for name in list(names)[:2]},
+        bodies={name: Body(material, 0.25) for name in names},
     )
     return contact.replaced(problem=problem)
 
