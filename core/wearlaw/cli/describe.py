@@ -39,7 +39,8 @@ def describe(model: type[Model], parameter_set: str | None = None) -> str:
         conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
         declared = ["", "declares:", *(f"  {text}" for text in _not_kept(default))]
         return "\n".join([*lines, *conditions, *_example(model), *(declared if len(declared) > 2 else [])])
-    lines += ["", "declares:", *(f"  {text}" for text in (*_of_class(model), *_declared(default)))]
+    of_fields = () if default is None and issubclass(model, Stage) else _declared(default)
+    lines += ["", "declares:", *(f"  {text}" for text in (*_of_class(model), *of_fields))]
     return "\n".join(lines)
 
 
