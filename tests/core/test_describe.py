@@ -5,12 +5,15 @@ from __future__ import annotations
 import inspect
 import textwrap
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import pytest
+from pydantic import Field
 
 import wearlaw as wl
 from tests.core import cases
+from tests.core.test_outcomes import Damage as BaseOfDamage
+from tests.core.test_outcomes import Heat
 from tests.testing.wrong_rigs import Weight
 from wearlaw.cli.describe import describe
 from wearlaw.models.contact_model import Model
@@ -183,52 +186,60 @@ def test_a_law_that_declares_nothing_or_must_be_given_a_field_is_described(monke
     assert must.endswith("declares: what depends on its fields")
 
 
-class Softer(wl.Stage):
-    """Less friction."""
+class Damage(BaseOfDamage):
+    """Damage of a passage."""
 
-    name = "softer"
-    source = "A test"
+    threshold: Annotated[wl.Quantity, wl.Unit("N")] = Field(default="15 N", validate_default=True)
 
-    factor: float
-    """Factor of the friction coefficient [-]."""
+
+class Cooling(wl.Stage):
+    """Friction that falls."""
+
+    name = "cooling"
+    source = "A test, 3. ed., 2026"
+
+    share: float
+    """Share of the friction that is left [-]."""
 
     def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
-        return problem.replaced(friction_coefficient=self.factor * problem.friction_coefficient)
+        return problem.replaced(friction_coefficient=self.share * problem.friction_coefficient)
 
 
-class Heat(wl.Law):
-    """Frictional power over area."""
-
-    name = "heat"
-    source = "A test"
-    outcome = wl.Outcome("heat_flux", unit="W/mm^2", of="area mean")
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
-        return contact.frictional_power_density
-
-
-class Damage(Heat):
-    """Fatigue damage."""
-
-    name = "damage"
-    outcome = wl.Outcome("rcf_damage", unit="", of="patch", signed=True)
+def test_a_stage_is_described(monkeypatch: pytest.MonkeyPatch) -> None:
+    mean = said(wl.stages()["patch_mean"])
+    assert mean.startswith("patch_mean: a stage of wearlaw")
+    assert mean.endswith(
+        "fields: none declares: works around the contact model, and may change the solved contact gives the means of"
+        " the whole patch, for laws stated for them"
+    )
+    cases.installer(monkeypatch)(Cooling)
+    cooling = said(Cooling)
+    assert "share (must be given) Share of the friction that is left [-]." in cooling
+    assert cooling.endswith(
+        "declares: changes the problem before the contact model solves it, and leaves the solved contact as it is"
+    )
 
 
-def test_a_stage_and_a_law_of_another_outcome_are_described(monkeypatch: pytest.MonkeyPatch) -> None:
-    install = cases.installer(monkeypatch)
-    for model in (Softer, Heat, Damage):
-        install(model)
-    softer = said(Softer)
-    assert softer.startswith("softer: a stage of wearlaw-testing 9.8.7 (plugin 'testing') Less friction.")
-    assert softer.endswith("factor (must be given) Factor of the friction coefficient [-].")
-    assert "declares: gives: the means of the patch" in said(wl.stages()["patch_mean"])
-    heat = "declares: predicts: heat_flux [W/mm²], as a mean over the patch scale: patch means or cells branches: not"
-    assert heat in said(Heat)
-    predicts = "declares: predicts: rcf_damage, of the whole patch, positive or negative scale: patch means or cells"
-    assert said(Damage).endswith(predicts)
-    for name in ("softer", "heat"):
-        result = cases.wearlaw("show", name)
-        assert (result.exit_code, result.stdout.split(":")[0]) == (0, name)
+def test_a_law_of_another_outcome_is_described_with_unit_and_sign(monkeypatch: pytest.MonkeyPatch) -> None:
+    for law in (Damage, Heat):
+        cases.installer(monkeypatch)(law)
+    damage, heat = said(Damage), said(Heat)
+    assert damage.startswith("damage: a law of wearlaw-testing 9.8.7 (plugin 'testing') Damage of a passage")
+    assert "body = None The body that the law is for, by its name in the rig" in damage
+    assert "declares: predicts: rcf_damage [-], one value for the whole patch, may be negative scale:" in damage
+    assert "declares: predicts: heat_flux [W/mm²], mean over the area of the patch scale:" in heat
+
+
+def test_stages_and_laws_are_shown_and_listed_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    for model in (Cooling, Heat):
+        cases.installer(monkeypatch)(model)
+    listing = cases.wearlaw("plugins").stdout
+    for kind, name in (("stage", "cooling"), ("law", "heat"), ("stage", "patch_mean")):
+        shown = cases.wearlaw("show", name)
+        assert shown.exit_code == 0
+        assert shown.stdout.startswith(f"{name}: a {kind} of ")
+        assert any(line.split()[:2] == [kind, name] for line in listing.splitlines())
+    assert "did you mean 'cooling'?" in cases.wearlaw("show", "coolin").stderr
 
 
 def test_a_rig_shows_which_fields_have_a_default() -> None:

@@ -43,8 +43,7 @@ def test_what_to_type_next_is_what_works(kind: Kind, flag: str) -> None:
         "  cd 'two words/wearlaw-zobory'\n"
         '  python -m pip install -e ".[test]"\n'
         "  pytest\n"
-        "  wearlaw plugins\n"
-        + CHECKED.get(kind, "  wearlaw check zobory\n")
+        "  wearlaw plugins\n" + CHECKED.get(kind, "  wearlaw check zobory\n")
     )
     assert result.stderr == ""
 

@@ -165,13 +165,20 @@ MODELS_OF_THE_DOCUMENTATION = {
     "wearlaw_energy": "Energy",
     "wearlaw_threshold": "Threshold",
     "wearlaw_gradual": "Gradual",
+    "wearlaw_fatigue": "Fatigue",
+    "wearlaw_flash": "Flash",
     "wearlaw_rigid": "Rigid",
     "wearlaw_rigid_ellipse": "RigidEllipse",
     "wearlaw_sliding": "Sliding",
+    "wearlaw_wet": "Wet",
     "wearlaw_roller": "Roller",
 }
 """Classes of models by their modules."""
-PAGES = ("plugins", "law-plugin", "contact-model-plugin", "rig-plugin", "kernels")
+FIELDS_OF_THE_DOCUMENTATION = {
+    "Fatigue": {"slope": "2e-7 1/N", "threshold": "10 N", "balance": "150 N"},
+}
+"""Fields of classes without defaults."""
+PAGES = ("plugins", "law-plugin", "contact-model-plugin", "stage-plugin", "rig-plugin", "kernels")
 
 
 @pytest.fixture(scope="module")
@@ -184,7 +191,7 @@ def of_the_documentation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[d
     with pytest.MonkeyPatch.context() as patched:
         patched.syspath_prepend(str(folder))
         yield {
-            module: getattr(importlib.import_module(module), cls)()
+            module: getattr(importlib.import_module(module), cls)(**FIELDS_OF_THE_DOCUMENTATION.get(cls, {}))
             for module, cls in MODELS_OF_THE_DOCUMENTATION.items()
         }
 

@@ -13,9 +13,8 @@ import pint
 from wearlaw.contact.problem import PATCHES
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.law import Law, Outcome
+from wearlaw.models.law import WEAR, Law
 from wearlaw.models.stage import Stage
-from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.settings.docstrings import field_docstrings
@@ -38,9 +37,11 @@ def describe(model: type[Model], parameter_set: str | None = None) -> str:
     lines += [] if schema else ["  none"]
     if issubclass(model, Rig):
         conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
-        lines += [*conditions, *_example(model)]
-    declared = [f"  {text}" for text in _declared(model, default)]
-    return "\n".join([*lines, *(["", "declares:", *declared] if declared else [])])
+        declared = ["", "declares:", *(f"  {text}" for text in _not_kept(default))]
+        return "\n".join([*lines, *conditions, *_example(model), *(declared if len(declared) > 2 else [])])
+    of_fields = () if default is None and issubclass(model, Stage) else _declared(default)
+    lines += ["", "declares:", *(f"  {text}" for text in (*_of_class(model), *of_fields))]
+    return "\n".join(lines)
 
 
 def _headline(model: type[Model], parameter_set: str | None) -> Iterator[str]:
@@ -116,21 +117,38 @@ def _choices(schema: Mapping[str, Any]) -> list[str]:
     return [repr(word) for option in options for word in option.get("enum", [])]
 
 
-def _declared(model: type[Model], default: Model | None) -> Iterator[str]:
-    if issubclass(model, Stage) and model.gives_means:
-        yield "gives: the means of the patch"
+def _of_class(model: type[Model]) -> Iterator[str]:
+    """Yield the declarations of a stage, and the outcome of a law unless it is wear."""
+    if issubclass(model, Stage):
+        if model.alters_problem_only():
+            yield "changes the problem before the contact model solves it, and leaves the solved contact as it is"
+        else:
+            yield "works around the contact model, and may change the solved contact"
+        if model.gives_means:
+            yield "gives the means of the whole patch, for laws stated for them"
+    elif issubclass(model, Law) and model.outcome.name != WEAR:
+        outcome = model.outcome
+        of = "mean over the area of the patch" if outcome.of == "area mean" else "one value for the whole patch"
+        unit = symbol(Q(1.0, outcome.unit).units, "~P") or "-"
+        yield f"predicts: {outcome.name} [{unit}], {of}{', may be negative' if outcome.signed else ''}"
+
+
+def _declared(default: Model | None) -> Iterator[str]:
     if default is None:
-        if issubclass(model, (Law, ContactModel)):
-            yield "what depends on its fields"
-        return
-    if isinstance(default, Law):
+        yield "what depends on its fields"
+    elif isinstance(default, Law):
         yield from _of_law(default)
     elif isinstance(default, ContactModel):
         yield "scale: the means of the patch" if default.scale == "patch" else "scale: the patch resolved into cells"
         if default.uses_measured_traction:
             yield "takes a measured traction_coefficient"
         yield from accuracies(default)
-    yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
+    yield from _not_kept(default)
+
+
+def _not_kept(default: Model | None) -> Iterator[str]:
+    if default is not None:
+        yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
 
 
 def accuracies(model: ContactModel) -> Iterator[str]:
@@ -142,15 +160,15 @@ def accuracies(model: ContactModel) -> Iterator[str]:
 
 
 def _of_law(law: Law) -> Iterator[str]:
-    if not isinstance(law, WearLaw):
-        yield f"predicts: {_predicted(law.outcome)}"
+    if law.body is not None:
+        yield f"for one body: {law.body}"
     yield "scale: means of the whole patch only" if law.scale == "patch" else "scale: patch means or cells"
     if law.calibration is not None:
         yield f"fitted for: {law.calibration}; {law.calibration.materials}; {law.calibration.source}"
     if law.monotone_in:
         yield f"never falls with: {', '.join(law.monotone_in)}"
     breakpoints = law.breakpoints(law.numbers)
-    if breakpoints is None and law.outcome.of == "area mean":
+    if breakpoints is None:
         yield "branches: not declared"
     for variable, values in (breakpoints or {}).items():
         yield f"branches in {variable} at {', '.join(_si(variable, value) for value in values)}"
@@ -160,12 +178,6 @@ def _of_law(law: Law) -> Iterator[str]:
         yield f"known range of mean {variable} from {_si(variable, low)} to {_si(variable, high)}"
     if law.band() is not None:
         yield "band: published parameter ranges give a low, a middle and a high law"
-
-
-def _predicted(outcome: Outcome) -> str:
-    unit = f" [{symbol(Q(1.0, outcome.unit).units, '~P')}]" if outcome.unit else ""
-    of = "of the whole patch" if outcome.of == "patch" else "as a mean over the patch"
-    return f"{outcome.name}{unit}, {of}{', positive or negative' if outcome.signed else ''}"
 
 
 def _si(variable: str, value: float) -> str:

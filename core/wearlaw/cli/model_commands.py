@@ -46,7 +46,7 @@ def list_plugins() -> None:
 @click.command()
 @click.argument("name")
 def show(name: str) -> None:
-    """Explain a model of any kind or a parameter set: its fields with units, its source and its range."""
+    """Explain a model: its fields with units and defaults, its source, and what it declares."""
     model = _installed(name)
     click.echo(describe(model) if isinstance(model, type) else describe(type(model), name))
 

@@ -45,8 +45,8 @@ def run(
 ) -> None:
     """Run a study: CASE is a case file, or the name of one that is shipped (tassini2010, wheel_on_rail).
 
-    Every contact model of the case is paired with every wear law. Results are written as report.html, a page to open in
-    a browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default
+    Every contact model of the case is paired with every law. Results are written as report.html, a page to open in a
+    browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default
     spelt out.
     """
     loaded = load_case(case)
@@ -92,15 +92,15 @@ def _print_used(study: Study) -> None:
 
 
 def _summary(summary: NamedTable) -> Table:
-    """Return a short table of wear rates for the screen."""
+    """Return a short table of an outcome for the screen."""
     what, *values = summary.frame.columns
     title = Text(f"{summary.title}: {what}")
     table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE, pad_edge=False)
     table.add_column("", overflow="fold")
     for value in values:
         table.add_column(value, justify="right", no_wrap=True)
-    for pair, *rates in summary.frame.itertuples(index=False, name=None):
-        table.add_row(Text(pair), *(f"{rate:.4g}" for rate in rates))
+    for pair, *values_of_pair in summary.frame.itertuples(index=False, name=None):
+        table.add_row(Text(pair), *(f"{value:.4g}" for value in values_of_pair))
     return table
 
 
@@ -124,12 +124,12 @@ def uncertainty(
 ) -> None:
     """Say how uncertain predictions are: CASE is a case file with tables [uncertainty.NAME].
 
-    Every contact model of the case is paired with every wear law. Written are wear_rates.csv with medians and 95 %
+    Every contact model of the case is paired with every law. Written are wear_rates.csv with medians and 95 %
     intervals, sobol_indices.csv with the share of the variance that each input explains, and a figure of each pair.
     """
     loaded = load_case(case)
     folder = output if output is not None else Path(f"{Path(case).stem}-uncertainty")
-    total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.wear_laws)
+    total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.laws_by_label)
     with fresh_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as shown:
         found = uncertainty_of(loaded, samples, seed, shown)
         shown.stage("writing results")

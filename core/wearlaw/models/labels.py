@@ -13,13 +13,18 @@ ModelT = TypeVar("ModelT", bound=Model)
 
 
 def labels(models: Sequence[Model]) -> list[str]:
-    """Return a short name for each model: its own name, and the options that tell it from models of the same name."""
+    """Return a short name for each model: its own name, and the options that tell it from models of the same name.
+
+    The name of a law for one body has that body, as in "usfd(body=rail)".
+    """
     found = []
     for model in models:
         namesakes = [other for other in models if other.name == model.name]
         if sum(other == model for other in namesakes) > 1:
             raise InputError(f"the model {model.name} is listed twice; leave one out, or give it other options")
-        options = [f"{field}={shown(getattr(model, field))}" for field in _telling_apart(namesakes)]
+        body = ["body"] if getattr(model, "body", None) is not None else []
+        fields = dict.fromkeys([*_telling_apart(namesakes), *body])
+        options = [f"{field}={shown(getattr(model, field))}" for field in fields]
         found.append(f"{model.name}({', '.join(options)})" if options else model.name)
     return found
 

@@ -21,7 +21,6 @@ from wearlaw.report.tables import tables
 from wearlaw.study.case import CASE_FILE, Case, written
 from wearlaw.study.study import Study, numbers
 from wearlaw.sweeping.storage import ITEM, check_disk, check_memory
-from wearlaw.units.variables import UNITS
 
 RESULTS = "results.nc"
 CSV = "results.csv"
@@ -46,7 +45,7 @@ def check_room(case: Case, folder: Path) -> None:
         If they would not; the message says how much they need.
     """
     count = numbers(case)
-    rows = sum(grid.size for grid in case.sweeps.values()) * len(case.contact_models) * len(case.wear_laws)
+    rows = sum(grid.size for grid in case.sweeps.values()) * len(case.contact_models) * len(case.laws_by_label)
     check_memory(COPIES * ITEM * count + ROW_IN_MEMORY * rows, "give the sweeps fewer points")
     check_disk(2 * ITEM * count + ROW_ON_DISK * rows, folder)
 
@@ -159,14 +158,15 @@ def write_netcdf(study: Study, path: Path) -> None:
 def table(study: Study) -> pd.DataFrame:
     """Return the results of all sweeps as one tidy table, a row for each pair at each operating point.
 
-    Columns that a sweep lacks stay empty.
+    Columns that a sweep lacks stay empty, and so do outcomes that the law of a pair does not predict.
     """
     rows = pd.concat([_rows(name, sweep) for name, sweep in study.sweeps.items()], ignore_index=True)
-    units = {**UNITS, **study.case.units}
+    units = study.case.result_units
     of_point = [name for name in (*OF_POINT, *study.case.units) if name in rows and name not in OF_CONTACT]
-    rates = [str(column) for column in rows.columns if str(column).startswith(("wear_rate", "outside_range"))]
+    of_pairs = [str(v) for sweep in study.sweeps.values() for v in sweep.data_vars if "pair" in sweep[v].dims]
     of_contact = [name for name in OF_CONTACT if name in rows]
-    names = dict.fromkeys(("sweep", "contact_model", "wear_law", *of_point, *rates, *of_contact))
+    laws = ("wear_law", "law") if study.case.laws else ("wear_law",)
+    names = dict.fromkeys(("sweep", "contact_model", *laws, *of_point, *of_pairs, *of_contact))
     return rows[list(names)].rename(columns={name: f"{name} [{units[name]}]" for name in names if units.get(name)})
 
 
@@ -174,6 +174,6 @@ def _rows(name: str, sweep: xarray.Dataset) -> pd.DataFrame:
     of_contact = [v for v in sweep.data_vars if "contact_model" in sweep[v].dims]
     by_contact = sweep[of_contact].sel(contact_model=sweep.pair_contact_model).drop_vars("contact_model")
     flat = sweep.drop_dims("contact_model").assign(by_contact.data_vars).to_dataframe().reset_index()
-    flat = flat.rename(columns={"pair_contact_model": "contact_model", "pair_wear_law": "wear_law"})
+    flat = flat.rename(columns={"pair_contact_model": "contact_model", "pair_wear_law": "wear_law", "pair_law": "law"})
     flat.insert(0, "sweep", name)
     return flat.drop(columns="pair")

@@ -31,6 +31,9 @@ In steady rolling without slip the traction of half-planes is βp/π ln((a+x)/(a
 MOST_COUPLING = 0.1
 """Largest share of μp that the traction at a/2 may have without a warning."""
 
+TAKE_MEANS = 'put wl.patch_mean() between them, or use wl.contact_model("global")'
+"""Remedy in Python for a law of the whole patch on a contact resolved into cells."""
+
 
 def law_among(laws: Sequence[Law], model: ContactModel, outcome: str, body: str | None = None) -> int:
     """Return the index of the law of an outcome for a body, or raise an error if there is none.
@@ -89,12 +92,12 @@ def check_laws(laws: Sequence[Law], bodies: Iterable[str]) -> None:
             )
 
 
-def check_scale(scale: Scale, model: ContactModel, law: Law) -> None:
-    """Raise an error if a law of the whole patch follows a contact resolved into cells."""
+def check_scale(scale: Scale, model: ContactModel, law: Law, remedy: str = TAKE_MEANS) -> None:
+    """Raise an error that names the remedy if a law of the whole patch follows a contact resolved into cells."""
     if law.scale == "patch" and scale != "patch":
         raise CompositionError(
             f"{law.kind} '{law.name}' is stated for the means of the whole patch, but contact model '{model.name}'"
-            ' resolves it into cells; put wl.patch_mean() between them, or use wl.contact_model("global")'
+            f" resolves it into cells; {remedy}"
         )
 
 

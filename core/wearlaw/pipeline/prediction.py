@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     import xarray
 
 
+ERROR = "_error"
+"""Ending of the name of an outcome's numerical error in results."""
+
 PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
 
@@ -85,11 +88,17 @@ class Prediction:
         self._errors: dict[int, Array] = {}
 
     def __getitem__(self, name: str) -> Quantity:
-        """Return an outcome by its name in results, such as "rcf_damage" or "wear_rate_rail", or another variable."""
-        index = named_outcomes(self.laws).get(name) if isinstance(name, str) else None
-        if index is not None:
-            law = self.laws[index]
-            return from_si(self._solved_totals.values[index], law.outcome.unit)
+        """Return an outcome by its name in results, such as "rcf_damage" or "wear_rate_rail", or another variable.
+
+        ``prediction["rcf_damage_error"]`` is the estimate of its numerical error.
+        """
+        named = named_outcomes(self.laws)
+        if isinstance(name, str) and name in named:
+            index = named[name]
+            return from_si(self._solved_totals.values[index], self.laws[index].outcome.unit)
+        if isinstance(name, str) and name.endswith(ERROR) and name.removesuffix(ERROR) in named:
+            index = named[name.removesuffix(ERROR)]
+            return from_si(self._whole_error(index), self.laws[index].outcome.unit)
         if isinstance(name, str) and not name.startswith("_") and hasattr(type(self), name):
             value = getattr(self, name)
             if isinstance(value, pint.Quantity):

@@ -1,4 +1,4 @@
-"""The tables of a study: wear rates of its sweeps, its models and their parameters, and the tables of its sections.
+"""The tables of a study: outcomes of its sweeps, its models and their parameters, and the tables of its sections.
 
 Each can be written as CSV with all digits, and for LaTeX with the digits shown.
 """
@@ -16,23 +16,24 @@ import pint
 import xarray
 
 from wearlaw.models.contact_model import Model
+from wearlaw.models.labels import labelled
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.study.results import along_main_axis, axes_of, beyond_limits, main_axis
+from wearlaw.study.results import along_main_axis, axes_of, beyond_limits, main_axis, outcomes_of, predicting
 from wearlaw.study.study import Study, used
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import label as label_of
 from wearlaw.units.variables import name_of
 
 COLUMNS = 5
-"""Number of values on the main axis at which wear rates are shown."""
+"""Number of values on the main axis at which outcomes are shown."""
 
 FOOTNOTES = {
     "†": "outside the range, the materials or the body that the law was fitted to",
     "*": "beyond first yield",
     "‡": "beyond shakedown",
 }
-"""Meanings of the marks of wear rates and depths."""
+"""Meanings of the marks of outcomes and depths."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,11 +87,16 @@ def tables(study: Study) -> list[NamedTable]:
 
 
 def summaries(study: Study) -> list[NamedTable]:
-    """Return a short table of wear rates for each sweep."""
+    """Return a short table of each outcome for each sweep."""
     creepage = study.case.rig.creepage
     return [
-        _marked(f"wear_rate_{name}", f"Sweep '{name}'{_fixed(sweep, creepage)}", summary(sweep, creepage))
+        _marked(
+            f"{outcome.name}_{name}",
+            f"Sweep '{name}'{_fixed(sweep, creepage)}",
+            summary(sweep, creepage, outcome.name, predicting(study, outcome.name, sweep.pair.values.tolist())),
+        )
         for name, sweep in study.sweeps.items()
+        for outcome in outcomes_of(study, sweep)
     ]
 
 
@@ -117,24 +123,26 @@ def _fixed(sweep: xarray.Dataset, creepage: str) -> str:
     return f" at {', '.join(at)}" if others else ""
 
 
-def summary(sweep: xarray.Dataset, creepage: str) -> pd.DataFrame:
-    """Return wear rates at a few values of the main axis, with a row for each pair and for the ends of its band."""
+def summary(sweep: xarray.Dataset, creepage: str, outcome: str, pairs: list[str]) -> pd.DataFrame:
+    """Return an outcome at a few values of the main axis, with a row for each pair and for the ends of its band."""
     axis = main_axis(sweep, creepage)
     line = along_main_axis(sweep, creepage)
     count = line.sizes[axis]
     line = line.isel({axis: sorted({round(step * (count - 1) / (COLUMNS - 1)) for step in range(COLUMNS)})})
     beyond = beyond_limits(line)
     rows: dict[str, Any] = {}
-    for pair in line.pair.values:
+    low, high = f"{outcome}_low", f"{outcome}_high"
+    for pair in pairs:
         one = line.sel(pair=pair)
         marks = _marks(one.outside_range.values > 0.0, beyond, one.pair_contact_model.item())
-        rates = {pair: one.wear_rate}
-        if (one.wear_rate_high > one.wear_rate_low).any():
-            rates |= {f"{pair}, low end": one.wear_rate_low, f"{pair}, high end": one.wear_rate_high}
-        rows |= {label: list(map(Marked, rate.values, marks)) for label, rate in rates.items()}
+        values = {pair: one[outcome]}
+        if low in one and (one[high] > one[low]).any():
+            values |= {f"{pair}, low end": one[low], f"{pair}, high end": one[high]}
+        rows |= {label: list(map(Marked, each.values, marks)) for label, each in values.items()}
     heads = [_four_digits(value) for value in line[axis].values]
     frame = pd.DataFrame(list(rows.values()), columns=heads, dtype=object)
-    frame.insert(0, f"{label_of('wear_rate')} by {label_of(axis, units={axis: line[axis].attrs['units']})}", list(rows))
+    what, along = (label_of(name, units={name: line[name].attrs["units"]}) for name in (outcome, axis))
+    frame.insert(0, f"{what} by {along}", list(rows))
     return frame
 
 
@@ -144,7 +152,7 @@ def profiles(study: Study) -> list[NamedTable]:
     for name, profile in study.profiles.items():
         columns: dict[str, Any] = {"pair": profile.pair.values} if "y" in profile.coords else {}
         beyond = beyond_limits(profile) if columns else {}
-        for body in study.case.rig.bodies if columns else ():
+        for body in _worn(profile, study) if columns else ():
             depth = profile[f"{body}_depth"]
             unit = depth.attrs["units"].replace("um", "µm")
             greatest = dict(zip(profile.pair.values, depth.max("y").values, strict=True))
@@ -152,7 +160,7 @@ def profiles(study: Study) -> list[NamedTable]:
                 Marked(value, *_marks([study.is_outside(profile, pair, body)], beyond, study.pair(pair).contact_model))
                 for pair, value in greatest.items()
             ]
-            columns[f"{body}: at y [mm]"] = depth.fillna(0.0).idxmax("y").values
+            columns[f"{body}: at y [mm]"] = depth.fillna(0.0).idxmax("y").where(depth.notnull().any("y")).values
         if columns:
             title = f"Profile '{name}': wear across the patch, {_per(profile, study)}"
             frame = pd.DataFrame({head: np.array(values, dtype=object) for head, values in columns.items()})
@@ -162,7 +170,12 @@ def profiles(study: Study) -> list[NamedTable]:
 
 def _per(profile: xarray.Dataset, study: Study) -> str:
     """Return the reference of each body's depth, such as per metre rolled."""
-    return ", ".join(f"{body} {profile[f'{body}_depth'].attrs['long_name']}" for body in study.case.rig.bodies)
+    return ", ".join(f"{body} {profile[f'{body}_depth'].attrs['long_name']}" for body in _worn(profile, study))
+
+
+def _worn(profile: xarray.Dataset, study: Study) -> list[str]:
+    """Return the bodies whose wear a profile shows."""
+    return [body for body in study.case.rig.bodies if f"{body}_depth" in profile]
 
 
 def _four_digits(value: float) -> str:
@@ -171,7 +184,7 @@ def _four_digits(value: float) -> str:
 
 def parameters(study: Study) -> NamedTable:
     """Return every parameter of the rig and of the models."""
-    subjects: list[tuple[str, Configuration]] = [("rig", study.case.rig), *_contact_models(study), *_wear_laws(study)]
+    subjects: list[tuple[str, Configuration]] = [("rig", study.case.rig), *_models(study)]
     rows = [(subject, *row) for subject, record in subjects for row in _fields(record)]
     columns = ["of", "parameter", "value", "meaning"]
     return NamedTable("parameters", "Parameters", pd.DataFrame(rows, columns=columns))
@@ -180,23 +193,17 @@ def parameters(study: Study) -> NamedTable:
 def models(study: Study) -> NamedTable:
     """Return the distribution and the literature source of each model."""
     origins = used(study.case)
-    rows = [
-        (label, kind, origins[kind][model.name], model.source)
-        for kind, labelled in (("contact model", _contact_models(study)), ("wear law", _wear_laws(study)))
-        for label, model in labelled
-    ]
+    rows = [(label, one.kind, origins[one.kind][one.name], one.source) for label, one in _models(study)]
     columns = ["model", "kind", "provided by", "source"]
     return NamedTable("models", "Models", pd.DataFrame(rows, columns=columns))
 
 
-def _contact_models(study: Study) -> list[tuple[str, Model]]:
-    """Return the contact models of all pairs, with their labels."""
-    return list({pair.contact_model: pair.pipeline.contact_model for pair in study.pairs}.items())
-
-
-def _wear_laws(study: Study) -> list[tuple[str, Model]]:
-    """Return the wear laws of all pairs, with their labels."""
-    return list({pair.wear_law: pair.pipeline.wear_law for pair in study.pairs}.items())
+def _models(study: Study) -> list[tuple[str, Model]]:
+    """Return the contact models of all pairs, the stages around them and the laws, with their labels."""
+    used_here = [pair.pipeline.contact_model for pair in study.pairs]
+    contact_models = {label: one for label, one in labelled(study.case.contact_models).items() if one in used_here}
+    laws = {pair.law: pair.pipeline.laws[0] for pair in study.pairs}
+    return [*contact_models.items(), *labelled(study.case.stages).items(), *laws.items()]
 
 
 def _fields(record: Configuration, within: str = "") -> Iterator[tuple[str, str, str]]:

@@ -1,7 +1,7 @@
 """Case files: studies in TOML, with units.
 
-A case names a rig, contact models, wear laws, and the operating points at which every pair of them is evaluated.
-`load_case` reads one from a file, or by the name of a case that a plugin ships.
+A case names a rig, contact models with stages around them, laws, and the operating points at which every pair of a
+contact model and a law is evaluated. `load_case` reads one from a file, or by the name of a case that a plugin ships.
 """
 
 from __future__ import annotations
@@ -21,9 +21,11 @@ from pydantic import (
     AfterValidator,
     BeforeValidator,
     Field,
+    SerializerFunctionWrapHandler,
     TypeAdapter,
     ValidationInfo,
     field_validator,
+    model_serializer,
     model_validator,
 )
 
@@ -33,15 +35,19 @@ from wearlaw.errors import (
     Fault,
     InputError,
     PluginWarning,
+    WearlawError,
+    WearlawWarning,
     described,
     did_you_mean,
     with_problems,
 )
-from wearlaw.models.contact_model import Model
+from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.labels import labelled, labels
-from wearlaw.pipeline.pipeline import Rig, RigField
+from wearlaw.models.law import WEAR, Law, Outcome
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.pipeline import Pipeline, Rig, RigField
 from wearlaw.plugins import loader
-from wearlaw.plugins.fields import ContactModelField, WearLawField, known_presets, preset_fields
+from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
 from wearlaw.plugins.shelf import Shelf
 from wearlaw.settings.configuration import Configuration, known_as
 from wearlaw.settings.text_files import read_text
@@ -51,7 +57,7 @@ from wearlaw.study.grid import Condition, Grid
 from wearlaw.study.measured import MeasuredTests, check_rig, known_variables
 from wearlaw.study.uncertain_point import Condition as UncertainCondition
 from wearlaw.study.uncertain_point import UncertainPoint
-from wearlaw.units.variables import meaning_of
+from wearlaw.units.variables import UNITS, meaning_of
 
 ModelT = TypeVar("ModelT", bound=Model)
 
@@ -59,9 +65,45 @@ CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
 """Names of the files that a run writes: its case, and its measured tests if they came from a file."""
 
 
+LISTED = "must be a list of names, or of tables with a name and options"
+"""Error about a list of models."""
+
+
 def _models(value: Any) -> Any:
-    if not (isinstance(value, (list, tuple)) and value):
-        raise InputError(f"must be a list of names, or of tables with a name and options; got {value!r}")
+    if not isinstance(value, (list, tuple)):
+        raise InputError(f"{LISTED}; got {value!r}")
+    return value
+
+
+def _some_models(value: Any) -> Any:
+    if not _models(value):
+        raise InputError(f"{LISTED}; got {value!r}")
+    return value
+
+
+def _name_of(value: Any) -> str:
+    """Return the name of a model in a list, or "" if it is not a name or a table with one."""
+    name = value.get("model") if isinstance(value, dict) else value
+    return name if isinstance(name, str) else ""
+
+
+def _other_law(value: Any) -> Any:
+    """Raise an error for the name of a wear law, or of no law."""
+    found, name = loader.installed(), _name_of(value)
+    wear = {*found.wear_laws.providers, *found.parameter_sets.providers}
+    if name in wear or (isinstance(value, Law) and value.outcome.name == WEAR):
+        raise InputError(f"{name or value.name} predicts the wear rate; list it under wear_laws")
+    if name:
+        found.laws.find(name, found.broken)
+    return value
+
+
+def _wear_law(value: Any) -> Any:
+    """Raise an error for a law of another outcome."""
+    found, name = loader.installed(), _name_of(value)
+    law = value if isinstance(value, Law) else None if name in found.wear_laws.providers else loader.laws().get(name)
+    if law is not None and law.outcome.name != WEAR:
+        raise InputError(f"{law.name} predicts {law.outcome.name}, not wear; list it under laws")
     return value
 
 
@@ -101,11 +143,18 @@ def _section(name: str) -> str:
     return name
 
 
-ModelList = (BeforeValidator(_models), Field(json_schema_extra={"minItems": 1}))
+LISTS = ("stages", "laws", "wear_laws")
+"""The lists of models that may be empty; a case that is written down leaves empty ones out."""
+
+RESERVED = ("pair", "contact_model", "sweep", "law", "wear_law")
+"""Names of other columns of results, which no outcome may have."""
 
 
 class Case(Configuration):
-    """A study: a rig, contact models, wear laws, and operating points at which every pair of them is evaluated."""
+    """A study: a rig, contact models, laws, and operating points at which every pair of a model and a law is evaluated.
+
+    Stages, if given, stand around every contact model.
+    """
 
     title: str
     """The title of the study in its results."""
@@ -113,10 +162,16 @@ class Case(Configuration):
     """The distributions that the case needs, each with a version range such as ">=1.2,<2"; "" for any version."""
     rig: RigField
     """The rig: its `type` and fields, or a `preset` such as "suros" with the fields that differ."""
-    contact_models: Annotated[tuple[ContactModelField, ...], *ModelList]
+    contact_models: Annotated[
+        tuple[ContactModelField, ...], BeforeValidator(_some_models), Field(json_schema_extra={"minItems": 1})
+    ]
     """The contact models, each a name or a table of its name and options."""
-    wear_laws: Annotated[tuple[WearLawField, ...], *ModelList]
-    """The wear laws, likewise."""
+    stages: Annotated[tuple[StageField, ...], BeforeValidator(_models)] = ()
+    """Stages around every contact model, such as "patch_mean", likewise; the first one stands next to the model."""
+    laws: Annotated[tuple[Annotated[LawField, BeforeValidator(_other_law)], ...], BeforeValidator(_models)] = ()
+    """Laws of other outcomes than wear, such as damage by fatigue, likewise."""
+    wear_laws: Annotated[tuple[Annotated[WearLawField, BeforeValidator(_wear_law)], ...], BeforeValidator(_models)] = ()
+    """The wear laws, likewise; they can be left out if there are `laws`."""
     sweeps: Annotated[dict[str, Grid], Field(min_length=1)]
     """Grids of operating points, each under a name."""
     profiles: dict[str, Grid] = Field(default_factory=dict)
@@ -140,6 +195,29 @@ class Case(Configuration):
             if isinstance(needed, dict):
                 _require({str(name): str(versions) for name, versions in needed.items()})
         return fields
+
+    @field_validator("wear_laws")
+    @classmethod
+    def _some_law(cls, laws: tuple[WearLaw, ...], info: ValidationInfo) -> tuple[WearLaw, ...]:
+        if not laws and info.data.get("laws") == ():
+            raise InputError(f"{LISTED}, with at least one; or name laws of other outcomes than wear under laws")
+        return laws
+
+    @field_validator("laws", "wear_laws")
+    @classmethod
+    def _of_known_bodies(cls, laws: tuple[Law, ...], info: ValidationInfo) -> tuple[Law, ...]:
+        """Check the bodies of laws when the case is read; a rig need not name its bodies."""
+        named = any(law.body is not None for law in laws)
+        bodies = tuple(info.data["rig"].bodies) if named and "rig" in info.data else ()
+        has = f"Its bodies are {' and '.join(bodies)}"
+        wrong = [
+            Fault((str(number), "body"), f"the rig has no body '{law.body}'{did_you_mean(law.body, bodies)} {has}")
+            for number, law in enumerate(laws)
+            if law.body is not None and bodies and law.body not in bodies
+        ]
+        if wrong:
+            raise ConfigurationError(cls.subject(), wrong)
+        return laws
 
     @field_validator("sweeps", "profiles", "uncertainty")
     @classmethod
@@ -166,6 +244,35 @@ class Case(Configuration):
             found = {**grid.units(), **found}
         return found
 
+    @cached_property
+    def contact_models_by_label(self) -> dict[str, ContactModel]:
+        """The contact models by their labels in results, which name the stages around them."""
+        around = f" with {' and '.join(labels(self.stages))}" if self.stages else ""
+        return {f"{label}{around}": model for label, model in labelled(self.contact_models).items()}
+
+    @cached_property
+    def laws_by_label(self) -> dict[str, Law]:
+        """The laws by their labels in results, wear laws first."""
+        every: tuple[Law, ...] = (*self.wear_laws, *self.laws)
+        return labelled(every)
+
+    @cached_property
+    def outcomes(self) -> dict[str, Outcome]:
+        """The outcomes of the laws by name, wear first."""
+        return {law.outcome.name: law.outcome for law in (*self.wear_laws, *self.laws)}
+
+    @cached_property
+    def result_units(self) -> dict[str, str]:
+        """The units of all variables in results: those of the table of variables, outcomes and conditions."""
+        endings = ("", "_error", "_low", "_high")
+        of_laws = {f"{name}{end}": outcome.unit for name, outcome in self.outcomes.items() for end in endings}
+        return {**UNITS, **of_laws, **self.units}
+
+    @model_serializer(mode="wrap")
+    def _without_empty_lists(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        fields: dict[str, Any] = serialize(self)
+        return {name: value for name, value in fields.items() if value or name not in LISTS}
+
     @model_validator(mode="after")
     def _consistent(self) -> Case:
         for kind, names in (("sweeps", self.sweeps), ("profiles", self.profiles), ("uncertainty", self.uncertainty)):
@@ -176,10 +283,12 @@ class Case(Configuration):
             if profile.axes():
                 raise ValueError(f"profiles.{name}: a profile is at one operating point; give each condition one value")
         labels(self.contact_models)
-        laws = labelled(self.wear_laws)
+        wrong = [*self._wrong_outcomes(), *self._wrong_stages()]
+        if wrong:
+            raise ConfigurationError(self.subject(), wrong)
         for name, point in self.uncertainty.items():
             try:
-                point.check_laws(laws)
+                point.check_laws(self.laws_by_label)
             except InputError as error:
                 raise ValueError(f"uncertainty.{name}.{error}") from None
         twice = sorted({name for name in self.sections if self.sections.count(name) > 1})
@@ -201,11 +310,58 @@ class Case(Configuration):
             raise ConfigurationError(self.subject(), wrong)
         return self
 
+    def _wrong_outcomes(self) -> Iterator[Fault]:
+        """Yield the laws whose results would be mixed up with others."""
+        first: dict[str, Law] = {}
+        conditions = {name for grid in (*self.sweeps.values(), *self.profiles.values()) for name in grid.given}
+        for number, law in enumerate(self.laws):
+            outcome, path = law.outcome, ("laws", str(number))
+            other = first.setdefault(outcome.name, law)
+            if (outcome.unit, outcome.of) != (other.outcome.unit, other.outcome.of):
+                units = f"[{outcome.unit}] of {outcome.of}, but {other.name} in [{other.outcome.unit}] of"
+                yield Fault(
+                    path, f"{law.name} gives {outcome.name} in {units} {other.outcome.of}; put one in a case of its own"
+                )
+            if outcome.name == WEAR:
+                yield Fault(path, f"{law.name} predicts the wear rate; derive it from wl.WearLaw, for wear_laws")
+            if outcome.name in (*RESERVED, *conditions):
+                yield Fault(path, f"its outcome '{outcome.name}' is the name of another column of results; rename it")
+            if any(law.name == wear_law.name for wear_law in self.wear_laws):
+                yield Fault(path, f"a wear law of the case is called '{law.name}' too; put it in a case of its own")
+
+    def _wrong_stages(self) -> Iterator[Fault]:
+        """Yield the stages that fail around a contact model, tried at the first operating point of the first sweep."""
+        if not self.stages:
+            return
+        try:
+            labels(self.stages)
+        except InputError as error:
+            yield Fault(("stages",), str(error))
+            return
+        problem = next(iter(self.sweeps.values())).problem(self.rig)
+        for label, model in labelled(self.contact_models).items():
+            for count in range(len(self.stages) + 1):
+                try:
+                    with warnings.catch_warnings():
+                        warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
+                        Pipeline(rig=self.rig, contact_model=model, stages=self.stages[:count]).predict(problem)
+                except WearlawError as error:
+                    if count:  # otherwise the model does not suit the rig, which running the case notes
+                        name = self.stages[count - 1].name
+                        yield Fault(
+                            ("stages", str(count - 1)),
+                            f"{name} cannot stand around {label}: {error}; leave one of them out",
+                        )
+                        return
+                    break
+
     def _contents(self) -> Contents:
         return Contents(
             rig=self.rig,
-            contact_models=labelled(self.contact_models),
-            wear_laws=labelled(self.wear_laws),
+            contact_models=self.contact_models_by_label,
+            stages=self.stages,
+            laws=self.laws_by_label,
+            outcomes=self.outcomes,
             sweeps=self.sweeps,
             profiles=self.profiles,
             units=self.units,
@@ -242,13 +398,22 @@ def case_schema() -> dict[str, Any]:
     schema = Case.model_json_schema(by_alias=True)
     definitions = schema["$defs"]
     properties, found = schema["properties"], loader.installed()
-    for field, shelf in (("contact_models", found.contact_models), ("wear_laws", found.wear_laws)):
+    shelves: dict[str, Shelf[Any]] = {
+        "contact_models": found.contact_models,
+        "stages": found.stages,
+        "laws": found.laws,
+        "wear_laws": found.wear_laws,
+    }
+    for field, shelf in shelves.items():
         properties[field]["items"] = {"anyOf": [{"enum": list(shelf.items())}, *_tables(shelf, definitions)]}
     sets = found.parameter_sets
     properties["wear_laws"]["items"]["anyOf"] += [
         *({"const": name} for name in sets.items()),
         *({**table, "required": ["model"]} for table in _tables(sets, definitions)),
     ]
+    schema["anyOf"] = [{"required": [name], "properties": {name: {"minItems": 1}}} for name in ("wear_laws", "laws")]
+    for window in ("FigureSpec", "Window"):
+        _add_outcomes(definitions[window]["properties"]["y"], [law.outcome.name for law in found.laws.items().values()])
     properties["sections"]["items"] = {"enum": list(found.sections.items())}
     rigs = found.rigs.items()
     bare = [name for name, rig in rigs.items() if not any(one.is_required() for one in rig.model_fields.values())]
@@ -263,6 +428,16 @@ def case_schema() -> dict[str, Any]:
             properties["rig"]["anyOf"] += tables
             axis["enum"] = list(dict.fromkeys([*axis["enum"], *known]))
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def _add_outcomes(schema: Any, outcomes: list[str]) -> None:
+    """Add names of outcomes to the variables that a schema accepts."""
+    for inner in schema.get("anyOf", []):
+        _add_outcomes(inner, outcomes)
+    if "items" in schema:
+        _add_outcomes(schema["items"], outcomes)
+    if "enum" in schema:
+        schema["enum"] = list(dict.fromkeys([*schema["enum"], *outcomes]))
 
 
 @contextmanager

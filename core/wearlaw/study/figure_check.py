@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -9,12 +10,14 @@ from typing import Any
 
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean
-from wearlaw.models.contact_model import ContactModel
-from wearlaw.models.law import Law
-from wearlaw.pipeline.composition import check_geometry
+from wearlaw.models.contact_model import ContactModel, Scale
+from wearlaw.models.law import WEAR, Law, Outcome
+from wearlaw.models.stage import Stage
+from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, offered
+from wearlaw.study.composed import composed
 from wearlaw.study.figure_spec import ACROSS, OF_LOAD, OF_PROFILE, FigureSpec, Window, axis_along, wrong_range
 from wearlaw.study.grid import Grid
 from wearlaw.units.variables import UNITS
@@ -44,8 +47,12 @@ class Contents:
     Attributes
     ----------
     rig : Rig
-    contact_models, wear_laws : mapping of str to Model
+    contact_models, laws : mapping of str to Model
         By their labels in results.
+    stages : tuple of Stage
+        The stages around every contact model.
+    outcomes : mapping of str to Outcome
+        The outcomes of the laws by name.
     sweeps, profiles : mapping of str to Grid
     units : mapping of str to str
         The unit in which each condition is shown.
@@ -55,7 +62,9 @@ class Contents:
 
     rig: Rig
     contact_models: Mapping[str, ContactModel]
-    wear_laws: Mapping[str, Law]
+    stages: tuple[Stage, ...]
+    laws: Mapping[str, Law]
+    outcomes: Mapping[str, Outcome]
     sweeps: Mapping[str, Grid]
     profiles: Mapping[str, Grid]
     units: Mapping[str, str]
@@ -97,7 +106,7 @@ class Contents:
         if (kind, name) not in self._known:
             problem = grid.problem(self.rig)
             predictions = list(self._predictions(problem))
-            found = self._of_sweep(grid, predictions) if kind == "sweep" else self._of_profile(predictions)
+            found = self._of_sweep(grid, predictions) if kind == "sweep" else self._of_profile(predictions, problem)
             self._known[kind, name] = found
         return self._known[kind, name]
 
@@ -107,7 +116,7 @@ class Contents:
         Running the case reports the errors of the others.
         """
         for model in self.contact_models.values():
-            found = next(filter(None, (self._prediction(model, law, problem) for law in self.wear_laws.values())), None)
+            found = next(filter(None, (self._prediction(model, law, problem) for law in self.laws.values())), None)
             if found is not None:
                 yield found
 
@@ -115,8 +124,7 @@ class Contents:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
-                check_geometry(self.rig, model, problem.geometry)
-                return (self.rig | model | law).predict(problem)
+                return composed(self.rig, model, self.stages, law, problem.geometry).predict(problem)
         except WearlawError:
             return None
 
@@ -126,24 +134,41 @@ class Contents:
         conditions = [name for name, level in levels.items() if isinstance(level, float)]
         of_contact, of_point = ([name for name in names if name in every] for names in (OF_CONTACT, OF_POINT))
         x = tuple(dict.fromkeys((*of_contact, *of_point, *conditions)))
-        return Variables(x, ("wear_rate", *of_contact, *of_point), {**UNITS, **self.units})
+        return Variables(x, (*self.outcomes, *of_contact, *of_point), {**UNITS, **self._of_laws(), **self.units})
 
-    def _of_profile(self, predictions: list[Prediction]) -> Variables:
-        across = [one for one in predictions if one.problem.geometry != "line"]
-        if not across:
-            return Variables(("x",), OF_PROFILE, UNITS)
-        units = dict(UNITS)
-        resolved = [one for one in across if one.scale == "cells"]
-        for body in self.rig.bodies if resolved else ():
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
-                columns = resolved[0].wear_profile(body).data_vars.items()
-            units |= {f"{body}_{name}": column.attrs["units"] for name, column in columns}
+    def _of_laws(self) -> dict[str, str]:
+        return {name: outcome.unit for name, outcome in self.outcomes.items()}
+
+    def _of_profile(self, predictions: list[Prediction], problem: Any) -> Variables:
+        units = {**UNITS, **self._of_laws()}
+        if all(one.problem.geometry == "line" for one in predictions):
+            local = [name for name, outcome in self.outcomes.items() if outcome.of == "area mean"]
+            known = dict.fromkeys((*(name for name in OF_PROFILE if name != WEAR or WEAR in local), *local))
+            return Variables(("x",), tuple(known), units)
+        for body in self.rig.bodies:
+            for model, law in itertools.product(self.contact_models.values(), self.laws.values()):
+                if law.outcome.name != WEAR or law.body not in (None, body) or not self._resolves(model):
+                    continue
+                found = self._prediction(model, law, problem)
+                if found is not None:
+                    with warnings.catch_warnings():
+                        warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
+                        columns = found.wear_profile(body).data_vars.items()
+                    units |= {f"{body}_{name}": column.attrs["units"] for name, column in columns}
+                    break
         return Variables(("x", "y"), ACROSS, units)
+
+    def _resolves(self, model: ContactModel) -> bool:
+        """Return whether laws see the cells of a contact model after its stages."""
+        scale: Scale = staged(model, self.stages).scale
+        return scale == "cells"
 
     def _of_window(self, x: str, window: Window, known: Variables, across: bool) -> Iterator[tuple[str, str]]:
         """Yield the faults of a panel."""
-        yield from _unknown("y", window.shown, known.y)
+        whole = [name for name in window.shown if across and name in self.outcomes and name not in known.y]
+        for name in whole:
+            yield "y", f"{name} has no profile; show it in a figure of a sweep"
+        yield from _unknown("y", [name for name in window.shown if name not in whole], known.y)
         across = across and known.y == ACROSS
         bodies = tuple(self.rig.bodies)
         if window.body is not None and not across:
@@ -153,6 +178,8 @@ class Contents:
             return
         body = f"{window.body or bodies[0]}_" if across and bodies else ""
         units = {name: known.units[f"{body}{name}"] for name in window.shown if f"{body}{name}" in known.units}
+        if across and not units and any(f"{one}_depth" in known.units for one in bodies):
+            yield "body", f"no wear law of the case is for '{window.body or bodies[0]}'; name another body"
         if len(set(units.values())) > 1:
             each = ", ".join(f"{variable} in {unit or 'no unit'}" for variable, unit in units.items())
             yield "y", f"one axis has one unit, but these are {each}; give each a panel of its own"
@@ -174,22 +201,33 @@ class Contents:
 
     def _of_models(self, spec: FigureSpec, grid: Grid) -> Iterator[tuple[str, str]]:
         refusals = {
-            (model, law): self._refusal(model, law, spec, grid)
-            for model in self.contact_models
-            for law in self.wear_laws
+            (model, law): self._refusal(model, law, spec, grid) for model in self.contact_models for law in self.laws
         }
-        pairs = [f"{law} on {model}" for (model, law), refusal in refusals.items() if not refusal]
+        pairs = {
+            f"{law} on {model}": self.laws[law].outcome.name
+            for (model, law), refusal in refusals.items()
+            if not refusal
+        }
         models = list(dict.fromkeys(model for (model, _), refusal in refusals.items() if not refusal))
         if not pairs:
             yield "profile" if spec.profile else "sweep", next(iter(refusals.values()))
             return
         refused = {f"{law} on {model}": refusal for (model, law), refusal in refusals.items() if refusal}
+        shown = {variable for window in spec.windows() for variable in window.shown if variable in self.outcomes}
+        for outcome in shown - {*pairs.values()}:
+            reasons = (refusal for (_, law), refusal in refusals.items() if self.laws[law].outcome.name == outcome)
+            yield "y", f"no pair of the case gives {outcome}: {next(reasons)}"
         for pair in spec.pairs or ():
             if pair not in pairs:
                 yield (
                     "pairs",
                     f"'{pair}': {refused[pair]}" if pair in refused else f"there is no {_choice(pair, pairs)}",
                 )
+            elif shown and pairs[pair] not in shown:
+                yield "pairs", f"'{pair}' predicts {pairs[pair]}, which the figure does not show; leave it out"
+        for outcome in sorted(shown.intersection(pairs.values())) if spec.pairs else ():
+            if outcome not in {pairs.get(pair) for pair in spec.pairs or ()} and pairs.keys() >= {*(spec.pairs or ())}:
+                yield "pairs", f"none of them predicts {outcome}, which the figure shows; add one that does"
         for model in spec.contact_models or ():
             if model not in models:
                 yield "contact_models", f"there is no {_choice(model, models)}"
@@ -199,15 +237,18 @@ class Contents:
         contact_model = self.contact_models[model]
         if "traction_coefficient" in grid.given and not contact_model.uses_measured_traction:
             return f"{model} is left out there, since it computes the traction itself"
-        if spec.profile and contact_model.scale != "cells":
+        if spec.profile and not self._resolves(contact_model):
             return f"{model} does not resolve the patch"
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
-                check_geometry(self.rig, contact_model, grid.problem(self.rig).geometry)
-                _ = self.rig | contact_model | self.wear_laws[law]
+                geometry = grid.problem(self.rig).geometry
+                composed(self.rig, contact_model, self.stages, self.laws[law], geometry)
         except CompositionError as error:
             return str(error)
+        outcome = self.laws[law].outcome.name
+        if spec.profile and geometry != "line" and outcome != WEAR:
+            return f"{law} predicts {outcome}, but across the patch of an ellipse only wear is shown"
         return ""
 
 

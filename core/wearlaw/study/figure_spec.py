@@ -21,8 +21,8 @@ OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "cr
 ACROSS = ("depth", "sliding_distance")
 """Variables across the patch of an elliptic contact, for one of the bodies."""
 
-OF_PAIRS = ("wear_rate", "depth")
-"""The variables that differ from law to law."""
+OF_CONTACTS = {*OF_CONTACT, *OF_POINT, *OF_PROFILE, "sliding_distance"} - {"wear_rate"}
+"""The variables that do not differ from law to law; all others are wear rate, depth, and outcomes of other laws."""
 
 OF_LOAD = (*LOADS, "half_width", "semi_axis_a", "semi_axis_b")
 """The variables that the load alone determines."""
@@ -84,7 +84,7 @@ class FigureSpec(Window):
     x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", *OF_CONTACT, *OF_POINT]})] = "x"
     """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it."""
     pairs: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
-    """The pairs whose wear rates are shown, such as "usfd on exact". Default: all."""
+    """The pairs whose wear rates or other outcomes are shown, such as "usfd on exact". Default: all."""
     contact_models: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """The contact models whose other variables are shown. Default: all."""
     measured: bool = False
@@ -118,10 +118,14 @@ class FigureSpec(Window):
             elif len(set(window.y)) < len(window.y):
                 yield (*path, "y"), "names a variable twice"
         shown = {variable for window in self.windows() for variable in window.shown}
-        if self.pairs and not shown.intersection(OF_PAIRS):
-            yield ("pairs",), "the figure does not show wear_rate; choose among contact_models instead"
-        if self.contact_models and shown == {"wear_rate"}:
-            yield ("contact_models",), "the figure shows only wear_rate; choose among pairs instead"
+        if self.pairs and shown <= OF_CONTACTS:
+            yield (
+                ("pairs",),
+                "the figure does not show wear_rate or another outcome; choose among contact_models instead",
+            )
+        if self.contact_models and shown and not shown & OF_CONTACTS and not shown & {*ACROSS}:
+            only = " and ".join(sorted(shown))
+            yield ("contact_models",), f"the figure shows only {only}; choose among pairs instead"
         if self.measured and self.profile:
             yield ("measured",), "tests are measured over the whole patch; show them in a figure of a sweep"
 

@@ -1,7 +1,7 @@
 """The figures of a study: the figures of its case, or else one of each kind for each sweep and profile.
 
-Line styles stand for contact models. Colours stand for wear laws in figures of wear rates, for variables along the
-patch or where several are shown, and otherwise for contact models too. Bands show the published range of a law's
+Line styles stand for contact models. Colours stand for laws in figures of their outcomes, for variables along the patch
+or where several are shown, and otherwise for contact models too. Bands show the published range of a law's
 parameters. Parts of curves outside the range of their law are thin and pale, and parts of panels beyond first yield or
 shakedown are shaded.
 """
@@ -15,10 +15,10 @@ import numpy as np
 import xarray
 
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis, Shade
-from wearlaw.models.labels import labels
+from wearlaw.models.law import WEAR
 from wearlaw.study.figure_spec import ACROSS, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
 from wearlaw.study.measured import measured_points
-from wearlaw.study.results import LIMITS, Results, along, beyond_limits, main_axis
+from wearlaw.study.results import LIMITS, Results, along, beyond_limits, main_axis, outcomes_of, predicting
 from wearlaw.units.variables import UNITS, label, name_of
 
 if TYPE_CHECKING:
@@ -35,20 +35,23 @@ def figures_of(results: Results) -> tuple[FigureData, ...]:
 
 
 def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
-    """Yield the default figures: wear and traction over each sweep, and the fields or wear of each profile."""
+    """Yield the default figures: outcomes and traction over each sweep, and the fields or wear of each profile."""
     creepage = results.case.rig.creepage
     for name, sweep in results.sweeps.items():
         axis = main_axis(sweep, creepage)
-        for x in ("wear_index", axis):
-            spec = FigureSpec(sweep=name, x=x, y=("wear_rate",), x_scale="log", y_scale="log")
-            yield f"{name}_wear_rate_against_{x}", spec
+        for outcome in outcomes_of(results, sweep):
+            for x in ("wear_index", axis):
+                y_scale: Scale = "linear" if outcome.signed else "log"
+                spec = FigureSpec(sweep=name, x=x, y=(outcome.name,), x_scale="log", y_scale=y_scale)
+                yield f"{name}_{outcome.name}_against_{x}", spec
         if axis == creepage:
             measured = results.case.measured is not None
             spec = FigureSpec(sweep=name, x=axis, y=("traction_coefficient",), x_scale="log", measured=measured)
             yield f"{name}_traction_against_{axis}", spec
     for name, profile in results.profiles.items():
         if "y" in profile.coords:
-            across = tuple(Window(title=body, y=(y,), body=body) for y in ACROSS for body in results.case.rig.bodies)
+            bodies = [body for body in results.case.rig.bodies if f"{body}_depth" in profile]
+            across = tuple(Window(title=body, y=(y,), body=body) for y in ACROSS for body in bodies)
             yield f"{name}_across_the_patch", FigureSpec(profile=name, x="y", panels=across)
         elif profile:
             panels = (Window(y=("pressure", "traction", "traction_bound")), Window(y=("slip",)))
@@ -62,7 +65,7 @@ def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
     heads = [text for condition, text in fixed.items() if condition in grid.axes()]
     panels = []
     for window in spec.windows():
-        units = {**UNITS, **results.case.units}
+        units = results.case.result_units
         x = spec.x
         if spec.sweep:
             curves = _over_sweep(results, spec, window, axis)
@@ -71,7 +74,7 @@ def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
             x, body = "y", window.body or next(iter(results.case.rig.bodies))
             curves = _across_the_patch(results, spec, window, body)
             profile = results.profiles[spec.profile or ""]
-            units |= {name: profile[f"{body}_{name}"].attrs["units"] for name in window.shown}
+            units = units | {name: profile[f"{body}_{name}"].attrs["units"] for name in window.shown}
             shades = _all_over(results.profiles[spec.profile or ""], spec, curves)
         else:
             curves = _along_the_patch(results, spec, window)
@@ -97,28 +100,30 @@ def _conditions(grid: Grid, axis: str, units: Mapping[str, str]) -> dict[str, st
 
 
 def _over_sweep(results: Results, spec: FigureSpec, window: Window, axis: str) -> list[Curve]:
-    """Return curves of the wear rate for each pair, or of other variables for each contact model."""
+    """Return curves of outcomes for each pair, and of other variables for each contact model."""
     line = along(results.sweeps[spec.sweep or ""], axis)
     shown = window.shown
-    if shown == ("wear_rate",):
-        curves = [_rate(results, line, spec.x, pair) for pair in spec.pairs or line.pair.values.tolist()]
-    else:
-        models = spec.contact_models or line.contact_model.values.tolist()
-        curves = []
-        for y in shown:
+    models = spec.contact_models or line.contact_model.values.tolist()
+    curves = []
+    for y in shown:
+        if "pair" in line[y].dims:
+            pairs = predicting(results, y, spec.pairs or line.pair.values.tolist())
+            curves += [_outcome(results, line, spec.x, shown, y, pair) for pair in pairs]
+        else:
             alike = None if "contact_model" in line[y].dims or "contact_model" in line[spec.x].dims else 1
             curves += [_of_contact(results, line, spec.x, shown, y, model, alike) for model in models[:alike]]
     return curves + [_measured(results, spec.x, y) for y in shown if spec.measured]
 
 
-def _rate(results: Results, line: xarray.Dataset, x: str, pair: str) -> Curve:
+def _outcome(results: Results, line: xarray.Dataset, x: str, shown: tuple[str, ...], y: str, pair: str) -> Curve:
+    """Return the curve of an outcome of a pair, with its band if the law has one."""
     one = line.sel(pair=pair)
-    low, high = one.wear_rate_low.values, one.wear_rate_high.values
+    low, high = (one[name].values if name in one else np.array(np.nan) for name in (f"{y}_low", f"{y}_high"))
     has_band = bool((high > low).any())
     return Curve(
-        pair,
+        pair if len(shown) == 1 else f"{name_of(y)}, {pair}",
         _magnitude(line, x, one.pair_contact_model.item()),
-        one.wear_rate.values,
+        one[y].values,
         *_style(results, pair),
         low=low if has_band else None,
         high=high if has_band else None,
@@ -130,8 +135,9 @@ def _over_limits(results: Results, spec: FigureSpec, window: Window, axis: str) 
     """Return where the contact of any model of a panel is beyond its elastic limits, over a sweep."""
     line = along(results.sweeps[spec.sweep or ""], axis)
     models = spec.contact_models or line.contact_model.values.tolist()
-    if window.shown == ("wear_rate",):
-        models = line.pair_contact_model.sel(pair=list(spec.pairs or line.pair.values)).values.tolist()
+    if all("pair" in line[y].dims for y in window.shown):
+        pairs = [pair for y in window.shown for pair in predicting(results, y, spec.pairs or line.pair.values.tolist())]
+        models = line.pair_contact_model.sel(pair=pairs).values.tolist()
     tracks = [(_magnitude(line, spec.x, model), model) for model in dict.fromkeys(models)]
     shades = []
     for level, (limit, beyond) in enumerate(beyond_limits(line).items(), start=1):
@@ -221,7 +227,7 @@ def _measured(results: Results, x: str, y: str) -> Curve:
 
 
 def _along_the_patch(results: Results, spec: FigureSpec, window: Window) -> list[Curve]:
-    """Return curves along the patch: wear rate for each pair, other variables for each contact model."""
+    """Return curves along the patch: outcomes for each pair, other variables for each contact model."""
     profile = results.profiles[spec.profile or ""]
     curves = []
     for variable in window.shown:
@@ -229,11 +235,12 @@ def _along_the_patch(results: Results, spec: FigureSpec, window: Window) -> list
             grid = results.case.profiles[spec.profile or ""]
             level = np.full(2, grid.level(results.case.rig.creepage, results.case.units))
             curves.append(Curve(name_of(variable), profile.x.values[[0, -1]], level, OF_PROFILE.index(variable)))
-        elif variable == "wear_rate":
-            for pair in spec.pairs or profile.pair.values.tolist():
-                one = profile.wear_rate.sel(pair=pair).dropna("x")
+        elif "pair" in profile[variable].dims:
+            for pair in predicting(results, variable, spec.pairs or profile.pair.values.tolist()):
+                one = profile[variable].sel(pair=pair).dropna("x")
                 outside = np.full(one.shape, profile.outside_range.sel(pair=pair).item() > 0.0)
-                curves.append(Curve(pair, one.x.values, one.values, *_style(results, pair), outside=outside))
+                named = pair if len(window.shown) == 1 or variable == WEAR else f"{name_of(variable)}, {pair}"
+                curves.append(Curve(named, one.x.values, one.values, *_style(results, pair), outside=outside))
         else:
             models = spec.contact_models or profile.contact_model.values.tolist()
             alike = 1 if variable == "pressure" else None
@@ -250,6 +257,8 @@ def _across_the_patch(results: Results, spec: FigureSpec, window: Window, body: 
         if "pair" in values.dims:
             for pair in spec.pairs or profile.pair.values.tolist():
                 one = values.sel(pair=pair).dropna("y")
+                if not one.size:  # a law for the other body
+                    continue
                 outside = np.full(one.shape, results.is_outside(profile, pair, body))
                 curves.append(Curve(pair, one.y.values, one.values, *_style(results, pair), outside=outside))
         else:
@@ -269,13 +278,13 @@ def _field(results: Results, profile: xarray.Dataset, variable: str, model: str)
 
 
 def _dash(results: Results, model: str) -> int:
-    return labels(results.case.contact_models).index(model)
+    return list(results.case.contact_models_by_label).index(model)
 
 
 def _style(results: Results, label_of_pair: str) -> tuple[int, int]:
-    """Return the colour of a pair's wear law and the dash of its contact model."""
+    """Return the colour of a pair's law and the dash of its contact model."""
     pair = results.pair(label_of_pair)
-    return labels(results.case.wear_laws).index(pair.wear_law), _dash(results, pair.contact_model)
+    return list(results.case.laws_by_label).index(pair.law), _dash(results, pair.contact_model)
 
 
 def _axes(x: str, window: Window, curves: list[Curve], units: Mapping[str, str]) -> tuple[PlotAxis, PlotAxis]:

@@ -1,59 +1,77 @@
-"""Pairs of contact models and wear laws."""
+"""Pairs of contact models, with the stages around them, and laws."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.models.contact_model import ContactModel
-from wearlaw.models.labels import labelled
-from wearlaw.models.wear_law import WearLaw
-from wearlaw.pipeline.composition import check_geometry
+from wearlaw.models.law import Law, Outcome
+from wearlaw.models.stage import Stage
+from wearlaw.pipeline.composition import TAKE_MEANS
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.study.case import Case
+from wearlaw.study.composed import TAKE_MEANS_IN_A_CASE, composed
 
 
 @dataclass(frozen=True)
 class Pair:
-    """A contact model with a wear law."""
+    """A contact model with a law, both by their labels in results."""
 
     contact_model: str
-    wear_law: str
+    law: str
     pipeline: Pipeline[...]
 
     @property
     def label(self) -> str:
         """Name of the pair in results."""
-        return f"{self.wear_law} on {self.contact_model}"
+        return f"{self.law} on {self.contact_model}"
+
+    @property
+    def wear_law(self) -> str:
+        """Label of the law."""
+        return self.law
+
+    @property
+    def outcome(self) -> Outcome:
+        """What the law predicts."""
+        return self.pipeline.laws[0].outcome
 
 
 def pairs_of(case: Case, notes: Notes) -> list[Pair]:
     """Compose all pairs of a case with `compose`, for the first operating point of its first sweep."""
     problem = next(iter(case.sweeps.values())).problem(case.rig)
-    return compose(case.rig, labelled(case.contact_models), labelled(case.wear_laws), notes, problem)
+    models, laws = case.contact_models_by_label, case.laws_by_label
+    return compose(case.rig, models, laws, notes, problem, case.stages, TAKE_MEANS_IN_A_CASE)
 
 
 def compose(
     rig: Rig,
     contact_models: Mapping[str, ContactModel],
-    wear_laws: Mapping[str, WearLaw],
+    laws: Mapping[str, Law],
     notes: Notes,
     problem: Any = None,
+    stages: Sequence[Stage] = (),
+    remedy: str = TAKE_MEANS,
 ) -> list[Pair]:
     """Compose all possible pairs, and note impossible ones and parameters fitted for other contact models.
 
     Parameters
     ----------
     rig : Rig
-    contact_models, wear_laws : mapping of str to Model
+    contact_models, laws : mapping of str to Model
         By their labels in results.
     notes : Notes
         Collects the remarks.
     problem : problem, optional
         A problem that the rig has made; it has a geometry even if the rig declares none.
+    stages : sequence of Stage, optional
+        The stages around every contact model.
+    remedy : str, optional
+        What to do about a law of the whole patch on a contact resolved into cells.
 
     Raises
     ------
@@ -63,16 +81,16 @@ def compose(
     geometry = None if problem is None else problem.geometry
     pairs = []
     for contact_label, model in contact_models.items():
-        for law_label, law in wear_laws.items():
+        for law_label, law in laws.items():
             try:
                 with notes.of(f"{law_label} on {contact_label}"):
-                    check_geometry(rig, model, geometry or rig.geometry)
-                    pipeline = rig | model | law
+                    pipeline = composed(rig, model, stages, law, geometry, remedy)
                     if problem is not None:
                         pipeline.warn_of_problem(problem, stacklevel=1)
                     pairs.append(Pair(contact_label, law_label, pipeline))
             except CompositionError as error:
                 notes.add(f"{law_label} on {contact_label} is left out: {error}")
     if not pairs:
-        raise InputError("no contact model can be used with any of the wear laws:\n" + "\n".join(notes.texts))
+        kind = "wear laws" if all(law.kind == "wear law" for law in laws.values()) else "laws"
+        raise InputError(f"no contact model can be used with any of the {kind}:\n" + "\n".join(notes.texts))
     return pairs

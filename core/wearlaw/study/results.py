@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import xarray
 
 from wearlaw.errors import InputError, did_you_mean
+from wearlaw.models.law import Outcome
 from wearlaw.pipeline.composition import fitted_to_other_body
 from wearlaw.study.case import Case
 from wearlaw.study.pairs import Pair
@@ -47,6 +49,16 @@ class Results:
         law = self.pair(label).pipeline.wear_law
         other = fitted_to_other_body(self.case.rig.bodies, law, body)
         return other or bool(profile.outside_range.sel(pair=label).item())
+
+
+def predicting(results: Results, outcome: str, labels: Sequence[str]) -> list[str]:
+    """Return the pairs among these whose law predicts an outcome."""
+    return [label for label in labels if results.pair(label).outcome.name == outcome]
+
+
+def outcomes_of(results: Results, sweep: xarray.Dataset) -> list[Outcome]:
+    """Return the outcomes in the results of a sweep, wear first."""
+    return [outcome for name, outcome in results.case.outcomes.items() if name in sweep]
 
 
 def axes_of(sweep: xarray.Dataset) -> list[str]:

@@ -1,4 +1,4 @@
-"""Running a case: every contact model with every wear law at all operating points, as labelled datasets."""
+"""Running a case: every contact model with every law at all operating points, as labelled datasets."""
 
 from __future__ import annotations
 
@@ -23,11 +23,12 @@ from wearlaw.errors import (
     message_of,
 )
 from wearlaw.models.contact_model import Model
+from wearlaw.models.law import WEAR
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
-from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.prediction import ERROR, Prediction
 from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, offered
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import known_name, parts
@@ -45,9 +46,6 @@ if TYPE_CHECKING:
     from wearlaw.figures.curves import FigureData
     from wearlaw.plugins.shelf import Shelf
     from wearlaw.study.grid import Grid
-
-RATES, BAND = ("wear_rate", "wear_rate_error", "outside_range"), ("wear_rate_low", "wear_rate_high")
-"""Variables that differ from pair to pair: the wear rate, and its band over the published parameters of the law."""
 
 LIMITS = ("max_pressure", "first_yield", "shakedown_limit")
 """Variables that show whether the contact of a profile stays elastic, if the yield stress of a body is known."""
@@ -182,16 +180,20 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
     contacts: dict[str, dict[str, Array]] = {}
     for number, pair in enumerate(usable):
         new = found_in.of_contact[pair.contact_model] if pair.contact_model not in contacts else ()
-        outputs = [*RATES, *new, *(found_in.of_point if not contacts else ())]
+        outputs = [*_of_pair(pair), *new, *(found_in.of_point if not contacts else ())]
         with notes.of(f"sweep '{name}'"):
             warn_of_unlike_materials(pair.pipeline.contact_model, first, stacklevel=1)
             found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs)
         contacts.setdefault(pair.contact_model, found)
-        rates.append(_with_band(f"{name}-{number}", pair.pipeline, points, found, evaluator))
+        band = _band(f"{name}-{number}", pair, points, found, evaluator)
+        rates.append({v: found[v] for v in _of_pair(pair)} | band)
     any_contact = next(iter(contacts.values()))
     missing = np.full(points.shape, np.nan)
     variables: dict[str, Any] = {
-        **{v: (("pair", *axes), np.stack([rate[v] for rate in rates])) for v in (*RATES, *BAND)},
+        **{
+            v: (("pair", *axes), np.stack([rate.get(v, missing) for rate in rates]))
+            for v in dict.fromkeys(v for rate in rates for v in rate)
+        },
         **{
             v: (("contact_model", *axes), np.stack([c.get(v, missing) for c in contacts.values()]))
             for v in OF_CONTACT
@@ -200,14 +202,26 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
         **{v: (axes, any_contact[v]) for v in found_in.of_point},
         **{v: (axes, np.full(points.shape, level)) for v, level in found_in.conditions.items()},
     }
-    units = {**UNITS, **case.units}
+    units = case.result_units
     dataset = xarray.Dataset({v: (dims, values, {"units": units[v]}) for v, (dims, values) in variables.items()})
     return dataset.assign_coords(
         {axis: (axis, one.values, {"units": units[axis]}) for axis, one in points.varying.items()}
         | {"pair": [pair.label for pair in usable], "contact_model": list(contacts)}
         | {"pair_contact_model": ("pair", [pair.contact_model for pair in usable])}
-        | {"pair_wear_law": ("pair", [pair.wear_law for pair in usable])}
+        | {f"pair_{kind}": ("pair", labels) for kind, labels in _labels_of_laws(case, usable).items()}
     )
+
+
+def _labels_of_laws(case: Case, pairs: list[Pair]) -> dict[str, list[str]]:
+    """Return the labels of the wear laws of pairs, and of their laws of other outcomes if the case has any."""
+    found = {"wear_law": [pair.law if pair.outcome.name == WEAR else "" for pair in pairs]}
+    return found | ({"law": [pair.law if pair.outcome.name != WEAR else "" for pair in pairs]} if case.laws else {})
+
+
+def _of_pair(pair: Pair) -> tuple[str, ...]:
+    """Return the variables of a pair: its outcome, the error of a mean over the patch, and whether it is outside."""
+    error = (f"{pair.outcome.name}{ERROR}",) if pair.outcome.of == "area mean" else ()
+    return (pair.outcome.name, *error, "outside_range")
 
 
 @dataclass(frozen=True)
@@ -255,7 +269,7 @@ def numbers(case: Case) -> int:
         usable = _usable(f"sweep '{name}'", grid, pairs, Notes())
         found = _variables(grid, case, usable)
         of_contact = sum(len(variables) for variables in found.of_contact.values())
-        of_pair = len(usable) * len((*RATES, *BAND))
+        of_pair = len(usable) * len({v for pair in usable for v in (*_of_pair(pair), *_band_names(pair))})
         total += grid.size * (len(found.of_point) + len(found.conditions) + of_contact + of_pair)
         total += sum(grid.axes().values())
     return total
@@ -274,61 +288,78 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
     return usable
 
 
-def _with_band(
-    key: str, pipeline: Pipeline[...], points: Points, found: dict[str, Array], evaluator: Evaluator
-) -> dict[str, Array]:
-    """Add the ends of the wear rate over the published range of the law's parameters to results."""
-    ends = []
-    for end, one in zip(BAND, _band_ends(pipeline), strict=False):
+def _band(key: str, pair: Pair, points: Points, found: dict[str, Array], evaluator: Evaluator) -> dict[str, Array]:
+    """Return the ends of the outcome over the published range of the law's parameters."""
+    ends, outcome = [], pair.outcome.name
+    for end, one in zip(_band_names(pair), _band_ends(pair.pipeline), strict=False):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band gave them already
-            ends.append(evaluator(f"{key}-{end}", one, points, ["wear_rate"])["wear_rate"])
-    return {**found, **dict(zip(BAND, ends or [found["wear_rate"]] * 2, strict=True))}
+            ends.append(evaluator(f"{key}-{end}", one, points, [outcome])[outcome])
+    return dict(zip(_band_names(pair), ends or [found[outcome]] * 2, strict=False))
+
+
+def _band_names(pair: Pair) -> tuple[str, ...]:
+    """Return the names of the ends of a band; wear rates have them in any case."""
+    name = pair.outcome.name
+    return (f"{name}_low", f"{name}_high") if name == WEAR or _band_ends(pair.pipeline) else ()
 
 
 def _band_ends(pipeline: Pipeline[...]) -> list[Pipeline[...]]:
     """Return the pipelines with the low and the high end of the law's published range, if there is one."""
-    band = pipeline.wear_law.band()
+    (law,) = pipeline.laws
+    band = law.band()
     return [] if band is None else [pipeline.with_law(law) for law in (band[0], band[2])]
 
 
 def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes) -> xarray.Dataset:
-    """Return the profile of the patch: fields of each contact model, and the wear of each pair."""
+    """Return the profile of the patch: fields of each contact model, and the outcomes of each pair."""
     problem = grid.problem(case.rig)
     contacts: dict[str, xarray.Dataset] = {}
-    wear: list[xarray.Dataset] = []
+    of_pairs: list[xarray.Dataset] = []
+    shown: list[str] = []
     usable = _usable(f"profile '{name}'", grid, pairs, notes)
     resolved = [pair for pair in usable if pair.pipeline.scale == "cells"]
     if not resolved:
-        notes.add(f"profile '{name}' is left out: no contact model of the case resolves the patch")
+        after = " after its stages" if case.stages else ""
+        notes.add(f"profile '{name}' is left out: no contact model of the case resolves the patch{after}")
         return xarray.Dataset()
     for pair in resolved:
+        if problem.geometry != "line" and pair.outcome.name != WEAR:
+            notes.add(f"profile '{name}': {pair.label} is left out, since only wear is shown across a patch")
+            continue
         with notes.of(f"profile '{name}'"):
             of_pair, whole = _seen(pair.pipeline.predict(problem), case.rig)
         if not whole:
             notes.add(f"profile '{name}' is left out: rig '{case.rig.name}' does not name its bodies")
             return xarray.Dataset()
-        contacts[pair.contact_model] = whole.drop_vars(of_pair)
-        wear.append(whole[of_pair])
+        of_contact = whole.drop_vars(of_pair)
+        before = contacts.get(pair.contact_model, of_contact)  # laws of the two bodies show a part each
+        more = [v for v in before.data_vars if v not in of_contact]
+        contacts[pair.contact_model] = of_contact.merge(before[more]) if more else of_contact
+        of_pairs.append(whole.drop_vars(of_contact.data_vars))
+        shown.append(pair.label)
+    if not shown:
+        return xarray.Dataset()
     # A model with nodes of its own has NaN at the nodes of others.
     dataset = xarray.concat(list(contacts.values()), xarray.Variable("contact_model", list(contacts)), join="outer")
-    return dataset.assign(xarray.concat(wear, "pair", join="outer").data_vars).assign_coords(
-        pair=[pair.label for pair in resolved]
-    )
+    return dataset.assign(xarray.concat(of_pairs, "pair", join="outer").data_vars).assign_coords(pair=shown)
 
 
 def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
     """Return the variables of a profile that differ from law to law, and the profile of a prediction.
 
     The profile of a line runs along the patch, over x. That of an ellipse runs across it, over y, with the wear of
-    each body.
+    each body that the law is for.
     """
     limits = LIMITS if len(offered(prediction, LIMITS)) == len(LIMITS) else ()
     whole = {name: ((), getattr(prediction, name).magnitude, {"units": UNITS[name]}) for name in limits}
     of_law = {"outside_range": ((), prediction.outside_range.magnitude, {"units": ""})}
+    (law,) = prediction.laws
     if prediction.problem.geometry == "line":
-        return ["wear_rate", *of_law], prediction.profile.assign(whole | of_law)
-    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in rig.bodies}
+        local = [law.outcome.name] if law.outcome.of == "area mean" else []
+        return [*local, *of_law], prediction.profile.assign(whole | of_law)
+    bodies = [body for body in rig.bodies if law.body in (None, body)]
+    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in bodies}
     named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
     if not named:
         return [], xarray.Dataset()

@@ -15,7 +15,7 @@ from pydantic import TypeAdapter
 from wearlaw.arrays.array import Array
 from wearlaw.errors import OutputError
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.sweeping.evaluation import Job
+from wearlaw.sweeping.evaluation import Job, outcome_units
 from wearlaw.sweeping.journal import Run, check_same, write_whole
 from wearlaw.sweeping.points import Points
 from wearlaw.sweeping.storage import Arrays, Files, Memory, damage
@@ -133,8 +133,12 @@ class Evaluator:
         self._checkpoint = checkpoint
 
     def __call__(self, key: str, pipeline: Pipeline[...], points: Points, outputs: Sequence[str]) -> dict[str, Array]:
-        """Return outputs in the units of `variables.UNITS` and the shape of the points; `key` names the sweep."""
-        job = Job(pipeline, {name: UNITS[name] for name in outputs})
+        """Return outputs in their usual units and in the shape of the points; `key` names the sweep.
+
+        The usual units are those of the outcomes of the laws, and of `variables.UNITS`.
+        """
+        units = {**UNITS, **outcome_units(pipeline.laws)}
+        job = Job(pipeline, {name: units[name] for name in outputs})
         workers = min(self._workers, len(points.blocks()))
         if workers > 1:
             check_importable(pipeline)

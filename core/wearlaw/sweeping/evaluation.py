@@ -6,7 +6,7 @@ import functools
 import json
 import warnings
 import zlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -18,14 +18,15 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean
+from wearlaw.models.law import Law, named_outcomes
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.pipeline.prediction import unsolved
+from wearlaw.pipeline.prediction import ERROR, Prediction, unsolved
 from wearlaw.pipeline.ranges import Seen
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.units.quantities import Quantity
 from wearlaw.units.registry import symbol
-from wearlaw.units.variables import UNITS
+from wearlaw.units.variables import UNITS, name_of
 
 Outputs = dict[str, Array]
 """Results of a block by name, (points,) each, in the units of the job."""
@@ -47,6 +48,10 @@ class Job:
     pipeline: Pipeline[...]
     units: Mapping[str, str]
     accelerate: bool | None = field(default_factory=kernels.chosen)
+
+    def attributes(self, name: str) -> dict[str, str]:
+        """Return the attributes of an output in results: its unit and its long name."""
+        return {"units": self.units[name], "long_name": long_name(name, self.pipeline.laws)}
 
 
 @dataclass(frozen=True)
@@ -146,41 +151,89 @@ def range_warnings(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> li
     return [one.message for one in caught if isinstance(one.message, Warning)]
 
 
-def output_units(pipeline: Pipeline[...], problem: Problem, points: Points, outputs: list[str]) -> dict[str, str]:
+def output_units(
+    pipeline: Pipeline[...], problem: Problem, points: Points, outputs: list[str] | None = None
+) -> dict[str, str]:
     """Return the unit of each output; `problem` is that of the first operating point, of shape (1,).
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    problem : Problem
+    points : Points
+    outputs : list of str, optional
+        Names of the outputs; by default the outcomes of all laws.
 
     Raises
     ------
+    CompositionError
+        If no outputs are given and there is no law.
     InputError
         If there is no such output, or it is a condition.
     """
     if problem.geometry == "line":
         check_traction(pipeline.contact_model, problem)
-    prediction = unsolved(problem, pipeline.staged_model, pipeline.laws)
+    if outputs is None and not pipeline.laws:
+        raise CompositionError(
+            f"the pipeline has no wear law; give one, as in rig | {pipeline.contact_model!r} | wl.wear_law('usfd'), or"
+            ' name what to keep, as in outputs=["tangential_force"]'
+        )
+    prediction, of_laws = unsolved(problem, pipeline.staged_model, pipeline.laws), outcome_units(pipeline.laws)
     given = {*points.varying, *points.fixed}
     units = {}
-    for name in outputs:
+    for name in list(named_outcomes(pipeline.laws)) if outputs is None else outputs:
         if name in given:
             raise InputError(f"outputs: '{name}' is one of the conditions, and among the coordinates of the results")
+        _check_body(name, pipeline.laws)
         value = _output(prediction, name)
         if value is None:
-            known = [one for one in dir(prediction) if one not in given and _is_output(prediction, one)]
+            named = dict.fromkeys((*of_laws, *dir(prediction)))
+            known = [one for one in named if one not in given and _is_output(prediction, one)]
             raise InputError(
                 f"outputs: there is no '{name}' at an operating point{did_you_mean(name, known)}"
                 f" There are: {', '.join(known)}"
             )
-        units[name] = UNITS.get(name, _written(value))
+        units[name] = {**UNITS, **of_laws}.get(name, _written(value))
     return units
 
 
-def _output(prediction: object, name: str) -> Quantity | None:
-    """Return a property of a prediction at one point, or None if it cannot be an output."""
+def outcome_units(laws: Sequence[Law]) -> dict[str, str]:
+    """Return the unit of each outcome of laws, and of the errors of means over the patch, by name."""
+    found = {}
+    for name, index in named_outcomes(laws).items():
+        outcome = laws[index].outcome
+        found[name] = outcome.unit
+        if outcome.of == "area mean":
+            found[f"{name}{ERROR}"] = outcome.unit
+    return found
+
+
+def _check_body(name: str, laws: Sequence[Law]) -> None:
+    """Raise an error for an outcome that has a law for each body, if the body is not named."""
+    of_bodies = [known for known, index in named_outcomes(laws).items() if laws[index].outcome.name == name != known]
+    if of_bodies:
+        raise InputError(f"outputs: '{name}' has a law for each body; name {' or '.join(of_bodies)}")
+
+
+def long_name(output: str, laws: Sequence[Law]) -> str:
+    """Return the readable name of an output, such as "wear rate of rail"."""
+    index = named_outcomes(laws).get(output)
+    if index is None:
+        return name_of(output)
+    law = laws[index]
+    return name_of(law.outcome.name) + (f" of {law.body}" if law.body is not None else "")
+
+
+def _output(prediction: Prediction, name: str) -> Quantity | None:
+    """Return a value of a prediction at one point, or None if it cannot be an output."""
+    if name in outcome_units(prediction.laws):
+        return prediction[name]
     there = not name.startswith("_") and hasattr(type(prediction), name)
     value = getattr(prediction, name) if there else None
     return value if isinstance(value, pint.Quantity) and np.shape(value.magnitude) == (1,) else None
 
 
-def _is_output(prediction: object, name: str) -> bool:
+def _is_output(prediction: Prediction, name: str) -> bool:
     try:
         return _output(prediction, name) is not None
     except CompositionError:  # without a law there is no wear

@@ -123,7 +123,7 @@ class Memory(Arrays):
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Return the results as a labelled dataset."""
-        found = dataset(self.points, self.arrays, self.job.units)
+        found = dataset(self.points, self.arrays, self.job)
         return found.assign_attrs(attributes(run_of(self.job, self.points), notes))
 
 
@@ -190,13 +190,13 @@ class Store(Target):
 
     def _lay_out(self) -> None:
         """Write the layout of the store anew, without results: an existing layout may be damaged."""
-        empty = dataset(self.points, {}, {}).assign_attrs(status=INCOMPLETE)
+        empty = dataset(self.points, {}, self.job).assign_attrs(status=INCOMPLETE)
         for name in map(str, empty.coords):
             shutil.rmtree(self.path / name, ignore_errors=True)
         for name in ("", *self.job.units):
             (self.path / name / METADATA).unlink(missing_ok=True)
         group = load_zarr().open_group(self.store, mode="a", zarr_format=3)
-        for name, unit in self.job.units.items():
+        for name in self.job.units:
             group.create_array(
                 name,
                 shape=self.points.shape,
@@ -205,7 +205,7 @@ class Store(Target):
                 compressors=None,
                 fill_value=np.nan,
                 dimension_names=self.points.dims,
-                attributes={"units": unit},
+                attributes=self.job.attributes(name),
             )
         empty.to_zarr(self.store, mode="a", consolidated=False, zarr_format=3)
 
@@ -282,7 +282,7 @@ def _opened(path: Path) -> xarray.Dataset:
     return found
 
 
-def dataset(points: Points, variables: Mapping[str, Array], units: Mapping[str, str]) -> xarray.Dataset:
+def dataset(points: Points, variables: Mapping[str, Array], job: Job) -> xarray.Dataset:
     """Return results, (points,) each, as a dataset with the conditions as coordinates."""
     coordinates: dict[str, Any] = dict(points.rows)
     for name, one in points.varying.items():
@@ -290,7 +290,7 @@ def dataset(points: Points, variables: Mapping[str, Array], units: Mapping[str, 
     numbers = {name: _number(value) for name, value in points.fixed.items()}
     coordinates |= {name: number for name, number in numbers.items() if number is not None}
     data = {
-        name: (points.dims, values.reshape(points.shape), {"units": units[name]}) for name, values in variables.items()
+        name: (points.dims, values.reshape(points.shape), job.attributes(name)) for name, values in variables.items()
     }
     others = {name: str(points.fixed[name]) for name, number in numbers.items() if number is None}
     return xarray.Dataset(data, coordinates, others)

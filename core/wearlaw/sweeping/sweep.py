@@ -33,7 +33,7 @@ def sweep(
     /,
     table: pandas.DataFrame | xarray.Dataset | None = None,
     *,
-    outputs: Sequence[str] = ("wear_rate",),
+    outputs: Sequence[str] | None = None,
     workers: int = 1,
     client: Any = None,
     store: str | os.PathLike[str] | None = None,
@@ -46,12 +46,14 @@ def sweep(
     Parameters
     ----------
     predict : Pipeline
-        A rig, a contact model and a wear law; without a law, other `outputs` than the wear are possible.
+        A rig, a contact model, and stages and laws if given. Without a law, name the `outputs`.
     table : pandas.DataFrame or xarray.Dataset, optional
         Operating points in rows, conditions in columns, with units by type (pint), `attrs["units"]` or heads such as
         "creepage [%]". Further conditions are the same in all rows.
-    outputs : sequence of str
-        Names of properties of a prediction to keep, such as "wear_rate" or "tangential_force".
+    outputs : sequence of str, optional
+        Names of outcomes and properties of a prediction to keep, such as "wear_rate", "rcf_damage" or
+        "tangential_force". If laws of one outcome differ by body, the name of the body follows, as in "wear_rate_rail".
+        Default: the outcomes of all laws.
     workers : int
         Number of processes on this machine; they are kept for later sweeps.
     client : distributed.Client, optional
@@ -70,11 +72,13 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        The outputs, with the conditions as coordinates and units in `attrs["units"]`. With `store`, values are read
-        from there when used.
+        The outputs, with the conditions as coordinates, and with units in `attrs["units"]` and readable names in
+        `attrs["long_name"]`. With `store`, values are read from there when used.
 
     Raises
     ------
+    CompositionError
+        If the pipeline has no law and no outputs are named.
     InputError
         If conditions or outputs are invalid, or the results would not fit into memory or on the disk.
     OutputError
@@ -110,7 +114,7 @@ def sweep(
 
 
 def _checked_job(
-    pipeline: Pipeline[...], first: Problem, points: Points, outputs: Sequence[str], elsewhere: bool
+    pipeline: Pipeline[...], first: Problem, points: Points, outputs: Sequence[str] | None, elsewhere: bool
 ) -> Job:
     """Return the job of a sweep, after checks of its outputs and models.
 
@@ -120,11 +124,11 @@ def _checked_job(
         If an output is impossible, or other processes could not import a model.
     """
     names = list(outputs) if isinstance(outputs, Iterable) and not isinstance(outputs, str) else []
-    if not names or not all(isinstance(name, str) for name in names):
+    if outputs is not None and not (names and all(isinstance(name, str) for name in names)):
         raise InputError(f'outputs: must be a list of names, such as ["wear_rate"], got {outputs!r}')
     if elsewhere:
         check_importable(pipeline)
-    return Job(pipeline, output_units(pipeline, first, points, list(dict.fromkeys(names))))
+    return Job(pipeline, output_units(pipeline, first, points, list(dict.fromkeys(names)) or None))
 
 
 def check_importable(pipeline: Pipeline[...]) -> None:

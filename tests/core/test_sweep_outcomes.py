@@ -1,0 +1,108 @@
+"""Sweeps of laws of any outcome: each under its own name, with its own unit, on any number of processes."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import wearlaw as wl
+from tests.core.stages import EXACT, FASTSIM, KTH, RIG
+from tests.core.test_outcomes import MIXED, Damage, Heat, Volume, silently
+from wearlaw import Q
+
+GIVEN: dict[str, Any] = {
+    "creepage": Q([0.1, 0.5, 2.0], "%"),
+    "normal_force": Q([5.0, 7.0], "kN"),
+    "friction_coefficient": 0.4,
+}
+TOGETHER = silently(RIG, EXACT, KTH, Damage(), Heat())
+
+
+def swept(predict: Any, **options: Any) -> xr.Dataset:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        return wl.sweep(predict, **{**GIVEN, **options})
+
+
+def test_by_default_a_sweep_holds_the_outcomes_of_all_laws() -> None:
+    ds = swept(TOGETHER)
+    labels = {name: (one.attrs["units"], one.attrs["long_name"]) for name, one in ds.data_vars.items()}
+    assert labels == {
+        "wear_rate": ("ug/m/mm^2", "wear rate"),
+        "rcf_damage": ("", "rcf damage"),
+        "heat_flux": ("W/mm^2", "heat flux"),
+    }
+    one = swept(TOGETHER, creepage=Q([2.0], "%"), normal_force=Q([7.0], "kN"))
+    assert (ds.rcf_damage < 0.0).any(), "the damage has a sign"
+    for name in labels:
+        assert float(ds[name][-1, -1]) == pytest.approx(float(one[name].item()), rel=64 * np.finfo(np.float64).eps)
+
+
+def test_a_sweep_of_damage_alone_needs_no_wear_law() -> None:
+    ds = swept(silently(RIG, EXACT, Damage()))
+    assert list(ds.data_vars) == ["rcf_damage"]
+    np.testing.assert_allclose(
+        ds.rcf_damage,
+        1e-6 * (swept(silently(RIG, EXACT, Damage()), outputs=["wear_index"]).wear_index - 15.0),
+        rtol=64 * np.finfo(np.float64).eps,
+        atol=64e-6 * 15.0 * np.finfo(np.float64).eps,  # of the difference
+    )
+
+
+def test_laws_of_bodies_are_outputs_of_their_own() -> None:
+    predict = silently(MIXED, EXACT, Volume(body="disc_1"), Volume(body="disc_2", factor=3.0))
+    ds = swept(predict)
+    assert {name: one.attrs["long_name"] for name, one in ds.data_vars.items()} == {
+        "wear_rate_disc_1": "wear rate of disc_1",
+        "wear_rate_disc_2": "wear rate of disc_2",
+    }
+    alone = swept(silently(MIXED, EXACT, Volume(body="disc_2", factor=3.0)))
+    assert alone.wear_rate.attrs["long_name"] == "wear rate of disc_2"
+    np.testing.assert_allclose(alone.wear_rate, ds.wear_rate_disc_2, rtol=16 * np.finfo(np.float64).eps)
+    ratio = ds.wear_rate_disc_2 / ds.wear_rate_disc_1
+    np.testing.assert_allclose(ratio, 3.0 * 8800.0 / 7850.0, rtol=16 * np.finfo(np.float64).eps)
+    said = "outputs: 'wear_rate' has a law for each body; name wear_rate_disc_1 or wear_rate_disc_2"
+    with pytest.raises(wl.InputError, match=said):
+        swept(predict, outputs=["wear_rate"])
+
+
+def test_named_outputs_mix_outcomes_errors_and_other_properties() -> None:
+    ds = swept(TOGETHER, outputs=["rcf_damage", "wear_index", "heat_flux_error"])
+    assert [one.attrs["units"] for one in ds.data_vars.values()] == ["", "N", "W/mm^2"]
+    whole = swept(TOGETHER)
+    assert (ds.heat_flux_error > 0.0).all()
+    assert (ds.heat_flux_error < 1e-9 * whole.heat_flux).all(), "of closed-form fields"
+
+
+def test_an_unknown_output_is_refused_with_the_outcomes_first() -> None:
+    with pytest.raises(wl.InputError) as refusal:
+        swept(TOGETHER, outputs=["rcf_damag"])
+    message = str(refusal.value)
+    assert "outputs: there is no 'rcf_damag' at an operating point; did you mean 'rcf_damage'?" in message
+    assert "There are: wear_rate, wear_rate_error, rcf_damage, heat_flux, heat_flux_error, " in message
+    known = message.partition("There are: ")[2].split(", ")
+    assert list(swept(TOGETHER, outputs=known).data_vars) == known
+
+
+def test_without_a_law_the_outputs_must_be_named() -> None:
+    with pytest.raises(wl.CompositionError, match=r'or name what to keep, as in outputs=\["tangential_force"\]'):
+        swept(RIG | EXACT)
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_outcomes_are_the_same_on_processes_and_in_a_store(tmp_path: Path) -> None:
+    predict = silently(RIG, FASTSIM, wl.stage("patch_mean"), KTH, Damage(), Heat())
+    fine = {"creepage": Q(np.geomspace(0.1, 10.0, 40), "%")}
+    here = swept(predict, **fine)
+    xr.testing.assert_identical(here, swept(predict, **fine, workers=2))
+    stored = swept(predict, **fine, store=tmp_path / "map.zarr")
+    xr.testing.assert_equal(here, stored)
+    assert {name: one.attrs for name, one in stored.data_vars.items()} == {
+        name: one.attrs for name, one in here.data_vars.items()
+    }
+    xr.testing.assert_identical(stored, swept(predict, **fine, store=tmp_path / "map.zarr", resume=True))
