@@ -16,9 +16,9 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
-from wearlaw.fitting.law_files import write_wear_law
+from wearlaw.fitting.law_files import write_law
 from wearlaw.fitting.observations import TRACTION, Observations, Scatter, wear_index_density
-from wearlaw.models.law import Law
+from wearlaw.models.law import WEAR, Law
 from wearlaw.units.quantities import Quantity, from_si, in_unit
 from wearlaw.units.registry import si_factor
 from wearlaw.units.variables import UNITS, label
@@ -165,7 +165,7 @@ class Fit:
         return pd.DataFrame(rows)
 
     def to_toml(self, path: str | os.PathLike[str]) -> None:
-        """Write the fitted law and its provenance to a file that `read_wear_law` reads.
+        """Write the fitted law and its provenance to a file that `read_law` reads.
 
         Fitted numbers of stages stand in the provenance.
 
@@ -180,7 +180,7 @@ class Fit:
             raise FitError("a file holds one law, and this fit has several; they are in fit.predict.laws")
         if self.law is None:
             raise FitError("a fit without a wear law has no law to write; its parameters are in fit.parameters")
-        write_wear_law(path, self.law, self.provenance)
+        write_law(path, self.law, self.provenance)
 
     def figure_data(self) -> FigureData:
         """Return measured and fitted values, with the band of the bootstrap replicates."""
@@ -213,7 +213,13 @@ class Fit:
         return "\n".join(lines)
 
     def _count(self) -> str:
-        return " and ".join(f"{one.measured.size} {one.observable.replace('_', ' ')}s" for one in self.observations)
+        return " and ".join(_counted(one) for one in self.observations)
+
+
+def _counted(one: Observations) -> str:
+    name = one.observable.replace("_", " ")
+    plural = f"{name}s" if one.observable in (WEAR, TRACTION) else f"values of {name}"
+    return f"{one.measured.size} {plural}"
 
 
 def _figure_data(fit: Fit) -> FigureData:
