@@ -59,7 +59,8 @@ def test_a_law_of_heat_is_fitted_on_an_ellipse() -> None:
     rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
     creepages = {"longitudinal_creepage": Q([0.05, 0.1, 0.2], "%"), "spin": Q([0.1, 0.3, 0.2], "1/m")}
     given: Any = {"normal_force": "80 kN", "friction_coefficient": 0.3}
-    heat = outcomes_of(TRUE_HEAT, contact=rig | FASTSIM, **given, **creepages)
+    under: Any = {**given, **creepages}
+    heat = outcomes_of(TRUE_HEAT, contact=rig | FASTSIM, **under)
     tests = wl.WearTests.from_arrays(**given, other_conditions=creepages, outcomes=heat)
     fit = wl.fit(rig | FASTSIM | Heat(), tests, free=["share"], bootstrap=0)
     assert fit.parameters["share"].magnitude == pytest.approx(0.3, rel=1e-7)
@@ -77,7 +78,9 @@ def test_the_fit_of_a_linear_damage_is_that_of_linear_regression() -> None:
     assert fit.parameters["threshold"].m_as("N") == pytest.approx(-line.intercept / line.slope, rel=1e-6)
     assert fit.standard_errors["slope"].m_as("1/N") == pytest.approx(line.stderr, rel=1e-6)
     assert fit.rms.m_as("") == pytest.approx(np.sqrt(np.mean((damage - line.intercept - line.slope * index) ** 2)))
-    refused('rcf_damage: is negative in .* leads to another sign; .*scatter="absolute"', EXACT | Damage(), tests, ["slope"])
+    refused(
+        'rcf_damage: is negative in .* leads to another sign; .*scatter="absolute"', EXACT | Damage(), tests, ["slope"]
+    )
 
 
 def test_several_laws_are_fitted_together_as_each_alone() -> None:
@@ -189,7 +192,7 @@ def test_outcomes_of_plugins_are_known_when_tests_are_read(install: Install, tmp
     text = "creepage [%],normal_force [kN],friction_coefficient,damage\n1,7.4,0.4,2\n2,7.4,0.4,\n"
     tests = read(tmp_path, text)
     assert tests.outcomes.keys() == {"damage"}
-    with pytest.raises(wl.DataError, match="normal_force.*exactly one load|exactly one load"):
+    with pytest.raises(wl.DataError, match="give exactly one load"):
         read(tmp_path, "creepage [%],damage\n1,2\n")
 
 
@@ -211,7 +214,9 @@ def test_tests_with_outcomes_survive_tables_and_selection(tmp_path: Path) -> Non
     assert "heat_flux              0 to 6 kW/mm²" in repr(tests)
     assert str(tests[2:3].outcomes["heat_flux"]) == str(Q([2.0], "kW/mm^2"))
     assert tests == tests[:]
-    assert tests != measured_tests({"heat_flux": Q(np.arange(7.0), "W/mm^2"), "rcf_damage": np.arange(7.0)}, source="made up")
+    assert tests != measured_tests(
+        {"heat_flux": Q(np.arange(7.0), "W/mm^2"), "rcf_damage": np.arange(7.0)}, source="made up"
+    )
     for given, said in (
         ({"outcomes": {"wear_rate": "1 ug/m/mm^2"}}, "outcomes: wear_rate is an argument of its own"),
         ({"outcomes": {"mass": "1 kg"}, "other_conditions": {"mass": "1 kg"}}, "mass is among other_conditions too"),

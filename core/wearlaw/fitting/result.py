@@ -190,6 +190,12 @@ class Fit:
         """Return a drawing of `figure_data`."""
         return plot(self.figure_data())
 
+    @property
+    def contact_parameters(self) -> tuple[str, ...]:
+        """The fitted parameters that change the contact: the friction coefficient and numbers of stages."""
+        places = self.observations[0].places
+        return tuple(name for name in self.parameters if name not in places or places[name].kind == "stage")
+
     def values_in_si(self, which: Mapping[str, Quantity] | None = None) -> dict[str, Array]:
         """Return the fitted parameters, or others, as SI arrays of one axis."""
         chosen = self.parameters if which is None else which
