@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,9 @@ from tests.core.fits import EXACT
 from tests.core.outcome_laws import MIXED, Damage, Heat, Volume
 from tests.core.test_fit_stages import Balanced, Choosy, Rubbed, Softer
 from wearlaw import Q
+from wearlaw.output.analyses import write_uncertainty
+from wearlaw.study.pairs import Pair
+from wearlaw.study.uncertainty import uncertainty_of
 
 EPS = float(np.finfo(np.float64).eps)
 GIVEN: Any = {"max_pressure": Q(1000, "MPa"), "creepage": Q(3, "%"), "friction_coefficient": 0.4}  # full slip
@@ -180,3 +184,39 @@ def test_wrong_input_is_refused_in_words() -> None:
         u.of("damage")
     with pytest.raises(wl.CompositionError, match="no wear law"):
         _ = u.wear_rate
+
+
+CASE = """
+title = "Scatter"
+rig = { preset = "suros" }
+contact_models = ["exact"]
+wear_laws = ["kth"]
+
+[sweeps.creepage]
+creepage = ["1 %", "2 %"]
+max_pressure = "1000 MPa"
+friction_coefficient = 0.4
+
+[uncertainty.scatter]
+max_pressure = "1000 MPa"
+creepage = "3 %"
+friction_coefficient = { uniform = [0.3, 0.5] }
+"""
+
+
+def test_the_uncertainty_of_a_case_has_rows_for_each_outcome(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "case.toml").write_text(CASE)
+    case = wl.load_case(str(tmp_path / "case.toml"))
+    pair = Pair("exact", "kth", EXACT.with_law(KTH, Heat()))
+    monkeypatch.setattr("wearlaw.study.uncertainty.pairs_of", lambda *_: [pair])
+    found = uncertainty_of(case, 64, 0)
+    table = found.wear_rates
+    assert table.columns.tolist() == ["point", "pair", "outcome", "unit", "median", "2.5 %", "97.5 %"]
+    assert table[["outcome", "unit"]].to_numpy().tolist() == [["wear_rate", "ug/m/mm^2"], ["heat_flux", "W/mm^2"]]
+    heat = EXACT.with_law(Heat())(**GIVEN)["heat_flux"].magnitude  # in full slip it is proportional to μ
+    assert table["median"].tolist()[1] == pytest.approx(heat, rel=0.5 / 64)
+    assert found.indices.columns.tolist()[:4] == ["point", "pair", "outcome", "input"]
+    assert [one.uncertainty.outcomes for one in found.pairs] == [("wear_rate",), ("heat_flux",)]
+    (tmp_path / "results").mkdir()
+    names = write_uncertainty(case, found, 0, tmp_path / "results")
+    assert {"wear_rates.csv", "scatter_1.png", "scatter_2.png"} <= set(names)
