@@ -266,3 +266,23 @@ def test_a_number_that_a_law_and_a_stage_share_is_named_in_full() -> None:
     assert fit.predict.stages[0] == Softer(reduction=fit.parameters["softer.reduction"].magnitude)
     assert fit.law is not None
     assert fit.law.numbers["reduction"] == fit.parameters["factor.reduction"].magnitude
+
+
+class Unbounded(Rubbed):
+    """The same stage, which says nothing of the range of its number."""
+
+    name: ClassVar[str] = "unbounded"
+    reduction: float = 1.0
+
+
+def test_a_number_without_a_stated_range_keeps_its_sign_unless_bounds_say_otherwise() -> None:
+    """Negative friction has no solution, and the search would meet it."""
+    predict = EXACT | Unbounded(share=Q(1.0, ""), reduction=0.9)
+    tests = traction_tests(0.6 * np.full(4, 0.4), [3.0, 5.0, 8.0, 9.0], friction_coefficient=0.4)
+    fit = wl.fit(predict, tests, ["reduction"], bootstrap=0)
+    assert fit.parameters["reduction"].magnitude == pytest.approx(0.6, rel=1e-7)
+    bounds = {"reduction": (0.3, 1.5)}
+    within = wl.fit(predict, tests, ["reduction"], bootstrap=0, bounds=bounds)
+    assert within.parameters["reduction"].magnitude == pytest.approx(0.6, rel=1e-7)
+    said = "values of reduction that the stage or the contact model does not accept; give bounds: contact model 'exact'"
+    refused(said, predict, tests, ["reduction"], bounds={"reduction": (-1.0, 1.0)})

@@ -72,19 +72,22 @@ class FreeParameters:
         FitError
             If a name is unknown, ambiguous or given twice, or its bounds are invalid.
         """
+        if not isinstance(bounds, Mapping):
+            raise FitError(f"bounds: give {{name: (low, high)}}, got {bounds!r}")
         places = _places(predict, tuple(free))
         like: dict[str, Quantity | float] = {}
         ranges: dict[str, tuple[float, float, bool]] = {}
         for name, place in places.items():
             part = part_at(predict, place)
             like[name] = numbers(part)[place.field]
-            ranges[name] = allowed_range(part, place.field)
+            least, most, positive = allowed_range(part, place.field)
             if place.kind == "law":  # it may pass through numbers that it does not accept; a stage is made anew
-                ranges[name] = -np.inf, np.inf, ranges[name][2]
+                least, most = -np.inf, np.inf
+            elif name not in bounds:  # of a stage, a share or a factor keeps its sign unless bounds say otherwise
+                positive = positive or number_in_si(like[name]) > 0.0
+            ranges[name] = least, most, positive
         if friction is not None:
             like[FRICTION], ranges[FRICTION] = float(friction), (-np.inf, np.inf, True)
-        if not isinstance(bounds, Mapping):
-            raise FitError(f"bounds: give {{name: (low, high)}}, got {bounds!r}")
         for name in bounds:
             if name not in free:
                 raise FitError(f"bounds: '{name}' is not free{did_you_mean(name, free)} Free are: {', '.join(free)}")
