@@ -163,7 +163,7 @@ def _with_law(contact: Pipeline[...], text: str, given: dict[str, str], free: li
 @click.command()
 @click.argument("tests")
 @click.option("--contacts", required=True, metavar="MODELS", help="Contact models: global,exact or NAME:FIELD=VALUE.")
-@click.option("--laws", required=True, metavar="LAWS", help="Wear laws: usfd,kth or NAME:FIELD=VALUE, or TOML files.")
+@click.option("--laws", required=True, metavar="LAWS", help="Laws: usfd,kth or NAME:FIELD=VALUE, or TOML files.")
 @click.option(
     "--free", metavar="LAW=FIELDS", multiple=True, help="Also fit this one of the laws, on every contact; repeatable."
 )
