@@ -104,6 +104,14 @@ def test_several_laws_are_fitted_together_as_each_alone() -> None:
         fit.to_toml("nowhere.toml")
 
 
+def test_laws_are_fitted_together_to_tests_without_scatter() -> None:
+    predict, truth = EXACT | Heat() | Damage(), outcomes_of(TRUE_HEAT, TRUE_DAMAGE)
+    tests = measured_tests(truth)
+    fit = wl.fit(predict, tests, ["share", "slope", "threshold"], scatter="absolute", bootstrap=0)
+    values = fit.parameters.values()
+    assert [value.to_base_units().magnitude for value in values] == pytest.approx([0.3, 2e-6, 40.0], rel=1e-6)
+
+
 def test_only_what_depends_on_the_free_numbers_is_fitted() -> None:
     measured = outcomes_of(TRUE_HEAT, TRUE_DAMAGE)
     predict, tests = EXACT | Heat() | Damage(), measured_tests(measured, traction_coefficient=np.full(7, 0.3))

@@ -154,7 +154,11 @@ def _with_law(contact: Pipeline[...], text: str, given: dict[str, str], free: li
     There is no warning that the law was fitted for another contact: it is about to be fitted.
     """
     law = law_of(text, given)
-    kept = [f"{name} = {value!r}" for name, value in numbers(law.explicit()).items() if name not in free]
+    kept = [
+        f"{name} = {value!r}"
+        for name, value in numbers(law.explicit()).items()
+        if name not in free and f"{law.name}.{name}" not in free
+    ]
     if kept:
         notes.add(f"fit: not fitted, {', '.join(kept)}")
     return contact.with_law(law)

@@ -31,6 +31,9 @@ NEAR = 10.0
 ROUNDS = 3
 """Iterations in which the scatter about the fit sets the weights of two kinds of measurement."""
 
+LEAST_SCATTER = 1e-5
+"""Least scatter for a weight; made-up tests without scatter would otherwise hide each other's parameters."""
+
 LEAST_GROUP = 4
 """Least number of measurements of a kind to estimate their scatter."""
 
@@ -131,7 +134,7 @@ class Task:
             own = residuals[groups == group]
             scatter = math.sqrt(float(np.mean(own**2)))
             if own.size >= LEAST_GROUP and scatter > 0.0:
-                self.weights[groups == group] = 1.0 / scatter
+                self.weights[groups == group] = 1.0 / max(scatter, LEAST_SCATTER)
 
 
 def _one_value(friction: float | None) -> float | None:

@@ -136,7 +136,6 @@ class Uncertainty:
         self.inputs: tuple[Uncertain, ...] = tuple(uncertain)
         self.samples = 1 << (samples - 1).bit_length()
         self._seed = seed
-        self._chosen: str | None = None
         self._whole = self
         self._found: tuple[Array, ...] | None = None
 
@@ -155,7 +154,7 @@ class Uncertainty:
         """
         self._index(outcome)
         found = copy(self)
-        found._chosen, found.outcomes = outcome, (outcome,)
+        found.outcomes = (outcome,)
         return found
 
     def __getitem__(self, outcome: str) -> Quantity:
