@@ -122,7 +122,7 @@ class Uncertainty:
             predict.wear_law  # noqa: B018  raises
         self._predict = predict
         self._laws = tuple(law.explicit() for law in predict.laws)
-        self.outcomes = tuple(named_outcomes(predict.laws))
+        self.outcomes: tuple[str, ...] = tuple(named_outcomes(predict.laws))
         self._given, uncertain = split(conditions, predict.rig)
         uncertain += numbers_of(predict, "law", law)
         of_stages = numbers_of(predict, "stage", stage or {})
@@ -258,7 +258,7 @@ class Uncertainty:
     @property
     def _only(self) -> str:
         """The name of the outcome; an error if there are several."""
-        if len(self.outcomes) > 1:
+        if len(self.outcomes) != 1:
             raise InputError(
                 f'the pipeline predicts {" and ".join(self.outcomes)}; choose one, as in u.of("{self.outcomes[0]}")'
             )
