@@ -195,6 +195,7 @@ __all__ = [
     "parse",
     "patch_mean",
     "published_range",
+    "read_law",
     "read_tests",
     "read_wear_law",
     "rig",
@@ -215,7 +216,7 @@ if _TYPE_CHECKING:
     from wearlaw import testing as testing
     from wearlaw.fitting.comparison import Comparison, compare
     from wearlaw.fitting.fit import fit
-    from wearlaw.fitting.law_files import read_wear_law
+    from wearlaw.fitting.law_files import read_law, read_wear_law
     from wearlaw.fitting.result import Fit
     from wearlaw.pipeline.inverse import creepage_for
     from wearlaw.study.case import Case, load_case
@@ -236,6 +237,7 @@ _LATER = {
     "compare": "wearlaw.fitting.comparison",
     "Fit": "wearlaw.fitting.result",
     "fit": "wearlaw.fitting.fit",
+    "read_law": "wearlaw.fitting.law_files",
     "read_wear_law": "wearlaw.fitting.law_files",
 }
 """Names loaded at their first use: they take a tenth of the time of `import wearlaw`, and few scripts need them."""

@@ -437,6 +437,11 @@ def test_one_law_for_one_body_shows_that_body_alone(tmp_path: Path) -> None:
     said = "figures.one.body: no wear law of the case is for 'wheel'; name another body"
     assert said in refused(tmp_path, **changes, figures=figures)
     load(tmp_path, table(**changes, figures={"one": {**figures["one"], "body": "rail"}}))
+    changes["wear_laws"] = [{"model": "kth", "body": body} for body in ("wheel", "rail")]
+    one = {**figures["one"], "pairs": ["kth(body=wheel) on fastsim"]}
+    load(tmp_path, table(**changes, figures={"one": one}))
+    said = "figures.one.pairs: none of them has a law for 'rail', whose depth the figure shows; add one that does"
+    assert said in refused(tmp_path, **changes, figures={"one": {**one, "body": "rail"}})
 
 
 # --- The command line ------------------------------------------------------------------------------------------

@@ -13,6 +13,8 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import files, wearlaw
 from tests.core.cli_data import CREEPAGE, FIT, HEAD, RIG_NOTE, listed, rates, rows, write_tests
+from tests.core.distributions import Install
+from tests.core.test_stages import PLUGIN
 from wearlaw import Q
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")
@@ -127,3 +129,33 @@ def test_progress_of_the_bootstrap_is_shown_on_a_terminal_and_not_elsewhere() ->
     on_terminal = wearlaw(*arguments, "--overwrite", FORCE_COLOR="1", TERM="xterm")
     assert "fitting" in on_terminal.stderr
     assert "40/40" in on_terminal.stderr
+
+
+def test_a_stage_and_a_law_of_another_outcome_are_fitted_from_the_command_line(install: Install) -> None:
+    install("own", PLUGIN)
+    law = wl.law("tired")
+    predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.stage("rubbed", factor=0.8) | law
+    found = predict(max_pressure="1500 MPa", creepage=Q(CREEPAGE, "%"), friction_coefficient=0.46)
+    lines = rows(found["damage"].magnitude)
+    write_tests(lines, HEAD.replace("wear_rate [ug/m/mm^2]", "damage [-]"))
+    result = wearlaw(
+        *("fit", "tests.csv", "--contact", "exact", "--stage", "rubbed:factor=1.2", "--law", "tired"),
+        *("--free", "rubbed.factor", "--bootstrap", "0"),
+    )
+    assert result.exit_code == 0, result.output
+    assert result.stdout.startswith("Fit to 9 values of damage, 8 degrees of freedom")
+    table = pd.read_csv("tests-fit/parameters.csv").set_index("parameter")
+    assert table.loc["rubbed.factor", "value"] == pytest.approx(0.8, rel=1e-6)
+    assert wl.read_law("tests-fit/law.toml") == law
+    record = json.loads(Path("tests-fit/fit.json").read_text(encoding="utf-8"))
+    assert record["provenance"]["stages"] == [{"model": "rubbed", "factor": table.loc["rubbed.factor", "value"]}]
+    refused = wearlaw("fit", "tests.csv", "--contact", "exact", "--stage", "rubed", "--free", "factor", "-o", "other")
+    assert refused.exit_code != 0
+    assert "no stage is called 'rubed'; did you mean 'rubbed'" in refused.output
+
+
+def test_a_number_that_is_fitted_is_not_said_to_be_kept_however_it_is_named() -> None:
+    fit = [*FIT]
+    fit[fit.index("m_m,q_s")] = "usfd.m_m,q_s"
+    result = wearlaw(*fit)
+    assert "note: fit: not fitted, m_c = 83.70 µg/m/N, tr_sc = 95.00 N/mm²\n" in result.stderr

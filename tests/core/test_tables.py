@@ -23,7 +23,7 @@ def study() -> Study:
 
 def test_a_summary_shows_each_pair_and_its_band_at_five_values_with_both_ends(study: Study) -> None:
     sweep = study.sweeps["many"]
-    frame = summary(sweep, "creepage")
+    frame = summary(sweep, "creepage", "wear_rate", [str(pair) for pair in sweep.pair.values])
     assert list(frame.columns) == ["wear rate [µg/m/mm²] by creepage [%]", "1", "3", "5", "7", "9"]
     heads = frame.iloc[:, 0].tolist()
     band = ["kth on global", "kth on global, low end", "kth on global, high end"]

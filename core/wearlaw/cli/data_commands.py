@@ -11,11 +11,12 @@ from wearlaw.cli.shared import (
     CommandT,
     contact_model,
     fields,
+    law_of,
     listed,
     print_notes,
     print_results,
     read_rig,
-    wear_law,
+    stage,
     written_formats,
 )
 from wearlaw.errors import FitError
@@ -62,9 +63,19 @@ def common(command: CommandT) -> CommandT:
 @click.command()
 @click.argument("tests")
 @click.option("--contact", required=True, metavar="MODEL", help="Contact model: exact, or NAME:FIELD=VALUE.")
-@click.option("--law", metavar="LAW", help="Wear law: usfd, NAME:FIELD=VALUE or a TOML file; none for traction.")
 @click.option(
-    "--free", required=True, metavar="FIELDS", help="Parameters to fit: fields of the law, or friction_coefficient."
+    "--stage",
+    "stages",
+    metavar="STAGE",
+    multiple=True,
+    help="Stage around the contact model: NAME:FIELD=VALUE; may be repeated.",
+)
+@click.option("--law", metavar="LAW", help="Law: usfd, NAME:FIELD=VALUE or a TOML file; none for traction.")
+@click.option(
+    "--free",
+    required=True,
+    metavar="FIELDS",
+    help="Parameters to fit: fields of the law or of a stage, or friction_coefficient.",
 )
 @click.option("--fixed", metavar="FIELD=VALUE", multiple=True, help="Set a field of the law; may be repeated.")
 @common
@@ -85,6 +96,7 @@ def fit(
     \b
     wearlaw fit my-tests.csv --contact exact --law usfd --free q_s,m_c,tr_sc -o fit/
     wearlaw fit my-tests.csv --contact exact --free friction_coefficient -o friction/
+    wearlaw fit my-tests.csv --contact exact --stage third_body:reduction=0.9 --free reduction -o layer/
 
     The folder then holds law.toml, the fitted law, to be used wherever a law is asked for; parameters.csv with
     confidence intervals; residuals.csv; a figure; and fit.json with all that the fit comes from.
@@ -104,6 +116,7 @@ def _fit(
     notes: Notes,
     *,
     contact: str,
+    stages: tuple[str, ...],
     law: str | None,
     free: str,
     fixed: tuple[str, ...],
@@ -118,8 +131,10 @@ def _fit(
     if both:
         raise click.UsageError(f"--fixed: '{both[0]}' is to be fitted; take it out of --fixed or of --free")
     tests = _tests(path, friction, "friction_coefficient" in names, notes)
-    stage = _rig(rig, notes) | contact_model(contact)
-    predict = stage if law is None else _with_law(stage, law, given, names, notes)
+    around = _rig(rig, notes) | contact_model(contact)
+    for text in stages:
+        around = around | stage(text)
+    predict = around if law is None else _with_law(around, law, given, names, notes)
     with notes.of("fit"), Bar(bootstrap) as shown:
         shown.stage("fitting")
         return fit_parameters(
@@ -133,22 +148,26 @@ def _fit(
         )
 
 
-def _with_law(stage: Pipeline[...], text: str, given: dict[str, str], free: list[str], notes: Notes) -> Pipeline[...]:
+def _with_law(contact: Pipeline[...], text: str, given: dict[str, str], free: list[str], notes: Notes) -> Pipeline[...]:
     """Return the pipeline with the law to fit, and note the values of its fixed parameters.
 
     There is no warning that the law was fitted for another contact: it is about to be fitted.
     """
-    law = wear_law(text, given)
-    kept = [f"{name} = {value!r}" for name, value in numbers(law.explicit()).items() if name not in free]
+    law = law_of(text, given)
+    kept = [
+        f"{name} = {value!r}"
+        for name, value in numbers(law.explicit()).items()
+        if name not in free and f"{law.name}.{name}" not in free
+    ]
     if kept:
         notes.add(f"fit: not fitted, {', '.join(kept)}")
-    return stage.with_law(law)
+    return contact.with_law(law)
 
 
 @click.command()
 @click.argument("tests")
 @click.option("--contacts", required=True, metavar="MODELS", help="Contact models: global,exact or NAME:FIELD=VALUE.")
-@click.option("--laws", required=True, metavar="LAWS", help="Wear laws: usfd,kth or NAME:FIELD=VALUE, or TOML files.")
+@click.option("--laws", required=True, metavar="LAWS", help="Laws: usfd,kth or NAME:FIELD=VALUE, or TOML files.")
 @click.option(
     "--free", metavar="LAW=FIELDS", multiple=True, help="Also fit this one of the laws, on every contact; repeatable."
 )
@@ -200,7 +219,7 @@ def _compare(
 ) -> Comparison:
     """Return the comparison for these options."""
     tests = _tests(path, friction, False, notes)
-    named = {text: wear_law(text) for text in listed("--laws", laws)}
+    named: dict[str, Any] = {text: law_of(text) for text in listed("--laws", laws)}
     models = {text: contact_model(text) for text in listed("--contacts", contacts)}
     pairs = compose(_rig(rig, notes), models, named, notes)
     predictors: list[tuple[Names, Predictor]] = [

@@ -10,9 +10,10 @@ import click
 
 from wearlaw.errors import ConfigurationError, InputError, with_problems
 from wearlaw.figures.curves import FigureFormat
-from wearlaw.fitting.law_files import read_toml, read_wear_law
+from wearlaw.fitting.law_files import read_law, read_toml
 from wearlaw.models.contact_model import ContactModel
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
+from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import Configuration
@@ -80,8 +81,14 @@ def contact_model(text: str) -> ContactModel:
     return loader.contact_model(name, **fields(text, tuple(settings)))
 
 
-def wear_law(text: str, fixed: dict[str, str] | None = None) -> WearLaw:
-    """Return the wear law of "NAME", "NAME:FIELD=VALUE:..." or the path of a TOML file.
+def stage(text: str) -> Stage:
+    """Return the stage of "NAME" or "NAME:FIELD=VALUE:..."."""
+    name, *settings = text.split(":")
+    return loader.stage(name, **fields(text, tuple(settings)))
+
+
+def law_of(text: str, fixed: dict[str, str] | None = None) -> Law:
+    """Return the law of "NAME", "NAME:FIELD=VALUE:..." or the path of a TOML file.
 
     Parameters
     ----------
@@ -91,10 +98,10 @@ def wear_law(text: str, fixed: dict[str, str] | None = None) -> WearLaw:
         Further fields.
     """
     if text.endswith(".toml"):
-        law = read_wear_law(text)
+        law = read_law(text)
         return law.model_copy(update=fixed) if fixed else law
     name, *settings = text.split(":")
-    return loader.wear_law(name, **fields(text, tuple(settings)) | (fixed or {}))
+    return loader.law(name, **fields(text, tuple(settings)) | (fixed or {}))
 
 
 def print_notes(notes: Iterable[str]) -> None:

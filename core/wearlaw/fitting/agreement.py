@@ -1,4 +1,4 @@
-"""Measures of the error of predicted wear rates against measured ones, with their formulas."""
+"""Measures of the error of predicted values against measured ones, with their formulas."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from wearlaw.arrays.array import Array
 
 @dataclass(frozen=True)
 class Agreement:
-    """Errors of predicted wear rates pᵢ against measured ones mᵢ, in n tests.
+    """Errors of predicted values pᵢ, such as wear rates, against measured ones mᵢ, in n tests.
 
-    The ratios rᵢ = pᵢ/mᵢ exist where both rates are positive, in nᵣ of the tests. Measures of ratios leave the other
+    The ratios rᵢ = pᵢ/mᵢ exist where both values are positive, in nᵣ of the tests. Measures of ratios leave the other
     tests out, and are None if too few are left.
 
     Attributes
@@ -21,7 +21,7 @@ class Agreement:
     tests : int
         n.
     without_ratio : int
-        Tests in which one of the rates is zero and the other is not. (If both are zero, they agree.)
+        Tests in which one of the values is positive and the other is zero or negative. (If both are zero, they agree.)
     bias : float or None
         Geometric mean of the ratios, exp(Σ ln rᵢ / nᵣ); above 1 if the prediction is too high.
     geometric_sd : float or None
@@ -33,7 +33,7 @@ class Agreement:
     largest_factor : float or None
         The factor of the worst test, max exp|ln rᵢ|.
     rms_error : float
-        √(Σ (pᵢ - mᵢ)² / n) [kg/m/m²], over all tests.
+        √(Σ (pᵢ - mᵢ)² / n) in SI, for wear rates [kg/m/m²], over all tests.
     """
 
     tests: int
@@ -82,12 +82,12 @@ class Information:
 
 
 def agreement(predicted: Array, measured: Array) -> Agreement:
-    """Return the errors of predicted wear rates against measured ones.
+    """Return the errors of predicted values against measured ones.
 
     Parameters
     ----------
     predicted, measured : ndarray, (tests,)
-        Wear rates, not negative [kg/m/m²]; at least one.
+        Values in SI; at least one.
     """
     both = (predicted > 0) & (measured > 0)
     logs = np.log(predicted[both]) - np.log(measured[both])

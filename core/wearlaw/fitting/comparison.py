@@ -1,16 +1,16 @@
-"""Comparing predictors on the same wear tests: `compare`, its ranking, and a figure."""
+"""Comparing predictors of one outcome on the same tests: `compare`, its ranking, and a figure."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 import pandas as pd
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import InputError
+from wearlaw.errors import InputError, did_you_mean
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
 from wearlaw.fitting.agreement import Agreement, Information, agreement
@@ -18,10 +18,11 @@ from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.fitting.result import Fit
 from wearlaw.models.contact_model import Model
 from wearlaw.models.labels import labels
+from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import WEAR_RATE, in_unit
-from wearlaw.units.variables import label
+from wearlaw.units.variables import label, name_of
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
@@ -30,10 +31,13 @@ if TYPE_CHECKING:
 
 
 Predictor: TypeAlias = Pipeline[...] | Fit
-"""A pipeline with a wear law, or a fit of one."""
+"""A pipeline with a law, or a fit of one."""
 
 COUNTS = ("tests", "without_ratio", "fitted")
 """Columns of whole numbers."""
+
+MARGIN = 0.05
+"""Margin of linear axes, as a share of the range of the values."""
 
 
 class Names(NamedTuple):
@@ -55,7 +59,7 @@ class Compared:
     pipeline : Pipeline
         The pipeline that predicts.
     predicted : ndarray, (tests,)
-        Its wear rates [kg/m/m²].
+        Its predictions in SI, for wear rates [kg/m/m²].
     agreement : Agreement
         Their errors against the measured ones.
     information : Information or None
@@ -71,7 +75,7 @@ class Compared:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison:
-    """Predictors on the same wear tests, made by `compare`.
+    """Predictors of one outcome on the same tests, made by `compare`.
 
     Attributes
     ----------
@@ -81,11 +85,22 @@ class Comparison:
         The predictors, best first.
     notes : tuple of str
         Remarks for the reader, once each.
+    outcome : str
+        Name of the outcome, such as "wear_rate".
+    unit : str
+        Its unit in tables and figures.
     """
 
     tests: WearTests
     compared: tuple[Compared, ...]
     notes: tuple[str, ...]
+    outcome: str = WEAR
+    unit: str = WEAR_RATE
+
+    @property
+    def measured(self) -> Array:
+        """The measurements in SI, (tests,)."""
+        return self.tests.measured(self.outcome, self.unit)
 
     def table(self) -> pd.DataFrame:
         """Return the ranking, a row for each predictor, best first.
@@ -93,36 +108,42 @@ class Comparison:
         The measures are those of `Agreement`, with AIC and AICc of `Information`. A measure that does not exist is
         blank (NA), never infinite. `fitted` is the number of parameters fitted to these tests.
         """
-        rows = [_row(one) for one in self.compared]
+        rows = [_row(one, self.unit) for one in self.compared]
         counts = dict.fromkeys(COUNTS, "Int64")
         measures = {name: "Float64" for name in rows[0] if name != "predictor"}
         return pd.DataFrame(rows).astype(measures | counts)
 
     def predictions(self) -> pd.DataFrame:
-        """Return the tests with the wear rates of each predictor; the heads of the columns hold the units."""
-        predicted = {f"{one.names.label} [{WEAR_RATE}]": in_unit(one.predicted, WEAR_RATE) for one in self.compared}
+        """Return the tests with the values of each predictor; the heads of the columns hold the units."""
+        predicted = {
+            f"{one.names.label} [{self.unit or '-'}]": in_unit(one.predicted, self.unit) for one in self.compared
+        }
         return self.tests.to_dataframe().assign(**predicted)
 
     def figure_data(self) -> FigureData:
-        """Return measured against predicted wear rate, a panel for each contact model, on logarithmic axes.
+        """Return measured against predicted values, a panel for each contact model, on logarithmic axes.
 
-        Tests in which one of the two is zero are missing there; the caption says how many.
+        Tests in which one of the two is zero are missing there; the caption says how many. If a value is negative, the
+        axes are linear and show all tests.
         """
-        measured = self.tests.columns["wear_rate"]
-        rates = np.concatenate([measured, *(one.predicted for one in self.compared)])
-        ends = _ends(in_unit(rates[rates > 0], WEAR_RATE))
+        measured, linear = self.measured, self._has_negative
+        values = np.concatenate([measured, *(one.predicted for one in self.compared)])
+        ends = _ends(in_unit(values if linear else values[values > 0], self.unit), linear)
         laws = list(dict.fromkeys(one.names.law for one in self.compared))
         panels: dict[str, list[Curve]] = {}
         for one in self.compared:
-            shown = (one.predicted > 0) & (measured > 0)
-            x, y = (in_unit(values[shown], WEAR_RATE) for values in (one.predicted, measured))
+            shown = np.full(measured.shape, linear) | ((one.predicted > 0) & (measured > 0))
+            x, y = (in_unit(some[shown], self.unit) for some in (one.predicted, measured))
             curve = Curve(one.names.law, x, y, colour=laws.index(one.names.law) % BLACK, points=True)
             panels.setdefault(one.names.contact, []).append(curve)
-        across, up = (PlotAxis(f"{kind} {label('wear_rate')}", "log", ends) for kind in ("predicted", "measured"))
+        name = label(self.outcome, units={self.outcome: self.unit})
+        scale: Literal["linear", "log"] = "linear" if linear else "log"
+        across, up = (PlotAxis(f"{kind} {name}", scale, ends) for kind in ("predicted", "measured"))
+        guides = _guides(ends)[: 1 if linear else None]
         return FigureData(
             name="measured_against_predicted",
-            title="Measured against predicted wear rate",
-            panels=tuple(Panel(across, up, (*_guides(ends), *curves), name) for name, curves in panels.items()),
+            title=f"Measured against predicted {name_of(self.outcome)}",
+            panels=tuple(Panel(across, up, (*guides, *curves), name) for name, curves in panels.items()),
             caption=self._caption(),
         )
 
@@ -133,22 +154,32 @@ class Comparison:
     def _caption(self) -> str:
         """Return the source of the tests and the number of tests that are not shown."""
         source = f" of {self.tests.source}" if self.tests.source else ""
-        measured = self.tests.columns["wear_rate"]
+        count = f"{len(self.tests)} tests{source}."
+        if self._has_negative:
+            return f"{count} The line is equality."
+        measured = self.measured
         zeros = max(int(((one.predicted == 0) | (measured == 0)).sum()) for one in self.compared)
-        hidden = f" Not shown: wear rates of zero, in up to {zeros} tests." if zeros else ""
-        return f"{len(self.tests)} tests{source}. The lines are equality and a factor of two.{hidden}"
+        hidden = f" Not shown: {name_of(self.outcome)}s of zero, in up to {zeros} tests." if zeros else ""
+        return f"{count} The lines are equality and a factor of two.{hidden}"
+
+    @property
+    def _has_negative(self) -> bool:
+        return any((values < 0.0).any() for values in (self.measured, *(one.predicted for one in self.compared)))
 
     def __repr__(self) -> str:
-        rows = [_row(one) for one in self.compared]
+        rows = [_row(one, self.unit) for one in self.compared]
         heads = [head for head in rows[0] if head != "tests" and any(row[head] not in (None, 0) for row in rows)]
         cells = [[head.partition(" ")[0] for head in heads], *([_cell(row[head]) for head in heads] for row in rows)]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in cells]
         count = f"{len(rows)} predictor{'s' if len(rows) > 1 else ''} on {len(self.tests)} tests"
-        return "\n  ".join([f"{count}, best first; rms_error in µg/m/mm²", *map(str.rstrip, lines)])
+        unit = label(self.outcome, units={self.outcome: self.unit}).rpartition(" [")[2].removesuffix("]")
+        of = "" if self.outcome == WEAR else f" of {name_of(self.outcome)}"
+        shown = f"; rms_error in {unit}" if unit != "-" else ""
+        return "\n  ".join([f"{count}{of}, best first{shown}", *map(str.rstrip, lines)])
 
 
-def _row(one: Compared) -> dict[str, Any]:
+def _row(one: Compared, unit: str) -> dict[str, Any]:
     """Return the measures of a predictor, by column of the table."""
     errors, fit = one.agreement, one.information
     return {
@@ -157,7 +188,7 @@ def _row(one: Compared) -> dict[str, Any]:
         "bias": errors.bias,
         "geometric_sd": errors.geometric_sd,
         "largest_factor": errors.largest_factor,
-        f"rms_error [{WEAR_RATE}]": float(in_unit(np.asarray(errors.rms_error), WEAR_RATE)),
+        f"rms_error [{unit or '-'}]": float(in_unit(np.asarray(errors.rms_error), unit)),
         "tests": errors.tests,
         "without_ratio": errors.without_ratio,
         "fitted": None if fit is None else fit.parameters,
@@ -172,9 +203,12 @@ def _cell(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def _ends(rates: Array) -> tuple[float, float]:
-    """Return the ends of both axes: a factor of two around all rates, since whole decades would waste space."""
-    return (0.5 * rates.min(), 2.0 * rates.max()) if rates.size else (0.1, 10.0)
+def _ends(values: Array, linear: bool) -> tuple[float, float]:
+    """Return the ends of both axes: a factor of two around all values, since whole decades would waste space."""
+    if linear:
+        margin = MARGIN * float(np.ptp(values))
+        return float(values.min()) - margin, float(values.max()) + margin
+    return (0.5 * values.min(), 2.0 * values.max()) if values.size else (0.1, 10.0)
 
 
 def _guides(ends: tuple[float, float]) -> list[Curve]:
@@ -188,31 +222,34 @@ def compare(
     predictors: Mapping[str, Predictor] | Sequence[Predictor],
     tests: WearTests,
     *,
+    outcome: str | None = None,
     friction_coefficient: ArrayLike | None = None,
 ) -> Comparison:
-    """Rank predictors by how well they agree with measured wear rates, all on the same tests.
+    """Rank predictors by how well they agree with measured wear rates or another outcome, all on the same tests.
 
     Parameters
     ----------
     predictors : mapping of str to Pipeline or Fit, or sequence of these
-        The predictors of the wear rate. In a sequence, each is named after its law and contact model, such as
+        The predictors of the outcome. In a sequence, each is named after its law and contact model, such as
         "usfd on exact", or "usfd fitted on exact" for a `Fit`.
     tests : WearTests
-        Measured tests. Those without a wear rate are left out.
+        Measured tests. Those without the outcome are left out.
+    outcome : str, optional
+        Name of the outcome, such as "rcf_damage"; needed if the predictors share several that the tests measure.
     friction_coefficient : array_like of float, optional
         μ [-] for tests without a friction coefficient.
 
     Returns
     -------
     Comparison
-        The predictors, ranked by: first the number of tests in which either the predicted or the measured rate is
-        zero, which no factor can express; then the root mean square of the logarithmic error, `rms_factor`; then the
-        root mean square error.
+        The predictors, ranked by: first the number of tests in which either the predicted or the measured value is
+        zero, or negative, which no factor can express; then the root mean square of the logarithmic error,
+        `rms_factor`; then the root mean square error.
 
     Raises
     ------
     InputError
-        If there is no predictor, two have the same name, or no test has a wear rate.
+        If there is no predictor, two have the same name, they share no outcome, or no test has it.
     ConditionsError
         If the friction coefficient is unknown, or a predictor's rig does not take the conditions of the tests.
 
@@ -222,54 +259,106 @@ def compare(
     `Information`) weighs one against the other. It is blank unless a law was fitted to the wear rates of exactly these
     tests, and if fits assume different kinds of scatter.
     """
-    return compare_named(_named(predictors), tests, friction_coefficient)
+    given = _given(predictors)
+    chosen = _chosen(given, tests, outcome)
+    names = _names(given, chosen)
+    if isinstance(predictors, Mapping):
+        names = [Names(own, own, of_models.contact) for own, of_models in zip(predictors, names, strict=True)]
+    return compare_named(list(zip(names, given, strict=True)), tests, friction_coefficient, chosen)
 
 
 def compare_named(
-    named: Sequence[tuple[Names, Predictor]], tests: WearTests, friction_coefficient: ArrayLike | None
+    named: Sequence[tuple[Names, Predictor]],
+    tests: WearTests,
+    friction_coefficient: ArrayLike | None,
+    outcome: str | None = None,
 ) -> Comparison:
     """Compare predictors that have names already; see `compare`."""
     taken = [names.label for names, _ in named]
     twice = [label for label in taken if taken.count(label) > 1]
     if twice:
         raise InputError(f"two predictors are called '{twice[0]}'; give a mapping from names of your own to them")
+    given = [predictor for _, predictor in named]
+    outcome = _chosen(given, tests, outcome)
+    units = [_law(one, outcome).outcome.unit for one in given]
+    tests = tests.measuring([name for one in given for name in named_outcomes(_pipeline(one).laws)])
+    for unit in units[1:]:
+        tests.measured(outcome, unit)  # an error if the predictors give it in units of other dimensions
     notes = Notes()
-    used = _with_wear_rate(tests, notes)
-    compared = [_compared(*one, used, friction_coefficient, notes) for one in named]
-    if len({one.scatter for _, one in named if isinstance(one, Fit)}) > 1:
+    used = _with_outcome(tests, outcome, units[0], notes)
+    compared = [_compared(*one, used, outcome, friction_coefficient, notes) for one in named]
+    if len({one.scatter for one in given if isinstance(one, Fit)}) > 1:
         notes.add("AIC is left blank, since the fits take the tests to scatter in different ways")
         compared = [replace(one, information=None) for one in compared]
-    return Comparison(used, tuple(sorted(compared, key=lambda one: one.agreement.rank)), tuple(notes.texts))
+    ranked = sorted(compared, key=lambda one: one.agreement.rank)
+    return Comparison(used, tuple(ranked), tuple(notes.texts), outcome, units[0])
 
 
-def _named(predictors: Mapping[str, Predictor] | Sequence[Predictor]) -> list[tuple[Names, Predictor]]:
-    """Return the predictors with their names, made from their models unless given."""
+def _given(predictors: Mapping[str, Predictor] | Sequence[Predictor]) -> list[Predictor]:
+    """Return the predictors as a list."""
     given = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
     if not given:
         raise InputError("give at least one predictor, such as rig | contact_model | law")
     for one in given:
-        if not _predicts_wear(one.predict if isinstance(one, Fit) else one):
+        if not _has_law(one.predict if isinstance(one, Fit) else one):
             raise InputError(
                 f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {one!r}"
             )
-    names = _names(given)
-    if isinstance(predictors, Mapping):
-        names = [Names(own, own, of_models.contact) for own, of_models in zip(predictors, names, strict=True)]
-    return list(zip(names, given, strict=True))
+    return given
 
 
-def _predicts_wear(one: object) -> bool:
+def _has_law(one: object) -> bool:
     return isinstance(one, Pipeline) and bool(one.laws)
 
 
-def _names(predictors: Sequence[Predictor]) -> list[Names]:
+def _chosen(given: Sequence[Predictor], tests: WearTests, outcome: str | None) -> str:
+    """Return the outcome to compare.
+
+    Raises
+    ------
+    InputError
+        If a predictor does not predict it, or if it is not given and the predictors share none or several.
+    """
+    predicted = [list(named_outcomes(_pipeline(one).laws)) for one in given]
+    if outcome is not None:
+        for names in predicted:
+            if outcome not in names:
+                hint = did_you_mean(outcome, names)
+                raise InputError(
+                    f"outcome: a predictor does not predict '{outcome}'{hint} It predicts {', '.join(names)}"
+                )
+        return outcome
+    shared = [name for name in predicted[0] if all(name in names for names in predicted)]
+    if not shared:
+        every = ", ".join(dict.fromkeys(name for names in predicted for name in names))
+        raise InputError(f"the predictors have no outcome in common; they predict {every}")
+    tests = tests.measuring(shared)
+    measured = [name for name in shared if not np.isnan(tests.measured(name, _law(given[0], name).outcome.unit)).all()]
+    if len(measured) > 1:
+        raise InputError(
+            f"the predictors share {' and '.join(measured)}, which are all measured; choose one, as in"
+            f' outcome="{measured[0]}"'
+        )
+    return (measured or shared)[0]
+
+
+def _law(predictor: Predictor, outcome: str) -> Law:
+    """Return the law of a predictor for an outcome by its name in results."""
+    laws = _pipeline(predictor).laws
+    return laws[named_outcomes(laws)[outcome]]
+
+
+def _names(predictors: Sequence[Predictor], outcome: str) -> list[Names]:
     """Return names of predictors after their models, as in a study."""
     models = _labels([_pipeline(one).contact_model for one in predictors])
-    laws = iter(_labels([one.wear_law for one in predictors if isinstance(one, Pipeline)]))
+    stages = iter(_labels([stage for one in predictors for stage in _pipeline(one).stages]))
+    laws = iter(_labels([_law(one, outcome) for one in predictors if isinstance(one, Pipeline)]))
     names = []
     for one, model in zip(predictors, models, strict=True):
-        contact = model + (", patch means" if _pipeline(one).stages else "")
-        law = next(laws) if isinstance(one, Pipeline) else f"{_pipeline(one).wear_law.name} fitted"
+        named = [(stage, next(stages)) for stage in _pipeline(one).stages]
+        around = ["patch means" if stage.gives_means else name for stage, name in named]
+        contact = ", ".join([model, *around])
+        law = next(laws) if isinstance(one, Pipeline) else f"{_law(one, outcome).name} fitted"
         names.append(Names(f"{law} on {contact}", law, contact))
     return names
 
@@ -290,55 +379,66 @@ def _pipeline(predictor: Predictor) -> Pipeline[...]:
     return found
 
 
-def _has_wear_rate(tests: WearTests) -> NDArray[np.bool_]:
-    missing: NDArray[np.bool_] = np.isnan(tests.wear_rate.magnitude)
+def _has_outcome(tests: WearTests, outcome: str, unit: str) -> NDArray[np.bool_]:
+    missing: NDArray[np.bool_] = np.isnan(tests.measured(outcome, unit))
     return ~missing
 
 
-def _with_wear_rate(tests: WearTests, notes: Notes) -> WearTests:
-    """Return the tests that have a wear rate."""
-    there = _has_wear_rate(tests)
+def _with_outcome(tests: WearTests, outcome: str, unit: str, notes: Notes) -> WearTests:
+    """Return the tests that have an outcome."""
+    there, name = _has_outcome(tests, outcome, unit), name_of(outcome)
     if not there.any():
-        raise InputError(f"none of the {len(tests)} tests has a wear rate, which a comparison needs")
+        raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
     if not there.all():
-        notes.add(f"{(~there).sum()} of {len(tests)} tests have no wear rate and are left out")
+        notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out")
     return tests[there]
 
 
-def _compared(names: Names, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Compared:
-    predicted = _predicted(names.label, predictor, tests, friction, notes)
-    errors = agreement(predicted, tests.columns["wear_rate"])
+def _compared(
+    names: Names, predictor: Predictor, tests: WearTests, outcome: str, friction: Any, notes: Notes
+) -> Compared:
+    law = _law(predictor, outcome)
+    measured = tests.measured(outcome, law.outcome.unit)
+    predicted = _predicted(names.label, predictor, law, tests, friction, notes)
+    errors = agreement(predicted, measured)
     if errors.without_ratio:
+        sign = "zero or negative" if ((predicted < 0) | (measured < 0)).any() else "zero"
         notes.add(
-            f"{names.label}: either the predicted or the measured wear rate is zero in {errors.without_ratio} of"
-            f" {len(tests)} tests, which no factor can express; these count first in the ranking"
+            f"{names.label}: either the predicted or the measured {name_of(outcome)} is {sign} in"
+            f" {errors.without_ratio} of {len(tests)} tests, which no factor can express; these count first in the"
+            " ranking"
         )
-    worth = _information(names.label, predictor, tests, notes) if isinstance(predictor, Fit) else None
+    worth = _information(names.label, predictor, tests, outcome, notes) if isinstance(predictor, Fit) else None
     return Compared(names, _pipeline(predictor), predicted, errors, worth)
 
 
-def _predicted(name: str, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Array:
-    """Return the predicted wear rates of tests [kg/m/m²]."""
+def _predicted(name: str, predictor: Predictor, law: Law, tests: WearTests, friction: Any, notes: Notes) -> Array:
+    """Return the predicted outcomes of tests in SI."""
     pipeline = _pipeline(predictor)
     conditions = tests.conditions(pipeline.contact_model, friction, pipeline.rig)
-    if isinstance(predictor, Fit) and FRICTION in predictor.parameters:
-        conditions[FRICTION] = float(predictor.parameters[FRICTION].magnitude)
+    if isinstance(predictor, Fit) and predictor.contact_parameters:
         conditions.pop("traction_coefficient", None)
-        notes.add(f"{name}: takes the friction coefficient that was fitted, {conditions[FRICTION]:.4g}")
+        if FRICTION in predictor.parameters:
+            conditions[FRICTION] = float(predictor.parameters[FRICTION].magnitude)
+            notes.add(f"{name}: takes the friction coefficient that was fitted, {conditions[FRICTION]:.4g}")
     if "traction_coefficient" in conditions:
         notes.add(f"{name}: takes the traction that was measured in the tests")
     with notes.of(name):
-        pipeline = pipeline.without_law() | pipeline.wear_law  # warns if the parameters were fitted for another contact
+        pipeline = pipeline.without_law() | law  # warns if the parameters were fitted for another contact
     with notes.of("tests"):
         prediction = pipeline.predict(pipeline.posed(conditions, of_one_patch="compare"))
-    return np.asarray(prediction.wear_rate.to_base_units().magnitude)
+    return np.asarray(prediction[law.outcome.name].to_base_units().magnitude)
 
 
-def _information(name: str, fit: Fit, tests: WearTests, notes: Notes) -> Information | None:
+def _information(name: str, fit: Fit, tests: WearTests, outcome: str, notes: Notes) -> Information | None:
     """Return Akaike's criterion of a fit, or None with a note if it was not fitted to exactly these tests."""
-    of_traction = len(fit.observations) > 1
-    if of_traction or fit.tests[_has_wear_rate(fit.tests)] != tests:
-        why = "to tractions too" if of_traction else "to other tests"
+    kinds = [one.observable for one in fit.observations]
+    fitted_to = fit.tests.measuring([outcome])
+    unit = _law(fit, outcome).outcome.unit
+    if kinds != [outcome] or fitted_to[_has_outcome(fitted_to, outcome, unit)] != tests:
+        more = [kind.replace("_", " ") for kind in kinds if kind != outcome]
+        to = "tractions too" if more == ["traction coefficient"] and len(kinds) > 1 else " and ".join(more)
+        why = f"to {to or 'other tests'}"
         notes.add(f"{name}: was fitted {why}, so its AIC does not apply here and is left blank")
         return None
     free = len(fit.parameters)

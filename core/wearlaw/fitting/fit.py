@@ -1,4 +1,4 @@
-"""Fitting the parameters of a wear law, and the friction coefficient, to tests: `fit`."""
+"""Fitting the numbers of laws and stages, and the friction coefficient, to tests: `fit`."""
 
 from __future__ import annotations
 
@@ -42,18 +42,20 @@ def fit(
     confidence: float = 0.95,
     on_progress: Callable[[int], None] | None = None,
 ) -> Fit:
-    """Fit parameters of a wear law, and the friction coefficient, to tests by weighted least squares.
+    """Fit numbers of laws and stages, and the friction coefficient, to tests by weighted least squares.
 
     Parameters
     ----------
     predict : Pipeline
-        The pipeline to fit. Parameters that are not free keep the values of its law. Without a law, the friction
-        coefficient is fitted to the measured traction.
+        The pipeline to fit. Parameters that are not free keep the values of its laws and stages. Without a law, the
+        friction coefficient and the numbers of stages are fitted to the measured traction.
     tests : WearTests
-        Measured tests. Those without a wear rate do not affect the parameters of the law.
+        Measured tests. Those without a law's outcome do not affect the parameters of the law.
     free : sequence of str
-        Numeric fields of the law, nested ones with a dot as in "coefficient.low_speed", and "friction_coefficient".
-        The latter is one value for all tests, fitted to the traction T/N, on an ellipse with T = √(Fx² + Fy²).
+        Numeric fields of laws and stages, nested ones with a dot as in "coefficient.low_speed", and
+        "friction_coefficient". A name that several of them have is written "third_body.reduction", or "usfd_rail.m_m"
+        for one of the laws of two bodies. The friction coefficient is one value for all tests. It and the numbers of
+        stages are also fitted to the traction T/N, on an ellipse with T = √(Fx² + Fy²).
     friction_coefficient : float, optional
         μ of tests without one, or the starting value if it is free.
     scatter : str
@@ -61,7 +63,8 @@ def fit(
         residual is predicted - measured. If the tests state an uncertainty of the wear rate, the residual is
         (predicted - measured) over that, whatever is given here.
     bounds : mapping of str to pair, optional
-        Least and greatest values. Default: a hundredth and a hundred times the starting value.
+        Least and greatest values. Default: a hundredth and a hundred times the starting value, for a stage within the
+        range that its field allows.
     starts : int
         Number of further starting points, within a factor of ten of the given law.
     bootstrap : int
@@ -77,8 +80,8 @@ def fit(
     Raises
     ------
     FitError
-        If a parameter is unknown, the tests do not determine it, there are too few tests, no fit is found, or a
-        setting is invalid.
+        If a parameter is unknown or ambiguous, its outcome is not measured, the tests do not determine it, there are
+        too few tests, no fit is found, or a setting is invalid.
     ConditionsError
         If the rig does not take the conditions of the tests.
 

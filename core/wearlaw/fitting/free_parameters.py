@@ -1,4 +1,4 @@
-"""The free parameters of a fit: their names, scaling and bounds."""
+"""The free parameters of a fit: their names, places, scaling and bounds."""
 
 from __future__ import annotations
 
@@ -11,19 +11,22 @@ import pint
 from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import FitError, UnitError, did_you_mean
+from wearlaw.errors import FitError, InputError, UnitError, did_you_mean
 from wearlaw.fitting.least_squares import Bounds
-from wearlaw.models.law import Law
-from wearlaw.settings.configuration import Configuration
-from wearlaw.settings.parameters import number_in_si, number_like, numbers
+from wearlaw.pipeline.named_numbers import NamedNumbers, Place, part_at
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.settings.parameters import allowed_range, number_in_si, number_like, numbers
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
 from wearlaw.units.registry import symbol
 
 FRICTION = "friction_coefficient"
-"""The only parameter that is not a field of the law."""
+"""The only parameter that is a condition, not a number of a law or stage."""
 
 FACTOR = 100.0
 """Default bounds of a parameter: this factor up and down from its first value."""
+
+ROUNDINGS = 16.0 * float(np.finfo(np.float64).eps)
+"""Relative distance from the end of the range that a stage allows, so that roundings do not lead beyond it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,6 +38,8 @@ class FreeParameters:
     Attributes
     ----------
     names : tuple of str
+    places : dict of str to Place
+        Where each number stands in the pipeline, by name; without the friction coefficient.
     like : tuple of Quantity or float
         The first values, with the units of the parameters.
     first : ndarray, (p,)
@@ -46,6 +51,7 @@ class FreeParameters:
     """
 
     names: tuple[str, ...]
+    places: dict[str, Place]
     like: tuple[Quantity | float, ...]
     first: Array
     positive: NDArray[np.bool_]
@@ -54,34 +60,53 @@ class FreeParameters:
     @classmethod
     def of(
         cls,
-        law: Law | None,
+        predict: Pipeline[...],
         free: Sequence[str],
         friction: float | None,
         bounds: Mapping[str, tuple[QuantityLike | float, QuantityLike | float]],
     ) -> Self:
-        """Return the free parameters among those of a law and the friction coefficient.
+        """Return the free parameters among the numbers of laws and stages and the friction coefficient.
 
         Raises
         ------
         FitError
-            If a name is unknown or given twice, or its bounds are invalid.
+            If a name is unknown, ambiguous or given twice, or its bounds are invalid.
         """
-        like = dict(numbers(law)) if law is not None else {}
-        _check_names(law, tuple(free), like)
-        positive = {name: _is_positive(law, name) for name in like} if law is not None else {}
-        if friction is not None:
-            like[FRICTION], positive[FRICTION] = float(friction), True
         if not isinstance(bounds, Mapping):
             raise FitError(f"bounds: give {{name: (low, high)}}, got {bounds!r}")
+        places = _places(predict, tuple(free))
+        like: dict[str, Quantity | float] = {}
+        ranges: dict[str, tuple[float, float, bool]] = {}
+        for name, place in places.items():
+            part = part_at(predict, place)
+            like[name] = numbers(part)[place.field]
+            least, most, positive = allowed_range(part, place.field)
+            if place.kind == "law":  # it may pass through numbers that it does not accept; a stage is made anew
+                least, most = -np.inf, np.inf
+            elif name not in bounds:  # of a stage, a share or a factor keeps its sign unless bounds say otherwise
+                positive = positive or number_in_si(like[name]) > 0.0
+            ranges[name] = least, most, positive
+        if friction is not None:
+            like[FRICTION], ranges[FRICTION] = float(friction), (-np.inf, np.inf, True)
         for name in bounds:
             if name not in free:
                 raise FitError(f"bounds: '{name}' is not free{did_you_mean(name, free)} Free are: {', '.join(free)}")
         first = np.array([number_in_si(like[name]) for name in free])
-        ends = [_ends(name, like[name], positive[name], bounds.get(name)) for name in free]
-        flags = np.array([positive[name] for name in free])
-        chosen = cls(tuple(free), tuple(like[name] for name in free), first, flags, Bounds(first, first))
+        ends = [_ends(name, like[name], ranges[name], bounds.get(name)) for name in free]
+        flags = np.array([ranges[name][2] for name in free])
+        chosen = cls(tuple(free), places, tuple(like[name] for name in free), first, flags, Bounds(first, first))
         low, high = (chosen.theta(np.array(end)) for end in zip(*ends, strict=True))
-        return cls(chosen.names, chosen.like, first, flags, Bounds(low, high))
+        return cls(chosen.names, places, chosen.like, first, flags, Bounds(low, high))
+
+    @property
+    def of_contact(self) -> list[str]:
+        """The names of the parameters that change the contact: the friction coefficient and numbers of stages."""
+        return [name for name in self.names if name not in self.places or self.places[name].kind == "stage"]
+
+    @property
+    def freed_laws(self) -> set[int]:
+        """The indices of the laws of which a number is free."""
+        return {place.index for place in self.places.values() if place.kind == "law"}
 
     def theta(self, values: Array) -> Array:
         """Return the scaled parameters of values in SI, (..., p)."""
@@ -115,35 +140,47 @@ class FreeParameters:
         return self.first + self._size * theta
 
 
-def _check_names(law: Law | None, free: tuple[str, ...], like: Mapping[str, object]) -> None:
-    known = [*like, FRICTION]
+def _places(predict: Pipeline[...], free: tuple[str, ...]) -> dict[str, Place]:
+    """Return the places of the free numbers of laws and stages by name."""
+    named = NamedNumbers(predict)
+    known = [*named.known, FRICTION]
     if not free:
         raise FitError(f"free: name at least one parameter of {', '.join(known)}")
+    places: dict[str, Place] = {}
+    taken: dict[Place | None, str] = {}
     for name in free:
-        if law is not None and name not in known and name in type(law).model_fields:
-            kind = type(getattr(law, name)).__name__
+        try:
+            place = None if name == FRICTION else named.place(name)
+        except InputError as error:
+            raise FitError(f"free: {error}") from None
+        if name != FRICTION:
+            places[name] = _checked(predict, named, name, place)
+        if place in taken:
+            also = "" if taken[place] == name else f", as '{taken[place]}' too"
+            raise FitError(f"free: '{name}' is given twice{also}")
+        taken[place] = name
+    return places
+
+
+def _checked(predict: Pipeline[...], named: NamedNumbers, name: str, place: Place | None) -> Place:
+    """Return the place of a number, or raise an error for a name that is not one of a number."""
+    if place is not None and place.field in numbers(part_at(predict, place)):
+        return place
+    for part in named.parts:
+        own = name.removeprefix(f"{part.label}.")
+        if own in type(part.model).model_fields:
+            kind = type(getattr(part.model, own)).__name__
             raise FitError(
-                f"free: '{name}' of wear law '{law.name}' is a {kind} and not a number, so it"
-                f" cannot be fitted; its numbers are: {', '.join(like)}"
+                f"free: '{own}' of {part.model.kind} '{part.label}' is a {kind} and not a number, so it"
+                f" cannot be fitted; its numbers are: {', '.join(part.numbers)}"
             )
-        if name not in known:
-            if law is None:
-                raise FitError(f"free: without a wear law there is only '{FRICTION}', not '{name}'; add a law with |")
-            hint = did_you_mean(name, known)
-            raise FitError(f"free: wear law '{law.name}' has no number '{name}'{hint} There are: {', '.join(known)}")
-        if free.count(name) > 1:
-            raise FitError(f"free: '{name}' is given twice")
-
-
-def _is_positive(record: Configuration, name: str) -> bool:
-    """Return whether a field, or a nested one with a dot, must be greater than zero."""
-    outer, _, inner = name.partition(".")
-    if inner:
-        return _is_positive(getattr(record, outer), inner)
-    rules = type(record).model_fields[outer].metadata
-    return any(isinstance(rule, Unit) and rule.positive for rule in rules) or any(
-        getattr(rule, "gt", None) is not None and rule.gt >= 0.0 for rule in rules
+    if not named.known:
+        raise FitError(f"free: without a wear law there is only '{FRICTION}', not '{name}'; add a law with |")
+    known = [*named.known, FRICTION]
+    owners = (
+        f"no law or stage has a number '{name}'" if len(named.parts) > 1 else f"{named.owners()} has no number '{name}'"
     )
+    raise FitError(f"free: {owners}{did_you_mean(name, known)} There are: {', '.join(known)}")
 
 
 def free_names(free: Any) -> Sequence[str]:
@@ -154,15 +191,22 @@ def free_names(free: Any) -> Sequence[str]:
     return names
 
 
-def _ends(name: str, like: Quantity | float, positive: bool, given: tuple[Any, Any] | None) -> tuple[float, float]:
+def _ends(
+    name: str, like: Quantity | float, allowed: tuple[float, float, bool], given: tuple[Any, Any] | None
+) -> tuple[float, float]:
     """Return the bounds of a parameter in SI."""
     first = number_in_si(like)
+    least, most, positive = allowed
+    inward = tuple(
+        end + away * ROUNDINGS * abs(end) if np.isfinite(end) else end for end, away in ((least, 1.0), (most, -1.0))
+    )
     if given is None:
         if first == 0.0:
             raise FitError(f"bounds: the first value of '{name}' is zero, which says nothing of its size; give bounds")
-        return (
+        low, high = (
             (first / FACTOR, first * FACTOR) if positive else (first - FACTOR * abs(first), first + FACTOR * abs(first))
         )
+        return max(low, inward[0]), min(high, inward[1])
     if not (isinstance(given, tuple | list) and len(given) == 2):
         raise FitError(f"bounds: '{name}' must have two values, low and high, got {given!r}")
     try:
@@ -172,7 +216,10 @@ def _ends(name: str, like: Quantity | float, positive: bool, given: tuple[Any, A
     if not (low < high and (low > 0.0 or not positive)):
         rule = "greater than zero and in ascending order" if positive else "in ascending order"
         raise FitError(f"bounds: '{name}' must have two values {rule}, got {given!r}")
-    return low, high
+    if low < least or high > most:
+        ends = " to ".join(repr(number_like(like, end)) for end in (least, most))
+        raise FitError(f"bounds: '{name}' takes values in the range {ends}, got {given!r}")
+    return max(low, inward[0]), min(high, inward[1])
 
 
 def _end_in_si(name: str, like: Quantity | float, end: Any) -> float:

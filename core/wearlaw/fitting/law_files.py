@@ -1,4 +1,4 @@
-"""Wear laws in TOML files: a table of the law, and one of the provenance of its parameters."""
+"""Laws in TOML files: a table of the law, and one of the provenance of its parameters."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from wearlaw.plugins.fields import specification
 from wearlaw.settings.text_files import read_text
 
 
-def write_wear_law(path: str | os.PathLike[str], law: Law, provenance: Mapping[str, Any]) -> None:
-    """Write a law to a TOML file, whole or not at all; `read_wear_law` reads it.
+def write_law(path: str | os.PathLike[str], law: Law, provenance: Mapping[str, Any]) -> None:
+    """Write a law to a TOML file, whole or not at all; `read_law` reads it.
 
     Raises
     ------
@@ -27,7 +27,7 @@ def write_wear_law(path: str | os.PathLike[str], law: Law, provenance: Mapping[s
         If the file cannot be written.
     """
     target = Path(path)
-    text = tomli_w.dumps({"wear_law": specification(law), "provenance": dict(provenance)})
+    text = tomli_w.dumps({law.kind.replace(" ", "_"): specification(law), "provenance": dict(provenance)})
     temporary = target.with_name(f".{target.name}.{os.getpid()}")
     try:
         try:
@@ -57,7 +57,18 @@ def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
-    """Return the wear law of the table ``[wear_law]`` in a TOML file.
+    """Return the wear law of the table ``[wear_law]`` in a TOML file; see `read_law`."""
+    found = read_law(path)
+    if not isinstance(found, WearLaw):
+        raise InputError(
+            f"wear law '{path}' holds law '{found.name}', which predicts {found.outcome.name} and no wear; read it with"
+            " read_law"
+        )
+    return found
+
+
+def read_law(path: str | os.PathLike[str]) -> Law:
+    """Return the law of the table ``[wear_law]`` or ``[law]`` in a TOML file.
 
     Parameters
     ----------
@@ -69,11 +80,13 @@ def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
     InputError
         If the file is missing, is not TOML, or does not describe a law of an installed plugin.
     """
-    fields = read_toml("wear law", path).get("wear_law")
+    contents = read_toml("wear law", path)
+    kind = "law" if "law" in contents and "wear_law" not in contents else "wear_law"
+    fields = contents.get(kind)
     if not isinstance(fields, dict) or not isinstance(fields.get("model"), str):
         raise InputError(f"wear law '{path}' needs a table [wear_law] with the name of the law, as in model = \"usfd\"")
     name = fields.pop("model")
     try:
-        return loader.wear_law(name, **fields)
+        return loader.law(name, **fields) if kind == "law" else loader.wear_law(name, **fields)
     except ConfigurationError as error:
         raise InputError(with_problems(f"wear law '{path}' is wrong in:", error.problems)) from None

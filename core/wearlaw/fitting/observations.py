@@ -12,18 +12,21 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import FitError
-from wearlaw.fitting.free_parameters import FRICTION
+from wearlaw.errors import ConfigurationError, FitError, ModelError
+from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
+from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces, integrate_laws, patch_area
+from wearlaw.pipeline.named_numbers import Place, check_loads_stay, staged_models
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import in_unit
-from wearlaw.units.variables import UNITS
+from wearlaw.units.variables import UNITS, label
 from wearlaw.wear_tests.tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
 """Scatter of measurements: by a factor, by an amount, or by their stated uncertainties."""
 
-Observable: TypeAlias = Literal["wear_rate", "traction_coefficient"]
+TRACTION = "traction_coefficient"
+"""The measurement that no law predicts."""
 
 FLOOR = 1e-300
 """Replaces a prediction of zero, whose logarithm is infinite."""
@@ -31,14 +34,18 @@ FLOOR = 1e-300
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Observations:
-    """One kind of measurement, with the pipeline that predicts it.
+    """Measurements of one kind, with the pipeline that predicts them.
 
     Attributes
     ----------
     observable : str
-        "wear_rate" [kg/m/m²] or "traction_coefficient" [-].
+        "traction_coefficient" [-], or the name of a law's outcome, such as "wear_rate".
+    law : int or None
+        Index of the law that predicts it; None for the traction.
     pipeline : Pipeline
         The pipeline that predicts it.
+    places : mapping of str to Place
+        Where the free numbers stand in the pipeline.
     tests : WearTests
         The tests with this measurement, each with a label.
     measured : ndarray, (n,)
@@ -47,21 +54,79 @@ class Observations:
         The contact problems of the tests, with batch shape (n,).
     scatter : str
         Kind of scatter.
-    unit : ndarray, (n,)
+    divisor : ndarray, (n,)
         Divisor of the residuals; 1 for relative scatter.
     """
 
-    observable: Observable
+    observable: str
+    law: int | None
     pipeline: Pipeline[...]
+    places: Mapping[str, Place]
     tests: WearTests
     measured: Array
     problem: Problem
     scatter: Scatter
-    unit: Array
+    divisor: Array
 
-    def predicted(self, values: Mapping[str, Array]) -> Array:
-        """Return the predictions (sets, n) for parameters in SI, (sets,) each."""
-        return predictions(self.observable, self.pipeline, self.problem, values)
+    @property
+    def unit(self) -> str:
+        """Unit of the measurement in tables and figures."""
+        return UNITS[TRACTION] if self.law is None else self.pipeline.laws[self.law].outcome.unit
+
+    @property
+    def head(self) -> str:
+        """Head of a column of the measurement, as in "wear_rate [ug/m/mm^2]"."""
+        return f"{self.observable} [{self.unit}]" if self.unit else self.observable
+
+    @property
+    def label(self) -> str:
+        """Name of the measurement with its unit, for the axis of a figure."""
+        return label(self.observable, units={self.observable: self.unit})
+
+    def predicted(self, values: Mapping[str, Array], problem: Problem | None = None) -> Array:
+        """Return the predictions (sets, n) for parameters in SI, (sets,) each.
+
+        Parameters
+        ----------
+        values : mapping of str to ndarray, (sets,)
+            All free parameters.
+        problem : Problem, optional
+            Other operating points than those of the tests, with batch shape (n,).
+
+        Raises
+        ------
+        FitError
+            If a stage does not accept its numbers.
+        """
+        problem = self.problem if problem is None else problem
+        sets, points = len(next(iter(values.values()))), problem.size
+        found = np.empty((sets, points))
+        at_places = {place: values[name] for name, place in self.places.items()}
+        try:
+            for model, members in staged_models(self.pipeline, at_places, sets):
+                part = problem[np.tile(np.arange(points), members.size)]
+                if FRICTION in values:
+                    part = part.replaced(friction_coefficient=np.repeat(values[FRICTION][members], points))
+                if self.law is None:
+                    one = integrate_forces(model, part).tangential / part.normal_force
+                else:
+                    own = {
+                        place.field: np.repeat(value[members], points)[:, None]
+                        for place, value in at_places.items()
+                        if (place.kind, place.index) == ("law", self.law)
+                    }
+                    law = self.pipeline.laws[self.law]
+                    one = integrate_laws(model, (law,), part, numbers=[{**law.numbers, **own}]).values[0]
+                found[members] = one.reshape(members.size, points)
+        except (ConfigurationError, ModelError) as error:
+            names = [name for name, place in self.places.items() if place.kind == "stage"]
+            if not names:
+                raise
+            raise FitError(
+                f"the search for the best fit has met values of {' and '.join(names)} that the stage or the contact"
+                f" model does not accept; give bounds: {error}"
+            ) from error
+        return found
 
     def residuals(self, values: Mapping[str, Array]) -> Array:
         """Return the residuals (sets, n) for parameters in SI, (sets,) each."""
@@ -71,46 +136,13 @@ class Observations:
         """Return the residuals of predictions (..., n)."""
         if self.scatter == "relative":
             return np.log(np.maximum(predicted, FLOOR) / self.measured)
-        return (predicted - self.measured) / self.unit
+        return (predicted - self.measured) / self.divisor
 
     def in_shown_unit(self, predicted: Array) -> Array:
         """Return the residuals (n,) for tables, with absolute scatter in the unit of the measurement."""
         if self.scatter == "absolute":
-            return in_unit(predicted - self.measured, UNITS[self.observable])
+            return in_unit(predicted - self.measured, self.unit)
         return self.compare(predicted)
-
-
-def predictions(
-    observable: Observable, pipeline: Pipeline[...], problem: Problem, values: Mapping[str, Array]
-) -> Array:
-    """Return wear rates [kg/m/m²] or traction coefficients at n operating points for many parameter sets.
-
-    Parameters
-    ----------
-    observable : str
-        Which of the two.
-    pipeline : Pipeline
-    problem : Problem
-        With batch shape (n,).
-    values : mapping of str to ndarray, (sets,)
-        Parameters in SI.
-
-    Returns
-    -------
-    ndarray, (sets, n)
-    """
-    sets, points = len(next(iter(values.values()))), problem.size
-    problem = problem[np.tile(np.arange(points), sets)]
-    if FRICTION in values:
-        problem = problem.replaced(friction_coefficient=np.repeat(values[FRICTION], points))
-    of_law = {name: np.repeat(value, points)[:, None] for name, value in values.items() if name != FRICTION}
-    model = pipeline.staged_model
-    if observable == "traction_coefficient":
-        predicted = integrate_forces(model, problem).tangential / problem.normal_force
-    else:
-        law = pipeline.wear_law
-        predicted = integrate_laws(model, (law,), problem, numbers=[{**law.numbers, **of_law}]).values[0]
-    return predicted.reshape(sets, points)
 
 
 def wear_index_density(pipeline: Pipeline[...], problem: Problem) -> Array:
@@ -124,54 +156,79 @@ def wear_index_density(pipeline: Pipeline[...], problem: Problem) -> Array:
 def observe(
     pipeline: Pipeline[...],
     tests: WearTests,
+    free: FreeParameters,
     friction: float | None,
-    fits_friction: bool,
-    scatter: Scatter,
+    scatter: Literal["relative", "absolute"],
 ) -> list[Observations]:
-    """Return the measurements to fit: wear rates if there is a law, and tractions if the friction is free.
+    """Return the measurements that depend on the free parameters: outcomes of laws, and tractions.
+
+    An outcome depends on the numbers of its law and on all that changes the contact, the traction on the latter only.
 
     Raises
     ------
     FitError
         If the tests lack a measurement or condition.
     """
-    found = []
-    if pipeline.laws:
-        found.append(_observe("wear_rate", pipeline, tests, friction, fits_friction, scatter))
-    if fits_friction:
-        of_traction: Scatter = "absolute" if scatter == "absolute" else "relative"
-        found.append(_observe("traction_coefficient", pipeline, tests, friction, True, of_traction))
+    of_contact = free.of_contact
+    check_loads_stay(pipeline, "fit", of_contact)
+    found = [
+        _observe(name, index, pipeline, tests, free, friction, scatter)
+        for name, index in named_outcomes(pipeline.laws).items()
+        if index in free.freed_laws or (of_contact and _is_measured(name, pipeline.laws[index], tests))
+    ]
+    if FRICTION in free.names or (of_contact and _is_measured(TRACTION, None, tests)):
+        found.append(_observe(TRACTION, None, pipeline, tests, free, friction, scatter))
+    if not found:
+        outcomes = [name.replace("_", " ") for name in named_outcomes(pipeline.laws)]
+        raise FitError(
+            f"tests: none of the {len(tests)} tests has a measured {' or '.join([*outcomes, 'traction'])}, to which"
+            f" {' and '.join(of_contact)} could be fitted"
+        )
     return found
 
 
+def _measured(name: str, law: Law | None, tests: WearTests) -> Array:
+    """Return the measurements of an outcome or of the traction in SI, NaN where there is none."""
+    return tests.measured(name, UNITS[TRACTION] if law is None else law.outcome.unit)
+
+
+def _is_measured(name: str, law: Law | None, tests: WearTests) -> bool:
+    return not np.isnan(_measured(name, law, tests)).all()
+
+
 def _observe(
-    observable: Observable,
+    observable: str,
+    index: int | None,
     pipeline: Pipeline[...],
     tests: WearTests,
+    free: FreeParameters,
     friction: float | None,
-    fits_friction: bool,
-    scatter: Scatter,
+    scatter: Literal["relative", "absolute"],
 ) -> Observations:
-    values = tests.columns.get(observable, np.full(len(tests), np.nan))
+    law = None if index is None else pipeline.laws[index]
+    values = _measured(observable, law, tests)
     there = ~np.isnan(values)
     if not there.any():
         raise FitError(f"tests: none of the {len(tests)} tests has a {observable.replace('_', ' ')}, which is fitted")
     labels = tuple(label or f"number {number}" for number, label in enumerate(tests.labels, 1))
     selected, measured = dataclasses.replace(tests, labels=labels)[there], values[there]
-    if scatter == "relative":
+    stated = observable == WEAR and tests.wear_rate_uncertainty is not None
+    chosen: Scatter = "uncertainty" if stated else scatter
+    if chosen == "relative":
         _refuse_zeros(observable, selected, measured)
     conditions = selected.conditions(pipeline.contact_model, friction, pipeline.rig)
-    if fits_friction:  # else the measured traction would replace the one that follows from the friction coefficient
+    if FRICTION in free.names:
         conditions = {**conditions, FRICTION: friction}
+    if free.of_contact:  # else the measured traction would replace the one that follows from the parameters
         conditions.pop("traction_coefficient", None)
     problem = pipeline.posed(conditions, of_one_patch="fit")
-    if scatter == "relative":
+    if chosen == "relative" and (law is None or law.zero_in_stick):
         _refuse_rest(observable, selected, problem)
-    unit = _unit(selected, measured, scatter)
-    return Observations(observable, pipeline, selected, measured, problem, scatter, unit)
+    divisor = _divisor(selected, measured, chosen)
+    return Observations(observable, index, pipeline, free.places, selected, measured, problem, chosen, divisor)
 
 
-def _unit(tests: WearTests, measured: Array, scatter: Scatter) -> Array:
+def _divisor(tests: WearTests, measured: Array, scatter: Scatter) -> Array:
     if scatter == "relative":
         return np.ones_like(measured)
     if scatter == "absolute":
@@ -185,16 +242,20 @@ def _unit(tests: WearTests, measured: Array, scatter: Scatter) -> Array:
     return stated
 
 
-def _refuse_zeros(observable: Observable, tests: WearTests, measured: Array) -> None:
-    zero = measured <= 0.0
-    if zero.any():
+def _refuse_zeros(observable: str, tests: WearTests, measured: Array) -> None:
+    wrong = measured <= 0.0
+    if wrong.any():
+        what = (
+            "negative" if (measured[wrong] < 0.0).all() else "zero" if (measured >= 0.0).all() else "zero or negative"
+        )
         raise FitError(
-            f"{observable}: is zero in {test_names(tests, zero)}, but is taken to scatter by a factor, and no factor"
-            ' leads to zero; leave these tests out, or fit with scatter="absolute"'
+            f"{observable}: is {what} in {test_names(tests, wrong)}, but is taken to scatter by a factor, and no factor"
+            f" leads to {'zero' if what == 'zero' else 'another sign'}; leave these tests out, or fit with"
+            ' scatter="absolute"'
         )
 
 
-def _refuse_rest(observable: Observable, tests: WearTests, problem: Problem) -> None:
+def _refuse_rest(observable: str, tests: WearTests, problem: Problem) -> None:
     still = problem.rigid_slip == 0.0
     name = observable.replace("_", " ")
     if still.any():

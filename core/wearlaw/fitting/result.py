@@ -16,13 +16,12 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
-from wearlaw.fitting.law_files import write_wear_law
-from wearlaw.fitting.observations import Observations, Scatter, predictions, wear_index_density
-from wearlaw.models.law import Law
+from wearlaw.fitting.law_files import write_law
+from wearlaw.fitting.observations import TRACTION, Observations, Scatter, wear_index_density
+from wearlaw.models.law import WEAR, Law
 from wearlaw.units.quantities import Quantity, from_si, in_unit
 from wearlaw.units.registry import si_factor
 from wearlaw.units.variables import UNITS, label
-from wearlaw.wear_tests.columns import head
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
@@ -62,9 +61,9 @@ class Fit:
     covariance : ndarray, (p, p)
         Of the values in SI, in the order of `parameters`, from the linearised model.
     law : Law or None
-        The law with the fitted parameters; None if no law was given.
+        The law with the fitted parameters; None if the pipeline has no law, or several, which are `predict.laws`.
     predict : Pipeline
-        The pipeline with the fitted law.
+        The pipeline with the fitted laws and stages.
     tests : WearTests
         All given tests.
     scatter : str
@@ -124,7 +123,7 @@ class Fit:
         first = self.observations[0]
         mean = float(np.sqrt(np.mean(first.compare(self._fitted(first)) ** 2)))
         if first.scatter == "absolute":
-            return from_si(mean * float(first.unit[0]), UNITS[first.observable])
+            return from_si(mean * float(first.divisor[0]), first.unit)
         return from_si(mean, "")
 
     @property
@@ -133,12 +132,12 @@ class Fit:
         rows = []
         for one in self.observations:
             predicted = self._fitted(one)
-            shown = UNITS[one.observable]
+            shown = one.unit
             rows.append(
                 pd.DataFrame(
                     {
                         "label": one.tests.labels,
-                        "observable": head(one.observable),
+                        "observable": one.head,
                         "creepage [%]": from_si(one.problem.creepage, UNITS["creepage"]).magnitude,
                         "measured": from_si(one.measured, shown).magnitude,
                         "predicted": from_si(predicted, shown).magnitude,
@@ -166,18 +165,22 @@ class Fit:
         return pd.DataFrame(rows)
 
     def to_toml(self, path: str | os.PathLike[str]) -> None:
-        """Write the fitted law and its provenance to a file that `read_wear_law` reads.
+        """Write the fitted law and its provenance to a file that `read_law` reads.
+
+        Fitted numbers of stages stand in the provenance.
 
         Raises
         ------
         FitError
-            If only the friction coefficient was fitted, without a law.
+            If the pipeline has no law, or several.
         OutputError
             If the file cannot be written.
         """
+        if self.law is None and self.predict.laws:
+            raise FitError("a file holds one law, and this fit has several; they are in fit.predict.laws")
         if self.law is None:
             raise FitError("a fit without a wear law has no law to write; its parameters are in fit.parameters")
-        write_wear_law(path, self.law, self.provenance)
+        write_law(path, self.law, self.provenance)
 
     def figure_data(self) -> FigureData:
         """Return measured and fitted values, with the band of the bootstrap replicates."""
@@ -186,6 +189,12 @@ class Fit:
     def plot(self) -> Figure:
         """Return a drawing of `figure_data`."""
         return plot(self.figure_data())
+
+    @property
+    def contact_parameters(self) -> tuple[str, ...]:
+        """The fitted parameters that change the contact: the friction coefficient and numbers of stages."""
+        places = self.observations[0].places
+        return tuple(name for name in self.parameters if name not in places or places[name].kind == "stage")
 
     def values_in_si(self, which: Mapping[str, Quantity] | None = None) -> dict[str, Array]:
         """Return the fitted parameters, or others, as SI arrays of one axis."""
@@ -210,11 +219,17 @@ class Fit:
         return "\n".join(lines)
 
     def _count(self) -> str:
-        return " and ".join(f"{one.measured.size} {one.observable.replace('_', ' ')}s" for one in self.observations)
+        return " and ".join(_counted(one) for one in self.observations)
+
+
+def _counted(one: Observations) -> str:
+    name = one.observable.replace("_", " ")
+    plural = f"{name}s" if one.observable in (WEAR, TRACTION) else f"values of {name}"
+    return f"{one.measured.size} {plural}"
 
 
 def _figure_data(fit: Fit) -> FigureData:
-    """Return a panel for each kind of measurement: wear rates against Tγ/A, tractions against creepage."""
+    """Return a panel for each kind of measurement: outcomes of laws against Tγ/A, tractions against creepage."""
     panels = tuple(_panel(fit, one) for one in fit.observations)
     band = f"band: {fit.confidence:.0%} of the bootstrap replicates" if fit.samples else "no bootstrap, no band"
     apart = (
@@ -233,12 +248,10 @@ def _figure_data(fit: Fit) -> FigureData:
 
 
 def _panel(fit: Fit, one: Observations) -> Panel:
-    x = "wear_index_density" if one.observable == "wear_rate" else "creepage"
+    x = "creepage" if one.observable == TRACTION else "wear_index_density"
     measured = Curve("measured", _along(fit, one.problem, x), _shown(one, one.measured), colour=BLACK, points=True)
-    scale: Literal["log", "linear"] = (
-        "log" if one.observable == "wear_rate" and (one.measured > 0.0).all() else "linear"
-    )
-    axes = PlotAxis(label(x), scale), PlotAxis(label(one.observable), scale)
+    scale: Literal["log", "linear"] = "log" if one.observable != TRACTION and (one.measured > 0.0).all() else "linear"
+    axes = PlotAxis(label(x), scale), PlotAxis(one.label, scale)
     return Panel(*axes, (_fitted(fit, one, x), measured))
 
 
@@ -250,7 +263,7 @@ def _fitted(fit: Fit, one: Observations, x: str) -> Curve:
     order = np.argsort(along, kind="stable")
 
     def at(values: dict[str, Array]) -> Array:
-        return _shown(one, predictions(one.observable, fit.predict, problem, values))[:, order]
+        return _shown(one, one.predicted(values, problem))[:, order]
 
     best = at(fit.values_in_si())[0]
     low = high = None
@@ -309,4 +322,4 @@ def _along(fit: Fit, problem: Problem, x: str) -> Array:
 
 
 def _shown(one: Observations, values: Array) -> Array:
-    return in_unit(values, UNITS[one.observable])
+    return in_unit(values, one.unit)

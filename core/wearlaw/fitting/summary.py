@@ -18,12 +18,13 @@ from wearlaw.fitting.observations import FLOOR, Observations, test_names, wear_i
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.task import Task
 from wearlaw.models.contact_model import Model
-from wearlaw.models.law import Calibration, Law
-from wearlaw.pipeline.pipeline import Rig
+from wearlaw.models.law import WEAR, Calibration
+from wearlaw.pipeline.named_numbers import changed_parts
+from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.ranges import mean_over_patch
 from wearlaw.plugins import loader
+from wearlaw.plugins.fields import specification
 from wearlaw.settings.configuration import known_name
-from wearlaw.settings.parameters import changed
 from wearlaw.units.quantities import Quantity, in_unit
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
@@ -44,13 +45,13 @@ def summarise(task: Task, best: Solutions, replicates: Replicates | None, confid
     values = free.columns(best.theta)
     parameters = {name: free.quantity(name, float(value[0])) for name, value in values.items()}
     observations = tuple(_with_friction(one, values) for one in task.observations)
-    law = _fitted_law(task, parameters, values, observations)
+    predict = _fitted_pipeline(task, values, observations)
     by_student = student_intervals(best, confidence)
     ends = by_student if replicates is None else studentised_intervals(best, replicates, confidence)
     samples = {} if replicates is None else free.columns(replicates.theta)
     slopes = free.slopes(theta)
     chi2, aic = _sums(task, best)
-    provenance = _provenance(task, law, replicates, seed, chi2, confidence)
+    provenance = _provenance(task, predict, replicates, seed, chi2, confidence)
     return Fit(
         parameters=parameters,
         intervals=_pairs(free, ends),
@@ -58,8 +59,8 @@ def summarise(task: Task, best: Solutions, replicates: Replicates | None, confid
         interval_method="Student's t" if replicates is None else "studentised bootstrap",
         confidence=confidence,
         covariance=covariance(best)[0] * np.outer(slopes, slopes),
-        law=law,
-        predict=task.predict if law is None else task.predict.with_law(law),
+        law=predict.laws[0] if len(predict.laws) == 1 else None,
+        predict=predict,
         tests=task.tests,
         scatter=task.scatter,
         chi2=chi2,
@@ -85,36 +86,40 @@ def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observatio
     return dataclasses.replace(one, problem=one.problem.replaced(friction_coefficient=friction))
 
 
-def _fitted_law(
-    task: Task, parameters: Mapping[str, Quantity], values: Mapping[str, Array], observations: Sequence[Observations]
-) -> Law | None:
-    if not task.predict.laws:
-        return None
-    law = task.predict.wear_law
-    one = observations[0]
-    nothing = one.predicted(values)[0] <= FLOOR
-    if one.scatter == "relative" and nothing.any():
-        raise FitError(f"the best fit predicts no wear in {test_names(one.tests, nothing)}; leave these tests out")
-    of_law = {
-        name: float(value.magnitude) if isinstance(like, float) else value
-        for (name, value), like in zip(parameters.items(), task.free.like, strict=True)
-        if name != FRICTION
-    }
+def _fitted_pipeline(task: Task, values: Mapping[str, Array], observations: Sequence[Observations]) -> Pipeline[...]:
+    """Return the pipeline with the fitted numbers; each law whose outcome was fitted records its calibration."""
+    given = task.predict
+    at_places = {place: float(values[name][0]) for name, place in task.free.places.items()}
+    for one in observations:
+        nothing = one.predicted(values)[0] <= FLOOR
+        if one.law is not None and one.scatter == "relative" and nothing.any():
+            what = "wear" if one.observable == WEAR else one.observable.replace("_", " ")
+            raise FitError(
+                f"the best fit predicts no {what} in {test_names(one.tests, nothing)}; leave these tests out"
+            )
     try:
-        return changed(law, of_law).fitted(_calibration(task, one))
+        stages = changed_parts(given.stages, "stage", at_places)
+        laws = list(changed_parts(given.laws, "law", at_places))
     except ConfigurationError as error:
-        raise FitError(f"the best fit has parameters that the law does not accept; try bounds: {error}") from None
+        whose = "law" if task.free.freed_laws else "stage"
+        raise FitError(f"the best fit has parameters that the {whose} does not accept; try bounds: {error}") from None
+    predict = given.model_copy(update={"stages": stages})
+    for one in observations:
+        if one.law is not None:
+            laws[one.law] = laws[one.law].fitted(_calibration(task, predict, one))
+    return predict.with_law(*laws) if laws else predict
 
 
-def _calibration(task: Task, one: Observations) -> Calibration:
-    """Return the calibration of the fitted law."""
-    predict, problem = task.predict, one.problem
+def _calibration(task: Task, predict: Pipeline[...], one: Observations) -> Calibration:
+    """Return the calibration of a fitted law."""
+    problem = one.problem
     means = {
         "pressure": mean_over_patch(problem, {}, "pressure"),
         "slip_speed": mean_over_patch(problem, {}, "slip_speed"),
         "wear_index_density": wear_index_density(predict, problem),
     }
     of = f" of {task.tests.source}" if task.tests.source else ""
+    with_stages = f", with {' and '.join(map(repr, predict.stages))}" if predict.stages else ""
     return Calibration(
         contact_model=predict.contact_model.name,
         scale=predict.scale,
@@ -123,7 +128,7 @@ def _calibration(task: Task, one: Observations) -> Calibration:
         materials=_materials(predict.rig),
         bodies=tuple(body.material for body in problem.bodies.values()),
         stated_range=tuple((name, *_ends(name, values)) for name, values in means.items()),
-        source=f"fitted to {one.measured.size} tests{of}",
+        source=f"fitted to {one.measured.size} tests{of}{with_stages}",
     )
 
 
@@ -169,16 +174,21 @@ def _sums(task: Task, best: Solutions) -> tuple[float, float]:
 
 
 def _provenance(
-    task: Task, law: Law | None, replicates: Replicates | None, seed: int, chi2: float, confidence: float
+    task: Task, predict: Pipeline[...], replicates: Replicates | None, seed: int, chi2: float, confidence: float
 ) -> dict[str, Any]:
-    """Return the provenance of a fit, as a TOML table."""
-    model = task.predict.contact_model
+    """Return the provenance of a fit, as a TOML table; it holds the stages with their fitted numbers."""
+    model = predict.contact_model
     found = loader.installed()
-    origin = {} if law is None else {"wear_law": found.of_kind(law.kind).distribution(law.name, type(law))}
+    origins = [(law, found.of_kind(law.kind).distribution(law.name, type(law))) for law in predict.laws]
+    origin: dict[str, Any] = {law.kind.replace(" ", "_"): where for law, where in origins[:1]}
+    if len(origins) > 1:
+        origin = {"laws": {law.name: where for law, where in origins}}
+    stages = [specification(stage) for stage in predict.stages]
     return {
         "wearlaw": __version__,
         **origin,
         "contact_model": found.contact_models.distribution(model.name, type(model)),
+        **({"stages": stages} if stages else {}),
         "tests": task.tests.source,
         "measurements": {one.observable: one.measured.size for one in task.observations},
         "free": list(task.free.names),

@@ -17,7 +17,9 @@ from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, free_names
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
 from wearlaw.fitting.observations import Observations, Scatter, observe
+from wearlaw.models.law import named_outcomes
 from wearlaw.numerics.integrate import integrate_forces
+from wearlaw.pipeline.named_numbers import staged_models
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.ranges import overload_of
 from wearlaw.units.quantities import QuantityLike, coefficient
@@ -28,6 +30,9 @@ NEAR = 10.0
 
 ROUNDS = 3
 """Iterations in which the scatter about the fit sets the weights of two kinds of measurement."""
+
+LEAST_SCATTER = 1e-5
+"""Least scatter for a weight; made-up tests without scatter would otherwise hide each other's parameters."""
 
 LEAST_GROUP = 4
 """Least number of measurements of a kind to estimate their scatter."""
@@ -61,19 +66,17 @@ class Task:
         FitError
             If the tests lack a measurement or condition, or a parameter is unknown.
         """
-        law, friction = None, _one_value(friction)
+        friction = _one_value(friction)
         if not isinstance(predict, Pipeline):
-            raise FitError(f"predict: give a rig with a contact model, and a wear law or none, not {predict!r}")
+            raise FitError(f"predict: give a rig with a contact model, and laws or none, not {predict!r}")
         if predict.laws:
-            law = predict.wear_law.explicit()
-            predict = predict.with_law(law)
+            predict = predict.with_law(*(law.explicit() for law in predict.laws))
         free = free_names(free)
-        fits_friction = FRICTION in free
-        first = _first_friction(tests, friction) if fits_friction else friction
-        parameters = FreeParameters.of(law, free, first, bounds)
-        stated = law is not None and tests.wear_rate_uncertainty is not None
+        first = _first_friction(tests, friction) if FRICTION in free else friction
+        parameters = FreeParameters.of(predict, free, first, bounds)
+        observations = observe(predict, tests.measuring(named_outcomes(predict.laws)), parameters, first, scatter)
+        stated = any(one.scatter == "uncertainty" for one in observations)
         chosen: Scatter = "uncertainty" if stated else scatter
-        observations = observe(predict, tests, first, fits_friction, chosen)
         count = sum(one.measured.size for one in observations)
         if count <= len(parameters.names):
             raise FitError(
@@ -117,11 +120,12 @@ class Task:
 
     def overload(self, best: Solutions) -> Overload | None:
         """Return the test that is furthest beyond first yield, with the traction that the best fit predicts."""
-        problem = self.observations[0].problem
-        friction = self.free.columns(best.theta[:1]).get(FRICTION)
-        if friction is not None:
-            problem = problem.replaced(friction_coefficient=np.full(problem.batch_shape, friction[0]))
-        return overload_of(problem, integrate_forces(self.predict.staged_model, problem).tangential)
+        problem, values = self.observations[0].problem, self.free.columns(best.theta[:1])
+        if FRICTION in values:
+            problem = problem.replaced(friction_coefficient=np.full(problem.batch_shape, values[FRICTION][0]))
+        at_places = {place: values[name] for name, place in self.free.places.items()}
+        ((model, _),) = staged_models(self.predict, at_places, 1)
+        return overload_of(problem, integrate_forces(model, problem).tangential)
 
     def _weigh(self, best: Solutions) -> None:
         """Weigh each kind of measurement by its scatter about the fit."""
@@ -130,7 +134,7 @@ class Task:
             own = residuals[groups == group]
             scatter = math.sqrt(float(np.mean(own**2)))
             if own.size >= LEAST_GROUP and scatter > 0.0:
-                self.weights[groups == group] = 1.0 / scatter
+                self.weights[groups == group] = 1.0 / max(scatter, LEAST_SCATTER)
 
 
 def _one_value(friction: float | None) -> float | None:

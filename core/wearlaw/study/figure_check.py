@@ -203,34 +203,39 @@ class Contents:
         refusals = {
             (model, law): self._refusal(model, law, spec, grid) for model in self.contact_models for law in self.laws
         }
-        pairs = {
-            f"{law} on {model}": self.laws[law].outcome.name
-            for (model, law), refusal in refusals.items()
-            if not refusal
-        }
+        pairs = {f"{law} on {model}": self.laws[law] for (model, law), refusal in refusals.items() if not refusal}
         models = list(dict.fromkeys(model for (model, _), refusal in refusals.items() if not refusal))
         if not pairs:
             yield "profile" if spec.profile else "sweep", next(iter(refusals.values()))
             return
-        refused = {f"{law} on {model}": refusal for (model, law), refusal in refusals.items() if refusal}
         shown = {variable for window in spec.windows() for variable in window.shown if variable in self.outcomes}
-        for outcome in shown - {*pairs.values()}:
+        for outcome in sorted(shown - {law.outcome.name for law in pairs.values()}):
             reasons = (refusal for (_, law), refusal in refusals.items() if self.laws[law].outcome.name == outcome)
             yield "y", f"no pair of the case gives {outcome}: {next(reasons)}"
-        for pair in spec.pairs or ():
-            if pair not in pairs:
-                yield (
-                    "pairs",
-                    f"'{pair}': {refused[pair]}" if pair in refused else f"there is no {_choice(pair, pairs)}",
-                )
-            elif shown and pairs[pair] not in shown:
-                yield "pairs", f"'{pair}' predicts {pairs[pair]}, which the figure does not show; leave it out"
-        for outcome in sorted(shown.intersection(pairs.values())) if spec.pairs else ():
-            if outcome not in {pairs.get(pair) for pair in spec.pairs or ()} and pairs.keys() >= {*(spec.pairs or ())}:
-                yield "pairs", f"none of them predicts {outcome}, which the figure shows; add one that does"
+        refused = {f"{law} on {model}": refusal for (model, law), refusal in refusals.items() if refusal}
+        unknown = [pair for pair in spec.pairs or () if pair not in pairs]
+        for pair in unknown:
+            why = f"'{pair}': {refused[pair]}" if pair in refused else f"there is no {_choice(pair, pairs)}"
+            yield "pairs", why
+        if spec.pairs and not unknown:
+            for message in self._of_pairs(spec, shown, {pair: pairs[pair] for pair in spec.pairs}):
+                yield "pairs", message
         for model in spec.contact_models or ():
             if model not in models:
                 yield "contact_models", f"there is no {_choice(model, models)}"
+
+    def _of_pairs(self, spec: FigureSpec, shown: set[str], chosen: Mapping[str, Law]) -> Iterator[str]:
+        """Yield the faults of the chosen pairs: those that a figure does not show, and panels left without a curve."""
+        predicted = {pair: law.outcome.name for pair, law in chosen.items()}
+        for pair, outcome in predicted.items():
+            if shown and outcome not in shown:
+                yield f"'{pair}' predicts {outcome}, which the figure does not show; leave it out"
+        for outcome in sorted(shown - {*predicted.values()}):
+            yield f"none of them predicts {outcome}, which the figure shows; add one that does"
+        for window in spec.windows():
+            body = window.body or next(iter(self.rig.bodies), None)
+            if "depth" in window.shown and all(law.body not in (None, body) for law in chosen.values()):
+                yield f"none of them has a law for '{body}', whose depth the figure shows; add one that does"
 
     def _refusal(self, model: str, law: str, spec: FigureSpec, grid: Grid) -> str:
         """Return why a pair has no results for the figure, or "" if it has."""

@@ -9,16 +9,18 @@ import numpy as np
 import pandas as pd
 
 from wearlaw.errors import InputError
+from wearlaw.models.law import WEAR
 from wearlaw.pipeline.notes import Notes
 from wearlaw.study.case import Case
 from wearlaw.study.pairs import Pair, pairs_of
 from wearlaw.uncertainties.result import CONFIDENCE, Uncertainty, uncertainty
 from wearlaw.units.quantities import WEAR_RATE
+from wearlaw.units.variables import name_of
 
 
 @dataclass(frozen=True)
 class UncertainPair:
-    """The uncertainty of a pair at an operating point."""
+    """The uncertainty of one outcome of a pair at an operating point."""
 
     point: str
     pair: Pair
@@ -33,7 +35,8 @@ class CaseUncertainty:
     ----------
     pairs : tuple of UncertainPair
     wear_rates : pandas.DataFrame
-        Median and interval for each operating point and pair.
+        Median and interval for each operating point and pair. If there are other outcomes than wear, they have rows
+        here too, and columns say which outcome and unit each row has.
     indices : pandas.DataFrame
         Sobol indices, with a row for each input.
     samples : int
@@ -88,19 +91,30 @@ def uncertainty_of(
         with notes.of(subject):
             law = point.parameters(pair.wear_law)
             one = uncertainty(pair.pipeline, law=law, samples=samples, seed=seed, **point.conditions())
-            rates.append({"point": name, "pair": pair.label, **_interval(one)})
-        if np.ptp(one.wear_rate.magnitude) == 0.0:
-            notes.add(f"{subject}: the wear rate is the same in all samples")
-        else:
-            indices.append(one.sobol().reset_index().assign(point=name, pair=pair.label))
-        found.append(UncertainPair(name, pair, one))
+            each = [one.of(outcome) for outcome in one.outcomes]
+            rates += [{"point": name, "pair": pair.label, **_interval(single)} for single in each]
+        for single in each:
+            (outcome,) = single.outcomes
+            if np.ptp(single[outcome].magnitude) == 0.0:
+                notes.add(f"{subject}: the {name_of(outcome)} is the same in all samples")
+            else:
+                where = {"point": name, "pair": pair.label, "outcome": outcome}
+                indices.append(single.sobol().reset_index().assign(**where))
+            found.append(UncertainPair(name, pair, single))
         on_pair(1)
-    table = pd.concat(indices, ignore_index=True) if indices else pd.DataFrame(columns=["point", "pair"])
-    ordered = table[["point", "pair", *table.columns.drop(["point", "pair"])]]
-    return CaseUncertainty(tuple(found), pd.DataFrame(rates), ordered, found[0].uncertainty.samples, tuple(notes.texts))
+    only_wear = all(row["outcome"] == WEAR for row in rates)
+    front = ["point", "pair"] if only_wear else ["point", "pair", "outcome"]
+    table = pd.concat(indices, ignore_index=True) if indices else pd.DataFrame(columns=front)
+    shares = table[[*front, *table.columns.drop(["point", "pair", "outcome"], errors="ignore")]]
+    medians = pd.DataFrame(rates)
+    if only_wear:
+        ends = {name: f"{name} [{WEAR_RATE}]" for name in medians.columns.drop(["point", "pair"])}
+        medians = medians.drop(columns=["outcome", "unit"]).rename(columns=ends)
+    return CaseUncertainty(tuple(found), medians, shares, found[0].uncertainty.samples, tuple(notes.texts))
 
 
-def _interval(one: Uncertainty) -> dict[str, float]:
+def _interval(one: Uncertainty) -> dict[str, str | float]:
     low, high = one.interval(CONFIDENCE)
     ends = {"median": one.median, f"{50 - 50 * CONFIDENCE:g} %": low, f"{50 + 50 * CONFIDENCE:g} %": high}
-    return {f"{name} [{WEAR_RATE}]": float(rate.to(WEAR_RATE).magnitude) for name, rate in ends.items()}
+    values = {name: float(value.to(one.unit or "dimensionless").magnitude) for name, value in ends.items()}
+    return {"outcome": one.outcomes[0], "unit": one.unit or "-", **values}

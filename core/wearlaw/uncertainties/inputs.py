@@ -1,4 +1,4 @@
-"""The uncertain inputs of a prediction: distributions of conditions and of parameters of the law."""
+"""The uncertain inputs of a prediction: distributions of conditions and of numbers of laws and stages."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ import pint
 from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, UnitError, did_you_mean
 from wearlaw.models.law import Law
-from wearlaw.pipeline.pipeline import Rig
+from wearlaw.models.stage import Stage
+from wearlaw.pipeline.named_numbers import Kind, NamedNumbers, Place
+from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange, uniform
 from wearlaw.units.quantities import Q, Unit, coefficient, from_si, parse, real_array, shortened
@@ -30,8 +32,8 @@ class Uncertain:
     distribution : Distribution
     ends : dict of str to tuple of float
         For each number that the input moves, the two numbers of its distribution in SI.
-    of_law : bool
-        Whether it is a parameter of the law rather than a condition.
+    part : tuple of ("law" or "stage", int), optional
+        Kind and index of the law or stage that has the numbers; None for a condition.
     shown : str
         The distribution as given.
     unit : str or None
@@ -41,8 +43,8 @@ class Uncertain:
     name: str
     distribution: Distribution
     ends: Mapping[str, tuple[float, float]]
-    of_law: bool
     shown: str
+    part: tuple[Kind, int] | None = None
     unit: str | None = None
 
     def values(self, probability: Array) -> dict[str, Array]:
@@ -85,11 +87,11 @@ OTHERS = (
 """The hint for impossible samples."""
 
 
-def check_samples(law: Law, samples: Mapping[str, Array]) -> None:
-    """Raise an error if the law does not accept some samples of parameters, in SI by name.
+def check_samples(law: Law | Stage, samples: Mapping[str, Array]) -> None:
+    """Raise an error if a law or stage does not accept some samples of its numbers, in SI by name.
 
-    If the law accepts all combinations of their extremes, it accepts the samples. If not, each sample is tried, the
-    extreme ones first.
+    If it accepts all combinations of their extremes, it accepts the samples. If not, each sample is tried, the extreme
+    ones first.
     """
     units = numbers(law)
 
@@ -119,20 +121,60 @@ def condition(name: str, given: Distribution) -> Uncertain:
     """
     if isinstance(given.first, pint.Quantity):
         unit = symbol(given.first.units, "~C")
-        return replace(_uncertain(name, given, Unit(unit, positive=False), of_law=False), unit=unit)
+        return replace(_uncertain(name, given, Unit(unit, positive=False)), unit=unit)
     first = float(given.first)
     second = float(given.second if isinstance(given.second, float) else coefficient(given.second, name))
     _check(name, given, first, second)
-    return Uncertain(name, given, {name: (first, second)}, False, str(given))
+    return Uncertain(name, given, {name: (first, second)}, str(given))
 
 
-def parameter(name: str, given: object, law: Law) -> Uncertain:
-    """Return an uncertain parameter of a law.
+def numbers_of(predict: Pipeline[...], kind: Kind, given: Mapping[str, Any]) -> list[Uncertain]:
+    """Return the uncertain numbers of the laws or stages of a pipeline.
+
+    Parameters
+    ----------
+    predict : Pipeline
+    kind : {"law", "stage"}
+    given : mapping of str to distribution
+        By the names of the numbers, as in `NamedNumbers`.
 
     Raises
     ------
     InputError
-        If the law has no such number or no published range for it, or the distribution is impossible.
+        If no law or stage has such a number, several have it, or its distribution is impossible.
+    UnitError
+        If a distribution has the wrong unit.
+    """
+    named = NamedNumbers(predict, kind)
+    if given and not named.parts:
+        what = "a law" if kind == "law" else "a stage"
+        raise InputError(
+            f"{kind}: the pipeline has no {kind}, so {', '.join(given)} cannot be uncertain; add {what} with |"
+        )
+    found: dict[Place, Uncertain] = {}
+    for name, one in given.items():
+        place = named.place(name)
+        parts = predict.laws if kind == "law" else predict.stages
+        if place is None:
+            if len(parts) > 1 or not named.known:
+                some = "laws have" if kind == "law" else "stages have"
+                hint = did_you_mean(name, named.known)
+                raise InputError(f"the {some} no number '{name}'{hint} There are: {', '.join(named.known) or 'none'}")
+            place = Place(kind, 0, name)  # its own error
+        if place in found:
+            raise InputError(f"'{name}' is given twice, as '{found[place].name}' too")
+        one = parameter(place.field, one, parts[place.index])
+        found[place] = replace(one, name=name, part=(kind, place.index))
+    return list(found.values())
+
+
+def parameter(name: str, given: object, law: Law | Stage) -> Uncertain:
+    """Return an uncertain number of a law or stage.
+
+    Raises
+    ------
+    InputError
+        If it has no such number or no published range for it, or the distribution is impossible.
     UnitError
         If the distribution has the wrong unit.
     """
@@ -143,16 +185,16 @@ def parameter(name: str, given: object, law: Law) -> Uncertain:
             f"{name}: must be a distribution, such as wl.normal(5.3, 0.5) with its unit, or wl.published_range();"
             f" got {shortened(given)}"
         )
-    known = numbers(law.explicit())
+    known = numbers(law.explicit() if isinstance(law, Law) else law)
     if name not in known:
         hint = did_you_mean(name, known)
-        raise InputError(f"wear law '{law.name}' has no number '{name}'{hint} There are: {', '.join(known)}")
+        raise InputError(f"{law.kind} '{law.name}' has no number '{name}'{hint} There are: {', '.join(known)}")
     number = known[name]
     unit = Unit(str(number.units), positive=False) if isinstance(number, pint.Quantity) else None
-    return _uncertain(name, given, unit, of_law=True)
+    return _uncertain(name, given, unit)
 
 
-def _uncertain(name: str, given: Distribution, unit: Unit | None, of_law: bool) -> Uncertain:
+def _uncertain(name: str, given: Distribution, unit: Unit | None) -> Uncertain:
     """Return an uncertain input of one number; without a unit it is a coefficient."""
     if unit is None:
         first = float(coefficient(given.first, name))
@@ -163,14 +205,14 @@ def _uncertain(name: str, given: Distribution, unit: Unit | None, of_law: bool) 
         is_factor = given.kind == "lognormal"
         second = float(given.second if is_factor else Unit(unit.unit, positive=False).si(given.second, name))
     _check(name, given, first, second)
-    return Uncertain(name, given, {name: (first, second)}, of_law, str(given))
+    return Uncertain(name, given, {name: (first, second)}, str(given))
 
 
-def _published(name: str, law: Law) -> Uncertain:
+def _published(name: str, law: Law | Stage) -> Uncertain:
     """Return the input that moves a field's numbers through their published ranges together."""
-    band = law.band()
+    band = law.band() if isinstance(law, Law) else None
     if band is None:
-        raise InputError(f"{name}: the source of wear law '{law.name}' publishes no ranges; give a distribution")
+        raise InputError(f"{name}: the source of {law.kind} '{law.name}' publishes no ranges; give a distribution")
     low, _, high = ({field: number_in_si(value) for field, value in numbers(end.explicit()).items()} for end in band)
     ends = {
         field: (low[field], high[field])
@@ -180,9 +222,9 @@ def _published(name: str, law: Law) -> Uncertain:
     if not ends:
         ranges = sorted({field.partition(".")[0] for field in low if low[field] != high[field]})
         raise InputError(
-            f"{name}: wear law '{law.name}' has no published range of it; there are: {', '.join(ranges) or 'none'}"
+            f"{name}: {law.kind} '{law.name}' has no published range of it; there are: {', '.join(ranges) or 'none'}"
         )
-    return Uncertain(name, uniform(0.0, 1.0), ends, True, "published_range()")
+    return Uncertain(name, uniform(0.0, 1.0), ends, "published_range()")
 
 
 def _check(name: str, given: Distribution, first: float, second: float) -> None:

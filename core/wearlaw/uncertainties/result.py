@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -14,18 +15,19 @@ import scipy
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import InputError
+from wearlaw.errors import InputError, did_you_mean
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
-from wearlaw.models.law import Numbers
+from wearlaw.models.law import WEAR, Numbers, named_outcomes
 from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_laws
 from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
+from wearlaw.pipeline.named_numbers import Kind, Place, check_loads_stay, staged_models
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
-from wearlaw.uncertainties.inputs import OTHERS, Known, Uncertain, check_samples, parameter, split
-from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, QuantityLike, from_si, shortened
-from wearlaw.units.variables import UNITS, label
+from wearlaw.uncertainties.inputs import OTHERS, Known, Uncertain, check_samples, numbers_of, split
+from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, shortened
+from wearlaw.units.variables import UNITS, label, name_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -55,19 +57,23 @@ def uncertainty(
     /,
     *,
     law: Mapping[str, Distribution | PublishedRange] | None = None,
+    stage: Mapping[str, Distribution] | None = None,
     samples: int = 2**14,
     seed: int = 0,
     **conditions: QuantityLike | ArrayLike | Distribution | FrictionLaw | None,
 ) -> Uncertainty:
-    """Return the uncertainty of the wear rate that follows from uncertain conditions and parameters.
+    """Return the uncertainty of wear and other outcomes that follows from uncertain conditions and parameters.
 
     Parameters
     ----------
     predict : Pipeline
-        A rig, a contact model and a wear law.
+        A rig, a contact model and laws.
     law : mapping of str to distribution, optional
-        Distributions of parameters of the law by name, such as {"q_s": wl.normal("55 ug/m/mm^2", "5 ug/m/mm^2")} or
-        {"coefficient": wl.published_range()}.
+        Distributions of parameters of the laws by name, such as {"q_s": wl.normal("55 ug/m/mm^2", "5 ug/m/mm^2")} or
+        {"coefficient": wl.published_range()}. A number that several laws have is written "usfd.m_m".
+    stage : mapping of str to distribution, optional
+        Distributions of numbers of the stages by name, such as {"reduction": wl.uniform(0.6, 0.9)}. The contact of each
+        sample is then solved by itself, with stages of its own, which takes longer.
     samples : int
         Number of samples, rounded up to a power of two.
     seed : int
@@ -80,16 +86,19 @@ def uncertainty(
     InputError
         If nothing is distributed, or a distribution is impossible for its condition or parameter.
     """
-    return Uncertainty(predict, conditions, law or {}, samples, seed)
+    return Uncertainty(predict, conditions, law or {}, samples, seed, stage or {})
 
 
 class Uncertainty:
-    """The wear rate with distributed conditions and parameters, made by `uncertainty`.
+    """The outcomes of laws with distributed conditions and parameters, made by `uncertainty`.
 
-    Results have the shape of the conditions that are not distributed.
+    Results have the shape of the conditions that are not distributed. ``u["rcf_damage"]`` has the samples of an outcome
+    by its name in results. With several outcomes, ``u.of("rcf_damage")`` has the median and the other summaries of one.
 
     Attributes
     ----------
+    outcomes : tuple of str
+        The names of the outcomes.
     samples : int
         Number of samples, a power of two as Sobol sequences need.
     inputs : tuple of Uncertain
@@ -103,38 +112,69 @@ class Uncertainty:
         law: Mapping[str, Distribution | PublishedRange],
         samples: int,
         seed: int,
+        stage: Mapping[str, Distribution] | None = None,
     ) -> None:
         if isinstance(samples, bool) or not isinstance(samples, int) or not 2 <= samples <= MOST_SAMPLES:
             raise InputError(f"samples: must be a whole number from 2 to {MOST_SAMPLES}, got {samples!r}")
         if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
             raise InputError(f"seed: must be a whole number, zero or positive; got {shortened(seed)}")
+        if not predict.laws:
+            predict.wear_law  # noqa: B018  raises
         self._predict = predict
-        self._law = predict.wear_law.explicit()
+        self._laws = tuple(law.explicit() for law in predict.laws)
+        self.outcomes: tuple[str, ...] = tuple(named_outcomes(predict.laws))
         self._given, uncertain = split(conditions, predict.rig)
-        uncertain += [parameter(name, given, predict.wear_law) for name, given in law.items()]
+        uncertain += numbers_of(predict, "law", law)
+        of_stages = numbers_of(predict, "stage", stage or {})
+        check_loads_stay(predict, "uncertainty", [one.name for one in of_stages])
+        uncertain += of_stages
         if not uncertain:
             raise InputError(
                 'nothing is uncertain; give a condition as a distribution, such as creepage=wl.uniform("0.5 %", "1 %"),'
-                " or a parameter by law={...}"
+                " or a parameter by law={...} or stage={...}"
             )
         self.inputs: tuple[Uncertain, ...] = tuple(uncertain)
         self.samples = 1 << (samples - 1).bit_length()
         self._seed = seed
+        self._whole = self
+        self._found: tuple[Array, ...] | None = None
 
-    @cached_property
+    def of(self, outcome: str) -> Uncertainty:
+        """Return the uncertainty of one of the outcomes, with the same samples.
+
+        Parameters
+        ----------
+        outcome : str
+            Its name in results, such as "rcf_damage" or "wear_rate_rail".
+
+        Raises
+        ------
+        InputError
+            If no law predicts it.
+        """
+        self._index(outcome)
+        found = copy(self)
+        found.outcomes = (outcome,)
+        return found
+
+    def __getitem__(self, outcome: str) -> Quantity:
+        """Return the samples of an outcome by its name in results, along the last axis."""
+        return self._samples_of(outcome)
+
+    @property
     def wear_rate(self) -> Quantity:
         """Samples of the wear rate [kg/m/m²], along the last axis."""
-        sequence = scipy.stats.qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
-        probability = sequence.random_base2(self.samples.bit_length() - 1).T
-        return from_si(self._rates(probability, stacklevel=4), WEAR_RATE)
+        if WEAR not in self._whole.outcomes:
+            self._predict.wear_law  # noqa: B018  raises
+        return self._samples_of(WEAR)
 
     @property
     def median(self) -> Quantity:
-        """The median of the wear rate [kg/m/m²]."""
+        """The median of the outcome."""
         return self._quantile(0.5)
 
     def interval(self, confidence: float = CONFIDENCE) -> tuple[Quantity, Quantity]:
-        """Return the ends of the interval with equally many samples below and above it [kg/m/m²].
+        """Return the ends of the interval with equally many samples of the outcome below and above it.
 
         Parameters
         ----------
@@ -146,7 +186,7 @@ class Uncertainty:
         return self._quantile(0.5 - 0.5 * confidence), self._quantile(0.5 + 0.5 * confidence)
 
     def sobol(self) -> pd.DataFrame:
-        """Return the share of the variance of the wear rate that each input explains.
+        """Return the share of the variance of the outcome that each input explains.
 
         First order: alone. Total order: including interactions with other inputs. Each index is the mean over several
         randomised sequences, whose spread gives its standard error. This takes (inputs + 2) × `samples` predictions.
@@ -158,27 +198,32 @@ class Uncertainty:
         Raises
         ------
         InputError
-            If the known conditions are more than one operating point, or the rate does not vary.
+            If there are several outcomes, the known conditions are more than one operating point, or the outcome does
+            not vary.
         """
+        index = self._index(self._only)
         if self.shape:
             raise InputError("sobol: needs one operating point; give each condition that is not distributed one value")
-        if np.ptp(self.wear_rate.magnitude) == 0.0:
-            raise InputError("sobol: the wear rate is the same in all samples, so there is no variance to explain")
-        index = pd.Index([one.name for one in self.inputs], name="input")
+        if np.ptp(self._samples_of(self._only).magnitude) == 0.0:
+            name = self._only.replace("_", " ")
+            raise InputError(f"sobol: the {name} is the same in all samples, so there is no variance to explain")
+        rows = pd.Index([one.name for one in self.inputs], name="input")
         if len(self.inputs) == 1:  # scipy takes no fewer than two
             alone = {"first_order": 1.0, "first_order_error": 0.0, "total_order": 1.0, "total_order_error": 0.0}
-            return pd.DataFrame(alone, index=index)
+            return pd.DataFrame(alone, index=rows)
         every: list[Any] = [scipy.stats.uniform()] * len(self.inputs)
         size = max(self.samples // SEQUENCES, 2)
         found = [
-            scipy.stats.sobol_indices(func=lambda x: self._rates(x)[None, :], n=size, dists=every, rng=rng)
+            scipy.stats.sobol_indices(
+                func=lambda x: self._sampled(x, (index,))[0][None, :], n=size, dists=every, rng=rng
+            )
             for rng in np.random.default_rng(self._seed).spawn(SEQUENCES)
         ]
         table: dict[str, Array] = {}
         for order in ("first_order", "total_order"):
             shares = np.array([np.ravel(getattr(one, order)) for one in found])
             table |= {order: shares.mean(axis=0), f"{order}_error": shares.std(axis=0, ddof=1) / np.sqrt(SEQUENCES)}
-        return pd.DataFrame(table, index=index)
+        return pd.DataFrame(table, index=rows)
 
     def figure_data(self) -> FigureData:
         """Return the data of `plot`.
@@ -195,13 +240,41 @@ class Uncertainty:
         return plot(self.figure_data())
 
     def _quantile(self, probability: float) -> Quantity:
-        rates = self.wear_rate
-        return Q(np.quantile(rates.magnitude, probability, axis=-1), str(rates.units))
+        samples = self._samples_of(self._only)
+        return Q(np.quantile(samples.magnitude, probability, axis=-1), str(samples.units))
+
+    def _samples_of(self, outcome: str) -> Quantity:
+        index = self._index(outcome)
+        return from_si(self._whole._values(4)[index], self._laws[index].outcome.unit)
+
+    def _index(self, outcome: str) -> int:
+        """Return the index of the law of an outcome."""
+        known = named_outcomes(self._laws)
+        if outcome not in known:
+            hint = did_you_mean(outcome, known) if isinstance(outcome, str) else "."
+            raise InputError(f"no law predicts {outcome!r}{hint} The outcomes are: {', '.join(known)}")
+        return known[outcome]
+
+    @property
+    def _only(self) -> str:
+        """The name of the outcome; an error if there are several."""
+        if len(self.outcomes) != 1:
+            raise InputError(
+                f'the pipeline predicts {" and ".join(self.outcomes)}; choose one, as in u.of("{self.outcomes[0]}")'
+            )
+        return self.outcomes[0]
+
+    @property
+    def unit(self) -> str:
+        """Unit of the outcome."""
+        return self._laws[self._index(self._only)].outcome.unit
 
     @property
     def title(self) -> str:
         """Title of the prediction."""
-        return f"Wear rate by {self._law.name} on {self._predict.contact_model.name}"
+        outcome = self._only
+        name, law = name_of(outcome), self._laws[self._index(outcome)]
+        return f"{name[0].upper()}{name[1:]} by {law.name} on {self._predict.contact_model.name}"
 
     @cached_property
     def known(self) -> dict[str, Known]:
@@ -213,7 +286,7 @@ class Uncertainty:
     def shape(self) -> tuple[int, ...]:
         """The shape of the conditions that are not distributed."""
         broadcast({name: one.values for name, one in self.known.items()})  # an error names shapes that do not fit
-        firsts = {one.name: one.distribution.first for one in self.inputs if not one.of_law}
+        firsts = {one.name: one.distribution.first for one in self.inputs if one.part is None}
         # An error here is one of the conditions, not of single samples.
         shape: tuple[int, ...] = self._predict.posed({**self._given, **firsts}, of_one_patch="uncertainty").batch_shape
         return shape
@@ -226,45 +299,82 @@ class Uncertainty:
         except InputError as error:
             raise InputError(f"{error}{OTHERS}") from None
 
-    def _rates(self, probability: Array, stacklevel: int | None = None) -> Array:
-        """Return the wear rates [kg/m/m²] at probabilities (inputs, samples), samples along the last axis.
+    def _values(self, stacklevel: int) -> tuple[Array, ...]:
+        """Return the samples of all outcomes in SI; warn the first time, where `stacklevel` 1 is this method."""
+        if self._found is None:
+            sequence = scipy.stats.qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
+            probability = sequence.random_base2(self.samples.bit_length() - 1).T
+            self._found = self._sampled(probability, range(len(self._laws)), stacklevel + 1)
+        return self._found
 
-        With a `stacklevel`, warn of samples outside the range of the law or of elastic contact.
+    def _sampled(self, probability: Array, indices: Sequence[int], stacklevel: int | None = None) -> tuple[Array, ...]:
+        """Return outcomes of laws in SI at probabilities (inputs, samples), samples along the last axis.
+
+        Parameters
+        ----------
+        probability : ndarray, (inputs, samples)
+        indices : sequence of int
+            The laws.
+        stacklevel : int, optional
+            If given, warn of samples outside the range of the laws or of elastic contact.
         """
-        shape = (*self.shape, probability.shape[-1])
+        count = probability.shape[-1]
+        shape = (*self.shape, count)
         inside = np.clip(probability, INSIDE, 1.0 - INSIDE)
         conditions: dict[str, Any] = {}
-        of_law: dict[str, Array] = {}
+        numbers: dict[tuple[Kind, int], dict[str, Array]] = {}
         for one, row in zip(self.inputs, inside, strict=True):
-            if one.of_law:
-                of_law.update(one.values(row))
-            else:
+            if one.part is None:
                 conditions[one.name] = one.given(row)
-        check_samples(self._law, of_law)
-        problem = self._problem(conditions)
-        flat = problem.broadcast_to(shape).flatten()
-        varied = {name: np.broadcast_to(values, shape).reshape(-1, 1) for name, values in of_law.items()}
-        p: Numbers = {**self._law.numbers, **varied}
-        predict, watch = self._predict, RangeWatch(self._law)
+            else:
+                numbers.setdefault(one.part, {}).update(one.values(row))
+        for (kind, index), samples in numbers.items():
+            check_samples(self._laws[index] if kind == "law" else self._predict.stages[index], samples)
+        flat = self._problem(conditions).broadcast_to(shape).flatten()
+        predict, laws = self._predict, tuple(self._laws[index] for index in indices)
+        watch = RangeWatch(*laws)
         check_traction(predict.contact_model, flat)
 
         def see(part: Problem, columns: Columns) -> None:
             watch.see_block(part, columns)
 
         watching = see if stacklevel is not None else None
-        wear = integrate_laws(predict.staged_model, (self._law,), flat, watching, [p])
+        points = np.arange(math.prod(shape)).reshape(-1, count)
+        of_stages = {
+            Place(kind, index, name): values
+            for (kind, index), samples in numbers.items()
+            for name, values in samples.items()
+        }
+        found = np.empty((len(laws), flat.size))
+        for model, members in staged_models(predict, of_stages, count):
+            chosen = points[:, members].reshape(-1) if members.size < count else slice(None)
+            p: list[Numbers] = []
+            for index, law in zip(indices, laws, strict=True):
+                varied = {
+                    name: np.broadcast_to(values, shape).reshape(-1, 1)[chosen]
+                    for name, values in numbers.get(("law", index), {}).items()
+                }
+                p.append({**law.numbers, **varied})
+            part = flat[chosen] if members.size < count else flat
+            found[:, chosen] = integrate_laws(model, laws, part, watching, p).values
         if stacklevel is not None:
             predict.warn_of_problem(flat, stacklevel + 1)
             warn_of_unlike_materials(predict.contact_model, flat, stacklevel + 1)
             watch.warn(stacklevel)
-        return wear.values[0].reshape(shape)
+        return tuple(values.reshape(shape) for values in found)
 
     def __repr__(self) -> str:
-        lines = [f"Uncertainty of the wear rate, {self.samples} samples"]
-        if not self.shape:
-            low, high = self.interval()
-            share = f"{100 * CONFIDENCE:g} % of the samples"
-            lines += [f"{'median':20} {self.median!r}", f"{share:20} {low!r} to {high!r}"]
+        several = len(self.outcomes) > 1
+        what = f"{len(self.outcomes)} outcomes" if several else f"the {name_of(self.outcomes[0])}"
+        lines = [f"Uncertainty of {what}, {self.samples} samples"]
+        share = f"{100 * CONFIDENCE:g} % of the samples"
+        for outcome in self.outcomes if not self.shape else ():
+            one = self.of(outcome)
+            low, high = one.interval()
+            if several:
+                lines.append(f"{outcome:20} {one.median!r}, {share} {low!r} to {high!r}")
+            else:
+                lines += [f"{'median':20} {one.median!r}", f"{share:20} {low!r} to {high!r}"]
         lines += [f"{one.name:20} {one.shown}" for one in self.inputs]
         return "\n  ".join(lines)
 
@@ -278,18 +388,19 @@ def _figure_data(uncertainty: Uncertainty) -> FigureData:
 
 
 def _cumulative(uncertainty: Uncertainty) -> Panel:
-    rates = _plain(uncertainty.wear_rate)
+    name = uncertainty.outcomes[0]
+    values = np.ravel(uncertainty[name].magnitude)
     share = (np.arange(STEPS) + 0.5) / STEPS
-    low, high = (_plain(end) for end in uncertainty.interval(CONFIDENCE))
-    median = _plain(uncertainty.median)
+    low, high = (np.ravel(end.magnitude) for end in uncertainty.interval(CONFIDENCE))
+    median = np.ravel(uncertainty.median.magnitude)
     tail = 0.5 - 0.5 * CONFIDENCE
     curves = (
-        Curve("wear rate", np.quantile(rates, share), share),
+        Curve(name_of(name), np.quantile(values, share), share),
         Curve(f"median and {CONFIDENCE:.0%} of the samples", np.concatenate([low, median, high]),
               np.array([tail, 0.5, 1.0 - tail]), colour=1, points=True),
     )  # fmt: skip
     y = PlotAxis("share of the samples below [-]", ends=(0.0, 1.0))
-    return Panel(PlotAxis(label("wear_rate")), y, curves)
+    return Panel(PlotAxis(_label(uncertainty)), y, curves)
 
 
 def _along_axis(uncertainty: Uncertainty) -> Panel:
@@ -301,11 +412,12 @@ def _along_axis(uncertainty: Uncertainty) -> Panel:
     if name in UNITS:
         x, shown = Q(x, one.unit or "").to(UNITS[name]).magnitude, label(name)
     order = np.argsort(x)
-    low, high = (_plain(end)[order] for end in uncertainty.interval(CONFIDENCE))
-    median = _plain(uncertainty.median)[order]
+    low, high = (np.ravel(end.magnitude)[order] for end in uncertainty.interval(CONFIDENCE))
+    median = np.ravel(uncertainty.median.magnitude)[order]
     curve = Curve("median", x[order], median, low=low, high=high)
-    return Panel(PlotAxis(shown), PlotAxis(label("wear_rate")), (curve,))
+    return Panel(PlotAxis(shown), PlotAxis(_label(uncertainty)), (curve,))
 
 
-def _plain(quantity: Quantity) -> Array:
-    return np.ravel(quantity.to(UNITS["wear_rate"]).magnitude)
+def _label(uncertainty: Uncertainty) -> str:
+    name = uncertainty.outcomes[0]
+    return label(name, units={name: uncertainty.unit})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -74,11 +74,11 @@ def factor(name: str, unit: str) -> float:
         raise UnitError(f"{reason}; {advice}") from None
 
 
-def faulty_columns(names: Sequence[str] | Mapping[str, object]) -> list[str]:
+def faulty_columns(names: Sequence[str] | Mapping[str, object], outcome: bool = False) -> list[str]:
     """Return the faults of a combination of columns, regardless of their values.
 
     Names that are not in `COLUMNS` are other conditions of a rig. The rig then checks itself whether creepage or load
-    are missing.
+    are missing. `outcome` says that there is, or may be, a measured outcome beside these columns.
     """
     others = any(name not in COLUMNS for name in names)
     loads, tractions = ([name for name in kind if name in names] for kind in (LOADS, TRACTIONS))
@@ -107,21 +107,21 @@ def faulty_columns(names: Sequence[str] | Mapping[str, object]) -> list[str]:
         faults.append("rolling_speed: belongs to the rig; it is only needed beside frictional_heat; leave it out")
     if "wear_rate_uncertainty" in names and "wear_rate" not in names:
         faults.append("wear_rate_uncertainty: there is no wear_rate beside it")
-    if "wear_rate" not in names and not tractions:
+    if "wear_rate" not in names and not tractions and not outcome:
         faults.append(f"nothing is measured; add a column '{head('wear_rate')}' or 'traction_coefficient'")
     return faults
 
 
-def faulty(columns: Mapping[str, Array]) -> list[tuple[int, str, str]]:
+def faulty(columns: Mapping[str, Array], outcomes: Collection[str] = ()) -> list[tuple[int, str, str]]:
     """Return the test, the column and the broken rule of each impossible value.
 
-    Columns that are not in `COLUMNS` are other conditions in any unit.
+    Columns that are not in `COLUMNS` are measured `outcomes`, or other conditions, in any unit.
     """
     faults = []
     for name, values in columns.items():
         for wrong, rule in wrong_values(COLUMNS.get(name, OTHER), values):
             faults += [(int(i), name, rule) for i in np.flatnonzero(wrong)]
-        if name in COMPLETE or name not in COLUMNS:
+        if name in COMPLETE or name not in (*COLUMNS, *outcomes):
             faults += [(int(i), name, "is missing; every test needs it") for i in np.flatnonzero(np.isnan(values))]
     heat = columns.get("frictional_heat")
     if heat is not None:

@@ -20,6 +20,9 @@ from wearlaw.wear_tests.columns import COLUMNS, factor, faulty_columns, head
 TEXTS = ("label", "comment")
 """Columns of text."""
 
+WEAR_OF = "wear_rate"
+"""The wear rate; behind it may follow the name of a body, as in "wear_rate_rail"."""
+
 
 class Row(NamedTuple):
     """The cells of a row, and the number of its first line."""
@@ -92,10 +95,12 @@ class Problems:
         return [text for _, text in sorted(self.found, key=lambda one: one[0])]
 
 
-def table_of(text: str, name: str, wrong: Problems, conditions: Collection[str] = ()) -> Table:
+def table_of(
+    text: str, name: str, wrong: Problems, conditions: Collection[str] = (), outcomes: Collection[str] = ()
+) -> Table:
     """Return the header and the rows with a cell for each column, and note the faults of others.
 
-    `conditions` are those of the installed rigs.
+    `conditions` are those of the installed rigs, and `outcomes` those of the installed laws.
     """
     source, separator, lines, start = _preamble(text)
     try:
@@ -104,7 +109,7 @@ def table_of(text: str, name: str, wrong: Problems, conditions: Collection[str] 
         raise DataError(f"the tests '{name}' cannot be read as CSV: {error}") from None
     if not rows:
         raise DataError(f"the tests '{name}' are empty; begin with a header such as: {head('creepage')}, ...")
-    heads = _heads(rows[0], wrong, conditions)
+    heads = _heads(rows[0], wrong, conditions, outcomes)
     if not any(one.name for one in heads):
         known = ", ".join([*map(head, COLUMNS), *TEXTS])
         raise DataError(
@@ -149,14 +154,14 @@ def _rows(lines: list[str], start: int, separator: str) -> Iterator[Row]:
         line = start + reader.line_num + 1
 
 
-def _heads(header: Row, wrong: Problems, conditions: Collection[str]) -> list[Head]:
+def _heads(header: Row, wrong: Problems, conditions: Collection[str], outcomes: Collection[str]) -> list[Head]:
     """Return the columns, and note faults of single ones and of their combination."""
     texts = [cell.strip() for cell in header.cells]
     while texts and not texts[-1]:
         texts.pop()
     present = {_bare(text) for text in texts}
     heads = [
-        _other(header.line, text, place, present, conditions, wrong)
+        _other(header.line, text, place, present, {*conditions, *outcomes}, wrong)
         or Head(text, place, *_meaning(header.line, text, place, wrong))
         for place, text in enumerate(texts)
     ]
@@ -165,24 +170,29 @@ def _heads(header: Row, wrong: Problems, conditions: Collection[str]) -> list[He
         if names.count(one.name) > 1:
             wrong.add(header.line, one.text, "is there more than once; keep one of them")
     meant = [name for one in heads if not one.name for name in get_close_matches(_bare(one.text), COLUMNS, n=1)]
-    for fault in faulty_columns([name for name in (*names, *meant) if name not in TEXTS]):
+    others = [one.name for one in heads if one.is_other]
+    measured = any(name in outcomes or name not in conditions for name in others)  # a law of a script may predict it
+    known = [name for name in (*names, *meant) if name not in (*TEXTS, *outcomes)]
+    for fault in faulty_columns(known, measured):
         wrong.add(header.line, "", fault)
     return heads
 
 
 def _other(
-    line: int, text: str, place: int, present: Collection[str], conditions: Collection[str], wrong: Problems
+    line: int, text: str, place: int, present: Collection[str], known: Collection[str], wrong: Problems
 ) -> Head | None:
-    """Return a column of a condition that is not in the table of columns, or None if it is not one.
+    """Return a column of a condition or outcome that is not in the table of columns, or None if it is not one.
 
-    Such a condition belongs to an installed rig, or has a unit and a name unlike those of missing columns.
+    It belongs to an installed rig or law, or has a unit and a name unlike those of missing columns.
     """
     match = HEAD.fullmatch(text)
     name, unit = (match["name"], match["unit"]) if match else ("", None)
     if name in (*COLUMNS, *TEXTS) or not name.isidentifier():
         return None
-    missing = [known for known in (*COLUMNS, *TEXTS) if known not in present]
-    if name not in conditions and (unit is None or get_close_matches(name, missing, n=1)):
+    missing = [column for column in (*COLUMNS, *TEXTS) if column not in present]
+    if name.startswith(f"{WEAR_OF}_"):  # the wear rate of one body
+        missing = [column for column in missing if column != WEAR_OF]
+    if name not in known and (unit is None or get_close_matches(name, missing, n=1)):
         return None
     if unit is None:
         return Head(text, place, name, 1.0)

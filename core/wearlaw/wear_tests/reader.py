@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
@@ -26,14 +26,17 @@ _NUMBER = re.compile(r"[+\-\u2212]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.A
 _NOT_TEXT = {b"PK\x03\x04": "a workbook (.xlsx, .ods)", b"\xd0\xcf\x11\xe0": "an old workbook (.xls)"}
 
 
-def read_tests(path_or_name: str | Path) -> WearTests:
+def read_tests(path_or_name: str | Path, *, outcomes: Collection[str] = ()) -> WearTests:
     """Read tests from a CSV file, or return shipped tests by their name.
 
     Parameters
     ----------
     path_or_name : str or Path
         Path of a CSV file with units in its header, such as ``creepage [%]``, or a name such as "lewis2004". Columns
-        such as ``mass [kg]`` are other conditions of a rig.
+        such as ``mass [kg]`` are other conditions of a rig, and columns such as ``heat_flux [W/mm^2]`` measured
+        outcomes of laws.
+    outcomes : collection of str, optional
+        Names of columns that are outcomes of laws that no plugin provides. Without it, such a column must be complete.
 
     Raises
     ------
@@ -42,7 +45,9 @@ def read_tests(path_or_name: str | Path) -> WearTests:
     UnknownModelError
         If several plugins ship tests of that name.
     """
-    return parse_tests(text_of_tests(path_or_name), str(path_or_name))
+    if isinstance(outcomes, str):
+        raise DataError(f'outcomes: give a list of names, such as ["{outcomes}"]')
+    return parse_tests(text_of_tests(path_or_name), str(path_or_name), outcomes)
 
 
 def text_of_tests(path_or_name: str | Path) -> str:
@@ -86,7 +91,7 @@ def _decoded(content: bytes, path: Path) -> str:
         raise DataError(f"cannot read the tests '{path}': it is not text in UTF-8; save it as CSV in UTF-8") from None
 
 
-def parse_tests(text: str, name: str) -> WearTests:
+def parse_tests(text: str, name: str, outcomes: Collection[str] = ()) -> WearTests:
     """Parse tests from a CSV text.
 
     Parameters
@@ -95,6 +100,8 @@ def parse_tests(text: str, name: str) -> WearTests:
         The content of the file.
     name : str
         Its path, or its name if shipped; also the source of tests that state none.
+    outcomes : collection of str, optional
+        As for `read_tests`.
 
     Raises
     ------
@@ -102,10 +109,11 @@ def parse_tests(text: str, name: str) -> WearTests:
         If the contents are wrong. The message names all faults.
     """
     wrong = Problems()
-    table = table_of(text, name, wrong, _conditions())
+    measured = {*outcomes, *_outcomes()}
+    table = table_of(text, name, wrong, _conditions(), measured)
     columns = {one.name: _values(one, table, wrong) for one in table.heads if one.is_numbers}
     texts = {one.name: [row.cells[one.place].strip() for row in table.rows] for one in table.heads if one.name in TEXTS}
-    _check_values(columns, table, wrong)
+    _check_values(columns, table, measured, wrong)
     _check_decimal_marks(table, wrong)
     if not wrong.found:
         _check_duplicates([*columns.values(), *texts.values()], table, wrong)
@@ -117,12 +125,18 @@ def parse_tests(text: str, name: str) -> WearTests:
         for one in table.heads
         if one.is_other
     }
-    return WearTests(with_traction(columns), tuple(labels), table.source or Path(name).name, others)
+    tests = WearTests(with_traction(columns), tuple(labels), table.source or Path(name).name, others)
+    return tests.measuring(measured)
 
 
 def _conditions() -> set[str]:
     """Return the conditions of the installed rigs."""
     return {name for rig in loader.rigs().values() for name in rig.conditions()}
+
+
+def _outcomes() -> set[str]:
+    """Return the outcomes of the installed laws."""
+    return {law.outcome.name for law in loader.laws().values()}
 
 
 def _values(one: Head, table: Table, wrong: Problems) -> Array:
@@ -145,10 +159,10 @@ def _number(line: int, text: str, one: Head, separator: str, wrong: Problems) ->
     return np.nan
 
 
-def _check_values(columns: dict[str, Array], table: Table, wrong: Problems) -> None:
+def _check_values(columns: dict[str, Array], table: Table, outcomes: Collection[str], wrong: Problems) -> None:
     """Note missing and impossible values in the columns with a valid unit."""
     heads = {one.name: one for one in table.heads if not np.isnan(one.factor)}
-    for i, name, rule in faulty({name: values for name, values in columns.items() if name in heads}):
+    for i, name, rule in faulty({name: values for name, values in columns.items() if name in heads}, outcomes):
         row = table.rows[i]
         text = row.cells[heads[name].place].strip()
         got = "" if text.casefold() in MISSING else f"got {text}, which "

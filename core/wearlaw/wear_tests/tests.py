@@ -6,8 +6,8 @@ only provide the conditions of contact problems.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -18,7 +18,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import ConditionsError, DataError, UnitError
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, parse, real_array
-from wearlaw.units.registry import symbol
+from wearlaw.units.registry import si_factor, symbol
 from wearlaw.wear_tests.columns import COLUMNS, factor, faulty, faulty_columns, head, with_traction
 
 if TYPE_CHECKING:
@@ -43,18 +43,22 @@ class WearTests:
     source : str
         The source of the numbers.
     other_conditions : mapping of str to Quantity or ndarray, (tests,)
-        Conditions of the rig that are not in `columns`, as given: with their unit, or plain numbers.
+        Conditions of the rig that are not in `columns`, as given: with their unit, or plain numbers. A column of a file
+        whose name no plugin knows is here too, until `measuring` says that it is an outcome.
+    outcomes : mapping of str to Quantity or ndarray, (tests,)
+        Measured outcomes of laws other than `wear_rate`, as given; NaN for a missing measurement.
     """
 
     columns: Mapping[str, Array]
     labels: tuple[str, ...]
     source: str = ""
     other_conditions: Mapping[str, Quantity | Array] = field(default_factory=dict)
+    outcomes: Mapping[str, Quantity | Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for values in (*self.columns.values(), *map(_magnitude, self.other_conditions.values())):
+        for values in (*self.columns.values(), *map(_magnitude, {**self.other_conditions, **self.outcomes}.values())):
             values.flags.writeable = False
-        for name in ("columns", "other_conditions"):
+        for name in ("columns", "other_conditions", "outcomes"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
 
     @classmethod
@@ -73,6 +77,7 @@ class WearTests:
         wear_rate: QuantityLike | None = None,
         wear_rate_uncertainty: QuantityLike | None = None,
         other_conditions: Mapping[str, QuantityLike | ArrayLike] | None = None,
+        outcomes: Mapping[str, QuantityLike | ArrayLike] | None = None,
         labels: Sequence[str] | None = None,
         source: str = "",
     ) -> Self:
@@ -96,6 +101,9 @@ class WearTests:
         other_conditions : mapping of str to Quantity, str or array_like, (tests,), optional
             Further conditions of the rig by name, such as {"mass": Q([20, 40], "kg")}. With these, creepage and load
             may be missing, and the rig checks whether it needs them.
+        outcomes : mapping of str to Quantity, str or array_like, (tests,), optional
+            Measured outcomes of laws by their names in results, such as {"heat_flux": Q([2, 5], "W/mm^2")}, or
+            "wear_rate_rail" for a law of one body; the wear rate is an argument of its own.
         labels : sequence of str, optional
             The name of each test.
         source : str, optional
@@ -108,28 +116,35 @@ class WearTests:
         """
         given = {name: value for name, value in locals().items() if name in COLUMNS and value is not None}
         others = {name: _as_given(name, value) for name, value in (other_conditions or {}).items()}
-        faults = faulty_columns([*given, *others])
+        measured = {name: _as_given(name, value) for name, value in (outcomes or {}).items()}
+        faults = faulty_columns([*given, *others], bool(measured))
         faults += [f"other_conditions: {name} is an argument of its own" for name in others if name in COLUMNS]
+        faults += [f"outcomes: {name} is an argument of its own" for name in measured if name in COLUMNS]
+        faults += [f"outcomes: {name} is among other_conditions too" for name in measured if name in others]
         if faults:
             raise DataError("the tests are wrong in:", faults)
-        units = {name: str(value.units) for name, value in others.items() if isinstance(value, pint.Quantity)}
+        as_given = others | measured
+        units = {name: str(value.units) for name, value in as_given.items() if isinstance(value, pint.Quantity)}
         arrays = _same_length(
             {name: _si(name, value) for name, value in given.items()}
-            | {name: real_array(_magnitude(value)) for name, value in others.items()}
+            | {name: real_array(_magnitude(value)) for name, value in as_given.items()}
         )
-        others = {
-            name: Q(np.array(arrays[name]), units[name]) if name in units else np.array(arrays[name]) for name in others
+        as_given = {
+            name: Q(np.array(arrays[name]), units[name]) if name in units else np.array(arrays[name])
+            for name in as_given
         }
+        others, measured = ({name: as_given[name] for name in some} for some in (others, measured))
         faults = [
-            f"{name}: {arrays[name][i] if name in others else _shown(name, arrays[name][i])} at index {i} {rule}"
-            for i, name, rule in faulty(arrays)
+            f"{name}: {arrays[name][i] if name in as_given else _shown(name, arrays[name][i])} at index {i} {rule}"
+            for i, name, rule in faulty(arrays, measured)
         ]
         count = len(next(iter(arrays.values())))
         if labels is not None and (isinstance(labels, str) or len(labels) != count):
             faults.append(f"labels: give one text for each of the {count} tests, got {labels!r}")
         if faults:
             raise DataError("the tests are wrong in:", faults)
-        return cls(with_traction(arrays), tuple(map(str, [""] * count if labels is None else labels)), source, others)
+        named = tuple(map(str, [""] * count if labels is None else labels))
+        return cls(with_traction(arrays), named, source, others, measured)
 
     @property
     def creepage(self) -> Quantity:
@@ -155,6 +170,41 @@ class WearTests:
     def wear_rate_uncertainty(self) -> Quantity | None:
         """Standard uncertainty of the wear rate, of shape (tests,); None if the tests have none."""
         return self._quantity("wear_rate_uncertainty") if "wear_rate_uncertainty" in self.columns else None
+
+    def measuring(self, outcomes: Collection[str]) -> WearTests:
+        """Return the tests with the columns of these names as measured outcomes, not as conditions of the rig."""
+        moved = {name: value for name, value in self.other_conditions.items() if name in outcomes}
+        if not moved:
+            return self
+        kept = {name: value for name, value in self.other_conditions.items() if name not in moved}
+        return replace(self, other_conditions=kept, outcomes={**self.outcomes, **moved})
+
+    def measured(self, name: str, unit: str) -> Array:
+        """Return measurements in SI, of shape (tests,); NaN where there is none.
+
+        Parameters
+        ----------
+        name : str
+            Name of an outcome or of a column.
+        unit : str
+            Unit of the outcome.
+
+        Raises
+        ------
+        DataError
+            If the tests give the outcome in a unit of another dimension.
+        """
+        if name not in self.outcomes:
+            return self.columns.get(name, np.full(len(self), np.nan))
+        value = self.outcomes[name]
+        quantity = value if isinstance(value, pint.Quantity) else Q(value, "")
+        try:
+            return _magnitude(quantity) * si_factor(quantity, unit)
+        except UnitError as error:
+            need = f"in {unit} or another unit of that dimension" if unit else "as a plain number"
+            raise DataError(
+                "the tests are wrong in:", [f"{name}: got {_unit(quantity) or '-'}, {error}; give it {need}"]
+            ) from None
 
     def conditions(
         self, model: ContactModel, friction_coefficient: ArrayLike | None = None, rig: Rig | None = None
@@ -200,8 +250,11 @@ class WearTests:
 
         named = {"label": self.labels} if any(self.labels) else {}
         columns = {head(name): self._quantity(name).magnitude for name in self.columns}
-        others = {f"{name} [{_unit(value) or '-'}]": _magnitude(value) for name, value in self.other_conditions.items()}
-        return pd.DataFrame(named | others | columns)
+        others, outcomes = (
+            {f"{name} [{_unit(value) or '-'}]": _magnitude(value) for name, value in some.items()}
+            for some in (self.other_conditions, self.outcomes)
+        )
+        return pd.DataFrame(named | others | columns | outcomes)
 
     def __len__(self) -> int:
         return len(self.labels)
@@ -213,7 +266,8 @@ class WearTests:
             raise DataError(f"none of the {len(self)} tests is selected")
         columns = {name: values[index] for name, values in self.columns.items()}
         others: dict[str, Any] = {name: value[index] for name, value in self.other_conditions.items()}
-        return type(self)(columns, tuple(self.labels[i] for i in index), self.source, others)
+        outcomes: dict[str, Any] = {name: value[index] for name, value in self.outcomes.items()}
+        return type(self)(columns, tuple(self.labels[i] for i in index), self.source, others, outcomes)
 
     def __iter__(self) -> Iterator[Self]:
         return (self[i] for i in range(len(self)))
@@ -228,18 +282,21 @@ class WearTests:
 
     def _arrays(self) -> dict[tuple[str, str], Array]:
         """Return all numbers by name and unit, "" for SI."""
-        others = {(name, _unit(value)): _magnitude(value) for name, value in self.other_conditions.items()}
+        every = {**self.other_conditions, **self.outcomes}
+        others = {(name, _unit(value)): _magnitude(value) for name, value in every.items()}
         return {(name, ""): values for name, values in self.columns.items()} | others
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A copy's arrays are read-only again.
-        return type(self), (dict(self.columns), self.labels, self.source, dict(self.other_conditions))
+        others, outcomes = dict(self.other_conditions), dict(self.outcomes)
+        return type(self), (dict(self.columns), self.labels, self.source, others, outcomes)
 
     def __repr__(self) -> str:
         lines = [
             f"{len(self)} tests" if len(self) > 1 else "1 test",
             *(self._summary(name, value) for name, value in self.other_conditions.items()),
             *(self._summary(name, self._quantity(name)) for name in self.columns),
+            *(self._summary(name, value) for name, value in self.outcomes.items()),
         ]
         return "\n  ".join(lines) + (f"\nfrom {self.source}" if self.source else "")
 

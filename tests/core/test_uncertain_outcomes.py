@@ -1,0 +1,222 @@
+"""Uncertain predictions of other outcomes than wear, of several laws, and with uncertain numbers of stages."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import wearlaw as wl
+from tests.core.fits import EXACT
+from tests.core.outcome_laws import MIXED, Damage, Heat, Volume
+from tests.core.test_fit_stages import Balanced, Choosy, Rubbed, Softer
+from wearlaw import Q
+from wearlaw.output.analyses import write_uncertainty
+from wearlaw.study.pairs import Pair
+from wearlaw.study.uncertainty import uncertainty_of
+
+EPS = float(np.finfo(np.float64).eps)
+GIVEN: Any = {"max_pressure": Q(1000, "MPa"), "creepage": Q(3, "%"), "friction_coefficient": 0.4}  # full slip
+KTH = wl.wear_law("kth")
+
+
+def shares(inputs: int, samples: int) -> Any:
+    """Return the probabilities of the samples, (inputs, samples)."""
+    return stats.qmc.Sobol(inputs, rng=np.random.default_rng(0)).random(samples).T
+
+
+def test_each_outcome_has_samples_with_its_unit() -> None:
+    u = wl.uncertainty(
+        EXACT.with_law(KTH, Heat(), Damage()),
+        **GIVEN,
+        law={"share": wl.uniform(0.2, 0.6), "threshold": wl.uniform("10 N", "30 N")},
+        samples=64,
+    )
+    assert u.outcomes == ("wear_rate", "heat_flux", "rcf_damage")
+    alone = EXACT.with_law(KTH, Heat(share=1.0), Damage(threshold=Q(1e-9, "N")))(**GIVEN)
+    p = shares(2, 64)
+    heat, damage = u["heat_flux"], u["rcf_damage"]
+    assert (str(heat.units), str(damage.units)) == (str(alone["heat_flux"].units), "dimensionless")
+    assert heat.magnitude == pytest.approx((0.2 + 0.4 * p[0]) * alone["heat_flux"].magnitude, rel=1e-12)
+    due = alone["rcf_damage"].magnitude - 1e-6 * (10.0 + 20.0 * p[1])
+    assert damage.magnitude == pytest.approx(due, rel=1e-9)
+    assert u.wear_rate.magnitude == pytest.approx(np.full(64, alone.wear_rate.magnitude), rel=64 * EPS)
+    # The median of samples that are even to one in 64.
+    part = alone["heat_flux"].magnitude * 0.4 / 64
+    assert u.of("heat_flux").median.magnitude == pytest.approx(0.4 * alone["heat_flux"].magnitude, abs=2 * part)
+    low, high = u.of("heat_flux").interval(0.5)
+    assert low.magnitude == pytest.approx(0.3 * alone["heat_flux"].magnitude, abs=2 * part)
+    assert high.magnitude == pytest.approx(0.5 * alone["heat_flux"].magnitude, abs=2 * part)
+
+
+def test_the_contact_is_solved_once_for_all_outcomes(monkeypatch: pytest.MonkeyPatch) -> None:
+    u = wl.uncertainty(EXACT | Heat() | Damage(), **GIVEN, law={"share": wl.uniform(0.2, 0.6)}, samples=16)
+    first = u.of("heat_flux").median
+    monkeypatch.setattr("wearlaw.uncertainties.result.integrate_laws", None)
+    assert u.of("heat_flux").median == first
+    assert u["rcf_damage"].shape == (16,)
+
+
+def test_the_variance_of_each_outcome_is_explained_by_its_own_inputs() -> None:
+    given = {**GIVEN, "friction_coefficient": wl.uniform(0.2, 0.4)}
+    u = wl.uncertainty(EXACT | Heat() | Damage(), **given, law={"share": wl.uniform(0.2, 0.4)}, samples=2**10)
+    heat, damage = u.of("heat_flux").sobol(), u.of("rcf_damage").sobol()
+    # The heat is a product of two uniform factors on 1 ± 1/3; of each the variance is v = (1/3)²/3, of both 2v + v².
+    v = (1.0 / 3.0) ** 2 / 3.0
+    errors = 8.0 * heat["first_order_error"]  # with 7 degrees of freedom, passed by chance once in 10⁴
+    assert np.all(np.abs(heat["first_order"] - v / (2 * v + v**2)) < errors)
+    assert damage.loc["share", "total_order"] == 0.0
+    assert damage.loc["friction_coefficient", "total_order"] == pytest.approx(1.0, abs=0.01)
+
+
+def test_figures_have_the_name_and_the_unit_of_the_outcome() -> None:
+    u = wl.uncertainty(EXACT | KTH | Heat(), **GIVEN, law={"share": wl.uniform(0.2, 0.6)}, samples=32)
+    figure = u.of("heat_flux").figure_data()
+    assert figure.title == "Heat flux by heat on exact"
+    (panel,) = figure.panels
+    assert panel.x.label == "heat flux [W/mm²]"
+    assert panel.curves[0].label == "heat flux"
+    assert panel.curves[1].x[1] == u.of("heat_flux").median.magnitude
+    band = wl.uncertainty(
+        EXACT | Heat(), **{**GIVEN, "creepage": Q([1.0, 2.0], "%")}, law={"share": wl.uniform(0.2, 0.6)}, samples=32
+    )
+    assert band.figure_data().panels[0].y.label == "heat flux [W/mm²]"
+    band.plot()
+    lines = repr(u).splitlines()
+    assert lines[0] == "Uncertainty of 2 outcomes, 32 samples"
+    assert lines[2].startswith("  heat_flux            ")
+    assert repr(band).splitlines()[0] == "Uncertainty of the heat flux, 32 samples"
+
+
+def test_numbers_that_several_laws_have_are_named_in_full() -> None:
+    predict = (MIXED | wl.contact_model("fastsim")).with_law(Volume(body="disc_1"), Volume(body="disc_2", factor=3.0))
+    u = wl.uncertainty(predict, **GIVEN, law={"volume_disc_2.factor": wl.uniform(1.0, 3.0)}, samples=16)
+    one, two = u["wear_rate_disc_1"].magnitude, u["wear_rate_disc_2"].magnitude
+    assert np.ptp(one) == 0.0
+    factors = 1.0 + 2.0 * shares(1, 16)[0]
+    assert two == pytest.approx(factors * one * 8800.0 / 7850.0, rel=1e-12)
+    said = "'factor' is a number of volume_disc_1 and volume_disc_2; write 'volume_disc_1.factor' or"
+    with pytest.raises(wl.InputError, match=said):
+        wl.uncertainty(predict, **GIVEN, law={"factor": wl.uniform(1.0, 3.0)})
+    both = EXACT.with_law(KTH, Heat())
+    u = wl.uncertainty(both, **GIVEN, law={"kth.coefficient": wl.published_range()}, samples=16)
+    alone = wl.uncertainty(EXACT.with_law(KTH), **GIVEN, law={"coefficient": wl.published_range()}, samples=16)
+    assert u.wear_rate.magnitude == pytest.approx(alone.wear_rate.magnitude, rel=64 * EPS)
+
+
+@pytest.mark.parametrize("stage", [Softer(), Rubbed()], ids=["altered", "solve"])
+def test_each_sample_of_a_stage_is_the_prediction_with_that_stage(stage: wl.Stage) -> None:
+    creepage = Q([0.2, 3.0], "%")
+    given = {**GIVEN, "creepage": creepage, "friction_coefficient": wl.uniform(0.3, 0.5)}
+    predict = EXACT | stage | Heat()
+    numbers: Any = {"stage": {"reduction": wl.uniform(0.6, 0.9)}, "law": {"share": wl.uniform(0.2, 0.4)}}
+    u = wl.uncertainty(predict, **given, **numbers, samples=8)
+    friction, share, reduction = np.array([[0.3], [0.2], [0.6]]) + np.array([[0.2], [0.2], [0.3]]) * shares(3, 8)
+    for sample in range(8):
+        one = EXACT | stage.model_copy(update={"reduction": reduction[sample]}) | Heat(share=share[sample])
+        due = one(**{**GIVEN, "creepage": creepage, "friction_coefficient": friction[sample]})["heat_flux"]
+        assert u["heat_flux"].magnitude[:, sample] == pytest.approx(due.magnitude, rel=1e-12)
+    assert "reduction            uniform(0.6, 0.9)" in repr(u)
+
+
+def test_a_stage_shares_the_variance_with_a_law() -> None:
+    """In full slip the heat is share · reduction · μ p ξV: a product of two uniform factors on 1 ± h."""
+    u = wl.uncertainty(
+        EXACT | Rubbed() | Heat(),
+        **GIVEN,
+        stage={"rubbed.reduction": wl.uniform(0.4, 0.8)},
+        law={"share": wl.uniform(0.2, 0.4)},
+        samples=2**9,
+    )
+    table = u.sobol()
+    v = (1.0 / 3.0) ** 2 / 3.0
+    assert np.all(np.abs(table["first_order"] - v / (2 * v + v**2)) < 8.0 * table["first_order_error"])
+    assert list(table.index) == ["share", "rubbed.reduction"]
+
+
+def test_a_warning_of_the_samples_names_the_line_of_the_caller() -> None:
+    usfd = wl.wear_law("usfd", fitted_for="exact")
+    for read in ("wear_rate", "item"):
+        u = wl.uncertainty(EXACT | usfd, **GIVEN | {"creepage": wl.uniform("15 %", "25 %")}, samples=16)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            _ = u.wear_rate if read == "wear_rate" else u["wear_rate"]
+        assert caught
+        assert {one.filename for one in caught} == {__file__}
+
+
+def refused(said: str, predict: Any, **given: Any) -> None:
+    with pytest.raises((wl.InputError, wl.CompositionError), match=said):
+        _ = wl.uncertainty(predict, **{**GIVEN, "samples": 8, **given}).median
+
+
+def test_wrong_input_is_refused_in_words() -> None:
+    share = {"share": wl.uniform(0.2, 0.4)}
+    two = EXACT | Heat() | Damage()
+    refused(r'predicts heat_flux and rcf_damage; choose one, as in u\.of\("heat_flux"\)', two, law=share)
+    refused(
+        "the laws have no number 'shore'; did you mean 'share'.* share, threshold, slope",
+        two,
+        law={"shore": wl.uniform(0, 1)},
+    )
+    refused("law 'heat' has no number 'shore'; did you mean 'share'", EXACT | Heat(), law={"shore": wl.uniform(0, 1)})
+    refused("stage 'softer' has no number 'share'.* reduction", EXACT | Softer() | Heat(), stage=share)
+    refused(
+        "stage: the pipeline has no stage, so share cannot be uncertain; add a stage with", EXACT | Heat(), stage=share
+    )
+    refused("publishes no ranges", EXACT | Softer() | Heat(), stage={"reduction": wl.published_range()})
+    refused("'heat.share' is given twice, as 'share' too", EXACT | Heat(), law=share | {"heat.share": wl.uniform(0, 1)})
+    refused("nothing is uncertain", EXACT | Heat())
+    soft = EXACT | Choosy() | Heat()
+    refused("(?s)too soft.*samples of its distribution", soft, stage={"reduction": wl.uniform(0.1, 0.9)})
+    refused("(?s)reduction.*less than or equal to 1.*samples", soft, stage={"reduction": wl.uniform(0.5, 1.1)})
+    refused("no wear law", EXACT, creepage=wl.uniform("1 %", "2 %"))
+    balanced = Balanced(**dict(EXACT.rig)) | EXACT.contact_model | Softer() | Heat()
+    refused(r"uncertainty: rig 'twin_disc' balances its loads", balanced, stage={"reduction": wl.uniform(0.5, 0.9)})
+    u = wl.uncertainty(two, **GIVEN, law=share, samples=8)
+    with pytest.raises(wl.InputError, match="no law predicts 'heat'; did you mean 'heat_flux'"):
+        u["heat"]
+    with pytest.raises(wl.InputError, match=r"no law predicts 'damage'.* The outcomes are: heat_flux, rcf_damage"):
+        u.of("damage")
+    with pytest.raises(wl.CompositionError, match="no wear law"):
+        _ = u.wear_rate
+
+
+CASE = """
+title = "Scatter"
+rig = { preset = "suros" }
+contact_models = ["exact"]
+wear_laws = ["kth"]
+
+[sweeps.creepage]
+creepage = ["1 %", "2 %"]
+max_pressure = "1000 MPa"
+friction_coefficient = 0.4
+
+[uncertainty.scatter]
+max_pressure = "1000 MPa"
+creepage = "3 %"
+friction_coefficient = { uniform = [0.3, 0.5] }
+"""
+
+
+def test_the_uncertainty_of_a_case_has_rows_for_each_outcome(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "case.toml").write_text(CASE)
+    case = wl.load_case(str(tmp_path / "case.toml"))
+    pair = Pair("exact", "kth", EXACT.with_law(KTH, Heat()))
+    monkeypatch.setattr("wearlaw.study.uncertainty.pairs_of", lambda *_: [pair])
+    found = uncertainty_of(case, 64, 0)
+    table = found.wear_rates
+    assert table.columns.tolist() == ["point", "pair", "outcome", "unit", "median", "2.5 %", "97.5 %"]
+    assert table[["outcome", "unit"]].to_numpy().tolist() == [["wear_rate", "ug/m/mm^2"], ["heat_flux", "W/mm^2"]]
+    heat = EXACT.with_law(Heat())(**GIVEN)["heat_flux"].magnitude  # in full slip it is proportional to μ
+    assert table["median"].tolist()[1] == pytest.approx(heat, rel=0.5 / 64)
+    assert found.indices.columns.tolist()[:4] == ["point", "pair", "outcome", "input"]
+    assert [one.uncertainty.outcomes for one in found.pairs] == [("wear_rate",), ("heat_flux",)]
+    (tmp_path / "results").mkdir()
+    names = write_uncertainty(case, found, 0, tmp_path / "results")
+    assert {"wear_rates.csv", "scatter_1.png", "scatter_2.png"} <= set(names)
