@@ -164,6 +164,7 @@ def test_what_would_end_the_fresh_process_is_the_reason_why_a_model_cannot_be_ma
 MODELS_OF_THE_DOCUMENTATION = {
     "wearlaw_energy": "Energy",
     "wearlaw_threshold": "Threshold",
+    "pv_limit": "PvLimit",
     "wearlaw_gradual": "Gradual",
     "wearlaw_fatigue": "Fatigue",
     "wearlaw_flash": "Flash",
@@ -175,6 +176,7 @@ MODELS_OF_THE_DOCUMENTATION = {
 }
 """Classes of models by their modules."""
 FIELDS_OF_THE_DOCUMENTATION = {
+    "PvLimit": {"slope": "5 ug/m/N", "limit": "12 W/mm^2"},
     "Fatigue": {"slope": "2e-7 1/N", "threshold": "10 N", "balance": "150 N"},
 }
 """Fields of classes without defaults."""

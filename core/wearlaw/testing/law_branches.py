@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
@@ -26,6 +27,9 @@ decades is known to 23 times rounding."""
 
 STEP = 1e-12
 """Relative distance of the two sides of a jump: a continuous rate changes by a few times that."""
+
+E_FOLDS = 30.0
+"""Farthest change of a value, in e-folds, to reach a jump in a variable of the law's own."""
 
 
 class _Paths:
@@ -51,7 +55,7 @@ def rate_jumps_only_where_declared(law: Law) -> None:
     paths, jumps = _Paths(law), law.jumps(law.numbers)
     for path, share, before, behind in find_jumps(paths.rate(law), PATHS):
         values, _ = paths.ends(path, share, share)
-        assert _declared(jumps, values, values), (
+        assert _declared(law, jumps, values, values), (
             f"the rate jumps from {before:.6g} to {behind:.6g} kg/m/m², not declared in `jumps`, at {_at(values)}"
         )
 
@@ -66,16 +70,16 @@ def rate_has_kinks_only_where_declared(law: Law) -> None:
     paths, breakpoints = _Paths(law), law.breakpoints(law.numbers) or {}
     for path, low, high, change in find_kinks(paths.rate(law), KINK * e_folds(paths.first, paths.second)):
         start, end = paths.ends(path, low, high)
-        assert _declared(breakpoints, start, end), (
+        assert _declared(law, breakpoints, start, end), (
             f"the slope of the rate jumps by {change:.2g} of the rate, over the length of a path between two contacts,"
             f" not declared in `breakpoints`, at {_at(start)}"
         )
 
 
-def _declared(values: BreakpointMap, start: Contact, end: Contact) -> bool:
+def _declared(law: Law, values: BreakpointMap, start: Contact, end: Contact) -> bool:
     """Return whether a variable passes one of its declared values between two contacts, or just outside of them."""
     for name, declared in values.items():
-        low, high = sorted(float(at_nodes(contact, name)[0, 0]) for contact in (start, end))
+        low, high = sorted(float(np.abs(law.value_at(contact, name))[0, 0]) for contact in (start, end))
         margin = (high - low) + AT_JUMP * high
         if any(low - margin <= value <= high + margin for value in declared):
             return True
@@ -91,9 +95,31 @@ def declared_jumps_exist(law: Law) -> None:
     contact = forward(random_contacts(512, seed=3, law=law))
     for name, jumps in law.jumps(law.numbers).items():
         for jump in jumps:
-            below, above = (law.rate(aimed(contact, name, jump * (1.0 + side * STEP)), law.numbers) for side in (-1, 1))
-            step = np.abs(above - below) > 1e3 * STEP * np.maximum(np.abs(above), np.abs(below))
-            assert step.any(), f"`jumps` declares a jump at {name} = {jump:g}, but the rate is continuous there"
+            steps = []
+            for sides in _beside(law, contact, name, jump):
+                below, above = (law.rate(side, law.numbers) for side in sides)
+                steps.append(np.abs(above - below) > 1e3 * STEP * np.maximum(np.abs(above), np.abs(below)))
+            assert np.any(steps), f"`jumps` declares a jump at {name} = {jump:g}, but the rate is continuous there"
+
+
+def _beside(law: Law, contact: Contact, name: str, value: float) -> Iterator[tuple[Contact, Contact]]:
+    """Yield contacts on both sides of a value of a variable; a law's own variable is moved by slip or by pressure."""
+    if name not in law.own_variables:
+        yield aimed(contact, name, value * (1.0 - STEP)), aimed(contact, name, value * (1.0 + STEP))
+        return
+    for field in ("slip", "pressure"):
+        start = getattr(contact, field)
+
+        def moved(factor: Array, field: str = field, start: Array = start) -> Contact:
+            return retotalled(contact, **{field: start * np.exp(factor)})
+
+        low, high = np.full_like(start, -E_FOLDS), np.full_like(start, E_FOLDS)
+        rises = np.abs(law.value_at(moved(high), name)) > np.abs(law.value_at(moved(low), name))
+        while (high - low > STEP).any():
+            middle = 0.5 * (low + high)
+            beyond = (np.abs(law.value_at(moved(middle), name)) >= abs(value)) == rises
+            low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+        yield moved(low - STEP), moved(high + STEP)
 
 
 def jumps_are_breakpoints(law: Law) -> None:
