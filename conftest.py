@@ -149,8 +149,11 @@ def captioned_files(document: Any) -> Any:
 
 
 def write_file(example: Example) -> None:
-    """Write a captioned block into the page's folder."""
-    Path(example.parsed["options"]["caption"]).write_text(example.parsed["source"], encoding="utf-8")
+    """Write a captioned block into the page's folder; modules of a plugin's folder can be imported, as if installed."""
+    path = Path(example.parsed["options"]["caption"])
+    path.write_text(example.parsed["source"], encoding="utf-8")
+    if path.parent != Path():
+        sys.path.insert(0, os.path.join(example.namespace["_folder"].name, path.parent))
 
 
 def enter_folder(namespace: dict[str, Any]) -> None:
@@ -168,7 +171,7 @@ def enter_folder(namespace: dict[str, Any]) -> None:
 
 def leave_folder(namespace: dict[str, Any]) -> None:
     """Go back, forget the modules that the page wrote, and remove the folders."""
-    sys.path.remove(namespace["_folder"].name)
+    sys.path[:] = [path for path in sys.path if not path.startswith(namespace["_folder"].name)]
     for name, module in list(sys.modules.items()):
         if (getattr(module, "__file__", None) or "").startswith(namespace["_folder"].name + os.sep):
             del sys.modules[name]

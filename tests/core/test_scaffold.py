@@ -21,7 +21,9 @@ from wearlaw.study.case import case_text
 
 pytestmark = pytest.mark.usefixtures("folder")
 
-KINDS: dict[Kind, str] = {"wear_law": "--wear-law", "contact_model": "--contact-model", "rig": "--rig"}
+KINDS: dict[Kind, str] = {kind: f"--{kind.replace('_', '-')}" for kind in get_args(Kind)}
+CHECKED: dict[Kind, str] = {"stage": "  wearlaw check zobory --option factor=0.5\n", "material": ""}
+"""How kinds are checked that are not checked by their name alone."""
 
 
 def new_plugin(*arguments: str) -> Result:
@@ -41,8 +43,7 @@ def test_what_to_type_next_is_what_works(kind: Kind, flag: str) -> None:
         "  cd 'two words/wearlaw-zobory'\n"
         '  python -m pip install -e ".[test]"\n'
         "  pytest\n"
-        "  wearlaw plugins\n"
-        "  wearlaw check zobory\n"
+        "  wearlaw plugins\n" + CHECKED.get(kind, "  wearlaw check zobory\n")
     )
     assert result.stderr == ""
 
@@ -91,7 +92,9 @@ def test_a_name_that_is_no_lower_case_identifier_is_refused(name: str, folder: P
     assert files(folder.parent) == {"my work"}
 
 
-@pytest.mark.parametrize("name", ["none", "true", "field", "class_var", "test_law", "check", "any"])
+@pytest.mark.parametrize(
+    "name", ["none", "true", "field", "class_var", "test_law", "check", "any", "annotated", "array_like", "force"]
+)
 def test_a_name_whose_class_would_mean_something_else_is_refused(name: str, folder: Path) -> None:
     assert_refused(new_plugin(name, "--wear-law"), f"name: {name!r} would name its class ")
     assert files(folder) == set()
@@ -101,12 +104,11 @@ def test_a_name_too_long_for_the_lines_is_refused() -> None:
     assert_refused(new_plugin(25 * "a", "--wear-law"), "name: must have at most 24 characters, got 25")
 
 
-@pytest.mark.parametrize("flag", KINDS.values())
-@pytest.mark.parametrize("name", ["usfd", "kth", "brr", "exact", "fastsim", "twin_disc"])
+@pytest.mark.parametrize("flag", [flag for kind, flag in KINDS.items() if kind != "material"])
+@pytest.mark.parametrize("name", ["usfd", "kth", "brr", "exact", "fastsim", "patch_mean", "twin_disc"])
 def test_a_taken_name_is_refused_with_who_has_it(name: str, flag: str, folder: Path) -> None:
-    kind = next(
-        kind for kind in ("wear law", "contact model", "rig") if name in loader.installed().of_kind(kind).items()
-    )
+    kinds = ("wear law", "contact model", "stage", "rig")
+    kind = next(kind for kind in kinds if name in loader.installed().of_kind(kind).items())
     plugin = "rigs" if kind == "rig" else name
     taker = f"the {kind} of wearlaw {wl.__version__} (plugin '{plugin}')"
     assert_refused(new_plugin(name, flag), f"name: '{name}' is taken by {taker}; choose another")
@@ -148,6 +150,27 @@ def test_the_name_of_a_parameter_set_is_taken_since_a_wear_law_would_hide_it(ins
     with pytest.warns(wl.PluginWarning, match="parameter set 'lab_2026' has the name of a wear law of hiding 1.0"):
         assert wl.wear_law("lab_2026").name == "lab_2026", "the law hides the set, which is of usfd"
     assert wl.contact_model("exact").name == "exact"
+
+
+MATERIAL = """
+    import wearlaw as wl
+
+    class RailSteel(wl.Material):
+        hardness: wl.Stress
+
+    @wl.hookimpl
+    def wearlaw_materials():
+        return {"RailSteel": RailSteel}
+"""
+
+
+def test_a_material_can_have_the_name_of_a_model_but_not_of_a_material_or_its_class(install: Install) -> None:
+    install("steels", MATERIAL)
+    taken = f"name: 'steel' is taken by the material of wearlaw {wl.__version__} (plugin 'sheffield'); choose another"
+    assert_refused(new_plugin("steel", "--material"), taken)
+    taken = "name: 'rail_steel' is taken by the material type of steels 1.0 (plugin 'steels'); choose another"
+    assert_refused(new_plugin("rail_steel", "--material"), taken)
+    assert new_plugin("twin_disc", "--material").exit_code == 0
 
 
 @pytest.mark.parametrize("name", ["steel", "tassini2010"])
@@ -200,5 +223,5 @@ def test_nothing_is_left_when_the_writing_fails(folder: Path, monkeypatch: pytes
 
 
 def test_without_a_kind_all_are_named(folder: Path) -> None:
-    assert_refused(new_plugin("zobory"), "say what the plugin provides: --wear-law, --contact-model or", exit_code=2)
+    assert_refused(new_plugin("zobory"), "say what the plugin provides: --wear-law, --law", exit_code=2)
     assert files(folder) == set()

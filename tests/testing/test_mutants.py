@@ -162,25 +162,36 @@ def test_what_would_end_the_fresh_process_is_the_reason_why_a_model_cannot_be_ma
 
 
 MODELS_OF_THE_DOCUMENTATION = {
+    "wearlaw_energy": "Energy",
     "wearlaw_threshold": "Threshold",
+    "wearlaw_gradual": "Gradual",
+    "wearlaw_fatigue": "Fatigue",
+    "wearlaw_flash": "Flash",
     "wearlaw_rigid": "Rigid",
     "wearlaw_rigid_ellipse": "RigidEllipse",
     "wearlaw_sliding": "Sliding",
+    "wearlaw_wet": "Wet",
     "wearlaw_roller": "Roller",
 }
+"""Classes of models by their modules."""
+FIELDS_OF_THE_DOCUMENTATION = {
+    "Fatigue": {"slope": "2e-7 1/N", "threshold": "10 N", "balance": "150 N"},
+}
+"""Fields of classes without defaults."""
+PAGES = ("plugins", "law-plugin", "contact-model-plugin", "stage-plugin", "rig-plugin", "kernels")
 
 
 @pytest.fixture(scope="module")
 def of_the_documentation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
-    """Return the models that the page about plugins writes, by their modules."""
-    folder = tmp_path_factory.mktemp("plugins")
-    page = (Path(__file__).parents[2] / "docs" / "plugins.md").read_text(encoding="utf-8")
-    for name, block in re.findall(r":caption: (\w+\.py)\n\n(.*?)\n```", page, re.DOTALL):
+    """Return the models that the pages about plugins write, by their modules."""
+    folder, docs = tmp_path_factory.mktemp("plugins"), Path(__file__).parents[2] / "docs"
+    text = "\n".join((docs / f"{page}.md").read_text(encoding="utf-8") for page in PAGES)
+    for name, block in re.findall(r":caption: (?:[\w-]+/)?(\w+\.py)\n\n(.*?)\n```", text, re.DOTALL):
         (folder / name).write_text(block, encoding="utf-8")
     with pytest.MonkeyPatch.context() as patched:
         patched.syspath_prepend(str(folder))
         yield {
-            module: getattr(importlib.import_module(module), cls)()
+            module: getattr(importlib.import_module(module), cls)(**FIELDS_OF_THE_DOCUMENTATION.get(cls, {}))
             for module, cls in MODELS_OF_THE_DOCUMENTATION.items()
         }
 

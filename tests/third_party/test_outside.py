@@ -53,15 +53,16 @@ USURPER = """
 """
 
 CASE = """
-    title = "A law and a model from outside, beside those of wearlaw"
+    title = "A rig of a material, a law and a model from outside, beside those of wearlaw"
     contact_models = ["rigid", "exact"]
     wear_laws = [{ model = "made_up", slope = "6 ug/m/N" }, "kth"]
 
     [rig]
-    preset = "suros"
+    type = "weighted"
+    material = "made_up_steel"
 
     [sweeps.creepage]
-    max_pressure = "1500 MPa"
+    mass = "20 kg"
     creepage = ["1 %", "5 %"]
     friction_coefficient = 0.46
 """
@@ -69,9 +70,19 @@ CASE = """
 PREDICT = """
 import json
 import wearlaw as wl
-predict = wl.TwinDisc.suros() | wl.contact_model("rigid") | wl.wear_law("made_up", slope="6 ug/m/N")
-r = predict(normal_force="2 kN", creepage="1 %", friction_coefficient=0.4)
-print(json.dumps([r.tangential_force.to("N").magnitude, r.wear_rate.to("ug/m/mm^2").magnitude]))
+steel = wl.material("made_up_steel")
+contact = wl.rig("weighted", material=steel) | wl.contact_model("rigid") | wl.stage("wet", half_speed="1 m/s")
+by_name = contact | wl.wear_law("made_up", slope="6 ug/m/N") | wl.law("flash")
+written = {
+    "rig": {"type": "weighted", "material": "made_up_steel"},
+    "contact_model": "rigid",
+    "stages": ["wet"],
+    "laws": [{"model": "made_up", "slope": "6 ug/m/N"}, "flash"],
+}
+read = wl.Pipeline.model_validate_json(json.dumps(written))
+assert read == by_name == wl.Pipeline.model_validate_json(by_name.model_dump_json())
+r = read(mass="20 kg", creepage="1 %", friction_coefficient=0.4)
+print(json.dumps([r.tangential_force.m_as("N"), r.wear_rate.m_as("ug/m/mm^2"), r["flash_temperature"].m_as("K")]))
 """
 
 
@@ -100,8 +111,7 @@ def generated(environment: Environment, tmp_path_factory: pytest.TempPathFactory
     assert environment.wearlaw("new-plugin", "my_wear_law", "--wear-law", cwd=folder).returncode == 0
     plugins: dict[Kind, Path] = {
         "wear_law": folder / "wearlaw-my_wear_law",
-        "contact_model": write_plugin("my_contact_model", "contact_model", folder),
-        "rig": write_plugin("my_rig", "rig", folder),
+        **{kind: write_plugin(f"my_{kind}", kind, folder) for kind in get_args(Kind) if kind != "wear_law"},
     }
     environment.install(*(argument for plugin in plugins.values() for argument in ("-e", plugin)))
     return plugins
@@ -128,16 +138,19 @@ def test_the_wheels_are_what_is_imported_and_nothing_of_the_running_environment(
 
 
 def assert_predicted(printed: str) -> None:
-    force, rate = json.loads(printed)
-    assert force == pytest.approx(800.0, rel=1e-12)  # μN, to rounding
+    force, rate, temperature = json.loads(printed)
+    assert force == pytest.approx(0.2 * 20.0 * 9.81, rel=1e-12)  # half of μN, to rounding
     assert rate > 0
+    assert temperature > 0
 
 
 def test_they_work_in_a_case_file(environment: Environment, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(textwrap.dedent(CASE))
     done = environment.wearlaw("run", "mine.toml", "-o", "out", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "\n  and wearlaw-outside 1.2.3: contact model rigid, wear law made_up\nResults in out:\n" in done.stdout
+    (line,) = [line for line in done.stdout.splitlines() if line.startswith("  and wearlaw-outside 1.2.3: ")]
+    provided = "rig weighted, contact model rigid, wear law made_up, material made_up_steel, material type HeatedSteel"
+    assert {*line.partition(": ")[2].split(", ")} == {*provided.split(", ")}
     csv = (tmp_path / "out" / "results.csv").read_text()
     for law in ("made_up", "kth"):
         for model in ("rigid", "exact"):
@@ -184,7 +197,8 @@ def test_new_and_outside_models_are_listed_with_their_distributions_until_they_a
 ) -> None:
     found = models(environment.wearlaw("plugins").stdout)
     assert {"exact", "fastsim", "global", "brr", "kth", "usfd"} < set(found)
-    assert found["made_up"] == found["rigid"] == ["wearlaw-outside", "1.2.3"]
+    for name in ("weighted", "rigid", "wet", "made_up", "flash", "made_up_steel", "HeatedSteel"):
+        assert found[name] == ["wearlaw-outside", "1.2.3"]
     for kind in generated:
         assert found[f"my_{kind}"] == [f"wearlaw-my_{kind}", "0.1.0"]
     environment.pip("uninstall", "--yes", *(plugin.name for plugin in generated.values()))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, assert_type
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, assert_type
 
 import numpy as np
 
@@ -17,7 +17,7 @@ assert_type(wl.wear_law("usfd", fitted_for="exact"), wl.WearLaw)
 on_lines: wl.Pipeline[...] = rig | wl.contact_model("exact") | wl.patch_mean() | wl.wear_law("brr")
 
 predict = rig | wl.contact_model("exact") | wl.wear_law("usfd")
-assert_type(predict.laws, tuple[wl.WearLaw, ...])
+assert_type(predict.laws, tuple[wl.Law, ...])
 
 result = predict(normal_force=Q(7.4143, "kN"), creepage=Q(1, "%"), friction_coefficient=0.46)
 assert_type(result, wl.Prediction)
@@ -168,6 +168,108 @@ hard = RailSteel(youngs_modulus="210 GPa", poisson_ratio=0.3, density="7800 kg/m
 assert_type(hard.hardness, wl.Quantity)
 assert_type(contact(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4).contact.body().material, wl.Material)
 assert_type(wl.material("steel", density="7800 kg/m^3"), wl.Material)
+
+
+class Lubricated(wl.Stage):
+    """A stage of one's own that changes the problem."""
+
+    name: ClassVar[str] = "lubricated"
+    source: ClassVar[str] = "made up"
+
+    factor: float = 0.5
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        assert_type(forces(problem), wl.CreepForces)
+        return problem.replaced(friction_coefficient=self.factor * problem.friction_coefficient)
+
+
+class Consistent(wl.Stage):
+    """A stage of one's own that changes the solved contact."""
+
+    name: ClassVar[str] = "consistent"
+    source: ClassVar[str] = "made up"
+
+    def solve(self, problem: wl.Problem, inner: wl.Solve) -> wl.Contact:
+        return inner(problem).scaled_to_wear_index()
+
+
+class Fatigue(wl.Law):
+    """A law of another outcome, for one body."""
+
+    name: ClassVar[str] = "fatigue"
+    source: ClassVar[str] = "made up"
+    outcome: ClassVar[wl.Outcome] = wl.Outcome("rcf_damage", unit="", of="patch", signed=True)
+
+    threshold: Annotated[wl.Quantity, wl.Unit("N")]
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return 1e-6 * (contact.wear_index - p["threshold"])
+
+    @property
+    def own_variables(self) -> Mapping[str, Callable[[wl.Contact], wl.Array]]:
+        return {"pv": lambda contact: contact.pressure * contact.slip_speed}
+
+
+class Flash(Fatigue):
+    """A law that reads the material, the size and the history of the contact; its outcome without an annotation."""
+
+    outcome = wl.Outcome("flash_temperature", unit="K", of="patch")
+    example_material = hard
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        material = contact.body("rail").material
+        if not isinstance(material, RailSteel):
+            raise wl.InputError("material: must be a RailSteel")
+        assert_type(contact.half_width, wl.Array)
+        assert_type(contact.rolled_distance, wl.Array)
+        return contact.wear_index * wl.scalar_si(material.hardness, "Pa") * contact.half_width
+
+
+class Pressed(wl.Rig):
+    """A rig of one's own with a material by name in files."""
+
+    name: ClassVar[str] = "pressed"
+    source: ClassVar[str] = "made up"
+    example: ClassVar[Mapping[str, Any]] = {"force": "2 kN", "creepage": "1 %"}
+
+    material: wl.MaterialField
+
+    def problem(self, *, force: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.Problem:
+        return wl.TwinDisc.suros(material=self.material).problem(
+            normal_force=force, creepage=creepage, friction_coefficient=0.4
+        )
+
+
+pressed = Pressed(material=hard)
+staged = pressed | wl.contact_model("exact") | Lubricated(factor=0.4) | Consistent() | wl.patch_mean()
+several = staged | wl.wear_law("usfd") | Fatigue(threshold=Q(15, "N"), body="rail") | wl.law("flash", threshold="1 N")
+assert_type(several.stages, tuple[wl.Stage, ...])
+assert_type(several.laws, tuple[wl.Law, ...])
+assert_type(wl.stage("lubricated", factor=0.5), wl.Stage)
+assert_type(wl.law("fatigue", body="rail"), wl.Law)
+predicted = several(force="2 kN", creepage="1 %")
+assert_type(predicted, wl.Prediction)
+assert_type(predicted["rcf_damage"], wl.Quantity)
+assert_type(predicted.outcome("rcf_damage", "rail"), wl.Quantity)
+assert_type(predicted.outcome("flash_temperature"), wl.Quantity)
+assert_type(predicted.outcome_error("flash_temperature"), wl.Quantity)
+assert_type(predicted.wear_rate_of("rail"), wl.Quantity)
+assert_type(predicted.laws, tuple[wl.Law, ...])
+assert_type(predicted.contact | Fatigue(threshold=Q(15, "N")), wl.LocalOutcome)
+assert_type(predicted.contact | wl.wear_law("usfd"), wl.LocalWear)
+assert_type((predicted.contact | Fatigue(threshold=Q(15, "N"))).value, wl.Quantity)
+
+
+@wl.hookimpl
+def wearlaw_stages() -> list[type[wl.Stage]]:
+    """Return stages."""
+    return [Lubricated, Consistent]
+
+
+@wl.hookimpl
+def wearlaw_laws() -> list[type[wl.Law]]:
+    """Return laws of other outcomes."""
+    return [Fatigue, Flash]
 
 
 @wl.hookimpl

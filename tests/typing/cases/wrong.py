@@ -21,6 +21,9 @@ law | model  # expect-error
 wl.patch_mean() | law  # expect-error
 rig | model | model  # expect-error
 rig | model | "usfd"  # expect-error
+rig | wl.stage("wet") | model  # expect-error
+model | wl.stage("wet")  # expect-error
+predict | model  # expect-error
 
 wl.Disc(diameter=0.047, material=wl.steel())  # expect-error
 wl.Disc(diameter="47 mm")  # expect-error
@@ -42,6 +45,12 @@ result = predict(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4)
 result.wear  # expect-error
 result.mass_lost(over=10, body="disc_1")  # expect-error
 result.depth_per_distance()  # expect-error
+result[0]  # expect-error
+result.outcome()  # expect-error
+result.outcome("rcf_damage", 1)  # expect-error
+result.contact.body().material.hardness  # expect-error
+wl.Outcome("rcf_damage", unit="", of="nodes")  # expect-error
+wl.Outcome("rcf_damage", unit="")  # expect-error
 
 wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 on_rail = wheel | model | law
@@ -76,6 +85,49 @@ class Law(wl.WearLaw):
 
 Law(slope=6.0)  # expect-error
 Law(slope="6 ug/m/N")  # expect-error
+
+
+class Fatigue(wl.Law):
+    """A law that returns a quantity, of an outcome that is a text."""
+
+    outcome = "rcf_damage"  # expect-error
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Quantity:  # expect-error
+        return Q(contact.wear_index, "")
+
+
+class Wet(wl.Stage):
+    """A stage that returns a contact where it should alter the problem, and the other way round."""
+
+    factor: float
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Contact:  # expect-error
+        return model.solve(problem)
+
+    def solve(self, problem: wl.Problem, inner: wl.Solve) -> wl.Problem:  # expect-error
+        return inner(problem)  # expect-error
+
+
+Wet(factor="half")  # expect-error
+Wet(facter=0.5)  # expect-error
+
+
+@wl.hookimpl  # expect-error
+def wearlaw_stages() -> list[wl.Stage]:
+    """Return instances in place of classes."""
+    return [wl.patch_mean()]
+
+
+@wl.hookimpl  # expect-error
+def wearlaw_laws() -> list[wl.Law]:
+    """Return instances in place of classes."""
+    return [law]
+
+
+@wl.hookimpl  # expect-error
+def wearlaw_materials() -> list[wl.Material]:
+    """Return materials without names."""
+    return [wl.steel()]
 
 
 @wl.hookimpl  # expect-error
