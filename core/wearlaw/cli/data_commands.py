@@ -223,10 +223,10 @@ def _compare(
     models = {text: contact_model(text) for text in listed("--contacts", contacts)}
     pairs = compose(_rig(rig, notes), models, named, notes)
     predictors: list[tuple[Names, Predictor]] = [
-        (Names(pair.label, pair.wear_law, pair.contact_model), pair.pipeline) for pair in pairs
+        (Names(pair.label, pair.law, pair.contact_model), pair.pipeline) for pair in pairs
     ]
     for law, freed in _freed(free, list(named)).items():
-        of_law = [pair for pair in pairs if pair.wear_law == law]
+        of_law = [pair for pair in pairs if pair.law == law]
         fits = _fits(of_law, listed("--free", freed), tests, notes, friction_coefficient=friction, scatter=scatter)
         predictors += [(Names(f"{law} fitted on {contact}", f"{law} fitted", contact), one) for contact, one in fits]
     comparison = compare_named(predictors, tests, friction)
@@ -260,7 +260,7 @@ def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **
     with Bar(len(pairs)) as shown:
         shown.stage("fitting")
         for pair in pairs:
-            name = f"{pair.wear_law} fitted on {pair.contact_model}"
+            name = f"{pair.law} fitted on {pair.contact_model}"
             try:
                 with notes.of(name):
                     fitted = fit_parameters(pair.pipeline, tests, free, bootstrap=0, **settings)

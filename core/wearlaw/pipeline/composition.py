@@ -12,7 +12,7 @@ from wearlaw.contact.material import dundurs_beta
 from wearlaw.contact.problem import PATCHES, Body, Geometry, Problem
 from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Model, Scale
-from wearlaw.models.law import WEAR, Law
+from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.plugins import loader
 
 PEAKS = (
@@ -58,8 +58,11 @@ def law_among(laws: Sequence[Law], model: ContactModel, outcome: str, body: str 
         if outcome == WEAR:
             add = f"the pipeline has no wear law; give one, as in rig | {model!r} | wl.wear_law('usfd')"
             raise CompositionError(add)
-        known = ", ".join(law.outcome.name for law in laws) or "there is none"
-        raise CompositionError(f"no law of the pipeline predicts '{outcome}'; its laws predict: {known}")
+        known = list(named_outcomes(laws))
+        hint = did_you_mean(outcome, known)
+        raise CompositionError(
+            f"no law of the pipeline predicts '{outcome}'{hint} Its laws predict: {', '.join(known) or 'nothing'}"
+        )
     if body is None and len(found) > 1:
         names = [laws[index].body for index in found]
         ask = f"wear_rate_of('{names[0]}')" if outcome == WEAR else f"outcome('{outcome}', '{names[0]}')"

@@ -31,11 +31,6 @@ class Pair:
         return f"{self.law} on {self.contact_model}"
 
     @property
-    def wear_law(self) -> str:
-        """Label of the law."""
-        return self.law
-
-    @property
     def outcome(self) -> Outcome:
         """What the law predicts."""
         return self.pipeline.laws[0].outcome

@@ -75,7 +75,7 @@ def uncertainty_of(
     """
     notes = Notes()
     pairs = pairs_of(case, notes)
-    if not any(point.varies(pair.wear_law) for point in case.uncertainty.values() for pair in pairs):
+    if not any(point.varies(pair.law) for point in case.uncertainty.values() for pair in pairs):
         raise InputError(
             "nothing in the case is uncertain; add a table such as [uncertainty.scatter] in which some conditions are"
             ' distributions, as in creepage = {uniform = ["0.5 %", "1.5 %"]}'
@@ -84,12 +84,12 @@ def uncertainty_of(
     rates, indices = [], []
     for name, point, pair in ((name, point, pair) for name, point in case.uncertainty.items() for pair in pairs):
         subject = f"{name}: {pair.label}"
-        if not point.varies(pair.wear_law):
+        if not point.varies(pair.law):
             notes.add(f"{subject} is left out, since none of its inputs is uncertain")
             on_pair(1)
             continue
         with notes.of(subject):
-            law = point.parameters(pair.wear_law)
+            law = point.parameters(pair.law)
             one = uncertainty(pair.pipeline, law=law, samples=samples, seed=seed, **point.conditions())
             each = [one.of(outcome) for outcome in one.outcomes]
             rates += [{"point": name, "pair": pair.label, **_interval(single)} for single in each]
