@@ -53,9 +53,11 @@ USURPER = """
 """
 
 CASE = """
-    title = "A rig of a material, a law and a model from outside, beside those of wearlaw"
+    title = "One of each kind from outside, beside those of wearlaw"
     contact_models = ["rigid", "exact"]
+    stages = ["wet"]
     wear_laws = [{ model = "made_up", slope = "6 ug/m/N" }, "kth"]
+    laws = ["flash"]
 
     [rig]
     type = "weighted"
@@ -149,12 +151,13 @@ def test_they_work_in_a_case_file(environment: Environment, tmp_path: Path) -> N
     done = environment.wearlaw("run", "mine.toml", "-o", "out", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     (line,) = [line for line in done.stdout.splitlines() if line.startswith("  and wearlaw-outside 1.2.3: ")]
-    provided = "rig weighted, contact model rigid, wear law made_up, material made_up_steel, material type HeatedSteel"
+    provided = "rig weighted, contact model rigid, stage wet, wear law made_up, law flash"
+    provided += ", material made_up_steel, material type HeatedSteel"
     assert {*line.partition(": ")[2].split(", ")} == {*provided.split(", ")}
     csv = (tmp_path / "out" / "results.csv").read_text()
-    for law in ("made_up", "kth"):
+    for law in ("made_up,", "kth,", ",flash"):
         for model in ("rigid", "exact"):
-            assert csv.count(f"creepage,{model},{law},") == 2
+            assert csv.count(f"creepage,{model} with wet,{law},") == 2
 
 
 def test_the_law_passes_the_checks(environment: Environment) -> None:
