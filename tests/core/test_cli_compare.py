@@ -109,3 +109,17 @@ def test_a_fit_that_the_tests_do_not_determine_on_one_contact_is_left_out(monkey
     assert result.exit_code == 0
     assert "note: usfd fitted on global is left out: no test determines it\n" in result.stderr
     assert "usfd fitted on exact" in result.stdout
+
+
+def test_stages_stand_around_every_contact_model() -> None:
+    result = wearlaw(*COMPARE, "-o", "cmp", "--stage", "patch_mean")
+    assert result.exit_code == 0
+    ranking = pd.read_csv("cmp/ranking.csv").set_index("predictor")
+    assert "brr on exact with patch_mean" in ranking.index
+    # The means of the exact theory in full slip are those of the global model: all tests slip fully.
+    for law in ("brr", "usfd", "kth"):
+        one, other = (ranking.rms_factor[f"{law} on {model} with patch_mean"] for model in ("exact", "global"))
+        assert one == pytest.approx(other, rel=1e-9)
+    assert "--stage patch_mean" not in result.stderr
+    assert "brr on exact is left out" in (without := wearlaw(*COMPARE, "-o", "plain").stderr)
+    assert "add --stage patch_mean" in without

@@ -60,16 +60,19 @@ def common(command: CommandT) -> CommandT:
     return command
 
 
-@click.command()
-@click.argument("tests")
-@click.option("--contact", required=True, metavar="MODEL", help="Contact model: exact, or NAME:FIELD=VALUE.")
-@click.option(
+stages_option = click.option(
     "--stage",
     "stages",
     metavar="STAGE",
     multiple=True,
-    help="Stage around the contact model: NAME:FIELD=VALUE; may be repeated.",
+    help="Stage around the contact model: patch_mean, or NAME:FIELD=VALUE; may be repeated.",
 )
+
+
+@click.command()
+@click.argument("tests")
+@click.option("--contact", required=True, metavar="MODEL", help="Contact model: exact, or NAME:FIELD=VALUE.")
+@stages_option
 @click.option("--law", metavar="LAW", help="Law: usfd, NAME:FIELD=VALUE or a TOML file; none for traction.")
 @click.option(
     "--free",
@@ -167,6 +170,7 @@ def _with_law(contact: Pipeline[...], text: str, given: dict[str, str], free: li
 @click.command()
 @click.argument("tests")
 @click.option("--contacts", required=True, metavar="MODELS", help="Contact models: global,exact or NAME:FIELD=VALUE.")
+@stages_option
 @click.option("--laws", required=True, metavar="LAWS", help="Laws: usfd,kth or NAME:FIELD=VALUE, or TOML files.")
 @click.option(
     "--free", metavar="LAW=FIELDS", multiple=True, help="Also fit this one of the laws, on every contact; repeatable."
@@ -191,6 +195,7 @@ def compare(
     wearlaw compare my-tests.csv --contacts global,exact,fastsim --laws usfd,kth,brr -o cmp/
     wearlaw compare my-tests.csv --contacts exact,fastsim --laws usfd:fitted_for=exact,fit/law.toml -o cmp/
     wearlaw compare my-tests.csv --contacts global,exact --laws usfd,kth --free usfd=q_s,m_c -o cmp/
+    wearlaw compare my-tests.csv --contacts exact,fastsim --stage patch_mean --laws usfd,brr -o cmp/
 
     A law is taken with its defaults unless options are given; a note says where its parameters were fitted for another
     contact. The folder then holds ranking.csv, the table that is printed; predictions.csv; a figure of measured against
@@ -211,6 +216,7 @@ def _compare(
     notes: Notes,
     *,
     contacts: str,
+    stages: tuple[str, ...],
     laws: str,
     free: tuple[str, ...],
     rig: Path | None,
@@ -219,9 +225,11 @@ def _compare(
 ) -> Comparison:
     """Return the comparison for these options."""
     tests = _tests(path, friction, False, notes)
-    named: dict[str, Any] = {text: law_of(text) for text in listed("--laws", laws)}
-    models = {text: contact_model(text) for text in listed("--contacts", contacts)}
-    pairs = compose(_rig(rig, notes), models, named, notes)
+    named = {text: law_of(text) for text in listed("--laws", laws)}
+    around = [stage(text) for text in stages]
+    suffix = f" with {' and '.join(stages)}" if stages else ""
+    models = {f"{text}{suffix}": contact_model(text) for text in listed("--contacts", contacts)}
+    pairs = compose(_rig(rig, notes), models, named, notes, stages=around, remedy="add --stage patch_mean")
     predictors: list[tuple[Names, Predictor]] = [
         (Names(pair.label, pair.law, pair.contact_model), pair.pipeline) for pair in pairs
     ]
