@@ -135,6 +135,7 @@ def test_a_plugin_that_is_left_out_leaves_nothing_changed_either(
 
 def test_a_library_of_a_plugin_may_filter_warnings_of_its_own_and_add_to_the_end_of_the_path(install: Install) -> None:
     lines = "import sys, warnings\nwarnings.filterwarnings('ignore', module='a_library')\nsys.path.append('/its/own')"
+    lines += "\nclass Own(UserWarning): pass\nwarnings.simplefilter('always', Own)"
     install("polite", plugin(lines))
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -45,8 +45,11 @@ def _set_filters(filters: list[Any]) -> None:
 
 
 def _of_all_warnings(filters: list[Any]) -> list[Any]:
-    """Return the filters for all messages of all modules; libraries add others for messages of their own."""
-    return [one for one in filters if one[1] is None and one[3] is None]
+    """Return the filters for all messages of all modules in Python's own categories.
+
+    Libraries add others for messages of their own.
+    """
+    return [one for one in filters if one[1] is None and one[3] is None and one[2].__module__ == "builtins"]
 
 
 _STATES = (
