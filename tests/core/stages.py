@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import wearlaw as wl
@@ -16,3 +17,19 @@ ELLIPTIC = wl.contact_model("fastsim", bound="elliptic")
 AS_PRINTED = wl.contact_model("exact", slip="as_printed")
 FITTED = {name: wl.wear_law("usfd", fitted_for=name) for name in ("global", "exact", "fastsim")}
 KTH, BRR = wl.wear_law("kth"), wl.wear_law("brr")
+
+
+def silently(first: Any, *parts: Any) -> Any:
+    """Return a pipeline composed without warnings."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        for part in parts:
+            first = first | part
+        return first
+
+
+def predicted(pipeline: Any, **conditions: Any) -> Any:
+    """Return a prediction made without warnings."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        return pipeline(**conditions)

@@ -17,8 +17,8 @@ from pydantic import Field
 import wearlaw as wl
 from tests.core import test_outcomes
 from tests.core.cases import POINT, InstallModel, case, changed, load, table, wearlaw
-from tests.core.stages import EXACT, KTH, RIG
-from tests.core.test_outcomes import Heat, Volume, predicted, silently
+from tests.core.stages import EXACT, KTH, RIG, predicted, silently
+from tests.core.test_outcomes import Heat, Volume
 from wearlaw.errors import CompositionError
 from wearlaw.output.results import table as csv_table
 from wearlaw.report.page import report

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.stages import CONDITIONS, EXACT, FASTSIM, GLOBAL, KTH, ON_RAILS, RAILS, RIG
+from tests.core.stages import CONDITIONS, EXACT, FASTSIM, GLOBAL, KTH, ON_RAILS, RAILS, RIG, predicted, silently
 from wearlaw import Array, Q
 
 EPS = float(np.finfo(np.float64).eps)
@@ -68,20 +68,6 @@ class Volume(wl.WearLaw):
 
     def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         return {}
-
-
-def silently(first: Any, *parts: Any) -> Any:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)
-        for part in parts:
-            first = first | part
-        return first
-
-
-def predicted(pipeline: Any, **conditions: Any) -> Any:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)
-        return pipeline(**conditions)
 
 
 @pytest.mark.parametrize("model", [EXACT, FASTSIM, GLOBAL], ids=lambda model: model.name)
@@ -203,6 +189,60 @@ def test_a_law_of_the_other_body_that_it_was_fitted_to_is_warned_of() -> None:
         warnings.simplefilter("always")
         _ = RIG | GLOBAL | law.model_copy(update={"body": first})
     assert not any("used for the wear of" in str(one.message) for one in caught)
+
+
+class OfItsBody(wl.WearLaw):
+    """Wear that starts at a traction, in proportion to the stiffness of the body that wears."""
+
+    name: ClassVar[str] = "of_its_body"
+    source: ClassVar[str] = "test"
+    border: float = 1e8
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        stiffness = contact.body().material.youngs_modulus.m_as("Pa")
+        above = np.abs(contact.traction) >= p["border"]
+        return np.where(above, 1e-20 * stiffness * np.abs(contact.wear_index_density), 0.0)
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"traction": (p["border"],)}
+
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return self.breakpoints(p)
+
+
+@pytest.mark.parametrize("model", ["fastsim", "exact"])
+def test_a_law_reads_the_body_that_it_is_for_also_in_split_cells(model: str) -> None:
+    """Both bodies see one contact, so their rates are as their moduli, whichever part of the patch is integrated."""
+    mixed = wl.WheelRail(**{**dict(RAILS), "rail_material": BRONZE})
+    rig, conditions, (one, two) = (
+        (mixed, ON_RAILS, mixed.bodies) if model == "fastsim" else (MIXED, CONDITIONS, MIXED.bodies)
+    )
+    contact = wl.contact_model(model)
+    found = predicted(silently(rig, contact, OfItsBody(body=one), OfItsBody(body=two)), **conditions)
+    every = predicted(silently(rig, contact, OfItsBody()), **conditions)
+    moduli = [rig.bodies[body].material.youngs_modulus for body in (one, two)]
+    for result in (found, every):
+        ratio = (result.wear_rate_of(two) / result.wear_rate_of(one)).m_as("")
+        assert ratio == pytest.approx((moduli[1] / moduli[0]).m_as(""), rel=16 * EPS)
+
+
+class PatchOfItsBody(Damage):
+    """A value of the patch, that of the material of the body."""
+
+    name: ClassVar[str] = "patch_of_its_body"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return np.full_like(contact.wear_index, contact.body().material.poisson_ratio)
+
+
+@pytest.mark.parametrize("model", ["fastsim", "exact"])
+def test_a_value_of_the_patch_is_that_of_the_body(model: str) -> None:
+    mixed = wl.WheelRail(**{**dict(RAILS), "rail_material": BRONZE})
+    rig, conditions = (mixed, ON_RAILS) if model == "fastsim" else (MIXED, CONDITIONS)
+    laws = [PatchOfItsBody(body=body) for body in rig.bodies]
+    found = predicted(silently(rig, wl.contact_model(model), *laws), **conditions)
+    values = [found.outcome("rcf_damage", body).magnitude for body in rig.bodies]
+    assert values == [body.material.poisson_ratio for body in rig.bodies.values()]
 
 
 # --- Wrong input -----------------------------------------------------------------------------------------------
@@ -375,6 +415,45 @@ def test_a_border_of_its_own_splits_the_cells_of_strips() -> None:
     assert own == named != undeclared
 
 
+class Pressed(wl.Law):
+    """1 where the pressure passes a border, whether the bodies stick there or not."""
+
+    name: ClassVar[str] = "pressed"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("pressed_share", unit="", of="area mean")
+    border: float
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return np.where(contact.pressure >= p["border"], 1.0, 0.0)
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"pressure": (p["border"],)}
+
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return self.breakpoints(p)
+
+
+def test_cells_are_split_where_the_bodies_stick_if_the_value_is_not_zero_there() -> None:
+    """Hertz's pressure passes p over the share 1 - (p/p0)² of the area.
+
+    Nearly the whole patch sticks. From 20 to 80 strips the error falls by 16 in second order and by 4 in first.
+    """
+    shares = np.linspace(0.3, 0.9, 13)
+    conditions: dict[str, Any] = {
+        "max_pressure": "1000 MPa",
+        "friction_coefficient": 0.4,
+        "longitudinal_creepage": "0.02 %",
+    }
+    errors = []
+    for strips in (20, 80):
+        contact = RAILS | wl.contact_model("fastsim", strips=strips)
+        found = [predicted(contact | Pressed(border=1e9 * share), **conditions) for share in shares]
+        assert found[0].stick_ratio.magnitude > 0.9
+        values = np.array([one["pressed_share"].magnitude for one in found])
+        errors.append(np.sqrt(np.mean((values - (1.0 - shares**2)) ** 2)))
+    assert errors[0] / errors[1] > 8.0
+
+
 # --- Memory: the distance rolled -------------------------------------------------------------------------------
 
 
@@ -401,4 +480,4 @@ def test_a_law_reads_the_distance_rolled(rig: Any, conditions: dict[str, Any]) -
     with pytest.raises(wl.CompositionError, match="rolled_distance: a law needs it, but the conditions do not give it"):
         predicted(predict, **conditions)
     with pytest.raises(wl.UnitError, match=r"rolled_distance: .*must not be negative"):
-        predicted(predict, **conditions, rolled_distance="-1 km")
+        predicted(predict, **conditions, rolled_distance=Q([1.0, -1.0], "km"))

@@ -104,7 +104,10 @@ def test_no_range_and_no_points_are_no_matter() -> None:
     assert messages(RangeWatch(Stated())) == []
 
 
-@pytest.mark.parametrize("name", ["pressure", "traction", "slip", "slip_speed", "wear_index", "wear_index_density"])
+NAMES = ("pressure", "traction", "slip", "slip_speed", "wear_index", "wear_index_density", "frictional_power_density")
+
+
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> None:
     creepage = sign * np.geomspace(1e-3, 0.3, 4)
@@ -117,6 +120,7 @@ def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> 
         "slip_speed": 2.0 * np.abs(creepage),
         "wear_index": contact.sum_over_nodes(contact.wear_index_density * contact.area),
         "wear_index_density": contact.mean(contact.wear_index_density),
+        "frictional_power_density": 2.0 * contact.mean(contact.wear_index_density),
     }[name]
     between = 0.5 * (values[1:] + values[:-1])
     for low, high, outside in ((between[0], between[1], 3), (0.0, between[1], 2), (between[0], 1e12, 1)):
@@ -130,7 +134,7 @@ def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> 
 ON_RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 
 
-@pytest.mark.parametrize("name", ["pressure", "traction", "slip", "slip_speed", "wear_index", "wear_index_density"])
+@pytest.mark.parametrize("name", NAMES)
 def test_every_variable_of_an_ellipse_is_watched_by_its_patch_mean(name: str) -> None:
     along, across = np.array([1e-3, 2e-3, -4e-3, 8e-3]), np.array([2e-3, -1e-3, 3e-3, 5e-3])
     one = ON_RAILS.problem(
@@ -149,6 +153,7 @@ def test_every_variable_of_an_ellipse_is_watched_by_its_patch_mean(name: str) ->
         "slip_speed": 30.0 * slip,
         "wear_index": power,
         "wear_index_density": power / area,
+        "frictional_power_density": 30.0 * power / area,
     }[name]
     columns = dataclasses.asdict(forces)
     assert mean_over_patch(one, columns, name) == pytest.approx(values, rel=64 * float(np.finfo(np.float64).eps))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -11,7 +10,7 @@ from pydantic import Field
 
 import wearlaw as wl
 from tests.core.distributions import Install
-from tests.core.stages import CONDITIONS, EXACT, FASTSIM, GLOBAL, KTH, RIG
+from tests.core.stages import CONDITIONS, EXACT, FASTSIM, GLOBAL, KTH, RIG, predicted, silently
 from wearlaw import Array, Q
 from wearlaw.numerics.integrate import integrate_forces
 
@@ -58,20 +57,6 @@ class Softening(wl.Stage):
         return problem.replaced(friction_coefficient=problem.friction_coefficient * (1.0 - 0.5 * used))
 
 
-def silently(first: Any, *parts: Any) -> Any:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)
-        for part in parts:
-            first = first | part
-        return first
-
-
-def predicted(pipeline: Any, **conditions: Any) -> Any:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)
-        return pipeline(**conditions)
-
-
 USFD = wl.wear_law("usfd", fitted_for="exact")
 HALF = {**CONDITIONS, "friction_coefficient": 0.5 * CONDITIONS["friction_coefficient"]}
 
@@ -103,6 +88,32 @@ def test_a_stage_that_overrides_solve_gives_the_same_within_its_error() -> None:
     gap = abs(solves.wear_rate - alters.wear_rate)
     assert gap <= solves.wear_rate_error + alters.wear_rate_error
     assert solves.wear_rate_error > 1e3 * alters.wear_rate_error, "its nodes do not know the law's borders"
+
+
+def test_the_error_and_the_strips_of_a_stage_that_overrides_solve_are_those_of_the_altered_problem() -> None:
+    law = wl.wear_law("usfd")
+    solves, alters = (
+        predicted(silently(RAILS, FASTSIM, stage, law), **ON_RAILS) for stage in (LubricatedBySolving(), Lubricated())
+    )
+    assert np.array_equal(solves.wear_rate_error.magnitude, alters.wear_rate_error.magnitude)
+    for strips in (None, 31):
+        one, other = (result.wear_profile("wheel", strips=strips) for result in (solves, alters))
+        assert one.identical(other)
+    assert one.depth.shape == (2, 31)
+
+
+class Balancing(wl.WheelRail):
+    """Presses the wheel down by the longitudinal force."""
+
+    def balanced(self, problem: wl.Problem, forces: Any) -> wl.Problem:
+        return problem.with_normal_force(problem.normal_force + np.abs(forces(problem).longitudinal))
+
+
+def test_a_rig_balances_its_loads_with_the_forces_behind_the_stages() -> None:
+    rig = Balancing(**dict(RAILS))
+    load = predicted(rig | FASTSIM | Lubricated(), **ON_RAILS).normal_force.m_as("N")
+    force = predicted(RAILS | FASTSIM | Lubricated(), **ON_RAILS).longitudinal_force.m_as("N")
+    assert load == pytest.approx(50e3 + np.abs(force), rel=16 * EPS)
 
 
 def test_a_stage_sees_the_forces_of_the_model_inside() -> None:

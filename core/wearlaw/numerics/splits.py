@@ -76,7 +76,7 @@ def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p:
     shares.sort(axis=-1)
     middle, part = 0.5 * (shares[:, 1:] + shares[:, :-1]), np.diff(shares, axis=-1) * step[first][:, None]
     own = {name: value[point] if isinstance(value, np.ndarray) else value for name, value in p.items()}
-    there = law.checked_rate(_between(contact, problem, first, second, middle), own)[..., 0]
+    there = law.checked_rate(_between(contact, first, second, middle), own)[..., 0]
     in_first = middle < in_first_until
     split = rate.copy()
     for cell, in_cell in ((first, in_first), (second, ~in_first)):
@@ -85,7 +85,7 @@ def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p:
     return split
 
 
-def _between(contact: Contact, problem: Problem, first: Any, second: Any, share: Array) -> Contact:
+def _between(contact: Contact, first: Any, second: Any, share: Array) -> Contact:
     """Return the contact at shares (pairs, k) of the way from a first node to a second, as one strip for each pair."""
     point, _, strip = first
     fields = {}
@@ -97,6 +97,6 @@ def _between(contact: Contact, problem: Problem, first: Any, second: Any, share:
         **fields,
         area=np.ones_like(fields["x"]),
         strip_width=contact.strip_width[point, strip][:, None],
-        problem=problem[point],
+        problem=contact.problem and contact.problem[point],
         **{name: getattr(contact, name)[point] for name in TOTALS},
     )

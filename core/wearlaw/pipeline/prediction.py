@@ -384,8 +384,8 @@ class Prediction:
     def wear_rate(self) -> Quantity:
         """Mass lost per metre rolled and contact area, mean over the patch [kg/m/m²].
 
-        If the law gives a volume and the densities of the bodies differ, the mass is that of body 1. If each body has
-        its own law, take `wear_rate_of`.
+        If the law gives a volume and the densities of the bodies differ, the mass is that of body 1. With a single law
+        for one body it is the wear of that body; if each body has its own law, take `wear_rate_of`.
         """
         return from_si(self._solved_totals.values[self._wear_law()], WEAR_RATE)
 
