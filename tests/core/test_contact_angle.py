@@ -237,7 +237,7 @@ def test_the_normal_depth_over_the_surface_is_the_mass_lost() -> None:
 
 
 def test_a_missing_patch_has_no_parts_of_a_depth() -> None:
-    two = problem(Q([70.0, 20.0], "deg")).replaced(dims=("patch",), exists=np.array([True, False]))
+    two = problem(Q([70.0, 20.0], "deg")).replaced(dims={"patch": (1, 2)}, exists=np.array([True, False]))
     profile = (rig() | FASTSIM | PerEnergy()).predict(two).wear_profile("wheel")
     alone = predicted(contact_angle="70 deg").wear_profile("wheel")
     assert profile.depth_lateral.dims[0] == "patch"

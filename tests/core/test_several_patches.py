@@ -14,7 +14,7 @@ from wearlaw import Array, Q
 
 RADIUS, CONICITY, FLANGE = 0.46, 0.05, 6e-3
 WHEEL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
-PATCHES = ("side", "patch")
+PATCHES: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch": (1, 2)}
 CREEP: Any = {"longitudinal_creepage": "0.2 %", "spin": "0.3 1/m", "friction_coefficient": 0.3}
 GIVEN: Any = {"load": "80 kN", "displacement": Q([0.0, 5.0, 7.0], "mm"), **CREEP}
 EXISTS = np.array([[[1, 0], [1, 0]], [[1, 0], [1, 0]], [[1, 0], [1, 1]]], dtype=bool)
@@ -27,7 +27,7 @@ class Axle(wl.Rig):
     name: ClassVar[str] = "axle"
     source: ClassVar[str] = "a test"
     creepage: ClassVar[str] = "longitudinal_creepage"
-    dims: ClassVar[tuple[str, ...]] = PATCHES
+    dims: ClassVar[Mapping[str, tuple[str | int, ...]]] = PATCHES
 
     @property
     def bodies(self) -> Mapping[str, wl.Body]:
@@ -121,7 +121,7 @@ def test_patches_of_a_line_may_be_missing_too(model: str) -> None:
             """Return the problem of both."""
             both = Q(np.full(2, wl.Unit("", positive=False).si(creepage, "creepage")), "")
             found = discs.problem(creepage=both, max_pressure="1.5 GPa", friction_coefficient=0.46)
-            return found.replaced(dims=("disc",), exists=np.array([True, not lifted]))
+            return found.replaced(dims={"disc": (1, 2)}, exists=np.array([True, not lifted]))
 
     discs = wl.TwinDisc.suros()
     for law in ("usfd", "kth"):
@@ -232,3 +232,16 @@ def test_another_normal_force_gives_the_patch_of_hertz(factor: float) -> None:
         loaded = one.with_normal_force(factor * one.normal_force)
         for name in ("a", "b", "normal_force", "max_pressure"):
             assert getattr(loaded, name) == pytest.approx(getattr(other, name), rel=16 * EPS)
+
+
+@pytest.mark.parametrize("dims", [("side", "patch"), {"side": ("left",), "patch": (1, 2)}, {"patch": 2}])
+def test_labels_of_axes_must_fit_the_batch(dims: Any) -> None:
+    class Mislabelled(Axle):
+        name: ClassVar[str] = "mislabelled"
+
+        def problem(self, **conditions: Any) -> wl.Problem:
+            return super().problem(**conditions).replaced(dims=dims)
+
+    predict = Mislabelled() | wl.contact_model("fastsim")
+    with pytest.raises(wl.ModelError, match=r"rig 'mislabelled' gave .* a batch of shape \(3, 2, 2\).*with a label"):
+        predict(**GIVEN)

@@ -238,7 +238,7 @@ class TwoPatches(wl.WheelRail):
         exists = np.ones((*one.batch_shape, 2), dtype=bool)
         exists[..., -1, 1] = False
         wide = one.mapped(lambda array: np.repeat(array[..., None], 2, axis=-1))
-        return wide.replaced(dims=("patch",), exists=exists)
+        return wide.replaced(dims={"patch": (1, 2)}, exists=exists)
 
 
 class SeesOnlyNumbers(Lubricated):

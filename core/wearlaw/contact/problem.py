@@ -193,8 +193,9 @@ class Problem:
         The strips and their pressure, if the patch is neither a line nor an ellipse.
     bodies : mapping of str to Body
         The two bodies by name; wear is predicted for the first body. {} if the bodies are unknown.
-    dims : tuple of str
-        Names of the last axes of the batch, if the rig adds axes to those of the conditions.
+    dims : mapping of str to tuple
+        Names of the last axes of the batch, if the rig adds axes to those of the conditions, each with the labels of
+        its entries, such as {"side": ("left", "right"), "patch": (1, 2, 3)}.
     exists : array of bool, or None
         Marks the existing patches; the others are not solved, and their results are NaN. None if all patches exist.
     """
@@ -217,7 +218,7 @@ class Problem:
     rolled_distance: Array | None = None
     strips: Strips | None = None
     bodies: Mapping[str, Body] = field(default_factory=dict)
-    dims: tuple[str, ...] = ()
+    dims: Mapping[str, tuple[str | int, ...]] = field(default_factory=dict)
     exists: NDArray[np.bool_] | None = None
 
     @classmethod
@@ -542,7 +543,7 @@ class Problem:
         flat = self.mapped(_flat)
         if not flat.dims and flat.exists is None:
             return flat
-        flat = flat.replaced(dims=(), exists=None)
+        flat = flat.replaced(dims={}, exists=None)
         return flat if self.exists is None else flat[self.exists.reshape(-1)]
 
     def existing(self) -> Self:

@@ -158,9 +158,23 @@ class Rig(Model):
             raise
         if not isinstance(problem, Problem):
             raise ModelError(f"rig '{self.name}' returned {problem!r}, not a wearlaw.Problem")
+        if problem.dims:
+            self._check_dims(problem)
         if problem.exists is not None:
             problem = self._masked(problem)
         return problem if problem.bodies else problem.replaced(bodies=self.bodies)
+
+    def _check_dims(self, problem: Problem) -> None:
+        """Raise an error if the labels of the rig's own axes do not fit the shape of the batch."""
+        try:
+            labels = tuple(len(labels) for labels in problem.dims.values())
+        except (AttributeError, TypeError):
+            labels = None
+        if labels is None or problem.batch_shape[-len(labels) :] != labels:
+            raise ModelError(
+                f"rig '{self.name}' gave {problem.dims!r} as `dims` of a batch of shape {problem.batch_shape}; `dims`"
+                ' holds the names of its last axes with a label for each entry, such as {"side": ("left", "right")}'
+            )
 
     def _masked(self, problem: Problem) -> Problem:
         """Return the problem with NaN for patches that do not exist."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import asdict
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -573,7 +573,7 @@ def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Pr
     return found
 
 
-def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str, named: tuple[str, ...]) -> xarray.Dataset:
+def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str, named: Collection[str]) -> xarray.Dataset:
     batch = _batch_dims(y.ndim - 1, named)
     dims = [*batch, "strip"] if batch else ["y"]
     place = (dims, in_unit(y, "mm"), {"units": "mm", "long_name": name_of("y")})
@@ -590,7 +590,7 @@ def _dataset(coordinates: Mapping[str, Any], variables: Mapping[str, Any]) -> xa
     return xarray.Dataset(variables, coordinates)
 
 
-def _batch_dims(axes: int, named: tuple[str, ...]) -> list[str]:
+def _batch_dims(axes: int, named: Collection[str]) -> list[str]:
     """Return names for the axes of a batch; the rig may have named the last ones."""
     return [*(f"point_{axis}" for axis in range(axes - len(named))), *named]
 
