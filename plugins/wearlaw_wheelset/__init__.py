@@ -1,0 +1,1 @@
+"""Wheels and rails: where they touch, and how."""
