@@ -72,6 +72,22 @@ class Cut(Axle):
         return found.replaced(geometry="strips", strips=strips, normal_force=strips.normal_force.sum(axis=-1))
 
 
+class Worn(Cut):
+    """The axle with patches of either shape."""
+
+    name: ClassVar[str] = "worn"
+    hertzian: bool = True
+
+    @property
+    def geometry(self) -> wl.Geometry:
+        """The shape that the field chooses."""
+        return "ellipse" if self.hertzian else "strips"
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        """Return the problem of ellipses or strips."""
+        return (Axle() if self.hertzian else Cut()).problem(**conditions)
+
+
 STRIPS = 12
 CUT: Any = Cut() | wl.contact_model("fastsim") | KTH
 LOADS = Q(np.array([[[80.0, np.nan]] * 2] * 2 + [[[80.0, np.nan], [60.0, 20.0]]]), "kN")
@@ -408,3 +424,21 @@ def test_a_wrong_position_is_named_with_those_there_are(chosen: Any, said: str) 
 def test_one_operating_point_has_no_axes_to_select_from() -> None:
     with pytest.raises(wl.InputError, match=r"isel: no axis 'point_0'.* none at one operating point"):
         ALONE(normal_force="80 kN", **CREEP).isel(point_0=0)
+
+
+# --- A field that chooses the shape ----------------------------------------------------------------------------------
+
+
+def test_a_rig_may_choose_its_geometry_by_a_field() -> None:
+    ellipse = (Worn() | wl.contact_model("polach"))(**GIVEN)
+    assert ellipse.problem.geometry == "ellipse"
+    strips: Any = Worn(hertzian=False) | wl.contact_model("fastsim") | KTH
+    np.testing.assert_array_equal(of(strips(**GIVEN), "wear_rate"), of(CUT(**GIVEN), "wear_rate"))
+    with pytest.raises(
+        wl.CompositionError,
+        match="contact model 'polach' solves elliptic contacts only, but a Worn makes patches of strips;"
+        r" those that solve them: .*fastsim",
+    ):
+        Worn(hertzian=False) | wl.contact_model("polach")
+    with pytest.raises(wl.InputError, match=r"problem: has the geometry 'ellipse', but a Worn makes .*'strips'"):
+        strips.predict(ellipse.problem)
