@@ -62,11 +62,12 @@ CLOSED = 1e-12
 
 @dataclass(frozen=True)
 class Elastic:
-    """E* [Pa], G [Pa] and ν of the pair."""
+    """E* [Pa], G [Pa] and ν of the pair, and the density of the wheel [kg/m³]."""
 
     modulus: float
     shear_modulus: float
     poisson_ratio: float
+    density: float
 
 
 @dataclass(frozen=True)
@@ -375,39 +376,55 @@ class Balance:
         normal = np.maximum(depth - part.gap, LEAST * depth) * part.cosine
         task, elastic = self.task, self.elastic
         side = np.where(part.side == 1, 1.0, -1.0)
-        if self.hertz:
-            raise NotImplementedError
-        found = _normal.penetrated(
-            part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, elastic.modulus, normal,
-            self.strips,
-        )  # fmt: skip
-        place = placed(self.section, part.position, part.arc + found.centre)
+        patch = self._ellipse(part, normal) if self.hertz else self._strips(part, normal, scale[part.wheel])
+        arc = part.arc + patch.pop("centre")
+        place = placed(self.section, part.position, arc)
         sliding = creepages(
             part.position, place, task.speed[part.point], side * task.lateral_velocity[part.point],
             side * task.turn_rate[part.point], side,
         )  # fmt: skip
-        angle = side * place.angle
         flange = (np.abs(place.angle) > task.flange_angle).astype(np.intp)
         longitudinal, lateral, spin = sliding.at(rotation[part.point])
-        across = side[:, None] * (found.y - found.centre[:, None])
-        left = part.side == 0
-        strips = {"y": across, "width": found.width, "half_length": found.half_length, "max_pressure": found.pressure * scale[part.wheel, None]}
-        strips = {name: np.where(left[:, None], array[:, ::-1], array) for name, array in strips.items()}
-        problem = wl.Problem.of_strips(
-            wl.Strips(**strips),
-            shear_modulus=np.full(side.shape, elastic.shear_modulus),
-            poisson_ratio=np.full(side.shape, elastic.poisson_ratio),
-            a=found.a,
-            b=found.b,
+        same = {
+            "shear_modulus": elastic.shear_modulus, "poisson_ratio": elastic.poisson_ratio, "density": elastic.density,
+        }  # fmt: skip
+        make = wl.Problem.ellipse_from_si if self.hertz else wl.Problem.of_strips
+        problem = make(
+            **patch,
+            **{name: np.full(side.shape, value) for name, value in same.items()},
             friction_coefficient=task.friction[part.point, flange],
             longitudinal_creepage=longitudinal,
             lateral_creepage=lateral,
             spin=spin,
             rolling_speed=task.speed[part.point],
-            density=np.full(side.shape, 7850.0),
-            contact_angle=angle,
+            contact_angle=side * place.angle,
         )
-        return problem, Patches(problem.normal_force, part.arc + found.centre, place, sliding, depth > part.gap)
+        return problem, Patches(problem.normal_force, arc, place, sliding, depth > part.gap)
+
+    def _strips(self, part: Candidates, penetration: Array, scale: Array) -> dict[str, Any]:
+        """Return the strips of patches at penetrations normal to the surface [m], and the semi-axes and the centre."""
+        found = _normal.penetrated(
+            part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus, penetration,
+            self.strips,
+        )  # fmt: skip
+        right = (part.side == 1)[:, None]
+        across = np.where(right, 1.0, -1.0) * (found.y - found.centre[:, None])
+        arrays = {
+            "y": across,
+            "width": found.width,
+            "half_length": found.half_length,
+            "max_pressure": found.pressure * scale[:, None],
+        }  # y grows on the left too
+        strips = {name: np.where(right, array, array[:, ::-1]) for name, array in arrays.items()}
+        return {"strips": wl.Strips(**strips), "a": found.a, "b": found.b, "centre": found.centre}
+
+    def _ellipse(self, part: Candidates, penetration: Array) -> dict[str, Any]:
+        """Return Hertz's ellipses of the curvatures at first touching."""
+        at = placed(self.section, part.position, part.arc)
+        across = 0.5 * (self.section.wheel.at(part.arc)[3] + self.section.rail.at(at.rail_arc)[3])
+        unit = _normal.hertz(part.curvature_x, across, self.elastic.modulus, np.ones(across.shape))
+        share = np.sqrt(penetration / unit.penetration)
+        return {"a": unit.a * share, "b": unit.b * share, "normal_force": share**3, "centre": np.zeros(across.shape)}
 
 
 @dataclass(frozen=True)

@@ -121,12 +121,16 @@ class Section:
         profile, from the top of the flange to the field side.
     rail_z, rail_position : Table
         Height of the rail, positive downwards, and the arc length of its profile, over y.
+    wheel, rail : Curve
+        The profiles.
     """
 
     wheel_y: Table
     wheel_radius: Table
     rail_z: Table
     rail_position: Table
+    wheel: Curve
+    rail: Curve
 
     @cached_property
     def coarse(self) -> Coarse:
@@ -189,9 +193,8 @@ def section(
     at = y[first] + FINE * np.arange(count + 1)
     height = scipy.interpolate.CubicHermiteSpline(y[kept], z[kept], np.tan(angle[kept]))
     place = scipy.interpolate.CubicHermiteSpline(y[kept], rail.s[kept], 1.0 / np.cos(angle[kept]))
-    return Section(
-        across, radius, Table(at[0], FINE, height(at), height(at, 1)), Table(at[0], FINE, place(at), place(at, 1))
-    )
+    tables = (Table(at[0], FINE, of(at), of(at, 1)) for of in (height, place))
+    return Section(across, radius, *tables, wheel, rail)
 
 
 class Position(NamedTuple):

@@ -25,7 +25,7 @@ class Weight(wl.Rig):
 
     name: ClassVar[str] = "weight"
     source: ClassVar[str] = "made up for the tests"
-    geometry: ClassVar[wl.Geometry | None] = "line"
+    patch_geometry: ClassVar[wl.Geometry | None] = "line"
     example: ClassVar[Mapping[str, Any]] = {"mass": "20 kg", "creepage": "1 %", "friction_coefficient": 0.4}
 
     arm: wl.Length = Field(default="50 cm", validate_default=True)
@@ -288,7 +288,7 @@ class RunsIn(Changed):
 class WrongGeometry(Weight):
     """Says that its patch is an ellipse."""
 
-    geometry: ClassVar[wl.Geometry | None] = "ellipse"
+    patch_geometry: ClassVar[wl.Geometry | None] = "ellipse"
 
 
 class BodiesWithSpaces(Weight):

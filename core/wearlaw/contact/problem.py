@@ -564,7 +564,7 @@ class Problem:
 
     def mapped(self, function: Callable[[Array], Array]) -> Self:
         """Return the problem with a function applied to each of its arrays."""
-        fields: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
+        fields: dict[str, Any] = {name: getattr(self, name) for name in self.__dataclass_fields__}
         for name in ARRAYS:
             if fields[name] is not None:
                 fields[name] = function(fields[name])

@@ -72,7 +72,7 @@ class Rig(Model):
 
     kind: ClassVar[str] = "rig"
 
-    geometry: ClassVar = cast(Any, None)  # Any: for type checkers, a subclass may make it a property
+    patch_geometry: ClassVar = cast(Any, None)  # Any: for type checkers, a subclass may make it a property
     """The shape of the patch. A contact model that cannot solve it raises an error at once. None if the shape is known
     only from the problem. A rig with a field that chooses the shape can make it a property."""
 
@@ -252,7 +252,7 @@ class Pipeline(Configuration, Generic[P]):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        check_geometry(self.rig, self.contact_model, self.rig.geometry)
+        check_geometry(self.rig, self.contact_model, self.rig.patch_geometry)
         for law in self.laws:
             check_scale(self.scale, self.contact_model, law)
             law.check_variables()
@@ -305,7 +305,7 @@ class Pipeline(Configuration, Generic[P]):
         if not isinstance(part, Law):
             raise CompositionError(f"a {before} is followed by {after}, not by {part!r}; {ORDER}")
         pipeline = self.with_law(*self.laws, part)
-        warn_of_calibration(self.rig.geometry, self.contact_model, self.scale, part)
+        warn_of_calibration(self.rig.patch_geometry, self.contact_model, self.scale, part)
         warn_of_materials(self.rig.bodies, part)
         if part.body is not None and self.rig.bodies:
             warn_of_body(self.rig.bodies, part, part.body, stacklevel=3)
@@ -361,10 +361,10 @@ class Pipeline(Configuration, Generic[P]):
         stacklevel : int
             The caller that warnings name; 2 is the caller of this method.
         """
-        if self.rig.geometry not in (None, problem.geometry):
+        if self.rig.patch_geometry not in (None, problem.geometry):
             raise InputError(
                 f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"
-                f" the geometry '{self.rig.geometry}'; make it with the `problem` method of the rig"
+                f" the geometry '{self.rig.patch_geometry}'; make it with the `problem` method of the rig"
             )
         self.warn_of_problem(problem, stacklevel + 1)
         watch = self.range_watch()
@@ -379,7 +379,7 @@ class Pipeline(Configuration, Generic[P]):
         If the rig declares its geometry or its bodies, composing the pipeline gave the warning. `stacklevel` 1 is this
         method.
         """
-        rig, declared = self.rig, self.rig.geometry is not None
+        rig, declared = self.rig, self.rig.patch_geometry is not None
         for law in self.laws:
             calibration = law.calibration
             if not declared and calibration is not None and calibration.geometry not in ("any", problem.geometry):

@@ -92,7 +92,7 @@ class Chosen(Roller):
     crowned: bool = False
 
     @property
-    def geometry(self) -> wl.Geometry:
+    def patch_geometry(self) -> wl.Geometry:
         """The shape of the patch."""
         return "ellipse" if self.crowned else "line"
 
