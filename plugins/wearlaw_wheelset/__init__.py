@@ -1,5 +1,5 @@
 """Wheelsets on track: profiles of wheels and rails."""
 
-from wearlaw_wheelset._profile import Profile
+from wearlaw_wheelset._profile import Profile, read_profile, write_profile
 
-__all__ = ["Profile"]
+__all__ = ["Profile", "read_profile", "write_profile"]

@@ -218,17 +218,11 @@ class Parametric:
         knots, lengths = self._knots, self._lengths
         cell = np.clip(np.searchsorted(lengths, s, side="right") - 1, 0, knots.size - 2)
         low, high = knots[cell], knots[cell + 1]
-        u = low + (s - lengths[cell]) / (lengths[cell + 1] - lengths[cell]) * (high - low)
+        u: Array = low + (s - lengths[cell]) / (lengths[cell + 1] - lengths[cell]) * (high - low)
         for _ in range(_NEWTON):
             excess = lengths[cell] + self._between(low, u) - s
             u = np.clip(u - excess / np.hypot(*self._derivative(u, 1)), low, high)
         return u
-
-    def length_at(self, u: Array) -> Array:
-        """Return the arc lengths at parameters [m]."""
-        cell = np.clip(np.searchsorted(self._knots, u, side="right") - 1, 0, self._knots.size - 2)
-        length: Array = self._lengths[cell] + self._between(self._knots[cell], u)
-        return length
 
     def at(self, s: Array) -> Local:
         """Return position, angle and its rate at arc lengths from its begin [m]."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,13 +26,19 @@ BLOCK = 64
 """Steps in a block whose bounding box is compared with those of others."""
 
 
-def check_points(y: Array, z: Array) -> None:
+Name = Callable[[int], str]
+"""Returns the name of a point in messages from its index."""
+
+
+def check_points(y: Array, z: Array, name: Name) -> None:
     """Raise an error if points cannot be joined to one profile.
 
     Parameters
     ----------
     y, z : ndarray of float64, shape (n,)
-        The points [m], in growing order along the profile.
+        The points [m], in their order along the profile.
+    name : callable
+        Returns the name of a point from its index.
 
     Raises
     ------
@@ -42,7 +50,7 @@ def check_points(y: Array, z: Array) -> None:
         raise wl.InputError(f"y and z must have the same number of values, got {y.size} and {z.size}")
     if not FEWEST <= y.size <= MOST:
         raise wl.InputError(f"a profile needs {FEWEST} to {MOST} points, got {y.size}")
-    _refuse(~(np.isfinite(y) & np.isfinite(z)), y, z, "is not finite", "leave it out")
+    _refuse(~(np.isfinite(y) & np.isfinite(z)), y, z, name, "is not finite", "leave it out")
     width = y.max() - y.min()
     if not NARROWEST <= width <= WIDEST:
         hint = "; were they in metres? Give their unit" if width < 1e-2 * NARROWEST else ""
@@ -52,17 +60,18 @@ def check_points(y: Array, z: Array) -> None:
         )
     step_y, step_z = np.diff(y), np.diff(z)
     step = np.hypot(step_y, step_z)
-    _refuse(np.append(False, step < LEAST_STEP), y, z, "is the same as the point before", "leave one of them out")
+    _refuse(np.append(False, step < LEAST_STEP), y, z, name, "is the same as the point before", "leave one of them out")
     cross = step_y[:-1] * step_z[1:] - step_z[:-1] * step_y[1:]
     turn = np.abs(np.arctan2(cross, step_y[:-1] * step_y[1:] + step_z[:-1] * step_z[1:]))
     back = np.zeros(y.size, dtype=np.bool_)
     back[1:-1] = turn > np.deg2rad(SHARPEST)
-    _refuse(back, y, z, "is where the profile runs back on itself", "put the points in their order along the profile")
+    _refuse(back, y, z, name, "is where the profile runs back on itself", "put the points in their order")
     longest = max(LONGEST_STEP, TIMES_MEDIAN * float(np.median(step)))
     _refuse(
         np.append(step > longest, False),
         y,
         z,
+        name,
         f"has a gap behind it: the next point is {_mm(step.max())} away, the median distance is"
         f" {_mm(float(np.median(step)))}",
         f"add points, so that no two are further apart than {_mm(longest)}, or cut the profile there",
@@ -71,12 +80,12 @@ def check_points(y: Array, z: Array) -> None:
     if crossing is not None:
         first, second = crossing
         raise wl.InputError(
-            f"the profile crosses itself: the line behind {_point(first, y, z)} meets that behind"
-            f" {_point(second, y, z)}; leave out the points of the loop, or put them in their order along the profile"
+            f"the profile crosses itself: the line behind {_point(first, y, z, name)} meets that behind"
+            f" {_point(second, y, z, name)}; leave out the points of the loop, or put all points in their order"
         )
 
 
-def check_orientation(kind: str, y: Array, z: Array) -> None:
+def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
     """Raise an error if a profile is upside down, or if a wheel has its flange at y > 0.
 
     Raises
@@ -92,18 +101,22 @@ def check_orientation(kind: str, y: Array, z: Array) -> None:
         part = "flange" if kind == "wheel" else "side"
         place = int(np.argmin(z))
         raise wl.InputError(
-            f"the {kind} is upside down: z is positive down, but its {part} has {_point(place, y, z)}, above its"
+            f"the {kind} is upside down: z is positive down, but its {part} has {_point(place, y, z, name)}, above its"
             f" median height of {_mm(level)}; change the sign of z, in a file by mirror_z=True"
         )
-    middle = 0.5 * (y.min() + y.max())
-    if kind == "wheel":
-        outer, inner = z[y > middle].max(initial=-np.inf), z[y <= middle].max(initial=-np.inf)
-        if outer - inner > CLEAR:
-            place = int(np.argmax(z))
-            raise wl.InputError(
-                f"the wheel is mirrored: its flange must be at y < 0, but has {_point(place, y, z)}; change the sign"
-                " of y, in a file by mirror_y=True. A left wheel has the same profile as a right one"
-            )
+    place = int(np.argmax(z))
+    if kind != "wheel" or down <= CLEAR or y[place] < 0.0:
+        return
+    flange = _point(place, y, z, name)
+    if y[place] > 0.5 * (y.min() + y.max()):
+        raise wl.InputError(
+            f"the wheel is mirrored: its flange must be at y < 0, but has {flange}; change the sign of y, in a file by"
+            " mirror_y=True. A left wheel has the same profile as a right one"
+        )
+    raise wl.InputError(
+        f"the wheel must have its origin at the taping line, with the flange at y < 0, but its flange has {flange};"
+        ' shift it, in a file by shift_y, such as shift_y="-70 mm" if y = 0 is the back of the flange'
+    )
 
 
 def crossed_steps(y: Array, z: Array) -> tuple[int, int] | None:
@@ -146,15 +159,15 @@ def _cross(y: Array, z: Array, one: NDArray[np.intp], other: NDArray[np.intp]) -
     return crosses
 
 
-def _refuse(wrong: NDArray[np.bool_], y: Array, z: Array, what: str, fix: str) -> None:
+def _refuse(wrong: NDArray[np.bool_], y: Array, z: Array, name: Name, what: str, fix: str) -> None:
     places = np.flatnonzero(wrong)
     if places.size:
         more = f" ({places.size} points in all)" if places.size > 1 else ""
-        raise wl.InputError(f"{_point(int(places[0]), y, z)} {what}{more}; {fix}")
+        raise wl.InputError(f"{_point(int(places[0]), y, z, name)} {what}{more}; {fix}")
 
 
-def _point(index: int, y: Array, z: Array) -> str:
-    return f"point {index} (y = {_mm(y[index])}, z = {_mm(z[index])})"
+def _point(index: int, y: Array, z: Array, name: Name) -> str:
+    return f"{name(index)} (y = {_mm(y[index])}, z = {_mm(z[index])})"
 
 
 def _mm(value: float) -> str:

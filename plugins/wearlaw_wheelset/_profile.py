@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from difflib import get_close_matches
 from functools import cache, cached_property
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from pydantic import Field, GetJsonSchemaHandler, model_serializer, model_validator
@@ -14,13 +16,13 @@ from pydantic_core import core_schema
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._curve import Curve, joined, through_points
+from wearlaw_wheelset._files import Kind, points_of, write_points
 from wearlaw_wheelset._formulas import FORMULAS
 from wearlaw_wheelset._points import check_orientation, check_points
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from pydantic import SerializationInfo, SerializerFunctionWrapHandler
-
-Kind = Literal["wheel", "rail"]
 
 CONVEX = {"wheel": -1.0, "rail": 1.0}
 """Sign of dθ/ds where a body is convex: the wheel lies above its profile, the rail below."""
@@ -171,6 +173,8 @@ class Profile(wl.Configuration):
         """Take the name of a formula or the path of a file for a table, and add the kind of a formula."""
         if isinstance(given, str | os.PathLike):
             given = _named(os.fspath(given))
+        elif isinstance(given, Mapping) and "file" in given:
+            return read_profile(**{"path" if key == "file" else key: value for key, value in given.items()})
         if isinstance(given, Mapping) and given.get("formula") in FORMULAS and "kind" not in given:
             return {**given, "kind": FORMULAS[given["formula"]][0]}
         return given
@@ -187,13 +191,16 @@ class Profile(wl.Configuration):
         elif self.y is None or self.z is None:
             raise ValueError("needs the name of a formula, or points with y and z")
         else:
-            check_points(*self._given)
+            check_points(_si(self.y), _si(self.z), self._name)
             self._check_weights(self.y.size)
         if self.smoothing.magnitude < 0.0:
             raise ValueError(f"smoothing: must not be negative, got {self.smoothing!r}")
-        y, z = self._moved(*self._given)
-        check_orientation(self.kind, y, z)
+        check_orientation(self.kind, *self._moved(*self._given), self._name)
         return self
+
+    def _name(self, index: int) -> str:
+        """Return the name of a point in messages."""
+        return f"point {index}"
 
     def _check_weights(self, count: int) -> None:
         if self.weights is None:
@@ -206,18 +213,13 @@ class Profile(wl.Configuration):
 
     @property
     def _given(self) -> tuple[Array, Array]:
-        """The points in their order along the profile [m], before the mirror, turn and shifts."""
+        """The points as given, or those of the formula's curve [m], before the mirror, turn and shifts."""
         if self.formula is not None:
             curve = _by_formula(self.formula)
             return curve.y, curve.z
         assert self.y is not None
         assert self.z is not None
-        y, z = _si(self.y), _si(self.z)
-        return (y[::-1], z[::-1]) if self._reversed else (y, z)
-
-    @property
-    def _reversed(self) -> bool:
-        return self.y is not None and bool(self.y.magnitude[-1] < self.y.magnitude[0])
+        return _si(self.y), _si(self.z)
 
     @property
     def _motion(self) -> tuple[float, float, float, float]:
@@ -240,9 +242,10 @@ class Profile(wl.Configuration):
             base = _by_formula(self.formula)
         else:
             weights = None if self.weights is None else np.array(self.weights)
-            if weights is not None and self._reversed:
-                weights = weights[::-1]
-            base = through_points(*self._given, wl.scalar_si(self.smoothing, "m"), weights, CONVEX[self.kind])
+            y, z = self._given
+            way = slice(None, None, -1 if y[-1] < y[0] else 1)
+            smoothing, sign = wl.scalar_si(self.smoothing, "m"), CONVEX[self.kind]
+            base = through_points(y[way], z[way], smoothing, None if weights is None else weights[way], sign)
         sign, turn, *shifts = self._motion
         if (sign, turn, *shifts) == (1.0, 0.0, 0.0, 0.0):
             return base
@@ -250,10 +253,23 @@ class Profile(wl.Configuration):
 
     @property
     def points(self) -> tuple[wl.Quantity, wl.Quantity]:
-        """y and z of its points, or of a formula's curve, from the smaller y on, after mirror, turn and shifts."""
+        """Coordinates y and z of its points, or of those of a formula's curve, after the mirror, turn and shifts.
+
+        They begin at the end with the smaller y.
+        """
         y, z = self._moved(*self._given)
-        step = -1 if self.mirror else 1
-        return wl.Q(1e3 * y[::step], "mm"), wl.Q(1e3 * z[::step], "mm")
+        way = slice(None, None, -1 if y[-1] < y[0] else 1)
+        return wl.Q(1e3 * y[way], "mm"), wl.Q(1e3 * z[way], "mm")
+
+    @property
+    def apparent_cant(self) -> wl.Quantity:
+        """Angle by which the head of a rail seems to lean towards y < 0, as one that is canted does [rad].
+
+        It is the angle at which the head is most like its mirror image: the top, within 20 mm of the middle between
+        the sides, has no slope. The sides are taken 10 mm below the top. NaN for a wheel, or if a side does not reach
+        so far down. Wear of one side changes it, by about 1/120 for 5 mm.
+        """
+        return wl.Q(_lean(self.curve) if self.kind == "rail" else np.nan, "rad")
 
     def mirrored(self) -> Profile:
         """Return the profile with the sign of y changed, as of a rail whose gauge side is at y > 0."""
@@ -279,6 +295,74 @@ class Profile(wl.Configuration):
         return self.model_copy(
             update={"turn": wl.Q(turn, "rad"), "shift_y": wl.Q(1e3 * y, "mm"), "shift_z": wl.Q(1e3 * z, "mm")}
         )
+
+    def worn(self, s: wl.Quantity, depth: wl.Quantity | str, *, smoothing: wl.QuantityLike = "0 mm") -> Profile:
+        """Return the profile after wear, which removes a depth along the normal.
+
+        Parameters
+        ----------
+        s : Quantity, shape (n,)
+            Arc lengths of this profile's `curve`, growing [m].
+        depth : Quantity, shape (n,) or a scalar
+            Depth removed there, not negative; linear between, and zero beyond the ends of `s` [m].
+        smoothing : Quantity or str
+            Smoothing of the new profile; see `from_points`.
+
+        Returns
+        -------
+        Profile
+            The new profile, from points at most 0.05 mm apart.
+
+        Raises
+        ------
+        InputError
+            If `s` does not grow or is not on the profile, if a depth is negative, or if it reaches the centre of a
+            convex curve.
+        """
+        length = wl.Unit("mm", positive=False)
+        place, removed = length.si(s, "s"), length.si(depth, "depth")
+        curve = self.curve
+        if place.ndim != 1 or not place.size or removed.shape not in ((), place.shape):
+            raise wl.InputError(
+                f"s must have one axis, and depth a value for each s, got shapes {place.shape} and {removed.shape}"
+            )
+        if (np.diff(place) <= 0.0).any() or place[0] < curve.s[0] - 1e-9 or place[-1] > curve.s[-1] + 1e-9:
+            raise wl.InputError(
+                f"s must grow and lie on the profile, from {1e3 * curve.s[0]:.6g} to {1e3 * curve.s[-1]:.6g} mm; got"
+                f" {1e3 * place.min():.6g} to {1e3 * place.max():.6g} mm"
+            )
+        if (removed < 0.0).any():
+            raise wl.InputError(f"depth must not be negative, got {1e3 * removed.min():.4g} mm")
+        depths = np.interp(curve.s, place, np.broadcast_to(removed, place.shape), left=0.0, right=0.0)
+        left = 1.0 - curve.curvature * depths
+        if left.min() <= 0.0:
+            worst = int(np.argmin(left))
+            raise wl.InputError(
+                f"depth {1e3 * depths[worst]:.4g} mm at s = {1e3 * curve.s[worst]:.4g} mm reaches the centre of the"
+                f" curve, which has a radius of {1e3 / curve.curvature[worst]:.4g} mm there; remove it in smaller steps"
+            )
+        y = curve.y - CONVEX[self.kind] * np.sin(curve.angle) * depths
+        z = curve.z + CONVEX[self.kind] * np.cos(curve.angle) * depths
+        new = through_points(y, z, 0.0, None, CONVEX[self.kind])
+        return Profile(kind=self.kind, y=wl.Q(1e3 * new.y, "mm"), z=wl.Q(1e3 * new.z, "mm"), smoothing=smoothing)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the profile as it lies, with z down, and return matplotlib's axes."""
+        if ax is None:
+            from matplotlib.figure import Figure
+
+            ax = Figure(figsize=(7.4, 3.6), layout="constrained").add_subplot()
+            ax.spines[["top", "right"]].set_visible(False)
+            ax.grid(alpha=0.3)
+        curve = self.curve
+        ax.plot(1e3 * curve.y, 1e3 * curve.z, color="#0072B2", linewidth=1.6, label=repr(self))
+        if self.smoothing.magnitude:
+            y, z = (value.magnitude for value in self.points)
+            ax.plot(y, z, ".", color="#D55E00", markersize=2.0, zorder=3, label="points")
+        ax.set(xlabel="y [mm], outwards", ylabel="z [mm], down", title=repr(self), aspect="equal")
+        if not ax.yaxis_inverted():
+            ax.invert_yaxis()
+        return ax
 
     @model_serializer(mode="wrap")
     def _short(self, handler: SerializerFunctionWrapHandler, info: SerializationInfo) -> Any:
@@ -351,4 +435,119 @@ def _named(text: str) -> Any:
     """Return the fields of a formula, or the profile of a file."""
     if text in FORMULAS:
         return {"formula": text}
-    raise wl.InputError(f"'{text}' is neither a profile by formula, which are {', '.join(FORMULAS)}, nor a file")
+    if not os.path.lexists(text):
+        near = get_close_matches(text.lower(), FORMULAS, n=1)
+        hint = f"; did you mean '{near[0]}'?" if near else "."
+        raise wl.InputError(
+            f"'{text}' is neither a profile by formula nor a file in '{Path.cwd()}'{hint} The formulas are:"
+            f" {', '.join(FORMULAS)}"
+        )
+    return read_profile(text)
+
+
+def read_profile(
+    path: str | os.PathLike[str],
+    *,
+    kind: Kind | None = None,
+    units: str = "mm",
+    mirror_y: bool = False,
+    mirror_z: bool = False,
+    shift_y: wl.QuantityLike = "0 mm",
+    shift_z: wl.QuantityLike = "0 mm",
+    smoothing: wl.QuantityLike = "0 mm",
+) -> Profile:
+    """Return the profile of a file.
+
+    The ending gives the format: .prr and .prw of Simpack, .ban and .whl of MiniProf, or else two columns, y and z.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    kind : "wheel" or "rail", optional
+        The kind of profile, if neither the ending nor the header gives it.
+    units : str
+        Unit of length in the file, if the file does not give it.
+    mirror_y, mirror_z : bool
+        Whether to change the sign of y or z.
+    shift_y, shift_z : Quantity or str
+        Shift outwards and down, after the mirrors.
+    smoothing : Quantity or str
+        Root mean square distance of the points from the curve; see `Profile.from_points`.
+
+    Raises
+    ------
+    DataError
+        If the file cannot be read, or does not hold a profile. The message names the file and the line.
+    """
+    file = Path(path)
+    try:
+        found, told = points_of(file, kind, units)
+        length = wl.Unit("mm", positive=False)
+        y = (-1.0 if mirror_y else 1.0) * found.y + float(length.si(shift_y, "shift_y"))
+        z = (-1.0 if mirror_z else 1.0) * found.z + float(length.si(shift_z, "shift_z"))
+
+        def name(index: int) -> str:
+            return f"line {found.lines[index]}"
+
+        check_points(y, z, name)
+        check_orientation(told, y, z, name)
+        return Profile(
+            kind=told,
+            y=wl.Q(1e3 * y, "mm"),
+            z=wl.Q(1e3 * z, "mm"),
+            weights=None if found.weights is None else tuple(found.weights.tolist()),
+            smoothing=smoothing,
+        )
+    except wl.InputError as error:
+        raise wl.DataError(f"profile '{path}': {error}") from None
+
+
+def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:
+    """Write a profile to a file, whole or not at all; `read_profile` reads it.
+
+    The ending gives the format: .prr of Simpack for a rail and .prw for a wheel, .ban and .whl of MiniProf, or .csv and
+    .txt with two columns. The file holds the points, or those of the curve if they are smoothed, in mm with nine
+    decimals.
+
+    Raises
+    ------
+    InputError
+        If the ending is not known or belongs to the other kind of profile.
+    OutputError
+        If the file cannot be written.
+    """
+    y, z = (1e-3 * value.magnitude for value in profile.points)
+    if profile.smoothing.magnitude:
+        y, z = profile.curve.y, profile.curve.z
+    write_points(Path(path), profile.kind, y, z)
+
+
+DEEP, TOP = 10e-3, 20e-3
+"""Depth of the sides below the top, and half-width of the top, by which a rail's lean is measured [m]."""
+
+
+def _lean(curve: Curve) -> float:
+    """Return the angle at which the top of a rail has no slope about the middle of its head [rad]."""
+    lean = 0.0
+    for _ in range(50):
+        cosine, sine = np.cos(lean), np.sin(lean)
+        y, z = cosine * curve.y - sine * curve.z, sine * curve.y + cosine * curve.z
+        crown = int(np.argmin(z))
+        low = z >= z[crown] + DEEP
+        left, right = np.flatnonzero(low[:crown]), np.flatnonzero(low[crown:]) + crown
+        if not (left.size and right.size):
+            return float("nan")
+        sides = []
+        for inner, outer in ((left[-1] + 1, left[-1]), (right[0] - 1, right[0])):
+            share = (z[crown] + DEEP - z[inner]) / (z[outer] - z[inner])
+            sides.append(y[inner] + share * (y[outer] - y[inner]))
+        middle = 0.5 * sum(sides)
+        top = np.linspace(middle - TOP, middle + TOP, 401)
+        order = slice(left[-1], right[0] + 1)
+        heights = np.interp(top, y[order], z[order])
+        slope = float(((top - middle) * heights).sum() / ((top - middle) ** 2).sum())
+        lean -= np.arctan(slope)
+        if abs(slope) < 1e-10:
+            break
+    return lean
