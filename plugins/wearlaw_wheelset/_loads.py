@@ -290,6 +290,18 @@ class Balance:
         begun.solve(lambda problem: None)
         return begun
 
+    def check_torque(self) -> None:
+        """Raise an error for a torque that friction cannot transmit."""
+        problem, patch = self.posed(self.found, self.penetration, self.rotation, self.scale)
+        _, _, grip = self._sums(self.found, patch, problem, None)
+        over = ~(np.abs(self.task.torque) < grip)
+        if over.any():
+            point = int(np.argmax(over))
+            raise wl.ConditionsError(
+                f"axle_torque: {self.task.torque[point]:.4g} N*m is more than friction can transmit, about"
+                f" {grip[point]:.4g} N*m under this load"
+            )
+
     @staticmethod
     def _alone(
         section: Section, elastic: Elastic, task: Task, found: Candidates, rows: NDArray[np.intp]

@@ -14,10 +14,12 @@ from pydantic import BeforeValidator, Field, model_validator
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_wheelset._geometry import Geometry
+from wearlaw_wheelset._conicity import equivalent_conicity
+from wearlaw_wheelset._geometry import Geometry, geometry, patches
 from wearlaw_wheelset._loads import Balance, Elastic, Task
 from wearlaw_wheelset._profile import Profile
-from wearlaw_wheelset._search import PATCHES, Section, both_sides, searched, section
+from wearlaw_wheelset._search import Section, Touching, both_sides, searched, section
+from wearlaw_wheelset._search_loops import PATCHES
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -41,6 +43,15 @@ UNITS = {
 
 MOST_YAW = 0.2
 """Greatest yaw [rad]: a locomotive in the tightest curve has a tenth of it."""
+
+LEAST_FRICTION = 1e-12
+"""The smallest friction coefficient, which no contact comes near."""
+
+MARGIN = 1e-3
+"""Displacement beyond the amplitude at which the conicity needs radii [m]: waves need not be about the middle."""
+
+CONICITY_POINTS = 801
+"""Displacements at which the conicity takes radii."""
 
 RATIO = re.compile(r"\s*1\s*:\s*([0-9.]+)\s*")
 
@@ -158,5 +169,310 @@ class Wheelset(wl.Rig):
         ) -> None: ...
 
     @property
-    def geometry_of_patches(self) -> wl.Geometry:
+    def patch_geometry(self) -> wl.Geometry:  # type: ignore[override]
+        """Strips, or ellipses by Hertz's theory."""
         return "ellipse" if self.pressure == "hertz" else "strips"
+
+    @model_validator(mode="after")
+    def _fits(self) -> Wheelset:
+        if self.wheel.kind != "wheel" or self.rail.kind != "rail":
+            raise ValueError(
+                f"wheel is the profile of a {self.wheel.kind} and rail that of a {self.rail.kind}; give them the other"
+                " way round, or make the profile with the other kind"
+            )
+        lean = scalar(self.rail.apparent_cant)
+        if abs(lean) > 0.5 * scalar(self.rail_cant) > 0.0:
+            raise ValueError(
+                f"rail_cant: is {np.degrees(scalar(self.rail_cant)):.3g} deg, but the head of the rail's profile leans by"
+                f" {np.degrees(lean):.3g} deg already; leave rail_cant out, or give a profile without cant"
+            )
+        straight = np.zeros(1)
+        roll, found = searched(self._section, straight, straight)
+        if np.isnan(found.arc[0, :, 0]).any():
+            raise ValueError(
+                f"gauge: the wheels do not stand on the rails; wheels {self.flange_back_distance!r} apart between their"
+                f" inner faces do not fit rails {self.gauge!r} apart"
+            )
+        angle = patches(self._section, both_sides(straight, roll, straight), found).contact_angle[0, :, 0]
+        if np.abs(angle).max() > scalar(self.flange_angle):
+            raise ValueError(
+                f"gauge: in the middle of the track the wheels stand on their flanges, at a contact angle of"
+                f" {np.degrees(np.abs(angle).max()):.3g} deg; wheels {self.flange_back_distance!r} apart between their"
+                f" inner faces do not fit rails {self.gauge!r} apart"
+            )
+        return self
+
+    @property
+    def bodies(self) -> Mapping[str, wl.Body]:
+        """The "wheel" and the "rail"; the radius is the nominal one, and problems have those of their patches."""
+        return {
+            "wheel": wl.Body(self.material, scalar(self.nominal_radius)),
+            "rail": wl.Body(self.rail_material or self.material, np.inf),
+        }
+
+    def geometry(
+        self,
+        *,
+        lateral_displacement: wl.QuantityLike,
+        yaw: wl.QuantityLike = "0 mrad",
+        roll: wl.QuantityLike | None = None,
+        within: wl.QuantityLike = "0.1 mm",
+    ) -> Geometry:
+        """Return where rigid wheels touch their rails, at all combinations of displacements and yaws.
+
+        Parameters
+        ----------
+        lateral_displacement : Quantity or str
+            Lateral displacement of the wheelset, positive to the right [m], one value or of one axis.
+        yaw : Quantity or str
+            Yaw, positive clockwise from above [rad], one value or of one axis.
+        roll : Quantity or str, optional
+            One roll, positive if it lowers the right wheel [rad]. By default both wheels touch.
+        within : Quantity or str
+            Patches beside the first one are listed if their vertical gap is at most this [m].
+
+        Raises
+        ------
+        ConditionsError
+            If a wheel does not touch its rail.
+        """
+        given = {"lateral_displacement": lateral_displacement, "yaw": yaw}
+        axes = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
+        for name, array in axes.items():
+            if array.ndim > 1:
+                raise wl.InputError(f"{name}: must have at most one axis, got an array of shape {array.shape}")
+        displacement, turned = (array.ravel() for array in np.meshgrid(*axes.values(), indexing="ij"))
+        fixed = None if roll is None else np.full(displacement.shape, scalar(UNITS["roll"].si(roll, "roll")))
+        most = scalar(wl.Unit("mm", positive=False).si(within, "within"))
+        self._check_place(displacement, turned)
+        rolls, found = searched(self._section, displacement, turned, fixed)
+        self._check_contact(displacement, found)
+        position = both_sides(displacement, rolls, turned)
+        return geometry(self._section, axes, rolls, found, position, most, scalar(self.nominal_radius))
+
+    def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
+        """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, by EN 15302."""
+        most = scalar(wl.Unit("mm").si(amplitude, "amplitude"))
+        displacement = np.linspace(-most - MARGIN, most + MARGIN, CONICITY_POINTS)
+        rolls, found = searched(self._section, displacement, np.zeros_like(displacement))
+        self._check_contact(displacement, found)
+        position = both_sides(displacement, rolls, np.zeros_like(displacement))
+        radius = patches(self._section, position, found).rolling_radius[..., 0]
+        return wl.Q(equivalent_conicity(displacement, radius[:, 1] - radius[:, 0], most), "")
+
+    def problem(
+        self,
+        *,
+        lateral_displacement: wl.QuantityLike,
+        vertical_load: wl.QuantityLike,
+        friction_coefficient: ArrayLike,
+        yaw: wl.QuantityLike = "0 mrad",
+        roll: wl.QuantityLike | None = None,
+        flange_friction_coefficient: ArrayLike | None = None,
+        axle_torque: wl.QuantityLike | None = None,
+        angular_speed: wl.QuantityLike | None = None,
+        lateral_velocity: wl.QuantityLike = "0 m/s",
+        yaw_velocity: wl.QuantityLike = "0 rad/s",
+        curve_radius: wl.QuantityLike = "inf m",
+        rolled_distance: wl.QuantityLike | None = None,
+    ) -> wl.Problem:
+        """Return the contact problem that the conditions pose; arrays broadcast against each other.
+
+        The loads do not balance the creep forces yet; `balanced` does that, and a pipeline calls it.
+
+        Parameters
+        ----------
+        lateral_displacement : Quantity or str
+            Lateral displacement of the wheelset in the track, positive to the right [m].
+        vertical_load : Quantity or str
+            Vertical load of each wheel, Q [N].
+        friction_coefficient : array_like of float
+            Friction coefficient, μ [-].
+        yaw : Quantity or str
+            Yaw, positive clockwise from above [rad].
+        roll : Quantity or str, optional
+            Roll, positive if it lowers the right wheel [rad]. By default both wheels touch.
+        flange_friction_coefficient : array_like of float, optional
+            Friction coefficient where the contact angle exceeds `flange_angle`, as on lubricated flanges [-].
+        axle_torque : Quantity or str, optional
+            Torque on the axle, positive if it drives [N m]; zero, a free axle, by default.
+        angular_speed : Quantity or str, optional
+            Speed of rotation instead of a torque, Ω [rad/s].
+        lateral_velocity, yaw_velocity : Quantity or str
+            Velocities of the lateral displacement [m/s] and of the yaw [rad/s].
+        curve_radius : Quantity or str
+            Radius of the curve, positive to the right [m]; infinite on a straight track.
+        rolled_distance : Quantity or str, optional
+            Distance rolled since the bodies were new [m], for laws of running-in.
+
+        Raises
+        ------
+        ConditionsError
+            If conditions contradict each other or do not broadcast, a wheel does not touch its rail, or the torque is
+            greater than friction can transmit.
+        UnitError
+            If a condition lacks its unit or is out of bounds.
+        """
+        given = {name: value for name, value in locals().items() if name in UNITS and value is not None}
+        if axle_torque is not None and angular_speed is not None:
+            raise wl.ConditionsError("give axle_torque or angular_speed, not both")
+        arrays = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
+        arrays["friction_coefficient"] = _friction(friction_coefficient, "friction_coefficient")
+        name = "flange_friction_coefficient"
+        flange = friction_coefficient if flange_friction_coefficient is None else flange_friction_coefficient
+        arrays[name] = _friction(flange, name)
+        shape = _shape(arrays)
+        flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
+        balance = self._balance(flat)
+        return self._whole(balance, shape, flat.get("rolled_distance"))
+
+    def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
+        """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
+        assert isinstance(problem, _Posed)
+        problem.balance.solve(forces)
+        distance = problem.rolled_distance
+        return self._whole(problem.balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
+
+    def _balance(self, given: Mapping[str, Array]) -> Balance:
+        """Return the loads at positions, SI arrays with one axis, without creep forces."""
+        displacement, yaw, roll = given["lateral_displacement"], given["yaw"], given.get("roll")
+        self._check_place(displacement, yaw)
+        places = np.stack([displacement, yaw] if roll is None else [displacement, yaw, roll])
+        single, which = np.unique(places, axis=1, return_inverse=True)
+        rolls, found = searched(self._section, single[0], single[1], None if roll is None else single[2])
+        self._check_contact(single[0], found)
+        self._warn_of_climbing(single[0], found)
+        which = which.reshape(-1)
+        rolls, found = rolls[which], Touching(*(array[which] for array in found))
+        speed = np.full(displacement.shape, scalar(self.rolling_speed))
+        turn_rate = given["yaw_velocity"] + speed / given["curve_radius"]
+        task = Task(
+            speed, given["lateral_velocity"], turn_rate, given["vertical_load"],
+            np.stack([given["friction_coefficient"], given["flange_friction_coefficient"]], axis=-1),
+            scalar(self.flange_angle), given.get("axle_torque", np.zeros(displacement.shape)),
+            given.get("angular_speed"),
+        )  # fmt: skip
+        position = both_sides(displacement, rolls, yaw)
+        hertz = self.pressure == "hertz"
+        balance = Balance.begun(self._section, self._elastic, task, position, found, hertz, self.strips)
+        balance.check_torque()
+        return balance
+
+    def _whole(self, balance: Balance, shape: tuple[int, ...], distance: Array | None) -> wl.Problem:
+        """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
+        found = balance.found
+        flat, patch = balance.posed(found, balance.penetration, balance.rotation, balance.scale)
+        size = balance.task.load.size
+        exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
+        place = found.point, found.side, found.number
+        exists[place] = patch.touch
+
+        def wide(array: Array) -> Array:
+            full = np.full(exists.shape, np.nan)
+            full[place] = array
+            return full.reshape(*shape, 2, PATCHES)
+
+        problem = flat.mapped(wide)
+        side = np.broadcast_to(np.array([-1.0, 1.0])[:, None], exists.shape).reshape(*shape, 2, PATCHES)
+        bodies = {
+            "wheel": wl.Body(
+                self.material, wide(patch.place.radius), profile_position=wide(patch.arc), profile_direction=side
+            ),
+            "rail": wl.Body(
+                self.rail_material or self.material,
+                np.inf,
+                profile_position=wide(patch.place.rail_arc),
+                profile_direction=side,
+            ),
+        }
+        fields = {name: getattr(problem, name) for name in wl.Problem.__dataclass_fields__}
+        if distance is not None:
+            fields["rolled_distance"] = np.broadcast_to(distance[:, None, None], exists.shape).reshape(*shape, 2, PATCHES)
+        fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES)}
+        return _Posed(**fields, balance=balance, shape=shape)
+
+    def _check_place(self, displacement: Array, yaw: Array) -> None:
+        steep = np.abs(yaw) > MOST_YAW
+        if steep.any():
+            raise wl.ConditionsError(
+                f"yaw: must be at most {MOST_YAW:g} rad, got {yaw[steep][0]:.4g} rad; is it in mrad?"
+            )
+
+    def _check_contact(self, displacement: Array, found: Touching) -> None:
+        """Raise an error where a wheel does not stand on its rail."""
+        lost = np.isnan(found.arc[..., 0])
+        if lost.any():
+            point, side = (int(index[0]) for index in np.nonzero(lost))
+            raise wl.ConditionsError(
+                f"lateral_displacement: at {1e3 * displacement[point]:.4g} mm the {DIMS['side'][side]} wheel does not touch"
+                " its rail"
+            )
+
+    def _warn_of_climbing(self, displacement: Array, found: Touching) -> None:
+        over = found.arc[..., 0] < self._steepest
+        if over.any():
+            point, side = (int(index[0]) for index in np.nonzero(over))
+            warnings.warn(
+                f"at a lateral displacement of {1e3 * displacement[point]:.4g} mm the {DIMS['side'][side]} wheel climbs its"
+                " rail: it stands on its flange beyond the steepest point",
+                wl.RangeWarning,
+                stacklevel=5,
+            )
+
+    @cached_property
+    def _steepest(self) -> float:
+        """Arc length of the steepest place of the flange; where it is straight, of its end towards the top [m]."""
+        curve, start = self._section.wheel, self._section.wheel_y.start
+        flange = (curve.s >= start) & (curve.y < 0.0)
+        if not flange.any():
+            return -np.inf
+        angle = curve.angle[flange]
+        steep = angle <= angle.min() + 1e-6
+        return float(curve.s[flange][steep][0])
+
+    @cached_property
+    def _section(self) -> Section:
+        return section(
+            self.wheel.curve,
+            self.rail.curve,
+            nominal_radius=scalar(self.nominal_radius),
+            wheel_offset=0.5 * scalar(self.flange_back_distance) - scalar(self.flange_back_position),
+            cant=scalar(self.rail_cant),
+            gauge=scalar(self.gauge),
+            depth=scalar(self.gauge_depth),
+        )
+
+    @cached_property
+    def _elastic(self) -> Elastic:
+        pair = [body.material for body in self.bodies.values()]
+        (e1, n1), (e2, n2) = ((scalar(one.youngs_modulus), one.poisson_ratio) for one in pair)
+        return Elastic(
+            wl.hertz.effective_modulus(e1, n1, e2, n2),
+            wl.hertz.mean_shear_modulus(0.5 * e1 / (1.0 + n1), 0.5 * e2 / (1.0 + n2)),
+            wl.hertz.mean_poisson_ratio(e1, n1, e2, n2),
+            scalar(self.material.density),
+        )
+
+
+def scalar(value: Any) -> float:
+    """Return a quantity with one value in SI."""
+    return float(value.to_base_units().magnitude if isinstance(value, wl.Quantity) else value)
+
+
+def _friction(value: object, name: str) -> Array:
+    """Return friction coefficients, or raise an error that names them."""
+    try:
+        array = np.asarray(value.magnitude if isinstance(value, wl.Quantity) else value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise wl.UnitError(f"{name}: must be a plain number or an array of them, such as 0.3; got {value!r}") from None
+    if not ((array >= LEAST_FRICTION) & (array < np.inf)).all():
+        raise wl.UnitError(f"{name}: must be positive and finite, got {value!r}")
+    return array
+
+
+def _shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items() if array.ndim)
+        raise wl.ConditionsError(f"the conditions do not broadcast against each other: {shapes}") from None
