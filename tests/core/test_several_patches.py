@@ -308,6 +308,38 @@ def test_labels_of_axes_must_fit_the_batch(dims: Any) -> None:
         predict(**GIVEN)
 
 
+@pytest.mark.parametrize("hertzian", [True, False])
+def test_friction_may_differ_by_patch(hertzian: bool) -> None:
+    dry, greased = 0.3, 0.08
+
+    class Lubricated(Worn):
+        """The axle with a lubricated flange."""
+
+        name: ClassVar[str] = "lubricated"
+
+        def problem(self, **conditions: Any) -> wl.Problem:
+            found = super().problem(**conditions)
+            friction = np.broadcast_to(np.array([dry, greased]), found.batch_shape)
+            return found.replaced(friction_coefficient=friction)
+
+    rig = Lubricated(hertzian=hertzian)
+    predict: Any = rig | wl.contact_model("fastsim") | KTH
+    found = predict(**GIVEN)
+    np.testing.assert_array_equal(of(found, "friction_coefficient"), np.where(EXISTS, [dry, greased], np.nan))
+    for patch, friction in enumerate((dry, greased)):
+        alike: Any = Worn(hertzian=hertzian) | wl.contact_model("fastsim") | KTH
+        of_one = alike(**{**GIVEN, "friction_coefficient": friction})
+        for name in ("wear_rate", "longitudinal_force", "spin_moment", "mean_slip", "wear_index", "first_yield"):
+            np.testing.assert_allclose(
+                of(found, name)[..., patch], of(of_one, name)[..., patch], rtol=64 * EPS, err_msg=name
+            )
+    ratio = of(found, "traction_coefficient")
+    assert (ratio[EXISTS] <= np.broadcast_to([dry, greased], EXISTS.shape)[EXISTS] * (1.0 + 64 * EPS)).all()
+    staged: Any = rig | wl.contact_model("fastsim") | wl.stage("third_body", reduction=0.5) | KTH
+    halved = staged(**GIVEN).friction_coefficient.magnitude
+    np.testing.assert_array_equal(halved, of(found, "friction_coefficient"))  # a third body changes the slope alone
+
+
 # --- Some of the patches ---------------------------------------------------------------------------------------------
 
 
