@@ -5,6 +5,7 @@ The order is rig | contact model | stages, if any, | laws.
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
@@ -160,9 +161,33 @@ class Rig(Model):
             raise ModelError(f"rig '{self.name}' returned {problem!r}, not a wearlaw.Problem")
         if problem.dims:
             self._check_dims(problem)
+        for body in problem.bodies.values():
+            if body.profile_position is not None:
+                bodies = {name: self._placed(problem, name) for name in problem.bodies}
+                problem = problem.replaced(bodies=bodies)
+                break
         if problem.exists is not None:
             problem = self._masked(problem)
         return problem if problem.bodies else problem.replaced(bodies=self.bodies)
+
+    def _placed(self, problem: Problem, name: str) -> Body:
+        """Return a body with the places of its patches on its profile in the shape of the batch."""
+        body, batch = problem.bodies[name], problem.batch_shape
+        if body.profile_position is None:
+            return body
+        found: dict[str, Any] = {}
+        for field in ("profile_position", "profile_direction"):
+            given = getattr(body, field)
+            try:
+                found[field] = np.broadcast_to(np.asarray(given, dtype=np.float64), batch)
+            except (TypeError, ValueError):
+                raise ModelError(
+                    f"rig '{self.name}' gave {type_name(given)} of shape {np.shape(given)} as `{field}` of {name}; it"
+                    f" must be a number or an array that broadcasts to the shape of the batch, {batch}"
+                ) from None
+        if not (np.abs(found["profile_direction"]) == 1.0).all():
+            raise ModelError(f"rig '{self.name}' gave a `profile_direction` of {name} that is neither 1 nor -1")
+        return dataclasses.replace(body, **found)
 
     def _check_dims(self, problem: Problem) -> None:
         """Raise an error if the labels of the rig's own axes do not fit the shape of the batch."""
