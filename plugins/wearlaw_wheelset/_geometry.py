@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -39,7 +39,10 @@ VARIABLES = {
 
 OF_WHEELSET = {
     "roll": ("mrad", "roll, positive if it lowers the right wheel"),
-    "vertical_displacement": ("mm", "vertical displacement, positive down, from where the taping line is on the rails' top"),
+    "vertical_displacement": (
+        "mm",
+        "vertical displacement, positive down, from where the taping line is on the rails' top",
+    ),
     "rolling_radius_difference": ("mm", "rolling radius, right minus left"),
 }
 """Units and names of the variables of a wheelset."""
@@ -97,6 +100,26 @@ def patches(section: Section, position: Position, touching: Touching) -> Patches
     return Patches(**{name: array + none for name, array in found.items()})
 
 
+class Profiles(NamedTuple):
+    """The right wheel and its rail in the middle of the track [m].
+
+    Attributes
+    ----------
+    wheel_y, wheel_z : ndarray
+        The wheel, with y in the track and z from the taping line.
+    wheel_offset : float
+        y of the profile's origin in the track.
+    rail_y, rail_z : ndarray
+        The rail in the track.
+    """
+
+    wheel_y: Array
+    wheel_z: Array
+    wheel_offset: float
+    rail_y: Array
+    rail_z: Array
+
+
 @dataclass(frozen=True)
 class Geometry:
     """Where rigid wheels touch their rails.
@@ -109,8 +132,7 @@ class Geometry:
     """
 
     dataset: xarray.Dataset
-    _profiles: tuple[Array, Array, Array, Array]
-    """y and z of the wheel's and the rail's profile in the middle of the track, outward [mm]."""
+    _profiles: Profiles
 
     def __repr__(self) -> str:
         axes = ", ".join(f"{name} {size}" for name, size in self.dataset.sizes.items())
@@ -124,7 +146,8 @@ class Geometry:
         """
         from wearlaw_wheelset._pictures import geometry_figure
 
-        return geometry_figure(self.dataset, self._profiles)
+        found: Figure = geometry_figure(self.dataset, self._profiles)
+        return found
 
 
 def geometry(
@@ -142,7 +165,11 @@ def geometry(
     for name, (unit, words) in VARIABLES.items():
         values = np.where(far, np.nan, getattr(found, name))
         dims = [*named, "side", "patch"]
-        data[name] = dims, wl.Q(values, _si(unit)).to(unit).magnitude.reshape(*shape, *values.shape[1:]), _attrs(unit, words)
+        data[name] = (
+            dims,
+            wl.Q(values, _si(unit)).to(unit).magnitude.reshape(*shape, *values.shape[1:]),
+            _attrs(unit, words),
+        )
     first = found.rolling_radius[..., 0]
     wheelset = {
         "roll": roll,
@@ -153,18 +180,24 @@ def geometry(
         data[name] = named, wl.Q(wheelset[name], _si(unit)).to(unit).magnitude.reshape(shape), _attrs(unit, words)
     units = {"lateral_displacement": "mm", "yaw": "mrad", "roll": "mrad"}
     coordinates: dict[str, Any] = {
-        name: ([name] if array.ndim else [], wl.Q(array, _si(units[name])).to(units[name]).magnitude, _attrs(units[name], name.replace("_", " ")))
+        name: (
+            [name] if array.ndim else [],
+            wl.Q(array, _si(units[name])).to(units[name]).magnitude,
+            _attrs(units[name], name.replace("_", " ")),
+        )
         for name, array in axes.items()
         if name not in data
     }
     coordinates |= {"side": list(SIDES), "patch": np.arange(1, touching.arc.shape[-1] + 1)}
-    curves = section.wheel, section.rail
-    dataset = xarray.Dataset(data, coordinates)
-    across = section.wheel_y
-    wheel = 1e3 * across.value, 1e3 * (section.wheel_radius.value - nominal_radius)
-    rail = 1e3 * (section.rail_z.start + section.rail_z.step * np.arange(section.rail_z.value.size)), 1e3 * section.rail_z.value
-    del curves
-    return Geometry(dataset, (*wheel, *rail))
+    return Geometry(xarray.Dataset(data, coordinates), profiles(section, nominal_radius))
+
+
+def profiles(section: Section, nominal_radius: float) -> Profiles:
+    """Return the profiles of the right wheel and its rail in the middle of the track."""
+    rail_y = section.rail_z.start + section.rail_z.step * np.arange(section.rail_z.value.size)
+    offset = section.wheel_y.value[0] - float(section.wheel.at(section.wheel_y.start)[0])
+    radius = section.wheel_radius.value - nominal_radius
+    return Profiles(section.wheel_y.value, radius, offset, rail_y, section.rail_z.value)
 
 
 def _si(unit: str) -> str:

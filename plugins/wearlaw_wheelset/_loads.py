@@ -287,7 +287,7 @@ class Balance:
         radius[kept.wheel[first]] = placed(section, kept.part(first).position, kept.arc[first]).radius
         rotation = task.speed / radius.reshape(-1, 2).mean(axis=-1) if task.rotation is None else task.rotation
         begun = cls(section, elastic, task, kept, hertz, strips, whole, rotation, np.ones(wheels))
-        begun.solve(lambda problem: None)
+        begun.solve(None)
         return begun
 
     def check_torque(self) -> None:
@@ -303,9 +303,7 @@ class Balance:
             )
 
     @staticmethod
-    def _alone(
-        section: Section, elastic: Elastic, task: Task, found: Candidates, rows: NDArray[np.intp]
-    ) -> Array:
+    def _alone(section: Section, elastic: Elastic, task: Task, found: Candidates, rows: NDArray[np.intp]) -> Array:
         """Return the vertical penetration if one patch of each wheel carries the whole load, and widen its samples."""
         penetration = np.empty(rows.size)
         open_ = np.arange(rows.size)
@@ -322,17 +320,18 @@ class Balance:
             sample(section, found, rows[open_], SPACING * 2.0 ** (widening + 1))
         return penetration
 
-    def solve(self, forces: Callable[[wl.Problem], wl.CreepForces | None]) -> None:
+    def solve(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> None:
         """Find the penetrations and the speeds of rotation that balance the loads, in place.
 
         Parameters
         ----------
-        forces : callable
-            Returns the creep forces of a problem with one entry for each patch, or None for none; the speed of rotation
-            then stays as it is.
+        forces : callable or None
+            Returns the creep forces of a problem with one entry for each patch. None leaves out the creep forces; the
+            speed of rotation then stays as it is.
         """
         count = self.task.load.size
-        free = self.task.rotation is None
+        free = self.task.rotation is None and forces is not None
+        self.scale = np.ones(self.scale.shape)
         depths = _Root.begun(np.log(self.penetration), 1.5, WIDEST_STEP)
         turns = _Root.begun(self.rotation, np.nan, MOST_TURN * self.rotation)
         load = self.task.load.repeat(2)
@@ -340,10 +339,10 @@ class Balance:
         for _ in range(STEPS):
             part = self.found.part(open_[self.found.point])
             problem, patch = self.posed(part, np.exp(depths.x), turns.x, self.scale)
-            force = forces(problem)
+            force = None if forces is None else forces(problem)
             carried, torque, grip = self._sums(part, patch, problem, force)
             excess = np.log(np.maximum(carried / load, LEAST_SHARE))
-            lacking = torque - self.task.torque if free and force is not None else np.zeros(count)
+            lacking = torque - self.task.torque if free else np.zeros(count)
             level = (np.abs(excess) <= BALANCED).reshape(-1, 2).all(axis=-1)
             open_ &= ~(level & (np.abs(lacking) <= BALANCED * grip))
             if not open_.any():
@@ -352,7 +351,7 @@ class Balance:
             jump = wheels & depths.closed()
             self.scale = np.where(jump, self.scale * np.exp(-excess), self.scale)
             depths.step(excess, wheels & ~jump)
-            if free and force is not None:
+            if free:
                 if np.isnan(turns.slope).all():
                     turns.slope = self._stiffness(part, patch, problem)
                 turns.reopen()
@@ -374,7 +373,8 @@ class Balance:
         grip = problem.friction_coefficient * patch.normal_force * patch.place.radius
         load = np.bincount(part.wheel, vertical, 2 * count)
         load[np.bincount(part.wheel, minlength=2 * count) == 0] = 1.0
-        return load, np.bincount(part.point, torque, count), np.bincount(part.point, grip, count)
+        torques, grips = (np.asarray(np.bincount(part.point, one, count), np.float64) for one in (torque, grip))
+        return np.asarray(load, np.float64), torques, grips
 
     def _stiffness(self, part: Candidates, patch: Patches, problem: wl.Problem) -> Array:
         """Return the rate of the torque with the speed of rotation, by Kalker's linear theory [N m s]."""
@@ -397,13 +397,12 @@ class Balance:
         )  # fmt: skip
         flange = (np.abs(place.angle) > task.flange_angle).astype(np.intp)
         longitudinal, lateral, spin = sliding.at(rotation[part.point])
-        same = {
-            "shear_modulus": elastic.shear_modulus, "poisson_ratio": elastic.poisson_ratio, "density": elastic.density,
-        }  # fmt: skip
-        make = wl.Problem.ellipse_from_si if self.hertz else wl.Problem.of_strips
+        make: Callable[..., wl.Problem] = wl.Problem.ellipse_from_si if self.hertz else wl.Problem.of_strips
         problem = make(
             **patch,
-            **{name: np.full(side.shape, value) for name, value in same.items()},
+            shear_modulus=np.full(side.shape, elastic.shear_modulus),
+            poisson_ratio=np.full(side.shape, elastic.poisson_ratio),
+            density=np.full(side.shape, elastic.density),
             friction_coefficient=task.friction[part.point, flange],
             longitudinal_creepage=longitudinal,
             lateral_creepage=lateral,
@@ -441,7 +440,7 @@ class Balance:
 
 @dataclass(frozen=True)
 class Patches:
-    """What a balance of loads reads of patches: N, arc length of the wheel, place, creepages, and whether they touch."""
+    """What the balance reads of patches: N, arc length of the wheel, place, creepages, and whether they touch."""
 
     normal_force: Array
     arc: Array

@@ -5,8 +5,8 @@ axle e at Ω and about the vertical at ω_z, that of its yaw and that of a curve
 
     ω = -Ω e + ω_z z,  e = (-cos ρ sin ψ, cos ρ cos ψ, sin ρ).
 
-The wheel leaves the rail no faster than it comes, so its vertical velocity follows from the lateral one, v_z = v_y tan δ.
-With the lateral tangent (0, cos δ, sin δ) and the normal n = (0, -sin δ, cos δ) of the rail,
+The bodies stay in contact, so the vertical velocity follows from the lateral one, v_z = v_y tan δ. With the tangent
+(0, cos δ, sin δ) and the normal n = (0, -sin δ, cos δ) of the rail,
 
     ξ = v_x/V,  η = v_y/(V cos δ),  φ = ω·n/V.
 

@@ -136,8 +136,8 @@ class Wheelset(wl.Rig):
     flange_angle: Angle = Field(default="30 deg", validate_default=True)
     """Contact angle beyond which a patch is one of the flange and takes `flange_friction_coefficient` [rad]."""
     pressure: Literal["kpec", "hertz"] = "kpec"
-    """Normal problem. "kpec": strips under the pressure of Kik and Piotrowski with elliptic correction. "hertz": ellipses
-    with the curvatures where the bodies first touch, for profiles whose curvature hardly varies over the patch."""
+    """Normal problem. "kpec": strips by the method of Kik and Piotrowski with elliptic correction. "hertz": ellipses by
+    the curvatures where the bodies first touch, for profiles whose curvature hardly varies over the patch."""
     strips: Annotated[int, Field(ge=5, le=500, strict=True)] = 20
     """Number of strips of a patch with `pressure = "kpec"`."""
     material: wl.MaterialField
@@ -169,7 +169,7 @@ class Wheelset(wl.Rig):
         ) -> None: ...
 
     @property
-    def patch_geometry(self) -> wl.Geometry:  # type: ignore[override]
+    def patch_geometry(self) -> wl.Geometry:
         """Strips, or ellipses by Hertz's theory."""
         return "ellipse" if self.pressure == "hertz" else "strips"
 
@@ -183,8 +183,8 @@ class Wheelset(wl.Rig):
         lean = scalar(self.rail.apparent_cant)
         if abs(lean) > 0.5 * scalar(self.rail_cant) > 0.0:
             raise ValueError(
-                f"rail_cant: is {np.degrees(scalar(self.rail_cant)):.3g} deg, but the head of the rail's profile leans by"
-                f" {np.degrees(lean):.3g} deg already; leave rail_cant out, or give a profile without cant"
+                f"rail_cant: is {np.degrees(scalar(self.rail_cant)):.3g} deg, but the head of the rail's profile"
+                f" leans by {np.degrees(lean):.3g} deg already; leave rail_cant out, or give a profile without cant"
             )
         straight = np.zeros(1)
         roll, found = searched(self._section, straight, straight)
@@ -244,7 +244,7 @@ class Wheelset(wl.Rig):
         displacement, turned = (array.ravel() for array in np.meshgrid(*axes.values(), indexing="ij"))
         fixed = None if roll is None else np.full(displacement.shape, scalar(UNITS["roll"].si(roll, "roll")))
         most = scalar(wl.Unit("mm", positive=False).si(within, "within"))
-        self._check_place(displacement, turned)
+        self._check_yaw(turned)
         rolls, found = searched(self._section, displacement, turned, fixed)
         self._check_contact(displacement, found)
         position = both_sides(displacement, rolls, turned)
@@ -331,12 +331,14 @@ class Wheelset(wl.Rig):
         assert isinstance(problem, _Posed)
         problem.balance.solve(forces)
         distance = problem.rolled_distance
-        return self._whole(problem.balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
+        return self._whole(
+            problem.balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1)
+        )
 
     def _balance(self, given: Mapping[str, Array]) -> Balance:
         """Return the loads at positions, SI arrays with one axis, without creep forces."""
         displacement, yaw, roll = given["lateral_displacement"], given["yaw"], given.get("roll")
-        self._check_place(displacement, yaw)
+        self._check_yaw(yaw)
         places = np.stack([displacement, yaw] if roll is None else [displacement, yaw, roll])
         single, which = np.unique(places, axis=1, return_inverse=True)
         rolls, found = searched(self._section, single[0], single[1], None if roll is None else single[2])
@@ -387,11 +389,15 @@ class Wheelset(wl.Rig):
         }
         fields = {name: getattr(problem, name) for name in wl.Problem.__dataclass_fields__}
         if distance is not None:
-            fields["rolled_distance"] = np.broadcast_to(distance[:, None, None], exists.shape).reshape(*shape, 2, PATCHES)
+            fields["rolled_distance"] = np.broadcast_to(distance[:, None, None], exists.shape).reshape(
+                *shape, 2, PATCHES
+            )
         fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES)}
         return _Posed(**fields, balance=balance, shape=shape)
 
-    def _check_place(self, displacement: Array, yaw: Array) -> None:
+    @staticmethod
+    def _check_yaw(yaw: Array) -> None:
+        """Raise an error for a yaw that no wheelset has."""
         steep = np.abs(yaw) > MOST_YAW
         if steep.any():
             raise wl.ConditionsError(
@@ -404,17 +410,18 @@ class Wheelset(wl.Rig):
         if lost.any():
             point, side = (int(index[0]) for index in np.nonzero(lost))
             raise wl.ConditionsError(
-                f"lateral_displacement: at {1e3 * displacement[point]:.4g} mm the {DIMS['side'][side]} wheel does not touch"
-                " its rail"
+                f"lateral_displacement: at {1e3 * displacement[point]:.4g} mm the {DIMS['side'][side]} wheel does not"
+                " touch its rail within the profiles; wider profiles are needed, or the wheel has left the rail"
             )
 
     def _warn_of_climbing(self, displacement: Array, found: Touching) -> None:
+        """Warn of a wheel that stands on the top of its flange."""
         over = found.arc[..., 0] < self._steepest
         if over.any():
             point, side = (int(index[0]) for index in np.nonzero(over))
             warnings.warn(
-                f"at a lateral displacement of {1e3 * displacement[point]:.4g} mm the {DIMS['side'][side]} wheel climbs its"
-                " rail: it stands on its flange beyond the steepest point",
+                f"at a lateral displacement of {1e3 * displacement[point]:.4g} mm the {DIMS['side'][side]} wheel climbs"
+                " its rail: it stands on its flange beyond the steepest point",
                 wl.RangeWarning,
                 stacklevel=5,
             )

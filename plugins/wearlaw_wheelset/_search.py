@@ -20,9 +20,9 @@ the axes above.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -53,6 +53,12 @@ FINE = 0.05e-3
 
 STEEPEST = np.radians(86.0)
 """Steepest slope of a profile on which contact is looked for [rad]."""
+
+BESIDE = 1e3
+"""A place beside any rail [m]."""
+
+ON_EDGE = 1e-6
+"""Difference between slopes at a contact point that only the end of a profile can have."""
 
 BLOCK = 256
 """Positions that NumPy searches at once: their arrays stay in the cache."""
@@ -102,7 +108,11 @@ class Table(NamedTuple):
 
 
 class Coarse(NamedTuple):
-    """Points on a wheel at even arc lengths: distance from the middle of the wheelset, radius and its slope dR/dy."""
+    """Points on a wheel at even arc lengths: distance from the middle of the wheelset, radius and its slope dR/dy.
+
+    The first and the last point stand for the ends of the profile. They are far beside the rail, so that an end that is
+    nearest to the rail counts as a least gap.
+    """
 
     arc: Array
     y: Array
@@ -132,13 +142,21 @@ class Section:
     wheel: Curve
     rail: Curve
 
+    @property
+    def spacing(self) -> float:
+        """Distance between the coarse points [m]."""
+        length = self.wheel_y.end - self.wheel_y.start
+        return length / round(length / COARSE)
+
     @cached_property
     def coarse(self) -> Coarse:
         """The points on the wheel among which least gaps are looked for."""
-        count = round((self.wheel_y.end - self.wheel_y.start) / COARSE)
-        arc = np.linspace(self.wheel_y.start, self.wheel_y.end, count + 1)
+        arc = np.arange(self.wheel_y.start, self.wheel_y.end + 0.5 * self.spacing, self.spacing)
         (y, dy), (radius, d_radius) = self.wheel_y.at(arc), self.wheel_radius.at(arc)
-        return Coarse(arc, y, radius, d_radius / dy)
+        points = (np.pad(array, 1, mode="edge") for array in (arc, y, radius, d_radius / dy))
+        coarse = Coarse(*points)
+        coarse.y[[0, -1]] = BESIDE
+        return coarse
 
 
 def section(
@@ -193,8 +211,8 @@ def section(
     at = y[first] + FINE * np.arange(count + 1)
     height = scipy.interpolate.CubicHermiteSpline(y[kept], z[kept], np.tan(angle[kept]))
     place = scipy.interpolate.CubicHermiteSpline(y[kept], rail.s[kept], 1.0 / np.cos(angle[kept]))
-    tables = (Table(at[0], FINE, of(at), of(at, 1)) for of in (height, place))
-    return Section(across, radius, *tables, wheel, rail)
+    rail_z, position = (Table(at[0], FINE, of(at), of(at, 1)) for of in (height, place))
+    return Section(across, radius, rail_z, position, wheel, rail)
 
 
 class Position(NamedTuple):
@@ -246,11 +264,10 @@ def gaps(section: Section, position: Position, arc: Array) -> Gaps:
     """Return the gaps below points of the wheel at arc lengths [m]; the arrays broadcast."""
     y, dy = section.wheel_y.at(arc)
     radius, d_radius = section.wheel_radius.at(arc)
-    return _gaps(section, position, y, radius, d_radius / dy, section.rail_z.at)
+    return _gaps(position, y, radius, d_radius / dy, section.rail_z.at)
 
 
 def _gaps(
-    section: Section,
     position: Position,
     y: Array,
     radius: Array,
@@ -295,11 +312,11 @@ def touching(section: Section, position: Position, near: NDArray[np.intp] | None
     if near is not None:
         start = np.clip(near - WINDOW // 2, 0, points.arc.size - WINDOW)[..., None]
         points = Coarse(*(array[start + np.arange(WINDOW)] for array in points))
-    around = _gaps(section, position.widened(), points.y, points.radius, points.slope, section.rail_z.near)
+    around = _gaps(position.widened(), points.y, points.radius, points.slope, section.rail_z.near)
     gap, rise = around.gap, around.rise
     falls = (rise < 0.0) | np.isinf(gap)
     low = falls[..., :-1] & ~falls[..., 1:]
-    low |= (rise[..., :-1] < 0.0) & np.isinf(gap[..., 1:]) & np.isfinite(gap[..., :-1])  # on the edge of the rail
+    low |= (rise[..., :-1] < 0.0) & np.isinf(gap[..., 1:]) & np.isfinite(gap[..., :-1])  # on an end of a profile
     index = _smallest(np.where(low, np.minimum(gap[..., :-1], gap[..., 1:]), np.inf))
     found = np.take_along_axis(low, index, axis=-1)
     arc = np.full(found.shape, np.nan)
@@ -308,7 +325,9 @@ def touching(section: Section, position: Position, near: NDArray[np.intp] | None
     arcs = np.broadcast_to(points.arc, gap.shape)
     left, right = ((*place[:-1], index[place] + step) for step in (0, 1))
     there = Position(*(array[place[:-1]] for array in position))
-    begin, end = (np.where(np.isinf(gap[side]), arcs[other], arcs[side]) for side, other in ((left, right), (right, left)))
+    begin, end = (
+        np.where(np.isinf(gap[side]), arcs[other], arcs[side]) for side, other in ((left, right), (right, left))
+    )
     arc[place] = _root(section, there, begin, end, rise[left], rise[right])
     height[place] = gaps(section, there, arc[place]).gap
     order = np.argsort(height, axis=-1)
@@ -342,9 +361,7 @@ def _saddles(gap: Array, index: NDArray[np.intp]) -> Array:
     return np.stack(found, axis=-1)
 
 
-def _root(
-    section: Section, position: Position, left: Array, right: Array, at_left: Array, at_right: Array
-) -> Array:
+def _root(section: Section, position: Position, left: Array, right: Array, at_left: Array, at_right: Array) -> Array:
     """Return the arc lengths between `left` and `right` where the gap is least, by the Illinois method."""
     for _ in range(ROOTS):
         span = at_right - at_left
@@ -371,17 +388,25 @@ def searched(section: Section, displacement: Array, yaw: Array, roll: Array | No
         Yaw [rad], positive if the right wheel moves backwards.
     roll : ndarray, (positions,), optional
         The roll, if it is given; each wheel then touches at a height of its own.
+
+    Notes
+    -----
+    Where a wheel stands on the end of a profile, its own or the rail's, there is no contact point.
     """
     if wl.accelerated(LOOPS * displacement.size):
-        return _compiled(section, displacement, yaw, roll)
-    blocks = range(0, displacement.size, BLOCK)
-    parts = [
-        _searched(section, displacement[start : start + BLOCK], yaw[start : start + BLOCK],
-                  None if roll is None else roll[start : start + BLOCK])
-        for start in blocks
-    ]  # fmt: skip
-    rolls, found = zip(*parts, strict=True)
-    return np.concatenate(rolls), Touching(*(np.concatenate(arrays) for arrays in zip(*found, strict=True)))
+        rolls, found = _compiled(section, displacement, yaw, roll)
+    else:
+        rolls = np.empty(displacement.shape)
+        parts = []
+        for start in range(0, displacement.size, BLOCK):
+            some = slice(start, start + BLOCK)
+            rolls[some], part = _searched(section, displacement[some], yaw[some], None if roll is None else roll[some])
+            parts.append(part)
+        found = Touching(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+    position = both_sides(displacement, rolls, yaw).widened()
+    arc = np.where(np.isnan(found.arc), section.wheel_y.start, found.arc)
+    edge = np.abs(gaps(section, position, arc).rise) > ON_EDGE
+    return rolls, found._replace(arc=np.where(edge, np.nan, found.arc))
 
 
 def _compiled(section: Section, displacement: Array, yaw: Array, roll: Array | None) -> tuple[Array, Touching]:
@@ -396,9 +421,7 @@ def _compiled(section: Section, displacement: Array, yaw: Array, roll: Array | N
     return roll_found, Touching(arc, above, saddle, least)
 
 
-def _searched(
-    section: Section, displacement: Array, yaw: Array, given: Array | None
-) -> tuple[Array, Touching]:
+def _searched(section: Section, displacement: Array, yaw: Array, given: Array | None) -> tuple[Array, Touching]:
     roll = np.zeros_like(displacement) if given is None else given
     found = touching(section, both_sides(displacement, roll, yaw))
     if given is not None:
@@ -410,7 +433,8 @@ def _searched(
         whole = touching(section, position)
         for old, new in zip(found, whole, strict=True):
             old[open_] = new
-        open_ = open_[np.abs(whole.least[:, 1] - whole.least[:, 0]) > 2.0 * ROLL_ACCURACY]
+        tilted: NDArray[np.bool_] = np.abs(whole.least[:, 1] - whole.least[:, 0]) > 2.0 * ROLL_ACCURACY
+        open_ = open_[tilted]
         if not open_.size:
             break
     return roll, found
@@ -425,14 +449,14 @@ def _level(
         position = both_sides(displacement[rows], roll[rows], yaw[rows])
         excess = least[:, 1] - least[:, 0]
         lost = np.isnan(arc).any(axis=-1)  # the point has jumped out of the window
-        place = gaps(section, position, np.where(lost[:, None], section.coarse.arc[0], arc))
+        place = gaps(section, position, np.where(lost[:, None], section.wheel_y.start, arc))
         lever = (place.y + place.rail_slope * place.z).sum(axis=-1)
-        going = (np.abs(excess) > ROLL_ACCURACY) & ~lost
+        going: NDArray[np.bool_] = (np.abs(excess) > ROLL_ACCURACY) & ~lost
         roll[rows] += np.where(going, roll_step(excess, lever), 0.0)
         rows, arc = rows[going], arc[going]
         if not rows.size:
             return
-        near = ((arc - section.coarse.arc[0]) / (section.coarse.arc[1] - section.coarse.arc[0])).astype(np.intp)
+        near = ((arc - section.wheel_y.start) / section.spacing).astype(np.intp) + 1
         local = touching(section, both_sides(displacement[rows], roll[rows], yaw[rows]), near)
         least, arc = local.least, local.arc[..., 0]
 

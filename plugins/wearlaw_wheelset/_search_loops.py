@@ -151,14 +151,14 @@ def compiled_search(
     gap, rise = np.empty(arc.size), np.empty(arc.size)
     place, height, cell = np.empty(PATCHES), np.empty(PATCHES), np.empty(PATCHES, np.int64)
     lever = np.empty(2)
-    spacing = arc[1] - arc[0]
+    spacing = arc[2] - arc[1]
     for point in range(displacement.size):
         whole = True
         for _ in range(ROLLS):
             for side in range(2):
                 begin, end = 0, arc.size
                 if not whole:
-                    middle = int((found[point, side, 0] - arc[0]) / spacing)
+                    middle = int((found[point, side, 0] - arc[0]) / spacing) + 1
                     begin = min(max(middle - WINDOW // 2, 0), arc.size - WINDOW)
                     end = begin + WINDOW
                 sign = -1.0 if side == 0 else 1.0

@@ -265,7 +265,9 @@ def problems_agree_to_the_bit(rig: Rig) -> None:
 def geometry_is_that_of_the_problem(rig: Rig) -> None:
     """`patch_geometry` is the shape of the patch of the problem, or None."""
     made = _problem(rig).geometry
-    assert rig.patch_geometry in (None, made), f"`patch_geometry` is '{rig.patch_geometry}', but the patch of the problem is '{made}'"
+    assert rig.patch_geometry in (None, made), (
+        f"`patch_geometry` is '{rig.patch_geometry}', but the patch of the problem is '{made}'"
+    )
 
 
 def bodies_are_named(rig: Rig) -> None:

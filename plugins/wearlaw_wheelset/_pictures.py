@@ -1,0 +1,65 @@
+"""Pictures of wheels on rails."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+if TYPE_CHECKING:
+    import xarray
+
+    from wearlaw_wheelset._geometry import Profiles
+
+APART = 15.0
+"""Distance by which wheel and rail are drawn apart [mm]."""
+
+LINES = 40
+"""Most lines between contact points."""
+
+
+def geometry_figure(geometry: xarray.Dataset, profiles: Profiles) -> Figure:
+    """Return a figure of contact points on both profiles of the right side, Δr and contact angles."""
+    figure = Figure(figsize=(7.4, 7.0), layout="constrained")
+    axes = figure.subplot_mosaic([["both", "both"], ["radius", "angle"]], height_ratios=(1.2, 1.0))
+    _contact_points(axes["both"], geometry, profiles)
+    swept = [name for name in ("lateral_displacement", "yaw") if name in geometry.dims]
+    along = swept[0] if swept else None
+    for name, panel in (("rolling_radius_difference", axes["radius"]), ("contact_angle", axes["angle"])):
+        found = geometry[name]
+        if name == "contact_angle":
+            found = found.sel(side="right")
+        panel.set(ylabel=f"{'contact angle, right' if name == 'contact_angle' else 'rolling radius, right minus left'}"
+                         f" [{geometry[name].units}]")  # fmt: skip
+        _curves(panel, found, along)
+    return figure
+
+
+def _curves(axes: Any, values: xarray.DataArray, along: str | None) -> None:
+    """Draw values over the first swept axis, with a curve for each value of the other axes."""
+    if along is None:
+        axes.plot(np.arange(1, values.size + 1), values.values.ravel(), "o")
+        return
+    others = [name for name in values.dims if name != along]
+    flat = values.stack(other=others) if others else values.expand_dims("other")
+    for index in range(flat.sizes["other"]):
+        curve = flat.isel(other=index)
+        if curve.notnull().any():
+            axes.plot(values[along], curve, color="C0", alpha=0.9, marker="." if curve.notnull().sum() < 3 else "")
+    axes.set_xlabel(f"{values[along].long_name} [{values[along].units}]")
+    axes.grid(alpha=0.3)
+
+
+def _contact_points(axes: Any, geometry: xarray.Dataset, profiles: Profiles) -> None:
+    """Draw the right wheel above its rail, apart, with lines between points that touch."""
+    axes.plot(1e3 * profiles.wheel_y, 1e3 * profiles.wheel_z - APART, color="black")
+    axes.plot(1e3 * profiles.rail_y, 1e3 * profiles.rail_z, color="black")
+    right = geometry.sel(side="right")
+    wheel_y, wheel_z, y, z = (right[name].values.ravel() for name in ("wheel_y", "wheel_z", "y", "z"))
+    there = np.flatnonzero(np.isfinite(y))
+    for index in there[:: max(1, there.size // LINES)]:
+        ends = [wheel_y[index] + 1e3 * profiles.wheel_offset, y[index]], [wheel_z[index] - APART, z[index]]
+        axes.plot(*ends, color="C0", lw=0.6)
+    axes.set(xlabel="y, to the right [mm]", ylabel="z, down [mm]", aspect="equal", title="right wheel and rail")
+    axes.invert_yaxis()
