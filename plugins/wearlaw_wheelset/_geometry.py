@@ -194,7 +194,7 @@ def geometry(
 
 def profiles(section: Section, nominal_radius: float) -> Profiles:
     """Return the profiles of the right wheel and its rail in the middle of the track."""
-    rail_y = section.rail_z.start + section.rail_z.step * np.arange(section.rail_z.value.size)
+    rail_y: Array = section.rail_z.start + section.rail_z.step * np.arange(section.rail_z.value.size, dtype=np.float64)
     offset = section.wheel_y.value[0] - float(section.wheel.at(section.wheel_y.start)[0])
     radius = section.wheel_radius.value - nominal_radius
     return Profiles(section.wheel_y.value, radius, offset, rail_y, section.rail_z.value)

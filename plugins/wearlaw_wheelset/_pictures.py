@@ -43,10 +43,11 @@ def _curves(axes: Any, values: xarray.DataArray, along: str | None) -> None:
         return
     others = [name for name in values.dims if name != along]
     flat = values.stack(other=others) if others else values.expand_dims("other")
+    per = values.sizes.get("patch", 1)
     for index in range(flat.sizes["other"]):
         curve = flat.isel(other=index)
         if curve.notnull().any():
-            axes.plot(values[along], curve, color="C0", alpha=0.9, marker="." if curve.notnull().sum() < 3 else "")
+            axes.plot(values[along], curve, ".", color=f"C{index // per}", ms=2.5)  # a line would hide jumps
     axes.set_xlabel(f"{values[along].long_name} [{values[along].units}]")
     axes.grid(alpha=0.3)
 
@@ -61,5 +62,8 @@ def _contact_points(axes: Any, geometry: xarray.Dataset, profiles: Profiles) -> 
     for index in there[:: max(1, there.size // LINES)]:
         ends = [wheel_y[index] + 1e3 * profiles.wheel_offset, y[index]], [wheel_z[index] - APART, z[index]]
         axes.plot(*ends, color="C0", lw=0.6)
-    axes.set(xlabel="y, to the right [mm]", ylabel="z, down [mm]", aspect="equal", title="right wheel and rail")
+    axes.text(1e3 * profiles.wheel_y[-1], 1e3 * profiles.wheel_z[-1] - APART, "wheel ", ha="right", va="top")
+    axes.text(1e3 * profiles.rail_y.mean(), 8.0, "rail", ha="center")
+    title = f"right wheel and rail, drawn {APART:.0f} mm apart; lines join points that touch"
+    axes.set(xlabel="y, to the right [mm]", ylabel="z, down [mm]", aspect="equal", title=title)
     axes.invert_yaxis()

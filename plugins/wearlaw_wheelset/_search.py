@@ -120,7 +120,7 @@ class Coarse(NamedTuple):
     slope: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Section:
     """One wheel above its rail, in outward coordinates, as tables in SI.
 
@@ -433,7 +433,7 @@ def _searched(section: Section, displacement: Array, yaw: Array, given: Array | 
         whole = touching(section, position)
         for old, new in zip(found, whole, strict=True):
             old[open_] = new
-        tilted: NDArray[np.bool_] = np.abs(whole.least[:, 1] - whole.least[:, 0]) > 2.0 * ROLL_ACCURACY
+        tilted = np.asarray(np.abs(whole.least[:, 1] - whole.least[:, 0]) > 2.0 * ROLL_ACCURACY)
         open_ = open_[tilted]
         if not open_.size:
             break
@@ -448,10 +448,10 @@ def _level(
     for _ in range(ROLLS):
         position = both_sides(displacement[rows], roll[rows], yaw[rows])
         excess = least[:, 1] - least[:, 0]
-        lost = np.isnan(arc).any(axis=-1)  # the point has jumped out of the window
+        lost = np.asarray(np.isnan(arc).any(axis=-1))  # the point has jumped out of the window
         place = gaps(section, position, np.where(lost[:, None], section.wheel_y.start, arc))
         lever = (place.y + place.rail_slope * place.z).sum(axis=-1)
-        going: NDArray[np.bool_] = (np.abs(excess) > ROLL_ACCURACY) & ~lost
+        going = np.asarray((np.abs(excess) > ROLL_ACCURACY) & ~lost)
         roll[rows] += np.where(going, roll_step(excess, lever), 0.0)
         rows, arc = rows[going], arc[going]
         if not rows.size:
