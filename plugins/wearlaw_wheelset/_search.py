@@ -445,7 +445,8 @@ def _searched(section: Section, displacement: Array, yaw: Array, given: Array | 
         whole = touching(section, position)
         for old, new in zip(found, whole, strict=True):
             old[open_] = new
-        tilted = np.asarray(np.abs(whole.least[:, 1] - whole.least[:, 0]) > 2.0 * ROLL_ACCURACY)
+        with np.errstate(invalid="ignore"):  # both wheels may be beside their rails
+            tilted = np.asarray(np.abs(whole.least[:, 1] - whole.least[:, 0]) > 2.0 * ROLL_ACCURACY)
         open_ = open_[tilted]
         if not open_.size:
             break
@@ -459,8 +460,8 @@ def _level(
     least, arc = found.least[rows], found.arc[rows, :, 0]
     for _ in range(ROLLS):
         position = both_sides(displacement[rows], roll[rows], yaw[rows])
-        excess = least[:, 1] - least[:, 0]
         lost = np.asarray(np.isnan(arc).any(axis=-1))  # the point has jumped out of the window
+        excess = np.subtract(least[:, 1], least[:, 0], out=np.zeros(rows.size), where=~lost)
         place = gaps(section, position, np.where(lost[:, None], section.wheel_y.start, arc))
         lever = (place.y + place.rail_slope * place.z).sum(axis=-1)
         going = np.asarray((np.abs(excess) > ROLL_ACCURACY) & ~lost)
