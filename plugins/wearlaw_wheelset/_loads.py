@@ -41,20 +41,29 @@ virtual penetration."""
 SPARE = 1.5
 """A patch is followed if its gap is at most this share of the penetration under the whole load."""
 
-LEAST = 1e-3
-"""Smallest penetration of a patch that is followed, as a share of the wheel's; below it the patch is open."""
+LEAST = 1e-6
+"""Smallest penetration of a patch that is followed, as a share of the wheel's; below it the patch is open. Its force is
+a share of 1e-9, less than `BALANCED`."""
 
 BALANCED = 1e-8
 """Greatest imbalance, as a share of the load, and of the torque of full slip."""
 
-STEPS = 100
-"""Greatest number of steps of the balance; five to ten are usual."""
+STEPS, TOGETHER = 300, 20
+"""Greatest number of steps of the balance; five to ten are usual. After the second number, as on steep flanges, the
+speed of rotation only moves where the loads are balanced."""
 
 WIDEST_STEP, MOST_TURN = 1.0, 0.01
 """Greatest step of the logarithm of the penetration, and of the speed of rotation as a share of it."""
 
 LEAST_SHARE = 0.1
 """Smallest share of the load that a step of the penetration counts with."""
+
+STEEP = 6.0
+"""Greatest slope of the load with the penetration, in logarithms; 1.5 for one patch, and more as others join."""
+
+REOPENINGS = 4
+"""How often bounds of a penetration are forgotten, as they were found at other speeds of rotation; then the load jumps
+there."""
 
 CLOSED = 1e-12
 """Bounds have met if they differ by this share."""
@@ -229,13 +238,17 @@ class _Root:
         infinite, none = np.full(x.shape, np.inf), np.full(x.shape, np.nan)
         return cls(x, np.full(x.shape, slope), most, -infinite, infinite, none, none)
 
-    def step(self, value: Array, going: NDArray[np.bool_]) -> None:
-        """Move the places that are still going; the function has these values at the present ones."""
+    def step(self, value: Array, going: NDArray[np.bool_], sure: NDArray[np.bool_]) -> None:
+        """Move the places that are still going; the function has these values at the present ones.
+
+        Only where a value is sure, it gives a slope and a bound; bounds that it contradicts are forgotten.
+        """
         with np.errstate(invalid="ignore", divide="ignore"):
             secant = (value - self.value) / (self.x - self.before)
-        self.slope = np.where((secant > 0.0) & np.isfinite(secant), secant, self.slope)
-        self.low = np.where(going & (value < 0.0), self.x, self.low)
-        self.high = np.where(going & (value > 0.0), self.x, self.high)
+        self.slope = np.where(sure & (secant > 0.0) & np.isfinite(secant), secant, self.slope)
+        low, high = going & sure & (value < 0.0), going & sure & (value > 0.0)
+        self.low = np.where(low, self.x, np.where(high & (self.x <= self.low), -np.inf, self.low))
+        self.high = np.where(high, self.x, np.where(low & (self.x >= self.high), np.inf, self.high))
         trial = self.x + np.clip(-value / self.slope, -self.most, self.most)
         bounded = np.isfinite(self.low) & np.isfinite(self.high)
         middle = 0.5 * (np.where(bounded, self.low, trial) + np.where(bounded, self.high, trial))
@@ -247,10 +260,13 @@ class _Root:
         """Return where the bounds have met."""
         return self.high - self.low <= CLOSED * np.abs(self.x)
 
-    def reopen(self) -> None:
-        """Forget bounds that have met: they were found while something else was still moving."""
-        closed = self.closed()
-        self.low, self.high = np.where(closed, -np.inf, self.low), np.where(closed, np.inf, self.high)
+    def stale(self, value: Array) -> NDArray[np.bool_]:
+        """Return where the bounds are too near to each other for the present value and no slope above `STEEP`."""
+        return np.abs(value) > STEEP * (self.high - self.low)
+
+    def reopen(self, where: NDArray[np.bool_]) -> None:
+        """Forget bounds that were found while something else was still moving."""
+        self.low, self.high = np.where(where, -np.inf, self.low), np.where(where, np.inf, self.high)
 
 
 @dataclass
@@ -337,7 +353,8 @@ class Balance:
         turns = _Root.begun(self.rotation, np.nan, MOST_TURN * self.rotation)
         load = self.task.load.repeat(2)
         open_ = np.ones(count, dtype=np.bool_)
-        for _ in range(STEPS):
+        reopened = np.zeros(2 * count, dtype=np.intp)
+        for number in range(STEPS):
             part = self.found.part(open_[self.found.point])
             problem, patch = self.posed(part, np.exp(depths.x), turns.x, self.scale)
             force = None if forces is None else forces(problem)
@@ -348,15 +365,25 @@ class Balance:
             open_ &= ~(level & (np.abs(lacking) <= BALANCED * grip))
             if not open_.any():
                 break
+            apart = number >= TOGETHER
             wheels = open_.repeat(2)
+            stale = wheels & depths.stale(excess) & (reopened < REOPENINGS)
+            depths.reopen(stale)
+            reopened += stale
             jump = wheels & depths.closed()
             self.scale = np.where(jump, self.scale * np.exp(-excess), self.scale)
-            depths.step(excess, wheels & ~jump)
+            share = np.divide(np.abs(lacking), grip, out=np.zeros(count), where=open_)
+            sure = np.abs(excess) >= share.repeat(2)
+            depths.step(excess, wheels & ~jump & ~(apart & level.repeat(2)), sure | apart)
             if free:
                 if np.isnan(turns.slope).all():
                     turns.slope = self._stiffness(part, patch, problem)
-                turns.reopen()
-                turns.step(lacking, open_)
+                turns.reopen(turns.closed() | (number == TOGETHER))
+                turning = open_ & (level | (not apart))
+                turns.step(lacking, turning, (share > np.abs(excess).reshape(-1, 2).max(axis=-1)) | (apart & level))
+                if apart:
+                    depths.reopen(turning.repeat(2))
+                    reopened[turning.repeat(2)] = 0
         self.penetration, self.rotation = np.exp(depths.x), turns.x
 
     def _sums(
