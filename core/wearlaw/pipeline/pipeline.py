@@ -9,13 +9,13 @@ import inspect
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from functools import cached_property, partial
-from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self
+from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast
 
 import numpy as np
 from pydantic import model_validator
 
 from wearlaw.arrays.array import Array, extremes, type_name
-from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
+from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
 from wearlaw.models.law import WEAR, Law
@@ -72,9 +72,9 @@ class Rig(Model):
 
     kind: ClassVar[str] = "rig"
 
-    geometry: ClassVar[Geometry | None] = None
+    geometry: ClassVar = cast(Any, None)  # Any: for type checkers, a subclass may make it a property
     """The shape of the patch. A contact model that cannot solve it raises an error at once. None if the shape is known
-    only from the problem."""
+    only from the problem. A rig with a field that chooses the shape can make it a property."""
 
     creepage: ClassVar[str] = "creepage"
     """Name of the condition that sets the creepage: `creepage_for` solves for it, and the tables of a case run along
