@@ -80,7 +80,7 @@ EXISTS = np.stack([np.stack([np.full(5, True), side * MOVED > 6.0], axis=-1) for
 MOVING: Table = {
     "load": "80 kN",
     "displacement": [f"{one:g} mm" for one in MOVED],
-    "driving": "0.1 %",
+    "driving": "0.05 %",
     "friction_coefficient": 0.3,
 }
 FLANGING: Table = {**MOVING, "displacement": "7 mm"}

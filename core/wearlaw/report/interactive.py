@@ -146,6 +146,7 @@ def _traces(curve: Curve, panel: Panel, number: str, markers: bool) -> list[Json
         "line": style,
         "marker": _marker(curve, colour),
         "hovertemplate": _hover(curve, panel),
+        **_texts(curve, panel),
         "showlegend": True,
     }
     lines = [line]
@@ -173,9 +174,19 @@ def _sparse(curve: Curve, panel: Panel, lone: list[int], markers: bool) -> Json:
     return {"selectedpoints": sorted({*marked, *lone}), "unselected": {"marker": {"opacity": 0}}}
 
 
+def _texts(curve: Curve, panel: Panel) -> Json:
+    """Return the names of the points on an axis with names: of each point the one nearest to it."""
+    for axis, values in ((panel.x, curve.x), (panel.y, curve.y)):
+        if axis.names:
+            nearest = np.clip(np.nan_to_num(values).round().astype(int), 0, len(axis.names) - 1)
+            return {"text": [literal(axis.names[number]) for number in nearest]}
+    return {}
+
+
 def _hover(curve: Curve, panel: Panel) -> str:
-    lines = [f"<b>{literal(curve.label)}</b>", f"{literal(panel.x.label)}: %{{x:.4~g}}"]
-    lines.append(f"{literal(panel.y.label)}: %{{y:.4~g}}")
+    lines = [f"<b>{literal(curve.label)}</b>"]
+    for axis, value in ((panel.x, "x"), (panel.y, "y")):
+        lines.append("%{text}" if axis.names else f"{literal(axis.label)}: %{{{value}:.4~g}}")
     if curve.low is not None:
         lines.append("from %{customdata[0]:.4~g} to %{customdata[1]:.4~g}")
     return "<br>".join(lines) + "<extra></extra>"
