@@ -22,7 +22,7 @@ TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
 CLASSES = (
     *(wl.Problem, wl.Contact, TwinDiscConditions, wl.Prediction, wl.LocalWear),
-    *(wl.CreepForces, WheelRailConditions),
+    *(wl.CreepForces, WheelRailConditions, wl.Body),
 )
 OF_ANY_UNIT = ("outcome", "outcome_error", "value", "local_value")
 """Quantities of a law, whose unit is that of its outcome."""

@@ -1,35 +1,37 @@
-"""A rig whose bodies touch in several places, and a case of it; `install(*AXLES)` makes it a plugin."""
+"""Rigs with several patches: an axle with two wheels, as ellipses or strips, with or without places on the profile."""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 import wearlaw as wl
-from tests.core.cases import Table
+from wearlaw import Array, Q
 
 RADIUS, CONICITY, FLANGE = 0.46, 0.05, 6e-3
-LEFT_OR_RIGHT = np.array([[-1.0], [1.0]])
-TREAD_OR_FLANGE = np.array([False, True])
-SIDES, PATCHES = ("left", "right"), (1, 2)
 WHEEL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
+PATCHES: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch": (1, 2)}
+CREEP: Any = {"longitudinal_creepage": "0.2 %", "spin": "0.3 1/m", "friction_coefficient": 0.3}
+GIVEN: Any = {"load": "80 kN", "displacement": Q([0.0, 5.0, 7.0], "mm"), **CREEP}
+EXISTS = np.array([[[1, 0], [1, 0]], [[1, 0], [1, 0]], [[1, 0], [1, 1]]], dtype=bool)
+SHARE = 0.25
+
+
+def lifted(unit: str, value: wl.QuantityLike) -> Array:
+    """Return a condition in SI with axes of length one for sides and patches."""
+    return wl.Unit(unit, positive=False).si(value, "condition")[..., None, None]
 
 
 class Axle(wl.Rig):
-    """Two wheels with a cone of 1 in 20; beyond a displacement of 6 mm the flange takes a quarter of a wheel's load."""
+    """Two wheels; beyond a displacement of 6 mm the right one also touches with its flange, which takes a quarter."""
 
     name: ClassVar[str] = "axle"
     source: ClassVar[str] = "a test"
-    creepage: ClassVar[str] = "displacement"
-    example: ClassVar[Mapping[str, Any]] = {
-        "load": "80 kN",
-        "displacement": "6.5 mm",
-        "driving": "0.1 %",
-        "friction_coefficient": 0.3,
-    }
+    creepage: ClassVar[str] = "longitudinal_creepage"
+    dims: ClassVar[Mapping[str, tuple[str | int, ...]]] = PATCHES
 
     @property
     def bodies(self) -> Mapping[str, wl.Body]:
@@ -41,54 +43,93 @@ class Axle(wl.Rig):
         *,
         load: wl.QuantityLike,
         displacement: wl.QuantityLike,
-        driving: wl.QuantityLike = "0 %",
-        friction_coefficient: ArrayLike = 0.3,
+        longitudinal_creepage: wl.QuantityLike,
+        spin: wl.QuantityLike,
+        friction_coefficient: Any,
     ) -> wl.Problem:
         """Return the problem of four patches, of which there are two or three."""
-        moved = wl.Unit("mm", positive=False).si(displacement, "displacement")[..., None, None]
-        slip = wl.Unit("", positive=False, limit=0.9).si(driving, "driving")[..., None, None]
-        on_wheel = wl.Unit("kN").si(load, "load")[..., None, None]
-        friction = np.asarray(friction_coefficient)[..., None, None]
-        both = moved * LEFT_OR_RIGHT > FLANGE
-        share = np.where(both, np.where(TREAD_OR_FLANGE, 0.25, 0.75), 1.0)
-        found = WHEEL.problem(
-            normal_force=wl.Q(share * on_wheel, "N"),
-            longitudinal_creepage=wl.Q(slip - CONICITY * LEFT_OR_RIGHT * moved / RADIUS, ""),
-            friction_coefficient=friction,
-        )
-        exists = np.broadcast_to(~TREAD_OR_FLANGE | both, found.batch_shape).copy()
-        radius = np.broadcast_to(RADIUS + CONICITY * LEFT_OR_RIGHT * moved, found.batch_shape)
+        place = lifted("mm", displacement)
+        creepages: Any = {
+            "longitudinal_creepage": Q(lifted("", longitudinal_creepage), ""),
+            "spin": Q(lifted("1/m", spin), "1/m"),
+            "friction_coefficient": np.asarray(friction_coefficient)[..., None, None],
+        }
+        flange, right = np.array([0.0, 1.0]), np.array([[-1.0], [1.0]])
+        exists = (flange == 0.0) | ((place > FLANGE) & (right > 0.0))
+        two = (right > 0.0) & (place > FLANGE)
+        share = np.where(two, np.where(flange > 0.0, SHARE, 1.0 - SHARE), 1.0)
+        found = WHEEL.problem(normal_force=Q(share * lifted("N", load), "N"), **creepages)
+        exists = np.broadcast_to(exists, found.batch_shape)
+        radius = np.broadcast_to(RADIUS + CONICITY * right * place, exists.shape)
         bodies = {"wheel": wl.Body(WHEEL.material, radius), "rail": found.bodies["rail"]}
-        return found.replaced(dims={"side": SIDES, "patch": PATCHES}, exists=exists, bodies=bodies)
+        return found.replaced(dims=self.dims, exists=exists, bodies=bodies)
 
 
-@wl.hookimpl
-def wearlaw_rigs() -> list[type[wl.Rig]]:
-    """Return the rig."""
-    return [Axle]
+KTH = wl.wear_law("kth")
+PREDICT: Any = Axle() | wl.contact_model("fastsim") | KTH
+ALONE: Any = WHEEL | wl.contact_model("fastsim") | KTH
 
 
-AXLES = ("axles", "from tests.core.axles import wearlaw_rigs")
-"""Name and source of the plugin."""
+class Cut(Axle):
+    """The patches of the axle cut into strips."""
 
-MOVED = np.array([-7.0, -3.0, 0.0, 3.0, 7.0])
-"""Displacements of the case [mm]; each flange touches at one end."""
+    name: ClassVar[str] = "cut"
 
-EXISTS = np.stack([np.stack([np.full(5, True), side * MOVED > 6.0], axis=-1) for side in (-1.0, 1.0)], axis=1)
-"""Which patches exist, (displacements, sides, patches)."""
+    def problem(self, **conditions: Any) -> wl.Problem:
+        """Return the problem with strips at even angles, with Hertz's pressure in their middles."""
+        found = super().problem(**conditions)
+        angle = np.pi / (STRIPS + 1) * np.arange(STRIPS, 0, -1)
+        root = np.sin(angle)
+        strips = wl.Strips(
+            y=found.b[..., None] * np.cos(angle),
+            width=found.b[..., None] * np.pi / (STRIPS + 1) * root,
+            half_length=found.a[..., None] * root,
+            max_pressure=found.max_pressure[..., None] * root,
+        )
+        return found.replaced(geometry="strips", strips=strips, normal_force=strips.normal_force.sum(axis=-1))
 
-MOVING: Table = {
-    "load": "80 kN",
-    "displacement": [f"{one:g} mm" for one in MOVED],
-    "driving": "0.05 %",
-    "friction_coefficient": 0.3,
-}
-FLANGING: Table = {**MOVING, "displacement": "7 mm"}
-ON_AXLE: Table = {
-    "title": "A small study of an axle",
-    "rig": {"type": "axle"},
-    "contact_models": ["fastsim", "polach"],
-    "wear_laws": ["usfd", "kth"],
-    "sweeps": {"moving": MOVING, "flanging": FLANGING},
-    "profiles": {"flanging": FLANGING},
-}
+
+class Worn(Cut):
+    """The axle with patches of either shape."""
+
+    name: ClassVar[str] = "worn"
+    hertzian: bool = True
+
+    @property
+    def geometry(self) -> wl.Geometry:
+        """The shape that the field chooses."""
+        return "ellipse" if self.hertzian else "strips"
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        """Return the problem of ellipses or strips."""
+        return (Axle() if self.hertzian else Cut()).problem(**conditions)
+
+
+class Placed(Worn):
+    """The axle with patches of either shape and their places on the profiles; y is to the right, arcs run outwards."""
+
+    name: ClassVar[str] = "placed"
+    flange_at: float = -30e-3
+    """Position of the flange's patch along the profile of the wheel [m]."""
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        """Return the problem with positions, of the rail 1 mm further out."""
+        found = super().problem(**conditions)
+        place = wl.Unit("mm", positive=False).si(conditions["displacement"], "displacement")[..., None, None]
+        outwards = np.array([[-1.0], [1.0]])
+        position = outwards * -0.5 * place + np.array([0.0, self.flange_at])
+        bodies = {
+            name: dataclasses.replace(body, profile_position=position + shift, profile_direction=outwards)
+            for (name, body), shift in zip(found.bodies.items(), (0.0, 1e-3), strict=True)
+        }
+        return found.replaced(bodies=bodies)
+
+
+STRIPS = 12
+CUT: Any = Cut() | wl.contact_model("fastsim") | KTH
+LOADS = Q(np.array([[[80.0, np.nan]] * 2] * 2 + [[[80.0, np.nan], [60.0, 20.0]]]), "kN")
+
+
+def of(prediction: wl.Prediction, name: str) -> Array:
+    """Return a property as an array in SI."""
+    return np.asarray(getattr(prediction, name).to_base_units().magnitude)

@@ -17,7 +17,7 @@ import xarray
 
 import wearlaw as wl
 from tests.core import cases
-from tests.core.axles import AXLES, EXISTS, FLANGING, MOVED, MOVING, ON_AXLE, PATCHES, SIDES, Axle
+from tests.core.axle_case import AXLES, EXISTS, FLANGING, MOVED, MOVING, ON_AXLE, PATCHES, SIDES, Axle
 from tests.core.cases import InstallModel, Table, assert_refused, changed, wearlaw
 from tests.core.distributions import Install
 from tests.core.panels import by_label, by_name, one_panel

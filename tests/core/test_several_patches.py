@@ -2,95 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.core.axles import (
+    ALONE,
+    CONICITY,
+    CREEP,
+    CUT,
+    EXISTS,
+    GIVEN,
+    KTH,
+    LOADS,
+    PATCHES,
+    PREDICT,
+    RADIUS,
+    WHEEL,
+    Axle,
+    Worn,
+    of,
+)
 from tests.strategies import EPS
 from wearlaw import Array, Q
-from wearlaw.numerics import integrate
-
-RADIUS, CONICITY, FLANGE = 0.46, 0.05, 6e-3
-WHEEL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
-PATCHES: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch": (1, 2)}
-CREEP: Any = {"longitudinal_creepage": "0.2 %", "spin": "0.3 1/m", "friction_coefficient": 0.3}
-GIVEN: Any = {"load": "80 kN", "displacement": Q([0.0, 5.0, 7.0], "mm"), **CREEP}
-EXISTS = np.array([[[1, 0], [1, 0]], [[1, 0], [1, 0]], [[1, 0], [1, 1]]], dtype=bool)
-SHARE = 0.25
-
-
-class Axle(wl.Rig):
-    """Two wheels; beyond a displacement of 6 mm the right one also touches with its flange, which takes a quarter."""
-
-    name: ClassVar[str] = "axle"
-    source: ClassVar[str] = "a test"
-    creepage: ClassVar[str] = "longitudinal_creepage"
-    dims: ClassVar[Mapping[str, tuple[str | int, ...]]] = PATCHES
-
-    @property
-    def bodies(self) -> Mapping[str, wl.Body]:
-        """Those of one wheel."""
-        return WHEEL.bodies
-
-    def problem(self, *, load: wl.QuantityLike, displacement: wl.QuantityLike, **creepages: Any) -> wl.Problem:
-        """Return the problem of four patches, of which there are two or three."""
-        place = wl.Unit("mm", positive=False).si(displacement, "displacement")[..., None, None]
-        flange, right = np.array([0.0, 1.0]), np.array([[-1.0], [1.0]])
-        exists = (flange == 0.0) | ((place > FLANGE) & (right > 0.0))
-        two = (right > 0.0) & (place > FLANGE)
-        share = np.where(two, np.where(flange > 0.0, SHARE, 1.0 - SHARE), 1.0)
-        found = WHEEL.problem(normal_force=Q(share * wl.Unit("N").si(load, "load"), "N"), **creepages)
-        radius = np.broadcast_to(RADIUS + CONICITY * right * place, exists.shape)
-        bodies = {"wheel": wl.Body(WHEEL.material, radius), "rail": found.bodies["rail"]}
-        return found.replaced(dims=self.dims, exists=exists, bodies=bodies)
-
-
-KTH = wl.wear_law("kth")
-PREDICT: Any = Axle() | wl.contact_model("fastsim") | KTH
-ALONE: Any = WHEEL | wl.contact_model("fastsim") | KTH
-
-
-class Cut(Axle):
-    """The patches of the axle cut into strips."""
-
-    name: ClassVar[str] = "cut"
-
-    def problem(self, **conditions: Any) -> wl.Problem:
-        """Return the problem with strips at even angles, with Hertz's pressure in their middles."""
-        found = super().problem(**conditions)
-        angle = np.pi / (STRIPS + 1) * np.arange(STRIPS, 0, -1)
-        root = np.sin(angle)
-        strips = wl.Strips(
-            y=found.b[..., None] * np.cos(angle),
-            width=found.b[..., None] * np.pi / (STRIPS + 1) * root,
-            half_length=found.a[..., None] * root,
-            max_pressure=found.max_pressure[..., None] * root,
-        )
-        return found.replaced(geometry="strips", strips=strips, normal_force=strips.normal_force.sum(axis=-1))
-
-
-class Worn(Cut):
-    """The axle with patches of either shape."""
-
-    name: ClassVar[str] = "worn"
-    hertzian: bool = True
-
-    @property
-    def geometry(self) -> wl.Geometry:
-        """The shape that the field chooses."""
-        return "ellipse" if self.hertzian else "strips"
-
-    def problem(self, **conditions: Any) -> wl.Problem:
-        """Return the problem of ellipses or strips."""
-        return (Axle() if self.hertzian else Cut()).problem(**conditions)
-
-
-STRIPS = 12
-CUT: Any = Cut() | wl.contact_model("fastsim") | KTH
-LOADS = Q(np.array([[[80.0, np.nan]] * 2] * 2 + [[[80.0, np.nan], [60.0, 20.0]]]), "kN")
 
 
 def alone(name: str) -> Array:
@@ -194,10 +131,8 @@ def test_a_wrong_mask_is_the_rigs_fault(exists: Any) -> None:
 
 def test_applications_that_take_one_patch_say_so() -> None:
     with pytest.raises(
-        wl.CompositionError, match=r"sweep: needs one patch .* 'axle' makes several, along side and patch"
+        wl.CompositionError, match=r"uncertainty: needs one patch .* 'axle' makes several, along side and patch"
     ):
-        wl.sweep(PREDICT, **GIVEN)
-    with pytest.raises(wl.CompositionError, match="uncertainty: needs one patch"):
         wl.uncertainty(PREDICT, **{**GIVEN, "load": wl.uniform("60 kN", "80 kN")}, samples=4).interval()
     creepages = {name: value for name, value in GIVEN.items() if name != "longitudinal_creepage"}
     with pytest.raises(wl.CompositionError, match="creepage_for: needs one patch"):
@@ -287,143 +222,36 @@ def test_labels_of_axes_must_fit_the_batch(dims: Any) -> None:
         predict(**GIVEN)
 
 
-# --- Some of the patches ---------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("hertzian", [True, False])
+def test_friction_may_differ_by_patch(hertzian: bool) -> None:
+    dry, greased = 0.3, 0.08
 
+    class Lubricated(Worn):
+        """The axle with a lubricated flange."""
 
-EVERY = (
-    "wear_rate", "wear_rate_error", "longitudinal_force", "lateral_force", "spin_moment", "tangential_force",
-    "traction_coefficient", "wear_index", "cell_wear_index", "averaged_wear_index", "wear_index_density",
-    "normal_force", "creepage", "friction_coefficient", "semi_axis_a", "semi_axis_b", "max_pressure", "first_yield",
-    "shakedown_limit", "outside_range", "patch_area", "stick_ratio", "mean_slip", "mass_per_distance",
-)  # fmt: skip
-"""All properties of an ellipse."""
+        name: ClassVar[str] = "lubricated"
 
-SELECTIONS: list[tuple[dict[str, Any], dict[str, Any], Any, dict[str, Any]]] = [
-    ({"side": "right"}, {}, np.s_[:, 1], {"patch": (1, 2)}),
-    ({"patch": 1}, {}, np.s_[:, :, 0], {"side": ("left", "right")}),
-    ({"side": "right", "patch": 2}, {}, np.s_[:, 1, 1], {}),
-    ({"side": ["right"]}, {}, np.s_[:, [1]], {"side": ("right",), "patch": (1, 2)}),
-    ({"side": ["right", "left"], "patch": [2, 1]}, {}, np.s_[:, ::-1, ::-1],
-     {"side": ("right", "left"), "patch": (2, 1)}),
-    ({}, {"point_0": 2}, np.s_[2], dict(PATCHES)),
-    ({}, {"point_0": -1, "side": 0}, np.s_[2, 0], {"patch": (1, 2)}),
-    ({}, {"point_0": [2, 0], "patch": slice(1, None)}, np.s_[[2, 0], :, 1:],
-     {"side": ("left", "right"), "patch": (2,)}),
-    ({"side": "right", "patch": 2}, {"point_0": 2}, np.s_[2, 1, 1], {}),
-    ({"side": "left", "patch": 2}, {}, np.s_[:, 0, 1], {}),  # which never touches
-    ({"side": "left", "patch": 2}, {"point_0": 0}, np.s_[0, 0, 1], {}),
-]  # fmt: skip
+        def problem(self, **conditions: Any) -> wl.Problem:
+            found = super().problem(**conditions)
+            friction = np.broadcast_to(np.array([dry, greased]), found.batch_shape)
+            return found.replaced(friction_coefficient=friction)
 
-
-def of(prediction: wl.Prediction, name: str) -> Array:
-    """Return a property as an array in SI."""
-    return np.asarray(getattr(prediction, name).to_base_units().magnitude)
-
-
-@pytest.mark.parametrize(("labels", "positions", "index", "dims"), SELECTIONS)
-@pytest.mark.parametrize("kept", [True, False])
-def test_a_prediction_of_some_patches_has_their_values(
-    monkeypatch: pytest.MonkeyPatch, kept: bool, labels: Any, positions: Any, index: Any, dims: Any
-) -> None:
-    if not kept:  # in several blocks, whose contacts are not kept
-        monkeypatch.setattr(integrate, "FEW", 2)
-        monkeypatch.setattr(integrate, "ELLIPSE_NODES", 1)
-    whole = PREDICT(**GIVEN)
-    part = whole.sel(**labels).isel(**positions)
-    assert part.problem.dims == dims
-    for name in EVERY:
-        np.testing.assert_array_equal(of(part, name), of(whole, name)[index], err_msg=name)
-    for name in ("mass_per_cycle", "depth_per_distance", "profile_area_rate"):
-        value = getattr(part, name)("wheel").magnitude
-        np.testing.assert_array_equal(value, getattr(whole, name)("wheel").magnitude[index], err_msg=name)
-    np.testing.assert_array_equal(part.wear_rate_of("rail").magnitude, whole.wear_rate_of("rail").magnitude[index])
-    np.testing.assert_array_equal(part.contact.traction, whole.contact.traction[index])
-    np.testing.assert_array_equal(part["wear_rate_error"].magnitude, whole["wear_rate_error"].magnitude[index])
-    found, expected = part.wear_profile("wheel"), whole.wear_profile("wheel")
-    for name in ("depth", "sliding_distance", "y"):
-        np.testing.assert_array_equal(found[name].values, expected[name].values[index], err_msg=name)
-    for dim, those in dims.items():
-        assert found[dim].values.tolist() == list(those)
-    of_101 = part.wear_profile("rail", strips=5).depth.values
-    np.testing.assert_allclose(of_101, whole.wear_profile("rail", strips=5).depth.values[index], rtol=64 * EPS)
-
-
-def test_selecting_solves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = PREDICT(**GIVEN)
-    monkeypatch.setattr(type(wl.contact_model("fastsim")), "solve_ellipse", lambda *_: pytest.fail("solved again"))
-    part = whole.sel(side="right")
-    _ = part.wear_rate, part.longitudinal_force, part.contact, part.mean_slip, part.wear_profile("wheel")
-
-
-def test_patches_of_strips_can_be_selected() -> None:
-    whole = CUT(**GIVEN)
-    part = whole.sel(side="right")
-    found, expected = part.wear_profile("wheel"), whole.wear_profile("wheel")
-    assert found.depth.dims == ("point_0", "patch", "strip")
-    assert found.sizes["strip"] == STRIPS
-    np.testing.assert_array_equal(found.depth.values, expected.depth.values[:, 1])
-    np.testing.assert_array_equal(found.y.values, expected.y.values[:, 1])
-    assert (np.isnan(found.depth.values).all(axis=-1) == ~EXISTS[:, 1]).all()
-    missing = whole.sel(side="left", patch=2)
-    assert np.isnan(missing.wear_profile("wheel").depth.values).all()
-    for name in ("wear_rate", "patch_area", "max_pressure", "mean_slip", "wear_index", "first_yield", "outside_range"):
-        np.testing.assert_array_equal(of(part, name), of(whole, name)[:, 1], err_msg=name)
-        assert np.isnan(of(missing, name)).all()
-
-
-def test_a_prediction_without_laws_can_be_selected_from() -> None:
-    whole = (Axle() | wl.contact_model("fastsim"))(**GIVEN)
-    part = whole.sel(side="right")
-    for name in ("longitudinal_force", "mean_slip", "patch_area", "wear_index_density", "stick_ratio"):
-        np.testing.assert_array_equal(of(part, name), of(whole, name)[:, 1], err_msg=name)
-    np.testing.assert_array_equal(part.contact.traction, whole.contact.traction[:, 1])
-
-
-@pytest.mark.parametrize("law", ["usfd", "kth"])
-def test_operating_points_of_discs_are_selected_by_position(law: str) -> None:
-    predict = (wl.TwinDisc.suros() | wl.contact_model("exact")).with_law(wl.wear_law(law))
-    whole = predict(creepage=Q([[0.1], [1.0]], "%"), max_pressure=Q([1.0, 1.5, 2.0], "GPa"), friction_coefficient=0.4)
-    part = whole.isel(point_0=1, point_1=[0, 2])
-    for name in ("wear_rate", "wear_rate_error", "tangential_force", "mean_slip", "patch_area", "half_width"):
-        np.testing.assert_array_equal(of(part, name), of(whole, name)[1, [0, 2]], err_msg=name)
-    np.testing.assert_array_equal(part.profile.traction.values, whole.profile.traction.values[1, [0, 2]])
-    assert part.profile.traction.dims == ("point_0", "cell")
-    assert np.isfinite(part.isel(point_0=0).wear_rate.magnitude)
-
-
-@pytest.mark.parametrize(
-    ("chosen", "said"),
-    [
-        ({"sid": "left"}, r"sel: no labels for an axis 'sid'.* did you mean 'side'\? Axes with labels: side"
-         r" \('left', 'right'\) and patch \(1, 2\)"),
-        ({"point_0": 0}, r"sel: no labels for an axis 'point_0'; 'point_0' has none, so use isel\(point_0=...\)"),
-        ({"side": "top"}, r"sel: axis 'side' has no label 'top', only \('left', 'right'\)"),
-        ({"patch": [1, 3]}, r"sel: axis 'patch' has no label 3, only \(1, 2\)"),
-    ],
-)  # fmt: skip
-def test_a_wrong_label_is_named_with_those_there_are(chosen: Any, said: str) -> None:
-    with pytest.raises(wl.InputError, match=said):
-        PREDICT(**GIVEN).sel(**chosen)
-
-
-@pytest.mark.parametrize(
-    ("chosen", "said"),
-    [
-        ({"point_1": 0}, r"isel: no axis 'point_1'.* Axes \(with sizes\): point_0 \(3\), side \(2\), patch \(2\)"),
-        ({"point_0": 3}, "isel: axis 'point_0' has 3 entries, 0 to 2; there is no entry 3"),
-        ({"point_0": [0, -4]}, "isel: axis 'point_0' has 3 entries, 0 to 2; there is no entry -4"),
-        ({"side": "left"}, "isel: side must be an integer, a list of integers or a slice, got 'left'"),
-        ({"side": [True, False]}, "isel: side must be an integer"),
-    ],
-)  # fmt: skip
-def test_a_wrong_position_is_named_with_those_there_are(chosen: Any, said: str) -> None:
-    with pytest.raises(wl.InputError, match=said):
-        PREDICT(**GIVEN).isel(**chosen)
-
-
-def test_one_operating_point_has_no_axes_to_select_from() -> None:
-    with pytest.raises(wl.InputError, match=r"isel: no axis 'point_0'.* none at one operating point"):
-        ALONE(normal_force="80 kN", **CREEP).isel(point_0=0)
+    rig = Lubricated(hertzian=hertzian)
+    predict: Any = rig | wl.contact_model("fastsim") | KTH
+    found = predict(**GIVEN)
+    np.testing.assert_array_equal(of(found, "friction_coefficient"), np.where(EXISTS, [dry, greased], np.nan))
+    for patch, friction in enumerate((dry, greased)):
+        alike: Any = Worn(hertzian=hertzian) | wl.contact_model("fastsim") | KTH
+        of_one = alike(**{**GIVEN, "friction_coefficient": friction})
+        for name in ("wear_rate", "longitudinal_force", "spin_moment", "mean_slip", "wear_index", "first_yield"):
+            np.testing.assert_allclose(
+                of(found, name)[..., patch], of(of_one, name)[..., patch], rtol=64 * EPS, err_msg=name
+            )
+    ratio = of(found, "traction_coefficient")
+    assert (ratio[EXISTS] <= np.broadcast_to([dry, greased], EXISTS.shape)[EXISTS] * (1.0 + 64 * EPS)).all()
+    staged: Any = rig | wl.contact_model("fastsim") | wl.stage("third_body", reduction=0.5) | KTH
+    halved = staged(**GIVEN).friction_coefficient.magnitude
+    np.testing.assert_array_equal(halved, of(found, "friction_coefficient"))  # a third body changes the slope alone
 
 
 # --- A field that chooses the shape ----------------------------------------------------------------------------------

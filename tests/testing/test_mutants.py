@@ -13,7 +13,7 @@ import pytest
 from hypothesis import Phase, settings
 
 import wearlaw as wl
-from tests.core.axles import Axle
+from tests.core.axle_case import Axle
 from tests.testing import (
     cells,
     strips,

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from pydantic import Field
 
 import wearlaw as wl
-from tests.core.axles import Axle
+from tests.core.axle_case import Axle
 
 DISCS = wl.TwinDisc.suros()
 

@@ -49,10 +49,18 @@ class Body:
     rolling_radius : float or ndarray
         Radius of the rolling surface [m], one for all operating points or an array of the batch shape; infinite for a
         flat or straight body, such as a rail.
+    profile_position : ndarray, float or None
+        Arc length along the body's profile at y = 0 of the patch [m]; None if it is not known. A rig may give an array
+        that broadcasts to the batch shape.
+    profile_direction : float or ndarray
+        1 where the arc length grows with y, -1 where it falls, as on the left wheel if y is to the right and the arc
+        runs outwards.
     """
 
     material: Material
     rolling_radius: float | Array
+    profile_position: Array | float | None = None
+    profile_direction: float | Array = 1.0
 
     @cached_property
     def strength(self) -> tuple[float, float] | None:
@@ -61,10 +69,13 @@ class Body:
         return None if stress is None else (scalar_si(stress, "Pa"), self.material.poisson_ratio)
 
     def mapped(self, function: Callable[[Array], Array]) -> Body:
-        """Return the body with a function applied to its radius if the radius is an array."""
-        if not isinstance(self.rolling_radius, np.ndarray):
+        """Return the body with a function applied to those of its values that are arrays."""
+        if not isinstance(self.rolling_radius, np.ndarray) and self.profile_position is None:
             return self
-        return Body(self.material, function(self.rolling_radius))
+        names = ("rolling_radius", "profile_position", "profile_direction")
+        values: dict[str, Any] = {name: getattr(self, name) for name in names}
+        values |= {name: function(value) for name, value in values.items() if isinstance(value, np.ndarray)}
+        return Body(self.material, **values)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

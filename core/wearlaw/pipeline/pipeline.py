@@ -5,6 +5,7 @@ The order is rig | contact model | stages, if any, | laws.
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
@@ -45,6 +46,7 @@ ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_
 LINE = 100
 """Longest pipeline shown on one line, in characters; a longer one has a line for each part."""
 
+TOUCH_NOWHERE = "rig '{}': the bodies touch nowhere under these conditions; check the conditions"
 
 P = ParamSpec("P")
 
@@ -160,9 +162,52 @@ class Rig(Model):
             raise ModelError(f"rig '{self.name}' returned {problem!r}, not a wearlaw.Problem")
         if problem.dims:
             self._check_dims(problem)
+        for body in problem.bodies.values():
+            if body.profile_position is not None:
+                bodies = {name: self._placed(problem, name) for name in problem.bodies}
+                problem = problem.replaced(bodies=bodies)
+                break
         if problem.exists is not None:
             problem = self._masked(problem)
         return problem if problem.bodies else problem.replaced(bodies=self.bodies)
+
+    def checked_balance(self, problem: Problem, balanced: Problem) -> Problem:
+        """Return the result of `balanced` for a problem, with NaN for patches that have lifted off.
+
+        Raises
+        ------
+        ModelError
+            If it is no problem, or not one of the same geometry, shape and axes.
+        """
+        if not isinstance(balanced, Problem):
+            raise ModelError(f"`balanced` of rig '{self.name}' returned {balanced!r}, not a wearlaw.Problem")
+        shapes = [(one.geometry, one.batch_shape, one.dims) for one in (balanced, problem)]
+        if shapes[0] != shapes[1]:
+            found, given = (f"geometry '{one[0]}', shape {one[1]} and axes {one[2]!r}" for one in shapes)
+            raise ModelError(
+                f"`balanced` of rig '{self.name}' returned a problem of {found} for one of {given}; return one like it,"
+                " as from `Problem.replaced`"
+            )
+        return balanced if balanced.exists is None or balanced.exists is problem.exists else self._masked(balanced)
+
+    def _placed(self, problem: Problem, name: str) -> Body:
+        """Return a body with the places of its patches on its profile in the shape of the batch."""
+        body, batch = problem.bodies[name], problem.batch_shape
+        if body.profile_position is None:
+            return body
+        found: dict[str, Any] = {}
+        for field in ("profile_position", "profile_direction"):
+            given = getattr(body, field)
+            try:
+                found[field] = np.broadcast_to(np.asarray(given, dtype=np.float64), batch)
+            except (TypeError, ValueError):
+                raise ModelError(
+                    f"rig '{self.name}' gave {type_name(given)} of shape {np.shape(given)} as `{field}` of {name}; it"
+                    f" must be a number or an array that broadcasts to the shape of the batch, {batch}"
+                ) from None
+        if not (np.abs(found["profile_direction"]) == 1.0).all():
+            raise ModelError(f"rig '{self.name}' gave a `profile_direction` of {name} that is neither 1 nor -1")
+        return dataclasses.replace(body, **found)
 
     def _check_dims(self, problem: Problem) -> None:
         """Raise an error if the labels of the rig's own axes do not fit the shape of the batch."""
@@ -339,9 +384,7 @@ class Pipeline(Configuration, Generic[P]):
             return problem
         with Blame(rig):
             balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
-        if not isinstance(balanced, Problem):
-            raise ModelError(f"`balanced` of rig '{rig.name}' returned {balanced!r}, not a wearlaw.Problem")
-        return balanced
+        return rig.checked_balance(problem, balanced)
 
     def predict(
         self,
@@ -366,6 +409,8 @@ class Pipeline(Configuration, Generic[P]):
                 f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"
                 f" the geometry '{self.rig.geometry}'; make it with the `problem` method of the rig"
             )
+        if problem.exists is not None and not problem.exists.any():
+            raise ConditionsError(TOUCH_NOWHERE.format(self.rig.name))
         self.warn_of_problem(problem, stacklevel + 1)
         watch = self.range_watch()
         found = self.watched(problem, watch, on_block)

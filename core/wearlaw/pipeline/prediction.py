@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pint
@@ -23,10 +23,11 @@ from wearlaw.numerics.integrate import SlipTotals, Totals
 from wearlaw.numerics.solving import Solver
 from wearlaw.numerics.staged import without_stages
 from wearlaw.pipeline.composition import law_among, other_materials, warn_of_body
+from wearlaw.pipeline.profiles import across_patch, along_patch, on_profile
 from wearlaw.pipeline.ranges import elastic_limits, outside_range
-from wearlaw.pipeline.selection import Label, Selection, axis_names
-from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
-from wearlaw.units.variables import UNITS, name_of
+from wearlaw.pipeline.selection import Label, Selection
+from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
+from wearlaw.units.variables import UNITS
 
 if TYPE_CHECKING:
     import xarray
@@ -368,19 +369,9 @@ class Prediction:
     def _profile(self, more: dict[str, tuple[Array, str]]) -> xarray.Dataset:
         contact = self._cells()
         names = ("x", "pressure", "traction", "traction_bound", "slip")
-        columns = {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more}
-        batch = axis_names(self.problem)
-        dims = [*batch, "cell"] if batch else ["x"]
-        data = {
-            name: (dims, in_unit(self._in_batch(values), unit), {"units": unit})
-            for name, (values, unit) in columns.items()
-        }
-        return _dataset(self.problem, {"x": data.pop("x")}, data)
+        return along_patch(self.problem, {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more})
 
-    def _in_batch(self, values: Array) -> Array:
-        return values if self.problem.exists is None else self.problem.unflatten(values)
-
-    def wear_profile(self, body: str, strips: int | None = None) -> xarray.Dataset:
+    def wear_profile(self, body: str, strips: int | None = None, at: QuantityLike | None = None) -> xarray.Dataset:
         """Return the depth lost and the distance slid across an elliptic patch, over y.
 
         A point of the wheel's tread is in contact once in each revolution, so the depth that it loses per metre rolled
@@ -394,6 +385,10 @@ class Prediction:
         strips : int, optional
             Number of strips of equal width; more make a smoother profile. The default is the contact model's strips,
             at no extra cost. A contact model that cannot choose its strips keeps its own.
+        at : Quantity or str, optional
+            Increasing positions along the body's profile, such as ``Q(np.linspace(-40, 30, 141), "mm")``. The result is
+            then over these positions, zero where there is no patch, and summed over the axis "patch" if the rig has
+            one: patches along it lie on one profile. The rig must know where its patches lie on the profile.
 
         Returns
         -------
@@ -401,17 +396,19 @@ class Prediction:
             `depth` and `sliding_distance` over the coordinate `y`, per metre rolled for the wheel and per passage for
             the rail, with units in attrs. With several operating points it also has the axes of the batch. y and the
             depth are tangential and normal to the surface. If the problem has a contact angle δ, `depth_vertical` and
-            `depth_lateral` are the parts of the depth along these directions, depth × cos δ and depth × abs(sin δ).
+            `depth_lateral` are the parts of the depth along these directions, depth × cos δ and depth × abs(sin δ). If
+            the rig knows where its patches lie, the coordinate `profile_position` is the position along the profile.
+            Missing patches are NaN.
 
         Raises
         ------
         InputError
-            If the rig has no such body.
+            If the rig has no such body, or `at` is wrong or not possible with this rig.
         CompositionError
             If the contact is a line or is not resolved across the patch.
         """
-        problem = self.problem
-        radius, density = np.asarray(problem.body(body).rolling_radius), self._density(body)
+        problem, worn = self.problem, self.problem.body(body)
+        radius, density = np.asarray(worn.rolling_radius), self._density(body)
         if problem.geometry == "line":
             raise CompositionError("wear_profile: a line wears evenly across its width; take depth_per_distance")
         if self.scale == "patch":
@@ -423,25 +420,26 @@ class Prediction:
             raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
         index = self._wear_law(body)
         self._warn_of(index, body, stacklevel=3)
-        y, wear, slid = self._across(self._law_of(index, body), strips)
+        across = self._across(self._law_of(index, body), strips)
         turns = bool(np.isfinite(radius).any())
         once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
         units = ("um/km", "mm/m") if turns else ("nm", "um")
         per = "metre rolled" if turns else "passage of a wheel"
-        depth = wear / (density * once)
-        columns = {"depth": (depth, units[0]), "sliding_distance": (slid / once, units[1])}
+        depth = across.wear / (density * once)
+        columns = {"depth": (depth, units[0]), "sliding_distance": (across.slid / once, units[1])}
         if problem.contact_angle is not None:
             angle = problem.contact_angle[..., None]
             columns["depth_vertical"] = depth * np.cos(angle), units[0]
             columns["depth_lateral"] = depth * np.abs(np.sin(angle)), units[0]
-        return _across_patch(problem, y, columns, per)
+        if at is not None:
+            return on_profile(problem, worn, across.y, across.width, columns, per, at)
+        return across_patch(problem, worn, across.y, columns, per)
 
-    def _across(self, law: Law, strips: int | None) -> tuple[Array, Array, Array]:
+    def _across(self, law: Law, strips: int | None) -> integrate.Across:
         """Return the result of `integrate_across`, which is NaN for missing patches."""
         if self.problem.size == 0 and self._whole is not None:  # a missing patch alone has no strips
             whole, chosen = self._whole
-            y, wear, slid = map(chosen.of, whole._across(law, strips))
-            return y, wear, slid
+            return integrate.Across(*map(chosen.of, whole._across(law, strips)))
         return integrate.integrate_across(self._model, law, self.problem, strips, self._solved)
 
     @property
@@ -641,24 +639,6 @@ def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Pr
     found = Prediction(problem, model, laws, forces=forces, totals=Totals(values=every, errors=every, patch_area=one))
     found._slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
     return found
-
-
-def _across_patch(problem: Problem, y: Array, columns: dict[str, tuple[Array, str]], per: str) -> xarray.Dataset:
-    batch = axis_names(problem)
-    dims = [*batch, "strip"] if batch else ["y"]
-    place = (dims, in_unit(y, "mm"), {"units": "mm", "long_name": name_of("y")})
-    data = {
-        name: (dims, in_unit(values, unit), {"units": unit, "long_name": f"{name.replace('_', ' ')} per {per}"})
-        for name, (values, unit) in columns.items()
-    }
-    return _dataset(problem, {"y": place}, data)
-
-
-def _dataset(problem: Problem, coordinates: Mapping[str, Any], variables: Mapping[str, Any]) -> xarray.Dataset:
-    """Return a dataset with the labels of the rig's own axes as coordinates."""
-    import xarray
-
-    return xarray.Dataset(variables, {**{name: list(labels) for name, labels in problem.dims.items()}, **coordinates})
 
 
 def _brief(quantity: Quantity) -> str:
