@@ -6,10 +6,10 @@ import itertools
 import json
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import xarray
@@ -41,6 +41,7 @@ from wearlaw.study.results import PATCH_AXES, Results
 from wearlaw.study.sections import Section
 from wearlaw.sweeping.checkpoint import Checkpoint, Evaluator
 from wearlaw.sweeping.points import Points
+from wearlaw.sweeping.sweep import weight
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
 
@@ -48,6 +49,9 @@ if TYPE_CHECKING:
     from wearlaw.figures.curves import FigureData
     from wearlaw.plugins.shelf import Shelf
     from wearlaw.study.grid import Grid
+
+Dims: TypeAlias = Mapping[str, tuple[str | int, ...]]
+"""The axes that a rig adds for several patches, with their labels."""
 
 LIMITS = ("max_pressure", "first_yield", "shakedown_limit")
 """Variables that show whether the contact of a profile stays elastic, if the yield stress of a body is known."""
@@ -174,10 +178,11 @@ def used(case: Case) -> dict[str, dict[str, str]]:
 
 def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: Evaluator) -> xarray.Dataset:
     """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
-    points = grid.points(case.units)
+    first = grid.problem(case.rig)
+    points = replace(grid.points(case.units), weight=weight(first))
     axes = points.dims
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
-    found_in, first = _variables(grid, case, usable), grid.problem(case.rig)
+    found_in = _variables(grid, case, usable)
     rates: list[dict[str, Array]] = []
     contacts: dict[str, dict[str, Array]] = {}
     for number, pair in enumerate(usable):
@@ -185,9 +190,9 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
         outputs = [*_of_pair(pair, first), *new, *(found_in.of_point if not contacts else ())]
         with notes.of(f"sweep '{name}'"):
             warn_of_unlike_materials(pair.pipeline.contact_model, first, stacklevel=1)
-            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs)
+            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first.dims)
         contacts.setdefault(pair.contact_model, found)
-        band = _band(f"{name}-{number}", pair, points, found, evaluator)
+        band = _band(f"{name}-{number}", pair, points, first.dims, found, evaluator)
         rates.append({v: found[v] for v in _of_pair(pair, first)} | band)
     any_contact = next(iter(contacts.values()))
     of_patches = (*axes, *first.dims)
@@ -308,13 +313,15 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
     return usable
 
 
-def _band(key: str, pair: Pair, points: Points, found: dict[str, Array], evaluator: Evaluator) -> dict[str, Array]:
+def _band(
+    key: str, pair: Pair, points: Points, dims: Dims, found: dict[str, Array], evaluator: Evaluator
+) -> dict[str, Array]:
     """Return the ends of the outcome over the published range of the law's parameters."""
     ends, outcome = [], pair.outcome.name
     for end, one in zip(_band_names(pair), _band_ends(pair.pipeline), strict=False):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band gave them already
-            ends.append(evaluator(f"{key}-{end}", one, points, [outcome])[outcome])
+            ends.append(evaluator(f"{key}-{end}", one, points, [outcome], dims)[outcome])
     return dict(zip(_band_names(pair), ends or [found[outcome]] * 2, strict=False))
 
 

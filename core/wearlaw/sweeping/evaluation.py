@@ -107,8 +107,8 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
 
 def _check_axes(job: Job, problem: Problem, part: Points) -> None:
     """Raise an error unless the axes of a block's problem are the operating points and the rig's own axes."""
-    if problem.dims != job.dims or problem.batch_shape != (part.size, *job.own_shape):
-        wanted = (part.size, *job.own_shape)
+    wanted = (part.size, *job.own_shape) if part.dims else job.own_shape
+    if problem.dims != job.dims or problem.batch_shape != wanted:
         raise ModelError(
             f"rig '{job.pipeline.rig.name}' gave a batch of shape {problem.batch_shape} with the axes {problem.dims!r}"
             f" for {part.size} operating points, but of shape {wanted} with {job.dims!r} for the first of them. In the"

@@ -100,7 +100,7 @@ def sweep(
     points = outer_product(conditions) if table is None else from_table(table, conditions)
     not_given = {name: None for name, value in conditions.items() if value is None}
     first = _checked_conditions(predict, points, not_given)
-    points = dataclasses.replace(points, weight=_weight(first))
+    points = dataclasses.replace(points, weight=weight(first))
     job = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
     if store is None:
         if resume:
@@ -188,7 +188,7 @@ def _check_names(rig: Rig, problem: Problem, points: Points) -> None:
         raise ModelError(f"rig '{rig.name}' has an axis and a condition named '{min(taken)}'; rename one of the two")
 
 
-def _weight(problem: Problem) -> float:
+def weight(problem: Problem) -> float:
     """Return the size of an operating point of a problem; four numbers of a strip count as one of 16 for a patch."""
     strips = 0 if problem.strips is None else problem.strips.y.shape[-1]
     return math.prod(map(len, problem.dims.values())) * (1.0 + 0.25 * strips)
