@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from wearlaw.arrays.array import Array
-from wearlaw.figures.curves import OUTSIDE, has_band, in_parts, shows_outside
+from wearlaw.figures.curves import OUTSIDE, has_band, in_parts, lone_points, shows_outside
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -112,6 +112,13 @@ def _fill(axes: Axes, panel: Panel, markers: bool) -> None:
     axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label), title=_literal(panel.title))
     axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
     axes.set(xlim=_ends(panel.x), ylim=_ends(panel.y))
+    for axis, drawn in ((panel.x, axes.xaxis), (panel.y, axes.yaxis)):
+        if axis.inverted:
+            drawn.set_inverted(True)
+        if axis.names:
+            drawn.set_ticks(range(len(axis.names)), [_literal(name) for name in axis.names])
+    if panel.equal:
+        axes.set_aspect("equal", adjustable="box")
 
 
 def _ends(axis: PlotAxis) -> Any:
@@ -141,7 +148,8 @@ def _looks(curve: Curve, marked: list[int] | None) -> dict[str, Any]:
     looks |= {"linestyle": LINES[curve.dash % len(LINES)], "markerfacecolor": "white", "markersize": 5}
     if curve.x.size == 1:
         return looks  # a single point is invisible without a marker
-    return {**looks, "marker": ""} if marked is None else {**looks, "markevery": marked}
+    every = sorted({*(marked or ()), *lone_points(curve)})
+    return {**looks, "marker": ""} if marked is None and not every else {**looks, "markevery": every}
 
 
 def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:

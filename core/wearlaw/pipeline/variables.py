@@ -43,6 +43,9 @@ OF_POINT = (
 """Variables that depend on the operating point alone; no prediction has all of them."""
 
 
+MASS = "mass_per_distance"
+"""The variable of a wear law that can be added over several patches, unlike the wear rate."""
+
 OF_OTHERS: Mapping[Geometry, frozenset[str]] = {
     "line": frozenset({"longitudinal_force", "lateral_force", "spin_moment", "cell_wear_index"}),
     "ellipse": frozenset({"averaged_wear_index", "creepage"}),

@@ -45,6 +45,7 @@ from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.labels import labelled, labels
 from wearlaw.models.law import WEAR, Law, Outcome
 from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Pipeline, Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
@@ -301,6 +302,9 @@ class Case(Configuration):
                 except InputError as error:
                     raise ValueError(f"{kind}.{name}.{error}") from None
         if self.measured:
+            several = several_patches(next(iter(self.sweeps.values())).problem(self.rig), self.rig)
+            if several:
+                raise ValueError(f"measured: {several}; leave [measured] out")
             try:
                 check_rig(self.measured.data, self.rig)
             except InputError as error:

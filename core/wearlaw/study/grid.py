@@ -160,6 +160,13 @@ class Grid(Configuration, extra="allow"):
         }
         return Points({name: value for name, value in self.given.items() if name not in varying}, varying)
 
+    def conditions(self) -> dict[str, Any]:
+        """Return the conditions as arguments of a pipeline; each axis is an array along a dimension of its own."""
+        last = len(self._axes) - 1
+        shapes = {name: (-1,) + (1,) * (last - number) for number, name in enumerate(self._axes)}
+        axes = {name: axis.given(axis.values.reshape(shapes[name])) for name, axis in self._axes.items()}
+        return {**self.given, **axes}
+
     def level(self, name: str, units: Mapping[str, str]) -> float | str:
         """Return the value of a condition in the given unit, or its text; for an axis, its middle value."""
         if name in self._axes:

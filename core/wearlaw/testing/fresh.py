@@ -14,6 +14,8 @@ import tomllib
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from wearlaw.errors import described
 from wearlaw.numerics.staged import staged
 from wearlaw.plugins.loader import contact_model
@@ -24,7 +26,8 @@ def computed(model: Any, arguments: list[Any]) -> list[Any]:
     if hasattr(model, "problem"):
         problems = [model.problem(**conditions) for conditions in arguments]
         values = [getattr(problem, field.name) for problem in problems for field in dataclasses.fields(problem)]
-        return [value for value in values if hasattr(value, "dtype")]
+        # Missing patches may have NaN.
+        return [np.nan_to_num(value.astype(np.float64)) for value in values if hasattr(value, "dtype")]
     if hasattr(model, "rate"):
         return [model.rate(contact, model.numbers) for contact in arguments]
     if hasattr(model, "altered"):
