@@ -184,7 +184,7 @@ def test_the_mass_lost_can_be_added_over_patches() -> None:
     np.testing.assert_allclose(
         frame.loc["kth on fastsim"].to_numpy(dtype=float), np.nansum(expected, axis=(1, 2)), rtol=8 * EPS
     )
-    assert [value.marks for value in frame.loc["usfd on fastsim"]] == ["†", "", "", "", "†"]
+    assert [value.marks for value in frame.loc["usfd on fastsim"].tolist()] == ["†", "", "", "", "†"]
     assert len(one_panel(study.figures[0]).curves) == 4
     assert "mass_per_distance [ug/m]" in results_table(study)
     with pytest.raises(wl.ConfigurationError, match=r"figures\.one\.y: 'mass_per_distance' cannot be shown"):

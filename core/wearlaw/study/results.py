@@ -117,12 +117,12 @@ def patches_of(sweep: xarray.Dataset, asked: Mapping[str, Collection[Any]] | Non
     axes = patch_axes(sweep)
     if not axes:
         return [{}]
-    values = [one for one in sweep.data_vars.values() if set(axes) <= set(one.dims)]
-    there: Any = sum(one.notnull().sum([dim for dim in one.dims if dim not in axes]) for one in values)
+    of_contact = next(one for one in sweep.data_vars.values() if {"contact_model", *axes} <= set(one.dims))
+    there = of_contact.notnull().any([dim for dim in of_contact.dims if dim not in axes])
     return [
         patch
         for patch in possible_patches(sweep)
-        if there.sel(patch) > 0 and all(patch[axis] in labels for axis, labels in (asked or {}).items())
+        if there.sel(patch) and all(patch[axis] in labels for axis, labels in (asked or {}).items())
     ]
 
 
