@@ -229,7 +229,10 @@ class Rig(Model):
                 f"rig '{self.name}' gave {type_name(exists)} as `exists`; it must be an array of bool of the shape of"
                 f" the batch, {problem.batch_shape}"
             )
-        masked = problem.mapped(lambda array: np.where(exists, array, np.nan))
+        of_strips = exists[..., None]
+        masked = problem.mapped(
+            lambda array: np.where(exists, array, np.nan), lambda array: np.where(of_strips, array, np.nan)
+        )
         return masked.replaced(exists=exists)
 
     def check_names(self, conditions: Mapping[str, Any]) -> None:
@@ -440,6 +443,8 @@ class Pipeline(Configuration, Generic[P]):
         """Return the result of `predict` without its warnings; `watch` sees the operating points."""
         if problem.geometry == "line":
             check_traction(self.contact_model, problem)
+        if problem.dims:
+            watch.counted = "patches"
         model, problem = prepared(self.staged_model, problem)
         if not self.laws:
             return self._without_law(model, problem, watch, on_block)
