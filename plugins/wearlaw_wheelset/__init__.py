@@ -26,10 +26,10 @@ def wearlaw_cases() -> dict[str, str]:
 @wl.hookimpl
 def wearlaw_sections() -> dict[str, Callable[[wl.Study], wl.Section]]:
     """Return the section with contact points, forces, and wear across the profiles."""
-    return {"wheelset": _section}
+    return {"wheelset": _make_section}
 
 
-def _section(study: wl.Study) -> wl.Section:
+def _make_section(study: wl.Study) -> wl.Section:
     from wearlaw_wheelset._section import section
 
     return section(study)

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 STEP = 0.25
 """Distance between positions of wear along a profile [mm]."""
 
+SHOWN = (-20.0, 16.0)
+"""Heights that pictures of contact points show [mm]."""
+
 COLUMNS = {
     "contact_angle": "deg",
     "normal_force": "kN",
@@ -121,11 +124,11 @@ def _contact(rig: Wheelset, name: str, found: wl.Prediction) -> wl.FigureData:
         panels.append(
             wl.Panel(
                 wl.PlotAxis("y, to the right [mm]"),
-                wl.PlotAxis("z, down [mm]", inverted=True),
+                wl.PlotAxis("z, down [mm]", ends=SHOWN, inverted=True),
                 (
                     wl.Curve("wheel", sign * 1e3 * profiles.wheel_y, 1e3 * profiles.wheel_z - APART, colour=6),
                     wl.Curve("rail", sign * 1e3 * profiles.rail_y, 1e3 * profiles.rail_z, colour=6, dash=1),
-                    wl.Curve("contact", sign * 1e3 * lines[0], 1e3 * lines[1]),
+                    wl.Curve("lines between places that touch", sign * 1e3 * lines[0], 1e3 * lines[1], dash=2),
                 ),
                 f"{side} wheel",
                 equal=True,
