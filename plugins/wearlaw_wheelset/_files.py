@@ -90,18 +90,18 @@ def points_of(path: Path, kind: Kind | None, units: str) -> tuple[Points, Kind]:
         If the file is missing, too large, not regular or not text, or if its content is wrong.
     """
     text = _text_of(path)
-    ending = path.suffix.lower()
-    lines = text.splitlines()
+    ending, lines = path.suffix.lower(), text.splitlines()
+    by_ending: Kind | None = KINDS.get(ending)
     if ending in SIMPACK or any(re.match(r"\s*spline\.begin", line) for line in lines):
         found = _simpack(lines, units)
     elif ending in MINIPROF or (lines and _is_miniprof(lines)):
-        found = _miniprof(lines, KINDS.get(ending, kind), units)
+        found = _miniprof(lines, by_ending or kind, units)
     elif ending in COLUMNS:
         found = _columns(lines, units)
     else:
         raise FileError(f"the ending '{ending}' is not known; give a file that ends in {', '.join(ENDINGS)}")
-    given = {"the argument kind": kind, "its ending": KINDS.get(ending), "its header": found.kind}
-    told: dict[str, Kind] = {source: one for source, one in given.items() if one is not None}
+    given: dict[str, Kind | None] = {"the argument kind": kind, "its ending": by_ending, "its header": found.kind}
+    told = {source: one for source, one in given.items() if one is not None}
     if not told:
         raise FileError('it does not say whether it is a wheel or a rail; give kind="wheel" or kind="rail"')
     if len(set(told.values())) > 1:

@@ -240,6 +240,7 @@ def test_smoothing_is_the_rms_distance_of_the_points(sigma: float) -> None:
     apart = float(np.sqrt((distance(profile.curve, y, z) ** 2).mean()))
     # Points are at most as far from the curve as from their own values on it, and the smoothest curve uses it all up.
     assert 0.9 * sigma * MM < apart <= sigma * MM * (1.0 + 1e-6)
+    assert profile.curve.curvature[[0, -1]] == pytest.approx(0.0, abs=1e-6)  # as a natural spline ends
 
 
 def test_a_smoothing_spline_is_that_of_scipy() -> None:
@@ -417,6 +418,7 @@ def test_a_mirror_image_has_its_angles_and_curvatures() -> None:
     lopsided = RAIL.shifted(y="5 mm").turned("-1 deg")
     mirrored = lopsided.mirrored()
     assert mirrored.mirrored() == lopsided
+    assert mirrored.curve.joints == pytest.approx(-lopsided.curve.joints[::-1], abs=1e-12)
     s = np.linspace(-40.0, 40.0, 1001) * MM
     # s = 0 is at y = 0 on both.
     y, z, angle, curvature = lopsided.curve.at(s)
