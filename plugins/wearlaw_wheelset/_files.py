@@ -100,14 +100,14 @@ def points_of(path: Path, kind: Kind | None, units: str) -> tuple[Points, Kind]:
         found = _columns(lines, units)
     else:
         raise FileError(f"the ending '{ending}' is not known; give a file that ends in {', '.join(ENDINGS)}")
-    given: dict[str, Kind | None] = {"the argument kind": kind, "its ending": by_ending, "its header": found.kind}
-    told = {source: one for source, one in given.items() if one is not None}
-    if not told:
+    sure = kind or by_ending or found.kind
+    if sure is None:
         raise FileError('it does not say whether it is a wheel or a rail; give kind="wheel" or kind="rail"')
-    if len(set(told.values())) > 1:
-        says = ", ".join(f"{source} says {one}" for source, one in told.items())
+    told = {"the argument kind": kind, "its ending": by_ending, "its header": found.kind}
+    if not {*told.values()} <= {sure, None}:
+        says = ", ".join(f"{source} says {one}" for source, one in told.items() if one)
         raise FileError(f"it is not clear whether it is a wheel or a rail: {says}")
-    return found, next(iter(told.values()))
+    return found, sure
 
 
 def _text_of(path: Path) -> str:
