@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import mpmath
+import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 import scipy
@@ -210,7 +210,9 @@ def test_the_first_penetration_that_carries_the_load_is_taken(compiled: bool) ->
     wl.accelerate(compiled)
     gaps = one_patch(two_humps(bend=0.4))
     penetration = np.geomspace(4e-6, 60e-6, 4001)
-    many = {name: np.repeat(value, penetration.size, axis=0) for name, value in gaps.items() if name != "modulus"}
+    many: dict[str, Any] = {
+        name: np.repeat(value, penetration.size, axis=0) for name, value in gaps.items() if name != "modulus"
+    }
     force = penetrated(**many, modulus=MODULUS, penetration=penetration).normal_force
     falls = np.flatnonzero(np.diff(force) < 0.0)
     jump = penetration[falls[0]]
@@ -295,7 +297,7 @@ def test_samples_may_be_shifted_mirrored_and_cut_off(compiled: bool) -> None:
     moved = penetrated(**{**gaps, "start": gaps["start"] + 0.1}, penetration=[3e-5])
     assert moved.y - 0.1 == pytest.approx(plain.y, abs=1e-15)
     assert moved.centre - 0.1 == pytest.approx(plain.centre, abs=1e-15)
-    mirrored = {**gaps, "gap": gaps["gap"][:, ::-1], "start": -(gaps["start"] + 300.0 * gaps["step"])}
+    mirrored: dict[str, Any] = {**gaps, "gap": gaps["gap"][:, ::-1], "start": -(gaps["start"] + 300.0 * gaps["step"])}
     other = penetrated(**mirrored, penetration=[3e-5])
     assert -other.y[:, ::-1] == pytest.approx(plain.y, abs=1e-12)
     assert other.pressure[:, ::-1] == pytest.approx(plain.pressure, rel=1e-9)
@@ -344,7 +346,9 @@ def test_the_deepest_point_always_touches(compiled: bool) -> None:
     # Steep on one side and flat on the other, so that the middle of the ellipse is far from the deepest point.
     gaps = one_patch(lambda t: np.where(t > 0.0, 400.0, 0.4) * t**2, 2e-2, 2001)
     penetration = np.geomspace(5e-6, 9e-5, 30)
-    many = {name: np.repeat(value, penetration.size, axis=0) for name, value in gaps.items() if name != "modulus"}
+    many: dict[str, Any] = {
+        name: np.repeat(value, penetration.size, axis=0) for name, value in gaps.items() if name != "modulus"
+    }
     found = penetrated(**many, modulus=MODULUS, penetration=penetration)
     assert (found.y[:, 0] < -1e-4).all()
     assert (found.y[:, -1] > 1e-5).all()
@@ -353,7 +357,7 @@ def test_the_deepest_point_always_touches(compiled: bool) -> None:
 
 
 def test_bad_values_raise_errors_that_say_where() -> None:
-    gaps = {
+    gaps: dict[str, Any] = {
         name: np.repeat(value, 3, axis=0)
         for name, value in one_patch(lambda t: 2.0 * t**2, 5e-3, 41).items()
         if name != "modulus"
