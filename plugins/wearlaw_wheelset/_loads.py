@@ -76,8 +76,8 @@ class Task:
 
     Attributes
     ----------
-    speed, lateral_velocity, turn_rate : ndarray
-        V and v_y [m/s], ω_z [rad/s].
+    speed, lateral_velocity, turn_rate, roll_rate : ndarray
+        V and v_y [m/s], ω_z and ρ' [rad/s].
     load : ndarray
         Vertical load of each wheel, Q [N].
     friction : ndarray, (positions, 2)
@@ -93,6 +93,7 @@ class Task:
     speed: Array
     lateral_velocity: Array
     turn_rate: Array
+    roll_rate: Array
     load: Array
     friction: Array
     flange_angle: float
@@ -393,7 +394,7 @@ class Balance:
         place = placed(self.section, part.position, arc)
         sliding = creepages(
             part.position, place, task.speed[part.point], side * task.lateral_velocity[part.point],
-            side * task.turn_rate[part.point], side,
+            side * task.turn_rate[part.point], side * task.roll_rate[part.point], side,
         )  # fmt: skip
         flange = (np.abs(place.angle) > task.flange_angle).astype(np.intp)
         longitudinal, lateral, spin = sliding.at(rotation[part.point])
