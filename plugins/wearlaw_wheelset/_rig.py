@@ -335,11 +335,9 @@ class Wheelset(wl.Rig):
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
         assert isinstance(problem, _Posed)
-        problem.balance.solve(forces)
         distance = problem.rolled_distance
-        return self._whole(
-            problem.balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1)
-        )
+        balance = problem.balance.solved(forces)
+        return self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
 
     def _balance(self, given: Mapping[str, Array]) -> Balance:
         """Return the loads at positions, SI arrays with one axis, without creep forces."""
@@ -373,7 +371,7 @@ class Wheelset(wl.Rig):
     def _whole(self, balance: Balance, shape: tuple[int, ...], distance: Array | None) -> wl.Problem:
         """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
         found = balance.found
-        flat, patch = balance.posed(found, balance.penetration, balance.rotation, balance.scale)
+        flat, patch = balance.posed()
         size = balance.task.load.size
         exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
         place = found.point, found.side, found.number
