@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from matplotlib.figure import Figure
+
+from wearlaw import Array
 
 if TYPE_CHECKING:
     import xarray
-
-    from wearlaw_wheelset._geometry import Profiles
+    from matplotlib.figure import Figure
 
 APART = 15.0
 """Distance by which wheel and rail are drawn apart [mm]."""
@@ -19,8 +19,49 @@ LINES = 40
 """Most lines between contact points."""
 
 
+class Profiles(NamedTuple):
+    """The right wheel and its rail in the middle of the track [m].
+
+    Attributes
+    ----------
+    wheel_y, wheel_z : ndarray
+        The wheel, with y in the track and z from the taping line.
+    wheel_offset : float
+        y of the profile's origin in the track.
+    wheel_arc : ndarray
+        Arc length of the wheel's profile.
+    rail_y, rail_z, rail_arc : ndarray
+        The rail in the track, and the arc length of its profile.
+    """
+
+    wheel_y: Array
+    wheel_z: Array
+    wheel_offset: float
+    wheel_arc: Array
+    rail_y: Array
+    rail_z: Array
+    rail_arc: Array
+
+    def at(self, body: str, arc: float) -> tuple[float, float]:
+        """Return y and z of a place on a profile by its arc length."""
+        s, y, z = self.rail if body == "rail" else self.wheel
+        return float(np.interp(arc, s, y)), float(np.interp(arc, s, z))
+
+    @property
+    def wheel(self) -> tuple[Array, Array, Array]:
+        """Arc length, y and z of the wheel."""
+        return self.wheel_arc, self.wheel_y, self.wheel_z
+
+    @property
+    def rail(self) -> tuple[Array, Array, Array]:
+        """Arc length, y and z of the rail."""
+        return self.rail_arc, self.rail_y, self.rail_z
+
+
 def geometry_figure(geometry: xarray.Dataset, profiles: Profiles) -> Figure:
     """Return a figure of contact points on both profiles of the right side, Δr and contact angles."""
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(7.4, 7.0), layout="constrained")
     axes = figure.subplot_mosaic([["both", "both"], ["radius", "angle"]], height_ratios=(1.2, 1.0))
     _contact_points(axes["both"], geometry, profiles)
