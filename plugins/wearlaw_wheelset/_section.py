@@ -10,7 +10,6 @@ from wearlaw import Array
 from wearlaw_wheelset._pictures import APART
 from wearlaw_wheelset._rig import Wheelset
 
-if TYPE_CHECKING:
 STEP = 0.25
 """Distance between positions of wear along a profile [mm]."""
 
