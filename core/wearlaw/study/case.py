@@ -147,7 +147,7 @@ LISTS = ("stages", "laws", "wear_laws")
 """The lists of models that may be empty; a case that is written down leaves empty ones out."""
 
 RESERVED = ("pair", "contact_model", "sweep", "law", "wear_law")
-"""Names of other columns of results, which no outcome may have."""
+"""Names of other columns of results, which no outcome and no axis of a rig may have."""
 
 
 class Case(Configuration):
@@ -283,7 +283,7 @@ class Case(Configuration):
             if profile.axes():
                 raise ValueError(f"profiles.{name}: a profile is at one operating point; give each condition one value")
         labels(self.contact_models)
-        wrong = [*self._wrong_outcomes(), *self._wrong_stages()]
+        wrong = [*self._wrong_axes(), *self._wrong_outcomes(), *self._wrong_stages()]
         if wrong:
             raise ConfigurationError(self.subject(), wrong)
         for name, point in self.uncertainty.items():
@@ -312,6 +312,13 @@ class Case(Configuration):
         if wrong:
             raise ConfigurationError(self.subject(), wrong)
         return self
+
+    def _wrong_axes(self) -> Iterator[Fault]:
+        """Yield the axes of the rig's patches that results would mix up with other columns."""
+        conditions = {name for grid in (*self.sweeps.values(), *self.profiles.values()) for name in grid.given}
+        for axis in next(iter(self.sweeps.values())).problem(self.rig).dims:
+            if axis in (*RESERVED, "node", *conditions):
+                yield Fault(("rig",), f"its axis '{axis}' has the name of another column of results; rename the axis")
 
     def _wrong_outcomes(self) -> Iterator[Fault]:
         """Yield the laws whose results would be mixed up with others."""

@@ -121,7 +121,7 @@ def problem_is_finite_and_positive(rig: Rig) -> None:
     for name, value in values_of(problem).items():
         assert np.isfinite(value).all(), f"{name} of the problem is {value!r}, not finite"
     for name in POSITIVE:
-        value = getattr(problem.existing(), name)
+        value = getattr(problem, name)
         assert (np.isfinite(value) & (np.asarray(value) > 0.0)).all(), (
             f"{name} of the problem is {value!r}, not above zero"
         )
