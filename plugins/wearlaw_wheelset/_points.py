@@ -22,6 +22,8 @@ NARROWEST, WIDEST = 20e-3, 300e-3
 """Bounds of the width of a profile [m]."""
 CLEAR = 5e-3
 """Height by which a profile must stand out to show which way up it is, or on which side its flange is [m]."""
+TIP = 1e-3
+"""Height by which the top of a flange stands above both ends of the profile [m]."""
 BLOCK = 64
 """Steps in a block whose bounding box is compared with those of others."""
 
@@ -97,7 +99,9 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
     across = np.linspace(y.min(), y.max(), 201)
     level = float(np.median(np.interp(across, y[order], z[order])))
     up, down = level - float(z.min()), float(z.max()) - level
-    if up > max(down, CLEAR):
+    # The field side of a wheel may rise more than its flange falls, up to the end of the profile.
+    tip = kind == "rail" or z.min() + TIP < min(z[0], z[-1])
+    if up > max(down, CLEAR) and tip:
         part = "flange" if kind == "wheel" else "side"
         place = int(np.argmin(z))
         raise wl.InputError(
