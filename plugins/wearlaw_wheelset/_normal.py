@@ -26,7 +26,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,7 +38,7 @@ from wearlaw_wheelset import _normal_loops as loops
 NODES = 16
 """Nodes of the integral for the displacement, on each side of the deepest point."""
 
-BLOCK = 512
+BLOCK = 500
 """Patches of a block in NumPy: its arrays fit in the cache."""
 
 FEW = 100
@@ -200,14 +200,12 @@ def _patches(
     _check(samples)
     cosine, sine = _even(strips)
     share, weight = _nodes()
-    fields, sums = np.empty((count, 3, strips)), np.empty((count, 7))
+    fields, sums = np.empty((count, 3, strips)), np.empty((count, 4))
     if wl.accelerated(count * FEW):
         loops.patch_loop(samples, given, cosine, sine, share, weight, fields, sums)
     else:
-        for block in range(0, count, BLOCK):
-            part = slice(block, block + BLOCK)
-            _solve(samples[part], given[part], cosine, sine, share, weight, fields[part], sums[part])
-    return _result(np.asarray(start, dtype=float), given[:, 0], fields, sums)
+        _solve(samples, given, (cosine, sine, share, weight), fields, sums)
+    return _result(np.asarray(start, dtype=float), given, fields, sums)
 
 
 def _check(samples: Array) -> None:
@@ -237,31 +235,41 @@ def _nodes() -> tuple[Array, Array]:
     return s**4 * (5.0 - 4.0 * s), 20.0 * s**3 * (1.0 - s) * weight
 
 
-def _result(start: Array, step: Array, fields: Array, sums: Array) -> StripPatch:
+def _result(start: Array, given: Array, fields: Array, sums: Array) -> StripPatch:
     """Return patches from the strips and sums of the loops."""
-    penetration, force, slope, a, b, warning, longest = sums.T
+    penetration, slope, longest, warning = sums.T
     u, width, square = fields[:, 0], fields[:, 1], fields[:, 2]
-    half_length = np.sqrt(np.maximum(square, (loops.FLOOR * longest[:, None]) ** 2))
-    y = (start + 0.0)[..., None] + step[:, None] * u
     load = width * square
+    total = load.sum(axis=-1)
+    half_length = np.sqrt(np.maximum(square, loops.FLOOR**2 * longest[:, None]))
+    y = start[..., None] + given[:, :1] * u
+    ratio = 2.0 * np.sqrt(longest) / (_reach(u) * given[:, 0])
+    mean = np.sqrt(2.0 / np.pi * (half_length * width).sum(axis=-1))  # √(ab)
     return StripPatch(
         penetration=penetration,
-        normal_force=force,
-        max_pressure=slope * longest,
-        a=a,
-        b=b,
-        centre=(load * y).sum(axis=-1) / load.sum(axis=-1),
+        normal_force=0.5 * np.pi * slope * total,
+        max_pressure=slope * np.sqrt(longest),
+        a=mean * np.sqrt(ratio),
+        b=mean / np.sqrt(ratio),
+        centre=(load * y).sum(axis=-1) / total,
         y=y,
         width=width,
         half_length=half_length,
         pressure=slope[:, None] * half_length,
-        narrow=warning % 2.0 > 0.5,
-        jumps=warning > 1.5,
+        narrow=warning % loops.JUMPS > 0.0,
+        jumps=warning >= loops.JUMPS,
     )
 
 
+def _reach(u: Array) -> Array:
+    """Return the width of patches from their strips."""
+    cosine, _ = _even(u.shape[1])
+    width: Array = (u[:, -1] - u[:, 0]) / cosine[-1] if len(cosine) > 1 else 0.0 * u[:, 0]
+    return width
+
+
 class _Gaps(NamedTuple):
-    """Gaps as arrays: samples (patches, samples), the window, the deepest point, the least gap, spacing and A."""
+    """Gaps as arrays (patches, ...): samples, the window, the deepest point, the least gap, the spacing and A."""
 
     samples: Array
     first: NDArray[np.intp]
@@ -271,28 +279,23 @@ class _Gaps(NamedTuple):
     spacing: Array
     curvature: Array
 
-    def part(self, rows: NDArray[np.intp]) -> Self:
-        """Return some of the gaps."""
-        return type(self)(*(array[rows] for array in self))  # type: ignore[arg-type]
-
     def coefficients(self, cell: NDArray[np.intp]) -> tuple[NDArray[np.intp], tuple[Array, Array, Array, Array]]:
-        """Return the start and the coefficients of the cubics in cells, (patches, ...)."""
-        shape = (-1, *[1] * (cell.ndim - 1))
-        base = np.minimum(np.maximum(cell - 1, self.first.reshape(shape)), self.last.reshape(shape) - 3)
-        flat, at = self.samples.ravel(), base + (np.arange(len(cell)) * self.samples.shape[1]).reshape(shape)
+        """Return the start and the coefficients of the cubics in cells, (..., patches)."""
+        base = np.minimum(np.maximum(cell - 1, self.first), self.last - 3)
+        flat, at = self.samples.ravel(), base + np.arange(len(self.samples)) * self.samples.shape[1]
         g0 = flat[at]
         return base, (g0, *loops.cubic(g0, flat[at + 1], flat[at + 2], flat[at + 3]))
 
     def height(self, u: Array) -> Array:
-        """Return the gap above the least one at places (patches, places)."""
+        """Return the gap above the least one at places (..., patches)."""
         base, (c0, c1, c2, c3) = self.coefficients(u.astype(np.intp))
         x = u - base
-        height: Array = c0 - self.least[:, None] + x * (c1 + x * (c2 + x * c3))
+        height: Array = c0 - self.least + x * (c1 + x * (c2 + x * c3))
         return height
 
 
 class _Region(NamedTuple):
-    """Thresholds, the ends of patches, Hertz's semi-axes and whether the window cuts them off."""
+    """Thresholds, the ends of patches and whether the window cuts them off."""
 
     top: Array
     bend: Array
@@ -300,18 +303,24 @@ class _Region(NamedTuple):
     approach: Array
     start: Array
     end: Array
-    a: Array
-    b: Array
     cut: NDArray[np.bool_]
+
+    def excess(self, gaps: _Gaps, u: Array) -> Array:
+        """Return by how much gaps are below the threshold at places (..., patches)."""
+        level = loops.threshold(self.top, self.bend, self.middle, self.approach, u)
+        return np.maximum(level - gaps.height(u), 0.0)
 
 
 def _gaps(samples: Array, spacing: Array, curvature: Array) -> _Gaps:
-    """Return gaps with their deepest points."""
+    """Return gaps with their deepest points; samples beyond the window become infinite."""
     rows, size = np.arange(len(samples)), samples.shape[1]
     at, place = samples.argmin(axis=1), np.arange(size)
     missing = ~np.isfinite(samples)
-    first = np.where(missing & (place < at[:, None]), place, -1).max(axis=1) + 1
-    last = np.where(missing & (place > at[:, None]), place, size).min(axis=1) - 1
+    first, last = np.zeros_like(at), np.full_like(at, size - 1)
+    if missing.any():
+        first = np.where(missing & (place < at[:, None]), place, -1).max(axis=1) + 1
+        last = np.where(missing & (place > at[:, None]), place, size).min(axis=1) - 1
+        samples = np.where((place < first[:, None]) | (place > last[:, None]), np.inf, samples)
     least = samples[rows, at]
     gaps = _Gaps(samples, first, last, at.astype(float), np.zeros_like(least), spacing, curvature)
     inside = (at > first) & (at < last)
@@ -328,180 +337,132 @@ def _gaps(samples: Array, spacing: Array, curvature: Array) -> _Gaps:
     return gaps._replace(deepest=np.where(better, base + x, at), least=np.where(better, value, least))
 
 
-def _end(
-    gaps: _Gaps, top: Array, bend: Array, middle: Array, cap: Array, direction: int
-) -> tuple[Array, NDArray[np.bool_]]:
-    """Return the outermost places on one side where gaps are at the threshold, and whether the windows end first."""
-    rows, samples, first, last = np.arange(len(top)), gaps.samples, gaps.first, gaps.last
-    if bend.any():
-        place = np.arange(samples.shape[1], dtype=float)
-        level = loops.threshold(top[:, None], bend[:, None], middle[:, None], cap[:, None], place)
-    else:
-        level = top[:, None]
-    within = level + gaps.least[:, None] > samples
-    begin, deepest = (
-        (first, gaps.deepest.astype(np.intp)) if direction < 0 else (last, gaps.deepest.astype(np.intp) + 1)
-    )
-    if direction < 0:
-        within &= np.arange(samples.shape[1]) >= first[:, None]
-        j = within.argmax(axis=1)
-        found = within[rows, j] & (j <= deepest)
-    else:
-        within &= np.arange(samples.shape[1]) <= last[:, None]
-        j = samples.shape[1] - 1 - within[:, ::-1].argmax(axis=1)
-        found = within[rows, j] & (j >= deepest)
-    cut = found & (j == begin)
-    outer = np.where(found, j + direction, deepest)
-    cell = np.minimum(np.maximum(outer if direction < 0 else outer - 1, first), last - 1)
-    inner = np.minimum(gaps.deepest, cell + 1) if direction < 0 else np.maximum(gaps.deepest, cell)
-    base, (c0, c1, c2, c3) = gaps.coefficients(cell)
+def _within(gaps: _Gaps, top: Array, bend: Array | None, middle: Array, cap: Array) -> NDArray[np.bool_]:
+    """Return which samples are below the threshold."""
+    samples, least = gaps.samples, gaps.least
+    below: NDArray[np.bool_] = samples < (cap + least)[:, None]
+    if bend is not None:
+        level = np.arange(samples.shape[1]) - middle[:, None]
+        level *= level
+        level *= -bend[:, None]
+        level += (top + least)[:, None]
+        below &= level > samples
+    return below
+
+
+def _ends(gaps: _Gaps, top: Array, bend: Array | None, middle: Array, cap: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the outermost places where gaps are at the threshold, (2, patches), and whether the window ends first."""
+    rows, size = np.arange(len(top)), gaps.samples.shape[1]
+    within, cell = _within(gaps, top, bend, middle, cap), gaps.deepest.astype(np.intp)
+    low, high = within.argmax(axis=1), size - 1 - within[:, ::-1].argmax(axis=1)
+    found = within[rows, low] & np.stack([low <= cell, high >= np.minimum(cell + 1, gaps.last)])
+    begin, sample = np.stack([gaps.first, gaps.last]), np.stack([low, high])
+    away = np.array([[-1], [1]])
+    cut = found & (sample == begin)
+    outer = np.where(found, sample + away, np.stack([cell, cell + 1]))
+    left = np.minimum(np.maximum(outer - np.array([[0], [1]]), gaps.first), gaps.last - 1)
+    inner, out = np.minimum(np.maximum(gaps.deepest, left), left + 1), outer.astype(float)
+    base, (c0, c1, c2, c3) = gaps.coefficients(left)
     c0 = c0 - gaps.least
-    out = outer.astype(float)
     u = 0.5 * (inner + out)
     for _ in range(loops.NEWTON):
         x = u - base
-        level = loops.threshold(top, bend, middle, cap, u)
+        level = top if bend is None else loops.threshold(top, bend, middle, cap, u)
         value = level - (c0 + x * (c1 + x * (c2 + x * c3)))
         inner, out = np.where(value > 0.0, u, inner), np.where(value > 0.0, out, u)
         slope = -(c1 + x * (2.0 * c2 + x * 3.0 * c3))
-        slope = np.where((level > 0.0) & (level < cap), slope - 2.0 * bend * (u - middle), slope)
+        if bend is not None:
+            slope -= np.where((level > 0.0) & (level < cap), 2.0 * bend * (u - middle), 0.0)
         to = u - value / np.where(slope == 0.0, np.inf, slope)
         good = (to >= np.minimum(inner, out)) & (to <= np.maximum(inner, out)) & (slope != 0.0)
         to = np.where(good, to, 0.5 * (inner + out))
-        moved = np.abs(to - u)
+        moved = (np.abs(to - u) >= loops.STEP * gaps.last) & ~cut
         u = to
-        if not (moved > 1e-13 * last)[~cut].any():
+        if not moved.any():
             break
-    return np.where(cut, begin, u), cut
+    return np.where(cut, begin, u), cut.any(axis=0)
 
 
 def _region(gaps: _Gaps, approach: Array) -> _Region:
     """Return the thresholds and the ends of patches."""
-    half, none = 0.5 * approach, np.zeros_like(approach)
-    low, cut_low = _end(gaps, half, none, none, half, -1)
-    high, cut_high = _end(gaps, half, none, none, half, 1)
-    middle, curvature = 0.5 * (low + high), gaps.curvature
-    across = half / (0.5 * gaps.spacing * (high - low)) ** 2
-    share = loops.hertz_share(np.abs(np.log(across / curvature)))
-    share = np.where(across >= curvature, share, 1.0 - share)
-    a, b = np.sqrt(share * approach / curvature), np.sqrt((1.0 - share) * approach / across)
-    wide = np.maximum(b / gaps.spacing, loops.REACH * np.abs(gaps.deepest - middle))
-    top, bend = approach * share, approach * (2.0 * share - 1.0) / wide**2
-    start, cut_start = _end(gaps, top, bend, middle, approach, -1)
-    end, cut_end = _end(gaps, top, bend, middle, approach, 1)
-    return _Region(top, bend, middle, approach, start, end, a, b, cut_low | cut_high | cut_start | cut_end)
-
-
-def _squares(gaps: _Gaps, region: _Region, u: Array) -> Array:
-    """Return the squares of half the lengths of strips at u, (patches, places)."""
-    top, bend, middle, cap = (array[:, None] for array in region[:4])
-    free = loops.threshold(top, bend, middle, cap, u) - gaps.height(u)
-    return np.maximum(free, 0.0) / gaps.curvature[:, None]
+    half = 0.5 * approach
+    (low, high), narrow = _ends(gaps, half, None, half, half)
+    middle, curvature = 0.5 * (low + high), gaps.curvature * gaps.spacing**2
+    top, bend = loops.correction(approach, curvature, 0.5 * (high - low), np.abs(gaps.deepest - middle))
+    (start, end), cut = _ends(gaps, top, bend, middle, approach)
+    return _Region(top, bend, middle, approach, start, end, narrow | cut)
 
 
 def _evaluated(
-    gaps: _Gaps, modulus: Array, approach: Array, cosine: Array, sine: Array, share: Array, weight: Array
+    gaps: _Gaps, modulus: Array, approach: Array, rules: tuple[Array, Array, Array, Array]
 ) -> tuple[_Region, Array, Array, Array]:
     """Return the region of patches, the slope of their pressure in √(l²-x²), their strips and their forces."""
+    cosine, sine, share, weight = rules
     region = _region(gaps, approach)
-    span = np.stack([gaps.deepest - region.start, region.end - gaps.deepest], axis=1)
-    signed = span * np.array([-1.0, 1.0])
-    u = (gaps.deepest[:, None, None] + signed[..., None] * share).reshape(len(approach), -1)
-    distance = (gaps.spacing[:, None, None] * span[..., None] * share).reshape(u.shape)
-    weights = (gaps.spacing[:, None, None] * span[..., None] * weight).reshape(u.shape)
-    displaced = (weights * loops.compliance(_squares(gaps, region, u), distance)).sum(axis=1)
-    slope = math.pi * modulus * approach / displaced
+    span = np.stack([region.start, region.end])[:, None] - gaps.deepest
+    square = region.excess(gaps, gaps.deepest + share[:, None] * span) / gaps.curvature
+    length = gaps.spacing * np.abs(span)
+    displaced = length * weight[:, None] * loops.compliance(square, length * share[:, None])
+    slope = math.pi * modulus * approach / displaced.sum(axis=(0, 1))
     half = 0.5 * (region.end - region.start)
-    strips = np.empty((len(approach), 3, cosine.size))
-    strips[:, 0] = region.start[:, None] + half[:, None] * (1.0 + cosine)
-    strips[:, 1] = (half * gaps.spacing)[:, None] * sine
-    strips[:, 2] = _squares(gaps, region, strips[:, 0])
-    force = 0.5 * math.pi * slope * (strips[:, 1] * strips[:, 2]).sum(axis=1)
+    strips = np.empty((3, cosine.size, len(approach)))
+    strips[0] = region.start + half * (1.0 + cosine[:, None])
+    strips[1] = half * gaps.spacing * sine[:, None]
+    strips[2] = region.excess(gaps, strips[0]) / gaps.curvature
+    force = 0.5 * math.pi * slope * (strips[1] * strips[2]).sum(axis=0)
     return region, slope, strips, force
 
 
-def _solve(
-    samples: Array, given: Array, cosine: Array, sine: Array, share: Array, weight: Array, fields: Array, sums: Array
-) -> None:
+def _solve(samples: Array, given: Array, rules: tuple[Array, Array, Array, Array], fields: Array, sums: Array) -> None:
     """Fill in the strips and sums of patches with NumPy, as `loops.patch_loop` does."""
-    spacing, curvature, modulus, approach, load = given.T
-    every = _gaps(samples, spacing, curvature)
-    active = np.arange(len(samples))
+    spacing, curvature, modulus, approach, load = (np.ascontiguousarray(column) for column in given.T)
+    gaps = _gaps(samples, spacing, curvature)
     logarithm, before_log, before = np.log(approach), np.zeros_like(load), np.zeros_like(load)
     low, high = np.full_like(load, -np.inf), np.full_like(load, np.inf)
+    active = np.arange(len(samples))
     for iteration in range(loops.ITERATIONS):
-        gaps = every if len(active) == len(samples) else every.part(active)
-        here, target = logarithm[active], load[active]
-        region, slope, strips, force = _evaluated(gaps, modulus[active], np.exp(here), cosine, sine, share, weight)
-        wanted = np.where(target > 0.0, target, force)
-        miss = np.log(force / wanted)
-        short = miss < 0.0
-        low[active], high[active] = np.where(short, here, low[active]), np.where(short, high[active], here)
-        jumped = high[active] - low[active] < loops.WIDTH
-        done = (np.abs(miss) < loops.TOLERANCE) | (jumped & short)
-        if iteration == loops.ITERATIONS - 1:
-            done[:] = True
-        if done.any():
-            _finish(
-                gaps,
-                region,
-                slope,
-                strips,
-                force,
-                wanted,
-                jumped & (np.abs(miss) >= loops.TOLERANCE),
-                done,
-                active,
-                fields,
-                sums,
-            )
-        rate = np.full_like(miss, 1.5)
-        if iteration:
-            rate = (miss - before[active]) / (here - before_log[active])
-            rate = np.minimum(np.maximum(rate, loops.LEAST_SLOPE), loops.STEEPEST_SLOPE)
-        to = here - miss / rate
-        to = np.where((to > low[active]) & (to < high[active]), to, 0.5 * (low[active] + high[active]))
-        to = np.where(jumped, low[active], to)
-        before_log[active], before[active], logarithm[active] = here, miss, to
-        active = active[~done]
+        left = []
+        for block in range(0, len(active), BLOCK):
+            at = active[block : block + BLOCK]
+            here, target = logarithm[at], load[at]
+            part = _Gaps(*(array[at] for array in gaps))  # type: ignore[arg-type]
+            region, slope, strips, force = _evaluated(part, modulus[at], np.exp(here), rules)
+            wanted = np.where(target > 0.0, target, force)
+            miss = np.log(force / wanted)
+            low[at], high[at] = np.where(miss < 0.0, here, low[at]), np.where(miss < 0.0, high[at], here)
+            carries, jumps = np.abs(miss) < loops.TOLERANCE, high[at] - low[at] < loops.WIDTH
+            done = carries | (jumps & (miss < 0.0)) | (iteration == loops.ITERATIONS - 1)
+            if done.any():
+                longest = _greatest(part, region, strips[2] * part.curvature) / part.curvature
+                warning = loops.JUMPS * (jumps & ~carries) + loops.NARROW * region.cut
+                columns = np.stack([region.approach, slope * wanted / force, longest, warning], axis=1)
+                fields[at[done]], sums[at[done]] = strips[..., done].transpose(2, 0, 1), columns[done]
+            rate = np.full_like(miss, 1.5)
+            if iteration:
+                rate = (miss - before[at]) / (here - before_log[at])
+                rate = np.minimum(np.maximum(rate, loops.LEAST_SLOPE), loops.STEEPEST_SLOPE)
+            to = here - miss / rate
+            to = np.where((to > low[at]) & (to < high[at]), to, 0.5 * (low[at] + high[at]))
+            before_log[at], before[at], logarithm[at] = here, miss, np.where(jumps, low[at], to)
+            left.append(at[~done])
+        active = np.concatenate(left)
         if not len(active):
             break
 
 
-def _finish(
-    gaps: _Gaps,
-    region: _Region,
-    slope: Array,
-    strips: Array,
-    force: Array,
-    wanted: Array,
-    jumps: NDArray[np.bool_],
-    done: NDArray[np.bool_],
-    active: NDArray[np.intp],
-    fields: Array,
-    sums: Array,
-) -> None:
-    """Fill in strips and sums of the patches that are done."""
-    at = active[done]
-    warning = loops.JUMPS * jumps + loops.NARROW * region.cut
-    longest = np.sqrt(_greatest(gaps, region, strips[:, 2]))
-    columns = (region.approach, wanted, slope * wanted / force, region.a, region.b, warning, longest)
-    fields[at], sums[at] = strips[done], np.stack(columns, axis=1)[done]
-
-
-def _greatest(gaps: _Gaps, region: _Region, squares: Array) -> Array:
-    """Return the largest squares of half a strip's length, from parabolas in the angle of strips."""
-    count = squares.shape[1]
+def _greatest(gaps: _Gaps, region: _Region, excess: Array) -> Array:
+    """Return the largest excess of patches, from parabolas in the angle of strips."""
+    count = len(excess)
     step = math.pi / (count + 1)
-    angle = step * (count - squares.argmax(axis=1))
-    best: Array = squares.max(axis=1)
+    angle = step * (count - excess.argmax(axis=0))
+    best: Array = excess.max(axis=0)
     centre, half = 0.5 * (region.start + region.end), 0.5 * (region.end - region.start)
-    for _ in range(3):
-        angles = np.stack([np.minimum(angle + step, math.pi), angle, np.maximum(angle - step, 0.0)], axis=1)
-        left, here, right = _squares(gaps, region, centre[:, None] + half[:, None] * np.cos(angles)).T
+    for _ in range(loops.PEAK):
+        angles = np.stack([np.minimum(angle + step, math.pi), angle, np.maximum(angle - step, 0.0)])
+        before, here, after = region.excess(gaps, centre + half * np.cos(angles))
         best = np.maximum(best, here)
-        bow = 2.0 * here - left - right
-        ahead = np.where(bow > 0.0, 0.5 * (left - right) / np.where(bow > 0.0, bow, 1.0), 0.0)
+        bow = 2.0 * here - before - after
+        ahead = np.where(bow > 0.0, 0.5 * (before - after) / np.where(bow > 0.0, bow, 1.0), 0.0)
         angle = np.minimum(np.maximum(angle + np.clip(ahead, -1.0, 1.0) * step, 0.0), math.pi)
         step *= 0.25
     return best
