@@ -292,7 +292,7 @@ def _opened(path: Path) -> xarray.Dataset:
 
 def dataset(points: Points, variables: Mapping[str, Array], job: Job) -> xarray.Dataset:
     """Return results, (points, *axes of the rig) each, as a dataset with the conditions as coordinates."""
-    coordinates: dict[str, Any] = {**points.rows, **{name: list(labels) for name, labels in job.dims.items()}}
+    coordinates: dict[str, Any] = {**points.rows, **_labels(job)}
     for name, one in points.varying.items():
         coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
     numbers = {name: _number(value) for name, value in points.fixed.items()}
@@ -303,6 +303,15 @@ def dataset(points: Points, variables: Mapping[str, Array], job: Job) -> xarray.
     }
     others = {name: str(points.fixed[name]) for name, number in numbers.items() if number is None}
     return xarray.Dataset(data, coordinates, others)
+
+
+def _labels(job: Job) -> dict[str, Any]:
+    """Return the labels of the rig's own axes; zarr has a stable format only for texts of any length."""
+    found = {}
+    for name, labels in job.dims.items():
+        integers = all(isinstance(label, int) for label in labels)
+        found[name] = (name, np.array(labels, dtype=np.int64 if integers else object))
+    return found
 
 
 def _number(value: Any) -> Any:
