@@ -96,7 +96,7 @@ class Worn(Cut):
     hertzian: bool = True
 
     @property
-    def geometry(self) -> wl.Geometry:
+    def patch_geometry(self) -> wl.Geometry:
         """The shape that the field chooses."""
         return "ellipse" if self.hertzian else "strips"
 

@@ -345,7 +345,7 @@ class OnStrips(wl.Rig):
 
     name: ClassVar[str] = "on_strips"
     source: ClassVar[str] = "made up for the tests"
-    geometry: ClassVar[wl.Geometry] = "strips"
+    patch_geometry: ClassVar[wl.Geometry] = "strips"
     creepage: ClassVar[str] = "displacement"
     example: ClassVar[Mapping[str, Any]] = Axle.example
 
