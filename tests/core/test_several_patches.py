@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from typing import Any, ClassVar
 
@@ -252,6 +253,84 @@ def test_friction_may_differ_by_patch(hertzian: bool) -> None:
     staged: Any = rig | wl.contact_model("fastsim") | wl.stage("third_body", reduction=0.5) | KTH
     halved = staged(**GIVEN).friction_coefficient.magnitude
     np.testing.assert_array_equal(halved, of(found, "friction_coefficient"))  # a third body changes the slope alone
+
+
+@pytest.mark.parametrize("predict", [PREDICT, CUT])
+def test_a_prediction_prints_the_patches_that_exist(predict: Any) -> None:
+    found = predict(**GIVEN)
+    first, *rows = repr(found).splitlines()
+    assert first == "Prediction of 7 patches at 3 operating points"
+    assert "nan" not in repr(found)
+    rate = found.wear_rate[found.problem.exists]
+    assert rows[0] == f"  wear_rate            {rate.min()!r} to {rate.max()!r}"
+    flange = found.sel(side="right", patch=2)
+    assert repr(flange).startswith("Prediction of 1 patch at 3 operating points\n")
+    assert "nan" not in repr(flange)
+    assert repr(flange.isel(point_0=2)).startswith("Prediction of 1 operating point\n")
+    missing = repr(flange.isel(point_0=0)).splitlines()
+    assert missing[0] == "Prediction of 0 patches at 1 operating point"
+    assert all(row.endswith(" no patch") for row in missing[1:])
+
+
+def test_creepages_and_the_contact_angle_of_each_patch() -> None:
+    angles, lateral = np.deg2rad([3.0, 70.0]), np.array([1e-3, 2e-3])
+
+    class Angled(Worn):
+        """The axle with angles and lateral creepages of its own."""
+
+        name: ClassVar[str] = "angled"
+
+        def problem(self, **conditions: Any) -> wl.Problem:
+            found = super().problem(**conditions)
+            shape = found.batch_shape
+            return found.replaced(
+                contact_angle=np.broadcast_to(angles, shape),
+                lateral_creepage=np.broadcast_to(lateral, shape),
+                spin=np.sin(np.broadcast_to(angles, shape)) / RADIUS,
+            )
+
+    for hertzian in (True, False):
+        predict: Any = Angled(hertzian=hertzian) | wl.contact_model("fastsim") | KTH
+        found = predict(**GIVEN)
+        np.testing.assert_array_equal(of(found, "lateral_creepage"), np.where(EXISTS, lateral, np.nan))
+        np.testing.assert_allclose(of(found, "contact_angle"), np.where(EXISTS, angles, np.nan), rtol=4 * EPS)
+        np.testing.assert_allclose(of(found, "spin"), np.where(EXISTS, np.sin(angles) / RADIUS, np.nan), rtol=4 * EPS)
+        assert (str(found.contact_angle.units), str(found.spin.units)) == ("degree", "1 / meter")
+        given = {name: value for name, value in GIVEN.items() if name != "spin"}
+        swept = wl.sweep(
+            predict,
+            **{**given, "spin": Q([0.0], "1/m")},
+            outputs=["contact_angle", "lateral_creepage", "creepage", "wear_index"],
+        )
+        assert swept.contact_angle.attrs == {"units": "deg", "long_name": "contact angle"}
+        assert swept.lateral_creepage.attrs == {"units": "%", "long_name": "lateral creepage"}
+        np.testing.assert_allclose(swept.contact_angle.values[:, 0], np.where(EXISTS, [3.0, 70.0], np.nan))
+    level = PREDICT(**GIVEN).contact_angle.magnitude
+    np.testing.assert_array_equal(level, np.where(EXISTS, 0.0, np.nan))
+    discs = (wl.TwinDisc.suros() | wl.contact_model("exact"))(
+        creepage=Q([1.0, 2.0], "%"), max_pressure="1.5 GPa", friction_coefficient=0.4
+    )
+    for name in ("contact_angle", "spin", "lateral_creepage"):
+        assert getattr(discs, name).magnitude.tolist() == [0.0, 0.0]
+
+
+def test_warnings_and_limits_on_strips_look_at_patches_that_exist() -> None:
+    with pytest.warns(wl.RangeWarning) as on_strips:
+        found = CUT(**{**GIVEN, "load": "8000 kN"})
+    with pytest.warns(wl.RangeWarning) as on_ellipses:
+        PREDICT(**{**GIVEN, "load": "8000 kN"})
+    said, expected = ([str(one.message) for one in these] for these in (on_strips, on_ellipses))
+    assert len(said) == len(expected) == 2
+    assert "is beyond the shakedown limit" in said[0]
+    assert "7 of 7 patches lie outside" in said[1]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        missing = CUT(**{**GIVEN, "load": "8000 kN"}).sel(side="left", patch=2)
+    for name in ("first_yield", "shakedown_limit", "outside_range"):
+        assert (np.isnan(of(found, name)) == ~EXISTS).all()
+        assert np.isnan(of(missing, name)).all()
+    assert (of(found, "outside_range")[EXISTS] == 1.0).all()
+    assert (of(found, "max_pressure") > of(found, "shakedown_limit"))[EXISTS].all()
 
 
 # --- A field that chooses the shape ----------------------------------------------------------------------------------

@@ -440,6 +440,8 @@ class Pipeline(Configuration, Generic[P]):
         """Return the result of `predict` without its warnings; `watch` sees the operating points."""
         if problem.geometry == "line":
             check_traction(self.contact_model, problem)
+        if problem.dims:
+            watch.counted = "patches"
         model, problem = prepared(self.staged_model, problem)
         if not self.laws:
             return self._without_law(model, problem, watch, on_block)

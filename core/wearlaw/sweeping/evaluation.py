@@ -173,10 +173,12 @@ def checksum(seen: BlockRecord, outputs: Iterable[Array]) -> int:
     return found
 
 
-def range_warnings(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> list[Warning]:
+def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
     """Return the warnings of a prediction at the points of all blocks together."""
     every = list(blocks)
-    watch = pipeline.range_watch()
+    watch = job.pipeline.range_watch()
+    if job.dims:
+        watch.counted = "patches"
     watch.points = sum(one.points for one in every)
     for one in every:
         for name, seen in one.ranges.items():
