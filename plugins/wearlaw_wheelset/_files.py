@@ -10,7 +10,7 @@ import os
 import re
 import stat
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -305,7 +305,8 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
             continue
         if ended:
             cells = re.split(r"[\s;]+", re.split("[!%#]", text)[0].strip())
-            table.add(cells, number, len(columns), max(columns.index("X"), columns.index("Y")) + 1)
+            last = max(columns.index("X"), columns.index("Y"))
+            table.add(cells, number, last + 1, last + 1)
             continue
         key, equals, value = (part.strip() for part in text.partition("="))
         if equals:
@@ -315,7 +316,7 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
             if not {"X", "Y"} <= set(columns):
                 raise FileError(f"line {number}: ColumnDef must name the columns X and Y, got '{value[:40]}'")
     if not ended:
-        raise FileError("it has no empty line between its header and its points")
+        raise FileError("it has no empty line between its header and its points; name two columns alone .txt")
     found, rows = table.columns()
     x, y = found[columns.index("X")], found[columns.index("Y")]
     offset = {}
@@ -323,7 +324,7 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
         text = header.get(key, "")
         offset[key] = _number(text, 1, f"{key} in the header") if text else 0.0
     told = header.get("xypoints", "")
-    if told.isdigit() and int(told) != x.size and int(told) != sum(_is_point(line) for line in lines):
+    if told.isdigit() and sum(_is_point(line) for line in lines) < int(told):
         raise FileError(f"XYPoints says {told} points, but it has {x.size}; is it whole?")
     factor = _factor(units)
     x, y = factor * (x + offset["xoffset"]), factor * (y + offset["yoffset"])
@@ -334,7 +335,7 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
 
 def _is_point(line: str) -> bool:
     """Return whether a line holds numbers, commented out or not."""
-    cells = line.strip().lstrip('!"%#').split()
+    cells = re.split("[!%#]", line.strip().lstrip('!"%#'))[0].split()
     return len(cells) > 1 and all(NUMBER.fullmatch(cell) for cell in cells)
 
 
@@ -344,9 +345,9 @@ def _columns(lines: Sequence[str], units: str) -> Points:
     places, factors = (0, 1), [_factor(units)] * 2
     for number, raw in enumerate(lines, 1):
         text = raw.strip()
-        if not text or text[0] in "!%#":
+        if not text or text[0] in "!%#" or text.startswith("sep="):
             continue
-        cells = list(_cells(text))
+        cells = _cells(text)
         if not table.rows and not head and not NUMBER.fullmatch(cells[0].replace(",", ".")):
             head = True
             places, factors = _head(cells, number, factors)
@@ -358,12 +359,13 @@ def _columns(lines: Sequence[str], units: str) -> Points:
     return Points(factors[0] * found[0], factors[1] * found[1], None, rows, None)
 
 
-def _cells(text: str) -> Iterator[str]:
-    """Yield the cells of a line, which are set apart by semicolons, tabs, commas or spaces."""
+def _cells(text: str) -> list[str]:
+    """Return the cells of a line, which are set apart by semicolons, tabs, commas or spaces."""
     mark = next((mark for mark in ";\t," if mark in text), None)
-    for cell in text.split(mark):
-        bare = cell.strip().strip('"')
-        yield bare.replace(",", ".") if mark in (";", "\t") else bare
+    if mark is None:
+        return re.findall(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?", text)  # a name may have its unit behind a space
+    cells = [cell.strip().strip('"') for cell in text.split(mark)]
+    return cells if mark == "," else [cell.replace(",", ".") for cell in cells]
 
 
 def _head(cells: Sequence[str], line: int, factors: list[float]) -> tuple[tuple[int, int], list[float]]:

@@ -562,7 +562,7 @@ def test_crossings_are_found_wherever_they_are(count: int) -> None:
         found = crossed_steps(y, z)
         assert found is None if not first else found in first
         crossed += bool(first)
-    assert 5 < crossed
+    assert crossed > 5
 
 
 # Records -------------------------------------------------------------------------------------------------------------
