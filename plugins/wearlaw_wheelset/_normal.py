@@ -417,37 +417,95 @@ def _solve(samples: Array, given: Array, rules: tuple[Array, Array, Array, Array
     """Fill in the strips and sums of patches with NumPy, as `loops.patch_loop` does."""
     spacing, curvature, modulus, approach, load = (np.ascontiguousarray(column) for column in given.T)
     gaps = _gaps(samples, spacing, curvature)
-    logarithm, before_log, before = np.log(approach), np.zeros_like(load), np.zeros_like(load)
-    low, high = np.full_like(load, -np.inf), np.full_like(load, np.inf)
+    state = _Search(np.log(approach))
     active = np.arange(len(samples))
     for iteration in range(loops.ITERATIONS):
         left = []
         for block in range(0, len(active), BLOCK):
             at = active[block : block + BLOCK]
-            here, target = logarithm[at], load[at]
+            here, target = state.logarithm[at], load[at]
             part = _Gaps(*(array[at] for array in gaps))  # type: ignore[arg-type]
             region, slope, strips, force = _evaluated(part, modulus[at], np.exp(here), rules)
             wanted = np.where(target > 0.0, target, force)
-            miss = np.log(force / wanted)
-            low[at], high[at] = np.where(miss < 0.0, here, low[at]), np.where(miss < 0.0, high[at], here)
-            carries, jumps = np.abs(miss) < loops.TOLERANCE, high[at] - low[at] < loops.WIDTH
-            done = carries | (jumps & (miss < 0.0)) | (iteration == loops.ITERATIONS - 1)
+            done = state.step(at, np.log(force / wanted), target > 0.0, part, 0.5 * region.approach)
+            done |= iteration == loops.ITERATIONS - 1
             if done.any():
                 longest = _greatest(part, region, strips[2] * part.curvature) / part.curvature
-                warning = loops.JUMPS * (jumps & ~carries) + loops.NARROW * region.cut
+                warning = loops.JUMPS * state.jumps[at] + loops.NARROW * region.cut
                 columns = np.stack([region.approach, slope * wanted / force, longest, warning], axis=1)
                 fields[at[done]], sums[at[done]] = strips[..., done].transpose(2, 0, 1), columns[done]
-            rate = np.full_like(miss, 1.5)
-            if iteration:
-                rate = (miss - before[at]) / (here - before_log[at])
-                rate = np.minimum(np.maximum(rate, loops.LEAST_SLOPE), loops.STEEPEST_SLOPE)
-            to = here - miss / rate
-            to = np.where((to > low[at]) & (to < high[at]), to, 0.5 * (low[at] + high[at]))
-            before_log[at], before[at], logarithm[at] = here, miss, np.where(jumps, low[at], to)
             left.append(at[~done])
         active = np.concatenate(left)
         if not len(active):
             break
+
+
+class _Search:
+    """The search for the smallest penetrations, from their logarithms."""
+
+    def __init__(self, logarithm: Array) -> None:
+        self.logarithm = logarithm
+        self.found = logarithm.copy()
+        self.before_log, self.before = np.zeros_like(logarithm), np.zeros_like(logarithm)
+        self.low, self.high = np.full_like(logarithm, -np.inf), np.full_like(logarithm, np.inf)
+        self.mode = np.full(logarithm.shape, loops.SOLVES)
+        self.fresh = np.ones(logarithm.shape, dtype=bool)
+        self.jumps = np.zeros(logarithm.shape, dtype=bool)
+
+    def step(
+        self, at: NDArray[np.intp], miss: Array, solves: NDArray[np.bool_], gaps: _Gaps, level: Array
+    ) -> NDArray[np.bool_]:
+        """Choose the next penetrations from the logarithms of force over load, and return which patches are done."""
+        here, mode = self.logarithm[at], self.mode[at]
+        probed = mode == loops.PROBES
+        back, again = probed & (miss < 0.0), probed & (miss >= 0.0)
+        low, high = np.where(again, -np.inf, self.low[at]), np.where(again, here, self.high[at])
+        fresh, jumps = self.fresh[at] | again, self.jumps[at] & ~again
+        mode = np.where(back, loops.FOUND, np.where(again, loops.SOLVES, mode))
+        low, high = np.where((miss < 0.0) & ~back, here, low), np.where((miss < 0.0) | back, high, here)
+        carries, closed = np.abs(miss) < loops.TOLERANCE, high - low < loops.WIDTH
+        candidate = (carries | (closed & (miss < 0.0))) & ~back
+        done: NDArray[np.bool_] = candidate & ((mode == loops.FOUND) | ~solves)
+        jumps |= candidate & ~carries
+        rate = (miss - self.before[at]) / np.where(fresh, 1.0, here - self.before_log[at])
+        rate = np.where(fresh, 1.5, np.minimum(np.maximum(rate, loops.LEAST_SLOPE), loops.STEEPEST_SLOPE))
+        to = here - miss / rate
+        to = np.where(closed, low, np.where((to > low) & (to < high), to, 0.5 * (low + high)))
+        probe = candidate & ~done
+        if probe.any():
+            joined = _joined(gaps, level)
+            done |= probe & (joined == 0.0)
+            probe &= joined > 0.0
+            to = np.where(probe, np.log(2.0 * loops.BEFORE * np.where(probe, joined, 1.0)), to)
+            mode = np.where(probe, loops.PROBES, mode)
+        kept = probe | back
+        self.before_log[at], self.before[at] = np.where(kept, self.before_log[at], here), np.where(kept, 0.0, miss)
+        self.logarithm[at] = np.where(back, self.found[at], to)
+        self.found[at] = np.where(probe, here, self.found[at])
+        self.fresh[at] = fresh & kept
+        self.low[at], self.high[at], self.mode[at], self.jumps[at] = low, high, mode, jumps
+        return done
+
+
+def _joined(gaps: _Gaps, level: Array) -> Array:
+    """Return the greatest levels below the given ones at which a hump joins a patch from outside, or 0."""
+    samples, rows = gaps.samples, np.arange(len(level))
+    cell, size = gaps.deepest.astype(np.intp), gaps.samples.shape[1]
+    other = np.minimum(cell + 1, gaps.last)
+    within, place = samples < (level + gaps.least)[:, None], np.arange(size)
+    low, high = within.argmax(axis=1), size - 1 - within[:, ::-1].argmax(axis=1)
+    with np.errstate(invalid="ignore"):  # between infinite samples
+        rises = np.diff(samples, axis=1) >= 0.0
+    bottom = np.zeros_like(within)
+    bottom[:, :-1] = rises & (place[:-1] >= low[:, None])
+    low = np.minimum(bottom.argmax(axis=1), cell)
+    bottom[:] = False
+    bottom[:, 1:] = ~rises & (place[1:] <= high[:, None])
+    high = np.maximum(size - 1 - bottom[:, ::-1].argmax(axis=1), other)
+    joined = np.zeros_like(level)
+    for at, inside in ((low, low < cell), (high, high > other)):
+        joined = np.maximum(joined, np.where(inside & within[rows, at], samples[rows, at] - gaps.least, 0.0))
+    return joined
 
 
 def _greatest(gaps: _Gaps, region: _Region, excess: Array) -> Array:

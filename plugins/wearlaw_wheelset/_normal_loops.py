@@ -49,6 +49,12 @@ FLOOR = 1e-4
 NEED = 4
 """Samples of a cubic."""
 
+BEFORE = 1.0 - 1e-12
+"""Factor of a penetration just before a hump joins."""
+
+SOLVES, PROBES, FOUND = 0, 1, 2
+"""States of the search for the smallest penetration."""
+
 NARROW, JUMPS = 1.0, 2.0
 """What may be wrong: the window is too narrow; the force jumps over the given one."""
 
@@ -203,6 +209,22 @@ def _outermost(outer: Array, begin: int, end: int, level: float) -> int:
         else:
             begin = middle
     return end
+
+
+def _joined(gap: Array, outer: Array, first: int, last: int, deepest: float, least: float, level: float) -> float:
+    """Return the greatest level below the given one at which a hump joins the patch from outside, or 0."""
+    cell = int(deepest)
+    j = _outermost(outer, first, cell, level + least)
+    while j < cell and gap[j + 1] < gap[j]:
+        j += 1
+    joined = gap[j] if j < cell and gap[j] < level + least else -math.inf
+    cell = min(cell + 1, last)
+    j = _outermost(outer, last, cell, level + least)
+    while j > cell and gap[j - 1] < gap[j]:
+        j -= 1
+    if j > cell and gap[j] < level + least:
+        joined = max(joined, gap[j])
+    return max(joined - least, 0.0)
 
 
 def _end(
@@ -383,7 +405,8 @@ def _solve(
     first, last, deepest, least = _lowest(gap, outer)
     logarithm, before_log, before = math.log(approach), 0.0, 0.0
     low, high, warning = -math.inf, math.inf, 0.0
-    for iteration in range(ITERATIONS):
+    mode, found, iteration = SOLVES, logarithm, 0
+    for _ in range(ITERATIONS):
         approach = math.exp(logarithm)
         top, bend, middle, start, end, cut = _region(
             gap, outer, first, last, deepest, least, spacing, curvature, approach
@@ -407,19 +430,27 @@ def _solve(
             fields[2, i] = _excess(gap, first, last, least, top, bend, middle, approach, fields[0, i]) / curvature
             force += fields[1, i] * fields[2, i]
         force *= 0.5 * math.pi * slope
-        if load <= 0.0:
-            break
-        miss = math.log(force / load)
-        if abs(miss) < TOLERANCE:
-            break
+        miss = math.log(force / load) if load > 0.0 else 0.0
+        if mode == PROBES:  # a smaller penetration may carry the force, before a hump joined
+            mode = SOLVES
+            if miss < 0.0:
+                mode, logarithm = FOUND, found
+                continue
+            low, high, warning, iteration = -math.inf, logarithm, 0.0, 0
+        carries = abs(miss) < TOLERANCE
         if miss < 0.0:
             low = logarithm
         else:
             high = logarithm
-        if high - low < WIDTH:
-            if miss < 0.0:
-                warning = JUMPS
+        closed = high - low < WIDTH
+        if carries or (closed and miss < 0.0):
+            warning = warning if carries or mode == FOUND else JUMPS
+            joined = _joined(gap, outer, first, last, deepest, least, 0.5 * approach)
+            if mode == FOUND or load <= 0.0 or joined == 0.0:
                 break
+            mode, found, logarithm = PROBES, logarithm, math.log(2.0 * BEFORE * joined)
+            continue
+        if closed:
             to = low
         else:
             rate = 1.5
@@ -430,6 +461,7 @@ def _solve(
             if not low < to < high:
                 to = 0.5 * (low + high)
         before_log, before, logarithm = logarithm, miss, to
+        iteration += 1
     for i in range(cosine.size):
         fields[2, i] *= curvature
     longest = _greatest(gap, first, last, least, top, bend, middle, approach, start, end, fields[2])
