@@ -19,6 +19,7 @@ DEFERRED = {
     ("wearlaw.sweeping.evaluation", "zarr"): "is optional",
     ("wearlaw.testing.kit", "pytest"): "is not needed to run the checks of the kit",
     ("wearlaw.wear_tests.tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",
+    ("wearlaw_wheelset._profile", "matplotlib.figure"): "takes longer to load than all else; few plot",
     ("wearlaw_sheffield", "wearlaw_sheffield"): "its sections need pandas, which looking up a plugin must not load",
 }
 """All imports inside functions: by file and what is imported, and why. scipy loads its other parts by itself when they

@@ -109,15 +109,34 @@ class Profiles(NamedTuple):
         The wheel, with y in the track and z from the taping line.
     wheel_offset : float
         y of the profile's origin in the track.
-    rail_y, rail_z : ndarray
-        The rail in the track.
+    wheel_arc : ndarray
+        Arc length of the wheel's profile.
+    rail_y, rail_z, rail_arc : ndarray
+        The rail in the track, and the arc length of its profile.
     """
 
     wheel_y: Array
     wheel_z: Array
     wheel_offset: float
+    wheel_arc: Array
     rail_y: Array
     rail_z: Array
+    rail_arc: Array
+
+    def at(self, body: str, arc: float) -> tuple[float, float]:
+        """Return y and z of a place on a profile by its arc length."""
+        s, y, z = self.rail if body == "rail" else self.wheel
+        return float(np.interp(arc, s, y)), float(np.interp(arc, s, z))
+
+    @property
+    def wheel(self) -> tuple[Array, Array, Array]:
+        """Arc length, y and z of the wheel."""
+        return self.wheel_arc, self.wheel_y, self.wheel_z
+
+    @property
+    def rail(self) -> tuple[Array, Array, Array]:
+        """Arc length, y and z of the rail."""
+        return self.rail_arc, self.rail_y, self.rail_z
 
 
 @dataclass(frozen=True)
@@ -194,10 +213,12 @@ def geometry(
 
 def profiles(section: Section, nominal_radius: float) -> Profiles:
     """Return the profiles of the right wheel and its rail in the middle of the track."""
-    rail_y: Array = section.rail_z.start + section.rail_z.step * np.arange(section.rail_z.value.size, dtype=np.float64)
-    offset = section.wheel_y.value[0] - float(section.wheel.at(section.wheel_y.start)[0])
+    table = section.wheel_y
+    wheel_arc: Array = table.start + table.step * np.arange(table.value.size, dtype=np.float64)
+    offset = table.value[0] - float(section.wheel.at(table.start)[0])
     radius = section.wheel_radius.value - nominal_radius
-    return Profiles(section.wheel_y.value, radius, offset, rail_y, section.rail_z.value)
+    rail_y: Array = section.rail_z.start + section.rail_z.step * np.arange(section.rail_z.value.size, dtype=np.float64)
+    return Profiles(table.value, radius, offset, wheel_arc, rail_y, section.rail_z.value, section.rail_position.value)
 
 
 def _si(unit: str) -> str:

@@ -18,7 +18,7 @@ elliptic correction as in the program CONTACT (E. A. H. Vollebregt, src/m_snorm.
 Numerics: cubics through four samples give the gap between samples, with an error of 3/128 h⁴ g'''' at the spacing h and
 of about h²/8 times a step of g''. Strips are even in the angle between the ends of the patch. The integral over x is an
 elliptic one. The integral over t takes Gauss's nodes in s on each side of t_0, t = t_0 + (5 s⁴ - 4 s⁵) L, for the
-logarithm at t_0 and the decay near the ends of long patches. On ellipses its error is 1e-6 for a/b from 1/20 to 20.
+logarithm at t_0 and the decay near the ends of long patches. On ellipses its error is 2e-6 for a/b from 1/20 to 20.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ def penetrated(
     Raises
     ------
     InputError
-        If a patch has fewer than four samples.
+        If a patch has fewer than four samples, a value is not positive, or there are fewer than two strips.
     """
     return _patches(start, step, gap, curvature_x, modulus, penetration, 0.0, strips)
 
@@ -154,9 +154,10 @@ def loaded(
 
     Notes
     -----
-    The force is a power of the penetration with a slope near 3/2, so that the secant method in logarithms takes about
-    five steps; it is kept within bounds, and bisected where it leaves them. The force jumps where a second hump of the
-    gap joins the patch, see `StripPatch.jumps`.
+    The force is nearly a power 3/2 of the penetration, so the secant method in logarithms takes four steps. It stays
+    within the penetrations that carry too little and too much, and bisects them where it would leave them. Where a
+    second hump of the gap joins the patch, the force jumps. If it falls there, the penetration from before is taken,
+    the first to carry the force as the bodies approach. If it rises past the given force, see `StripPatch.jumps`.
     """
     if guess is None:  # that of a sphere
         force, curvature, elastic = (np.asarray(value, dtype=float) for value in (normal_force, curvature_x, modulus))
@@ -197,7 +198,7 @@ def _patches(
     given = np.empty((count, 5))
     for column, value in enumerate((step, curvature_x, modulus, penetration, load)):
         given[:, column] = value
-    _check(samples)
+    _check(samples, given, strips)
     cosine, sine = _even(strips)
     share, weight = _nodes()
     fields, sums = np.empty((count, 3, strips)), np.empty((count, 4))
@@ -208,8 +209,10 @@ def _patches(
     return _result(np.asarray(start, dtype=float), given, fields, sums)
 
 
-def _check(samples: Array) -> None:
-    """Raise an error if a patch has too few samples."""
+def _check(samples: Array, given: Array, strips: int) -> None:
+    """Raise an error if the strips or the samples are too few, or a value is not positive."""
+    if strips < 2:
+        raise wl.InputError(f"strips: {strips} given; a patch has at least 2")
     finite = np.isfinite(samples)
     few = finite.sum(axis=1) < loops.NEED
     if few.any():
@@ -218,6 +221,11 @@ def _check(samples: Array) -> None:
             f"gap: patch {at} has {np.count_nonzero(finite[at])} finite samples; at least {loops.NEED} are needed, "
             "so sample it more finely or widen its window"
         )
+    for name, values in zip(("step", "curvature_x", "modulus", "penetration or normal_force"), given.T, strict=False):
+        bad = ~((values > 0.0) & np.isfinite(values))
+        if bad.any():
+            at = int(bad.argmax())
+            raise wl.InputError(f"{name}: {values[at]:g} at patch {at}; it must be positive")
 
 
 @cache
@@ -263,8 +271,7 @@ def _result(start: Array, given: Array, fields: Array, sums: Array) -> StripPatc
 
 def _reach(u: Array) -> Array:
     """Return the width of patches from their strips."""
-    cosine, _ = _even(u.shape[1])
-    width: Array = (u[:, -1] - u[:, 0]) / cosine[-1] if len(cosine) > 1 else 0.0 * u[:, 0]
+    width: Array = (u[:, -1] - u[:, 0]) / _even(u.shape[1])[0][-1]
     return width
 
 

@@ -14,7 +14,7 @@ import wearlaw as wl
 from wearlaw import Array
 
 AGM = 6
-"""Steps of an arithmetic-geometric mean: right to rounding for ratios of its numbers from 1e-4, to 1e-3 from 1e-10."""
+"""Steps of an arithmetic-geometric mean: right to 1e-12 for ratios of its numbers from 1e-4, to 1e-3 from 1e-10."""
 
 HERTZ = 3
 """Newton steps to the axis ratio: right to 1e-11 for ratios of curvatures up to 100, to 3e-10 beyond."""

@@ -15,7 +15,7 @@ from pydantic import BeforeValidator, Field, model_validator
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._conicity import equivalent_conicity
-from wearlaw_wheelset._geometry import Geometry, geometry, patches
+from wearlaw_wheelset._geometry import Geometry, Profiles, geometry, patches, profiles
 from wearlaw_wheelset._loads import Balance, Elastic, Task
 from wearlaw_wheelset._profile import Profile
 from wearlaw_wheelset._search import Section, Touching, both_sides, searched, section
@@ -249,6 +249,10 @@ class Wheelset(wl.Rig):
         self._check_contact(displacement, found)
         position = both_sides(displacement, rolls, turned)
         return geometry(self._section, axes, rolls, found, position, most, scalar(self.nominal_radius))
+
+    def profiles_in_track(self) -> Profiles:
+        """Return the right wheel and its rail in the middle of the track, as SI arrays."""
+        return profiles(self._section, scalar(self.nominal_radius))
 
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
         """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, by EN 15302."""

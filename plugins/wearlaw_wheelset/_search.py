@@ -23,7 +23,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -53,6 +53,9 @@ FINE = 0.05e-3
 
 STEEPEST = np.radians(86.0)
 """Steepest slope of a profile on which contact is looked for [rad]."""
+
+ACCURATE = {"xatol": 1e-9}
+"""Accuracy of the place of a rail's top along its profile [m]; that of its height is quadratic in it."""
 
 BESIDE = 1e3
 """A place beside any rail [m]."""
@@ -191,18 +194,27 @@ def section(
     cos, sin = np.cos(wheel.angle[kept]), np.sin(wheel.angle[kept])
     across = Table(wheel.s[tip], step, wheel.y[kept] + wheel_offset, cos)
     radius = Table(wheel.s[tip], step, wheel.z[kept] + nominal_radius, sin)
-    y, z = rail.y * np.cos(cant) + rail.z * np.sin(cant), rail.z * np.cos(cant) - rail.y * np.sin(cant)
+
+    def leaned(s: Any) -> tuple[Any, Any]:
+        y, z, _, _ = rail.at(s)
+        return y * np.cos(cant) + z * np.sin(cant), z * np.cos(cant) - y * np.sin(cant)
+
+    y, z = leaned(rail.s)
     angle = rail.angle - cant
     top = int(z.argmin())
-    z = z - z[top]
+    around = rail.s[max(top - 1, 0)], rail.s[min(top + 1, z.size - 1)]
+    crown = scipy.optimize.minimize_scalar(lambda s: leaned(s)[1], bounds=around, method="bounded", options=ACCURATE)
+    z = z - crown.fun
     if not z[: top + 1].max() > depth:
         raise wl.InputError(
             f"gauge_depth: {1e3 * depth:.4g} mm is below the gauge side of the rail, which ends"
             f" {1e3 * z[: top + 1].max():.4g} mm below the rail's top"
         )
     below = top - np.flatnonzero(z[top::-1] > depth)[0]
-    share = (z[below] - depth) / (z[below] - z[below + 1])
-    y = y + (0.5 * gauge - (y[below] + share * (y[below + 1] - y[below])))
+    at_depth = scipy.optimize.brentq(
+        lambda s: leaned(s)[1] - crown.fun - depth, rail.s[below], rail.s[below + 1], xtol=1e-15
+    )
+    y = y + (0.5 * gauge - leaned(at_depth)[0])
     steep = np.abs(angle) > STEEPEST
     first = max((int(index) + 1 for index in np.flatnonzero(steep) if index < top), default=0)
     last = min((int(index) for index in np.flatnonzero(steep) if index > top), default=y.size)
@@ -433,7 +445,8 @@ def _searched(section: Section, displacement: Array, yaw: Array, given: Array | 
         whole = touching(section, position)
         for old, new in zip(found, whole, strict=True):
             old[open_] = new
-        tilted = np.asarray(np.abs(whole.least[:, 1] - whole.least[:, 0]) > 2.0 * ROLL_ACCURACY)
+        with np.errstate(invalid="ignore"):  # both wheels may be beside their rails
+            tilted = np.asarray(np.abs(whole.least[:, 1] - whole.least[:, 0]) > 2.0 * ROLL_ACCURACY)
         open_ = open_[tilted]
         if not open_.size:
             break
@@ -447,8 +460,8 @@ def _level(
     least, arc = found.least[rows], found.arc[rows, :, 0]
     for _ in range(ROLLS):
         position = both_sides(displacement[rows], roll[rows], yaw[rows])
-        excess = least[:, 1] - least[:, 0]
         lost = np.asarray(np.isnan(arc).any(axis=-1))  # the point has jumped out of the window
+        excess = np.subtract(least[:, 1], least[:, 0], out=np.zeros(rows.size), where=~lost)
         place = gaps(section, position, np.where(lost[:, None], section.wheel_y.start, arc))
         lever = (place.y + place.rail_slope * place.z).sum(axis=-1)
         going = np.asarray((np.abs(excess) > ROLL_ACCURACY) & ~lost)

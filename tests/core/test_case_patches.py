@@ -16,7 +16,7 @@ import pytest
 import xarray
 
 import wearlaw as wl
-from tests.core import cases
+from tests.core import axles, cases
 from tests.core.axle_case import AXLES, EXISTS, FLANGING, MOVED, MOVING, ON_AXLE, PATCHES, SIDES, Axle
 from tests.core.cases import InstallModel, Table, assert_refused, changed, wearlaw
 from tests.core.distributions import Install
@@ -184,7 +184,7 @@ def test_the_mass_lost_can_be_added_over_patches() -> None:
     np.testing.assert_allclose(
         frame.loc["kth on fastsim"].to_numpy(dtype=float), np.nansum(expected, axis=(1, 2)), rtol=8 * EPS
     )
-    assert [value.marks for value in frame.loc["usfd on fastsim"]] == ["†", "", "", "", "†"]
+    assert [value.marks for value in frame.loc["usfd on fastsim"].tolist()] == ["†", "", "", "", "†"]
     assert len(one_panel(study.figures[0]).curves) == 4
     assert "mass_per_distance [ug/m]" in results_table(study)
     with pytest.raises(wl.ConfigurationError, match=r"figures\.one\.y: 'mass_per_distance' cannot be shown"):
@@ -334,6 +334,7 @@ def test_a_profile_has_the_wear_across_each_patch() -> None:
     wheel = by_label(figure.panels[0])
     labels = [f"{patch['side']}, patch {patch['patch']}" for patch in AT_SEVEN]
     assert list(wheel) == [f"{law} on fastsim, {label}" for label in labels for law in ("usfd", "kth")]
+    assert [curve.colour for curve in wheel.values()] == [0, 0, 2, 2, 3, 3], "as in figures of sweeps"
     curve = wheel["kth on fastsim, right, patch 2"]
     place = {"side": "right", "patch": 2}
     np.testing.assert_array_equal(curve.y, profile.wheel_depth.sel({"pair": "kth on fastsim", **place}))
@@ -344,6 +345,33 @@ def test_a_profile_has_the_wear_across_each_patch() -> None:
     assert (
         short.frame.set_index("pair").loc["kth on fastsim, right, patch 2", "wheel: greatest depth [µm/km]"] == deepest
     )
+
+
+@pytest.mark.parametrize("hertzian", [True, False])
+def test_a_profile_has_the_places_of_patches_on_the_bodies(install_model: InstallModel, hertzian: bool) -> None:
+    install_model(axles.Placed)
+    given: Table = {
+        "load": "80 kN",
+        "displacement": "7 mm",
+        "longitudinal_creepage": "0.2 %",
+        "spin": "0.3 1/m",
+        "friction_coefficient": 0.3,
+    }
+    rig = {"type": "placed", "hertzian": hertzian}
+    sweeps = {"moving": {**given, "displacement": ["0 mm", "7 mm"]}}
+    study = small(rig=rig, sweeps=sweeps, profiles={"flanging": given})
+    profile = study.profiles["flanging"].sel(side="right", patch=2)
+    predict: Any = axles.Placed(hertzian=hertzian) | wl.contact_model("fastsim") | wl.wear_law("kth")
+    one = predict(**given).sel(side="right", patch=2)
+    for body in ("wheel", "rail"):
+        expected = one.wear_profile(body, strips=101)
+        np.testing.assert_array_equal(profile[f"{body}_depth"].values[0], expected.depth)
+        np.testing.assert_array_equal(profile[f"{body}_profile_position"].values[0], expected.profile_position)
+    assert profile.sizes["node"] == (101 if hertzian else axles.STRIPS)
+    shown = by_label(by_name(study)["flanging_across_the_patch"].panels[1])["kth on fastsim, right, patch 2"]
+    np.testing.assert_array_equal(shown.y, profile.rail_depth.values[0])
+    together = study.sweeps["moving"].mass_per_distance.sum(("side", "patch"))
+    assert (together > 0.0).all()
 
 
 class Strings(wl.Rig):

@@ -333,6 +333,20 @@ def test_warnings_and_limits_on_strips_look_at_patches_that_exist() -> None:
     assert (of(found, "max_pressure") > of(found, "shakedown_limit"))[EXISTS].all()
 
 
+@pytest.mark.parametrize(
+    "index", [np.s_[1], np.s_[1:], np.s_[0, 1], np.s_[..., 0], np.array([2, 0]), EXISTS, np.s_[:, None]]
+)
+def test_strips_are_indexed_as_the_other_arrays(index: Any) -> None:
+    problem = CUT.rig.problem(**GIVEN)
+    found, positions = problem[index], np.arange(EXISTS.size).reshape(EXISTS.shape)[index]
+    for name in ("y", "width", "half_length", "max_pressure"):
+        expected = getattr(problem.strips, name).reshape(EXISTS.size, -1)[positions]
+        np.testing.assert_array_equal(getattr(found.strips, name), expected)
+    np.testing.assert_array_equal(found.a, problem.a.reshape(-1)[positions])
+    wide = problem[0].broadcast_to((3, 2, 2))
+    np.testing.assert_array_equal(wide.strips.y, np.broadcast_to(problem.strips.y[0], (3, 2, 2, 12)))
+
+
 # --- A field that chooses the shape ----------------------------------------------------------------------------------
 
 

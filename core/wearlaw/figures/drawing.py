@@ -43,6 +43,8 @@ STYLE: Any = {
 }
 WIDTH, ROW_HEIGHT = 7.4, 3.6
 """Width of a figure and height of a row of panels, in inches."""
+AROUND = 0.9
+"""Height and width that the labels of a panel take, in inches."""
 SHADES = ("#f4f4f4", "#e4e4e4")
 """Greys of the levels of shades."""
 THIN, PALE = 0.8, 0.6
@@ -56,14 +58,26 @@ def draw(figure: FigureData) -> Figure:
     count = len(figure.panels)
     cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
     rows: Any = [cells[start : start + 2] for start in range(0, len(cells), 2)]
+    heights = [max(_height(figure.panels[cell], WIDTH / len(set(row))) for cell in row) for row in rows]
     with mpl.rc_context(STYLE):
-        drawn = Figure(figsize=(WIDTH, 1.2 + ROW_HEIGHT * len(rows)), layout="constrained")
-        axes: dict[int, Axes] = drawn.subplot_mosaic(rows)
+        drawn = Figure(figsize=(WIDTH, 1.2 + sum(heights)), layout="constrained")
+        axes: dict[int, Axes] = drawn.subplot_mosaic(rows, height_ratios=heights)
         for number, panel in enumerate(figure.panels):
             _fill(axes[number], panel, has_markers(figure))
         drawn.suptitle(_literal(figure.title))
         _legend(drawn, figure, list(axes.values()))
     return drawn
+
+
+def _height(panel: Panel, width: float) -> float:
+    """Return the height of a panel of a width, in inches; a shape takes as much as it needs."""
+    if not panel.equal:
+        return ROW_HEIGHT
+    lengths = []
+    for axis, name in ((panel.x, "x"), (panel.y, "y")):
+        values = np.concatenate([np.asarray(axis.ends or getattr(curve, name), dtype=float) for curve in panel.curves])
+        lengths.append(float(np.nanmax(values) - np.nanmin(values)))
+    return min(AROUND + (width - AROUND) * lengths[1] / lengths[0], ROW_HEIGHT)
 
 
 def has_markers(figure: FigureData) -> bool:

@@ -229,7 +229,10 @@ class Rig(Model):
                 f"rig '{self.name}' gave {type_name(exists)} as `exists`; it must be an array of bool of the shape of"
                 f" the batch, {problem.batch_shape}"
             )
-        masked = problem.mapped(lambda array: np.where(exists, array, np.nan))
+        of_strips = exists[..., None]
+        masked = problem.mapped(
+            lambda array: np.where(exists, array, np.nan), lambda array: np.where(of_strips, array, np.nan)
+        )
         return masked.replaced(exists=exists)
 
     def check_names(self, conditions: Mapping[str, Any]) -> None:

@@ -37,6 +37,7 @@ from wearlaw.study.results import (
     outcomes_of,
     patch_axes,
     patches_of,
+    possible_patches,
     predicting,
 )
 from wearlaw.units.variables import UNITS, label, name_of
@@ -160,8 +161,8 @@ def _over_sweep(results: Results, spec: FigureSpec, window: Window, axis: str) -
 
 
 def _coloured(curves: list[Curve], patch: Patch, dataset: xarray.Dataset) -> list[Curve]:
-    """Return the curves of a patch with its label and colour, which is the same in all figures of a dataset."""
-    colour = patches_of(dataset).index(patch)
+    """Return the curves of a patch with its label and colour, which is the same in all figures."""
+    colour = possible_patches(dataset).index(patch)
     return [
         replace(curve, label=labelled_by(patch, curve.label), colour=colour, dash=number)
         for number, curve in enumerate(curves)

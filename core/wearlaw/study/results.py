@@ -117,12 +117,20 @@ def patches_of(sweep: xarray.Dataset, asked: Mapping[str, Collection[Any]] | Non
     axes = patch_axes(sweep)
     if not axes:
         return [{}]
-    values = [one for one in sweep.data_vars.values() if set(axes) <= set(one.dims)]
-    there: Any = sum(one.notnull().sum([dim for dim in one.dims if dim not in axes]) for one in values)
+    of_contact = next(one for one in sweep.data_vars.values() if {"contact_model", *axes} <= set(one.dims))
+    there = of_contact.notnull().any([dim for dim in of_contact.dims if dim not in axes])
+    return [
+        patch
+        for patch in possible_patches(sweep)
+        if there.sel(patch) and all(patch[axis] in labels for axis, labels in (asked or {}).items())
+    ]
+
+
+def possible_patches(sweep: xarray.Dataset) -> list[Patch]:
+    """Return the labels of each patch that the rig can make, whether it exists or not."""
+    axes = patch_axes(sweep)
     labels = itertools.product(*(sweep[axis].values.tolist() for axis in axes))
-    every = (dict(zip(axes, one, strict=True)) for one in labels)
-    wanted = (patch for patch in every if all(patch[axis] in labels for axis, labels in (asked or {}).items()))
-    return [patch for patch in wanted if there.sel(patch) > 0]
+    return [dict(zip(axes, one, strict=True)) for one in labels]
 
 
 def by_patch(point: xarray.Dataset, asked: Mapping[str, Collection[Any]] | None = None) -> xarray.Dataset:

@@ -412,9 +412,9 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
         local = [law.outcome.name] if law.outcome.of == "area mean" else []
         return [*local, *of_law], prediction.profile.assign(whole | of_law)
     bodies = [body for body in rig.bodies if law.body in (None, body)]
-    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in bodies}
+    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS).reset_coords() for body in bodies}
     named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
     if not named:
         return [], xarray.Dataset()
-    shown = [name for name in named if not name.endswith("_sliding_distance")]
+    shown = [name for name in named if not name.endswith(("_sliding_distance", "_profile_position"))]
     return [*shown, *of_law], xarray.Dataset(named).assign(whole | of_law)

@@ -1,0 +1,367 @@
+"""The normal problem by virtual penetration: Hertz on ellipses, CONTACT's own KPEC, and half-spaces elsewhere."""
+
+from __future__ import annotations
+
+import importlib.util
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+import scipy
+
+import wearlaw as wl
+from tests.strategies import EPS
+from wearlaw import Array
+from wearlaw_wheelset import _normal as normal
+from wearlaw_wheelset import _normal_loops as loops
+from wearlaw_wheelset._normal import StripPatch, hertz, loaded, penetrated
+
+DOCS = Path(__file__).parents[2] / "docs"
+A = 1.0 / (2.0 * 0.46)
+MODULUS = 82e9 / (1.0 - 0.28)
+MM = 1e-3
+BOTH = pytest.mark.parametrize(
+    "compiled",
+    [
+        False,
+        pytest.param(
+            True, marks=pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="numba is not installed")
+        ),
+    ],
+)
+QUADRATURE = 2e-6
+"""Error of the displacement that the module states for ellipses; N, p0 and the penetration share it."""
+
+
+@pytest.fixture(autouse=True)
+def as_chosen() -> Iterator[None]:
+    """Return to wearlaw's own choice of compiled loops."""
+    yield
+    wl.accelerate(None)
+
+
+def sampled(function: Any, width: Array | float, count: int = 201, shift: float = 0.3) -> dict[str, Any]:
+    """Return gaps of a function of t, sampled over ±width, for one or several patches."""
+    wide = np.atleast_1d(width)
+    step = 2.0 * wide / (count - 1)
+    t = step[:, None] * (np.arange(count) - (count - 1) / 2 + shift)
+    return {"start": t[:, 0], "step": step, "gap": function(t)}
+
+
+def ellipses(strips_ratio: int = 41) -> tuple[dict[str, Any], Array, Array, Array]:
+    """Return gaps B t², with A, B and N."""
+    ratio = np.geomspace(1e-2, 1e2, strips_ratio)
+    along, across = np.full_like(ratio, A), A * ratio
+    force = np.geomspace(1e5, 1e3, strips_ratio)
+    b = hertz(along, across, MODULUS, force).b
+    return sampled(lambda t: across[:, None] * t**2, 1.5 * b), along, across, force
+
+
+def two_humps(second: float = 8e-6, place: float = -9e-3, bend: float = 6.0, first: float = 0.4) -> Any:
+    """Return a gap with a second hump, such as that of a wheel on the top and the shoulder of a rail."""
+
+    def gap(t: Array) -> Array:
+        return np.minimum(first * t**2, second + bend * (t - place) ** 2)
+
+    return gap
+
+
+def exactly(c: float) -> float:
+    """Return 2√(1+c²) (K(m) - E(m)) with m = 1/(1+c²), with more digits than floats have."""
+    with mpmath.workdps(40):
+        square = 1 + mpmath.mpf(c) ** 2
+        return float(2 * mpmath.sqrt(square) * (mpmath.ellipk(1 / square) - mpmath.ellipe(1 / square)))
+
+
+@pytest.mark.parametrize("c", [0.01, 0.1, 1.0, 10.0, 1e3])
+def test_the_closed_form_is_the_integral_over_a_strip(c: float) -> None:
+    # x = sin θ; c sinh w = tan θ takes the peak away.
+    def integrand(w: float) -> float:
+        tangent = c * np.sinh(w)
+        cosine = 1.0 / np.sqrt(1.0 + tangent**2)
+        return float(2.0 * cosine**4 * np.cosh(w) / np.hypot(tangent * cosine / c, 1.0))
+
+    expected, _ = scipy.integrate.quad(integrand, 0.0, np.arcsinh(1e8 / c), epsabs=0.0, epsrel=1e-12, limit=500)
+    assert exactly(c) == pytest.approx(expected, rel=1e-10)
+    assert loops.compliance(np.array([4.0]), np.array([2.0 * c]))[0] == pytest.approx(2.0 * exactly(c), rel=64 * EPS)
+
+
+def test_few_steps_of_the_mean_are_enough() -> None:
+    for c, within in ((1e-2, 64 * EPS), (1e-4, 1e-12), (1e-10, 1e-3)):
+        assert loops.compliance(1.0, c) == pytest.approx(exactly(c), rel=within)
+
+
+def test_the_share_of_hertz_is_that_of_his_ellipse() -> None:
+    for largest, within in ((np.log(100.0), 1e-11), (40.0, 3e-10)):
+        log_ratio = np.concatenate([[0.0, 1e-12, 1e-8, 1e-4], np.linspace(0.01, largest, 200)])
+        one = np.ones_like(log_ratio)
+        ellipse = hertz(one, np.exp(log_ratio), 1.0, one)
+        assert loops.hertz_share(log_ratio) == pytest.approx(ellipse.a**2 / ellipse.penetration, rel=within)
+
+
+@BOTH
+@pytest.mark.parametrize("strips", [2, 10, 21])
+def test_a_parabola_gives_hertz(compiled: bool, strips: int) -> None:
+    wl.accelerate(compiled)
+    gaps, along, across, force = ellipses()
+    exact = hertz(along, across, MODULUS, force)
+    found = penetrated(**gaps, curvature_x=along, modulus=MODULUS, penetration=exact.penetration, strips=strips)
+    # The trapezoidal rule in the angle for ∫ sin³ = 4/3, in closed form: an error of order 4.
+    h = np.pi / (strips + 1)
+    rule = 3.0 / 16.0 * h * (3.0 / np.tan(0.5 * h) - 1.0 / np.tan(1.5 * h))
+    assert found.max_pressure == pytest.approx(exact.max_pressure, rel=QUADRATURE)
+    assert found.normal_force == pytest.approx(rule * force, rel=QUADRATURE)
+    assert found.penetration == pytest.approx(exact.penetration, rel=8 * EPS)
+    share = 1e-11  # of `hertz_share`
+    assert found.a == pytest.approx(exact.a, rel=share)
+    assert found.b == pytest.approx(exact.b, rel=share)
+    assert found.area == pytest.approx(np.pi * exact.a * exact.b, rel=share)
+    assert np.abs(found.centre / exact.b).max() < 1e-10
+    assert not found.narrow.any()
+    assert not found.jumps.any()
+    angle = h * np.arange(strips, 0, -1)
+    assert found.y == pytest.approx(np.outer(exact.b, np.cos(angle)), rel=1e-9, abs=1e-9 * exact.b.max())
+    assert found.half_length == pytest.approx(np.outer(exact.a, np.sin(angle)), rel=1e-9)
+    assert found.pressure == pytest.approx(np.outer(exact.max_pressure, np.sin(angle)), rel=QUADRATURE)
+
+
+def test_more_nodes_leave_less_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    wl.accelerate(False)
+    gaps, along, across, force = ellipses()
+    exact = hertz(along, across, MODULUS, force)
+    errors = []
+    for nodes in (10, 16, 24):
+        monkeypatch.setattr(normal, "NODES", nodes)
+        normal._nodes.cache_clear()
+        found = penetrated(**gaps, curvature_x=along, modulus=MODULUS, penetration=exact.penetration)
+        errors.append(np.abs(found.max_pressure / exact.max_pressure - 1.0).max())
+    normal._nodes.cache_clear()
+    # s³ ln s has an error of order 8 in the number of nodes, and slender patches converge even faster.
+    for (few, many), (error, smaller) in zip(((10, 16), (16, 24)), itertools.pairwise(errors), strict=True):
+        assert smaller < error * (few / many) ** 8
+
+
+def random_gaps(count: int) -> dict[str, Any]:
+    """Return gaps with two humps, skew, windows of all kinds."""
+    random = np.random.default_rng(27)
+    size = 161
+    t = 1e-4 * (np.arange(size) - 80.0)
+    bend, skew = random.uniform(0.3, 20.0, (count, 1)), random.uniform(-60.0, 60.0, (count, 1))
+    place, second = random.uniform(-6e-3, 6e-3, (count, 1)), random.uniform(0.0, 3e-5, (count, 1))
+    gap = np.minimum(bend * t**2 * (1.0 + np.tanh(skew * t)), second + random.uniform(0.3, 20.0) * (t - place) ** 2)
+    gap[:, :3] = np.where(np.arange(count)[:, None] % 3 == 0, np.nan, gap[:, :3])
+    gap[:, -5:] = np.where(np.arange(count)[:, None] % 4 == 0, np.inf, gap[:, -5:])
+    one = np.ones(count)
+    return {"start": one * t[0], "step": one * 1e-4, "gap": gap, "curvature_x": random.uniform(0.3, 2.0, count)}
+
+
+@pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="numba is not installed")
+def test_numba_and_numpy_agree() -> None:
+    count = 600
+    gaps, force = random_gaps(count), np.geomspace(100.0, 2e5, count)
+    results: list[list[StripPatch]] = []
+    for compiled in (False, True):
+        wl.accelerate(compiled)
+        results.append(
+            [
+                loaded(**gaps, modulus=MODULUS, normal_force=force),
+                penetrated(**gaps, modulus=MODULUS, penetration=np.geomspace(1e-6, 1e-4, count)),
+            ]
+        )
+    for one, other in zip(*results, strict=True):
+        assert 0 < np.count_nonzero(one.narrow) < count
+        np.testing.assert_array_equal(one.narrow, other.narrow)
+        np.testing.assert_array_equal(one.jumps, other.jumps)
+        for name in ("penetration", "normal_force", "max_pressure", "a", "b", "area"):
+            # Forces are solved to 1e-10. Before the force falls at a jump, the penetration depends on it more steeply.
+            assert getattr(one, name) == pytest.approx(getattr(other, name), rel=2e-9), name
+        for name in ("y", "width", "half_length", "pressure", "centre"):
+            value = getattr(one, name)
+            assert value == pytest.approx(getattr(other, name), abs=2e-9 * np.abs(value).max()), name
+
+
+@BOTH
+def test_a_load_is_carried_whatever_the_guess(compiled: bool) -> None:
+    wl.accelerate(compiled)
+    gaps, along, across, force = ellipses()
+    gaps["gap"] = gaps["gap"] * (1.0 + 0.3 * np.tanh(gaps["gap"] / 1e-5))
+    first = penetrated(**gaps, curvature_x=along, modulus=MODULUS, penetration=hertz(along, across, MODULUS, force)[3])
+    for guess in (None, first.penetration, 30.0 * first.penetration, first.penetration / 30.0):
+        found = loaded(**gaps, curvature_x=along, modulus=MODULUS, normal_force=first.normal_force, guess=guess)
+        assert found.penetration == pytest.approx(first.penetration, rel=1e-10)  # 2/3 of that of the force
+        assert found.strips.normal_force.sum(axis=-1) == pytest.approx(first.normal_force, rel=16 * EPS)
+        assert found.normal_force == pytest.approx(first.normal_force, rel=16 * EPS)
+
+
+def one_patch(function: Any, width: float = 2e-2, count: int = 401) -> dict[str, Any]:
+    return {**sampled(function, width, count), "curvature_x": [A], "modulus": MODULUS}
+
+
+@BOTH
+def test_the_first_penetration_that_carries_the_load_is_taken(compiled: bool) -> None:
+    wl.accelerate(compiled)
+    gaps = one_patch(two_humps(bend=0.4))
+    penetration = np.geomspace(4e-6, 60e-6, 4001)
+    many = {name: np.repeat(value, penetration.size, axis=0) for name, value in gaps.items() if name != "modulus"}
+    force = penetrated(**many, modulus=MODULUS, penetration=penetration).normal_force
+    falls = np.flatnonzero(np.diff(force) < 0.0)
+    jump = penetration[falls[0]]
+    assert jump == pytest.approx(2.0 * 8e-6, rel=2e-3)  # the second hump reaches half the penetration
+    before, after = force[falls[0]], force[falls[0] + 1]
+    assert after < 0.9 * before
+    for load in np.linspace(0.5 * after, 1.5 * before, 41):
+        expected = penetration[np.flatnonzero(force >= load)[0]]
+        for guess in (None, [5e-6], [50e-6]):
+            found = loaded(**gaps, normal_force=[load], guess=guess)
+            assert found.penetration[0] == pytest.approx(expected, rel=1e-3)  # the spacing of the penetrations
+            assert not found.jumps[0]
+
+
+@BOTH
+def test_a_load_within_a_jump_is_carried_by_the_patch_before_it(compiled: bool) -> None:
+    wl.accelerate(compiled)
+    gaps = one_patch(two_humps(bend=1.0, place=-7.1e-3, second=9.8e-6, first=4.0))
+    joins = 2.0 * gaps["gap"][0, :150].min()
+    before, after = (penetrated(**gaps, penetration=[joins * (1.0 + one)]) for one in (-1e-9, 1e-9))
+    assert before.normal_force[0] < 0.97 * after.normal_force[0]
+    load = 0.5 * (before.normal_force + after.normal_force)
+    found = loaded(**gaps, normal_force=load)
+    assert found.jumps[0]
+    assert found.penetration == pytest.approx(before.penetration, rel=1e-8)
+    assert found.half_length == pytest.approx(before.half_length, rel=1e-6)
+    scale = load / before.normal_force
+    assert found.pressure == pytest.approx(scale * before.pressure, rel=1e-6)
+    assert found.max_pressure == pytest.approx(scale * before.max_pressure, rel=1e-6)
+    assert found.normal_force == pytest.approx(load, rel=16 * EPS)
+    assert not loaded(**gaps, normal_force=0.9 * before.normal_force).jumps[0]
+
+
+@BOTH
+def test_strips_between_humps_carry_next_to_nothing(compiled: bool) -> None:
+    wl.accelerate(compiled)
+    found = penetrated(**one_patch(two_humps(bend=6.0)), penetration=[18e-6])
+    idle = found.half_length[0] < 2.0 * loops.FLOOR * found.half_length.max()
+    assert 3 <= np.count_nonzero(idle) < 18
+    assert np.flatnonzero(idle)[0] > 0
+    assert np.flatnonzero(idle)[-1] < 20
+    assert found.strips.normal_force[0, idle].sum() < 1e-7 * found.normal_force[0]
+    elastic: Any = {"shear_modulus": np.array([82e9]), "poisson_ratio": np.array([0.28])}
+    slip = {
+        name: np.array([value])
+        for name, value in {
+            "friction_coefficient": 0.3,
+            "longitudinal_creepage": 1e-3,
+            "lateral_creepage": 5e-4,
+            "spin": 0.4,
+            "rolling_speed": 20.0,
+            "density": 7850.0,
+        }.items()
+    }
+    problem = wl.Problem.of_strips(found.strips, a=found.a, b=found.b, **elastic, **slip)
+    contact = wl.contact_model("fastsim").solve(problem)
+    assert np.isfinite(contact.traction_x).all()
+    assert 0.0 < contact.force_x[0] < 0.3 * found.normal_force[0]
+
+
+@BOTH
+def test_the_ellipse_of_kalkers_coefficients_has_the_area_and_ratio_of_the_patch(compiled: bool) -> None:
+    wl.accelerate(compiled)
+    gaps = one_patch(lambda t: t**2 * (2.0 + 0.2 * np.tanh(300.0 * t)))
+    found = penetrated(**gaps, penetration=[5e-5], strips=401)
+    assert np.pi * found.a * found.b == pytest.approx(found.area, rel=1e-12)
+    width = found.width.sum()  # 1/24 h² of it is missing
+    assert found.a / found.b == pytest.approx(2.0 * found.half_length.max() / width, rel=1e-4)
+    assert found.max_pressure == pytest.approx(found.pressure.max(), rel=1e-4)
+    assert found.centre == pytest.approx((found.strips.normal_force * found.y).sum() / found.normal_force, rel=1e-12)
+
+
+@BOTH
+def test_samples_may_be_shifted_mirrored_and_cut_off(compiled: bool) -> None:
+    wl.accelerate(compiled)
+
+    def skewed(t: Array) -> Array:
+        return 2.0 * t**2 * (1.0 + 0.5 * np.tanh(300.0 * t))
+
+    gaps = one_patch(skewed, 5e-3, 301)
+    plain = penetrated(**gaps, penetration=[3e-5])
+    moved = penetrated(**{**gaps, "start": gaps["start"] + 0.1}, penetration=[3e-5])
+    assert moved.y - 0.1 == pytest.approx(plain.y, abs=1e-15)
+    assert moved.centre - 0.1 == pytest.approx(plain.centre, abs=1e-15)
+    mirrored = {**gaps, "gap": gaps["gap"][:, ::-1], "start": -(gaps["start"] + 300.0 * gaps["step"])}
+    other = penetrated(**mirrored, penetration=[3e-5])
+    assert -other.y[:, ::-1] == pytest.approx(plain.y, abs=1e-12)
+    assert other.pressure[:, ::-1] == pytest.approx(plain.pressure, rel=1e-9)
+    cut = gaps["gap"].copy()
+    cut[:, :20], cut[:, -10:], cut[:, 3] = np.nan, np.inf, 0.0  # beyond the window another patch may be deeper
+    cut[:, 3] = 1e-7
+    for beyond in (np.nan, np.inf):
+        cut[:, 10] = beyond
+        same = penetrated(**{**gaps, "gap": cut}, penetration=[3e-5])
+        assert same.pressure == pytest.approx(plain.pressure, rel=1e-12)
+        assert not same.narrow[0]
+
+
+@BOTH
+def test_a_narrow_window_is_reported(compiled: bool) -> None:
+    wl.accelerate(compiled)
+    gaps = one_patch(lambda t: 2.0 * t**2, 5e-3, 301)
+    wide = penetrated(**gaps, penetration=[3e-5])
+    assert not wide.narrow[0]
+    reach = np.abs(np.arange(301) - 150) * gaps["step"] <= 0.98 * wide.b
+    left = np.where(reach | (np.arange(301) > 150), gaps["gap"], np.nan)
+    for gap in (left, left[:, ::-1], np.where(np.arange(301) < 150, np.nan, gaps["gap"])):
+        assert penetrated(**{**gaps, "gap": gap}, penetration=[3e-5]).narrow[0]
+        assert loaded(**{**gaps, "gap": gap}, normal_force=wide.normal_force).narrow[0]
+
+
+@BOTH
+def test_the_error_of_samples_is_of_fourth_order(compiled: bool) -> None:
+    wl.accelerate(compiled)
+
+    def wavy(t: Array) -> Array:
+        return 2.0 * t**2 + 4e-6 * (1.0 - np.cos(900.0 * t))
+
+    force = [
+        penetrated(**one_patch(wavy, 6e-3, count), penetration=[3e-5]).normal_force[0] for count in (25, 49, 97, 1537)
+    ]
+    coarse, middle, fine = (abs(one / force[-1] - 1.0) for one in force[:3])
+    assert coarse < 1e-2
+    assert middle < coarse / 8.0
+    assert fine < middle / 8.0
+
+
+@BOTH
+def test_the_deepest_point_always_touches(compiled: bool) -> None:
+    wl.accelerate(compiled)
+    # Steep on one side and flat on the other, so that the middle of the ellipse is far from the deepest point.
+    gaps = one_patch(lambda t: np.where(t > 0.0, 400.0, 0.4) * t**2, 2e-2, 2001)
+    penetration = np.geomspace(5e-6, 9e-5, 30)
+    many = {name: np.repeat(value, penetration.size, axis=0) for name, value in gaps.items() if name != "modulus"}
+    found = penetrated(**many, modulus=MODULUS, penetration=penetration)
+    assert (found.y[:, 0] < -1e-4).all()
+    assert (found.y[:, -1] > 1e-5).all()
+    assert (np.diff(found.normal_force) > 0.0).all()
+    assert (found.half_length > 1e-3 * found.half_length.max(axis=1)[:, None]).all()
+
+
+def test_bad_values_raise_errors_that_say_where() -> None:
+    gaps = {
+        name: np.repeat(value, 3, axis=0)
+        for name, value in one_patch(lambda t: 2.0 * t**2, 5e-3, 41).items()
+        if name != "modulus"
+    }
+    few = gaps["gap"].copy()
+    few[1, 3:] = np.nan
+    with pytest.raises(wl.InputError, match="gap: patch 1 has 3 finite samples; at least 4 are needed"):
+        penetrated(**{**gaps, "gap": few}, modulus=MODULUS, penetration=1e-5)
+    with pytest.raises(wl.InputError, match="strips: 1 given; a patch has at least 2"):
+        penetrated(**gaps, modulus=MODULUS, penetration=1e-5, strips=1)
+    with pytest.raises(wl.InputError, match="curvature_x: -1 at patch 2; it must be positive"):
+        penetrated(**{**gaps, "curvature_x": [1.0, 1.0, -1.0]}, modulus=MODULUS, penetration=1e-5)
+    for bad in (0.0, np.nan, np.inf):
+        with pytest.raises(wl.InputError, match=r"normal_force: .* at patch 0; it must be positive"):
+            loaded(**gaps, modulus=MODULUS, normal_force=[bad, 1.0, 1.0])
