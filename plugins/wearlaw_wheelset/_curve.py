@@ -306,7 +306,7 @@ def smoothed(u: Array, points: Array, distance: float, weights: Array | None) ->
     Returns
     -------
     ndarray of float64, shape (n, k)
-        The values of the natural spline. It is a straight line if that is near enough.
+        The values of the natural spline: those of a straight line, but for rounding, if that is near enough.
     """
     scale = (u[-1] - u[0]) / (u.size - 1)
     step = np.diff(u) / scale
@@ -342,9 +342,6 @@ def smoothed(u: Array, points: Array, distance: float, weights: Array | None) ->
         return float(np.sqrt((weight[:, None] * left**2).sum() / u.size))
 
     low, high = -60.0, 35.0
-    left = residual(high)
-    if rms(left) <= distance:
-        return points - left
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         if not low < middle < high:

@@ -90,24 +90,24 @@ def points_of(path: Path, kind: Kind | None, units: str) -> tuple[Points, Kind]:
         If the file is missing, too large, not regular or not text, or if its content is wrong.
     """
     text = _text_of(path)
-    ending = path.suffix.lower()
-    lines = text.splitlines()
+    ending, lines = path.suffix.lower(), text.splitlines()
+    by_ending: Kind | None = KINDS.get(ending)
     if ending in SIMPACK or any(re.match(r"\s*spline\.begin", line) for line in lines):
         found = _simpack(lines, units)
     elif ending in MINIPROF or (lines and _is_miniprof(lines)):
-        found = _miniprof(lines, KINDS.get(ending, kind), units)
+        found = _miniprof(lines, by_ending or kind, units)
     elif ending in COLUMNS:
         found = _columns(lines, units)
     else:
         raise FileError(f"the ending '{ending}' is not known; give a file that ends in {', '.join(ENDINGS)}")
-    given = {"the argument kind": kind, "its ending": KINDS.get(ending), "its header": found.kind}
-    told: dict[str, Kind] = {source: one for source, one in given.items() if one is not None}
-    if not told:
+    sure = kind or by_ending or found.kind
+    if sure is None:
         raise FileError('it does not say whether it is a wheel or a rail; give kind="wheel" or kind="rail"')
-    if len(set(told.values())) > 1:
-        says = ", ".join(f"{source} says {one}" for source, one in told.items())
+    told = {"the argument kind": kind, "its ending": by_ending, "its header": found.kind}
+    if not {*told.values()} <= {sure, None}:
+        says = ", ".join(f"{source} says {one}" for source, one in told.items() if one)
         raise FileError(f"it is not clear whether it is a wheel or a rail: {says}")
-    return found, next(iter(told.values()))
+    return found, sure
 
 
 def _text_of(path: Path) -> str:

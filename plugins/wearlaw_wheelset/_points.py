@@ -135,9 +135,9 @@ def crossed_steps(y: Array, z: Array) -> tuple[int, int] | None:
     near = np.ones((starts.size, starts.size), dtype=np.bool_)
     for least, most in zip(low, high, strict=True):
         near &= (least[:, None] <= most) & (least <= most[:, None])
-    for first, second in np.argwhere(np.triu(near)):
-        one = np.arange(starts[first], min(starts[first] + BLOCK, count))[:, None]
-        other = np.arange(starts[second], min(starts[second] + BLOCK, count))[None, :]
+    for first, second in BLOCK * np.argwhere(np.triu(near)):
+        one = first + np.arange(min(BLOCK, count - first))[:, None]
+        other = second + np.arange(min(BLOCK, count - second))[None, :]
         crosses = (other > one + 1) & _cross(y, z, one, other)
         if crosses.any():
             row, column = np.argwhere(crosses)[0]

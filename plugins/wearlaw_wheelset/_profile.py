@@ -271,7 +271,7 @@ class Profile(wl.Configuration):
 
         It is the angle at which the head is most like its mirror image: the top, within 20 mm of the middle between
         the sides, has no slope. The sides are taken 10 mm below the top. NaN for a wheel, or if a side does not reach
-        so far down. Wear of one side changes it, by about 1/120 for 5 mm.
+        so far down. Wear of one side changes it, by about 1/110 for 5 mm.
         """
         return wl.Q(_lean(self.curve) if self.kind == "rail" else np.nan, "rad")
 
