@@ -33,7 +33,8 @@ def pressed(gap: Array, dx: float, dy: float, modulus: float, force: float, tole
     shape = scipy.fft.next_fast_len(2 * nx, real=True), scipy.fft.next_fast_len(2 * ny, real=True)
     x, y = (np.minimum(np.arange(n), n - np.arange(n)) * step for n, step in zip(shape, (dx, dy), strict=True))
     # Without Poisson's ratio, the influence of tractions along x is that of a pressure.
-    kernel = influence(*np.meshgrid(x, y, indexing="ij"), dx, dy, 0.0)[0] / (np.pi * modulus)
+    along, across = np.meshgrid(x, y, indexing="ij")
+    kernel = influence(along, across, dx, dy, 0.0)[0] / (np.pi * modulus)
     transform = scipy.fft.rfft2(kernel)
 
     def displaced(pressure: Array) -> Array:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -65,22 +66,21 @@ def joined(place: float, force: float) -> Patch:
     """Return the patch of a cone that touches the uncanted 60E1 rail at a distance from its axis [m]."""
     centres, radii, ends = [(0.0, 0.3)], (0.3, 0.08, 0.013), (0.0105, 0.026)
     for radius, smaller, end in zip(radii, radii[1:], ends, strict=False):
-        (y, z), sine = centres[-1], (end - centres[-1][0]) / radius
-        centres.append((y + (radius - smaller) * sine, z - (radius - smaller) * np.sqrt(1.0 - sine**2)))
+        (middle, depth), slope = centres[-1], (end - centres[-1][0]) / radius
+        centres.append((middle + (radius - smaller) * slope, depth - (radius - smaller) * np.sqrt(1.0 - slope**2)))
 
     def arc(y: Array) -> tuple[Array, Array, Array]:
         number = np.searchsorted(ends, np.abs(y))
-        (middle, depth), radius = np.array(centres)[number].T, np.array(radii)[number]
-        sine = (np.abs(y) - middle) / radius
-        return depth - radius * np.sqrt(1.0 - sine**2), sine * np.sign(y), radius
+        (middles, depths), radius = np.array(centres)[number].T, np.array(radii)[number]
+        sine = (np.abs(y) - middles) / radius
+        return depths - radius * np.sqrt(1.0 - sine**2), sine * np.sign(y), radius
 
-    at = np.array([place])
-    drop, sine, radius = arc(at)
+    drop, sine, radius_there = arc(np.array([place]))
     cosine = np.sqrt(1.0 - sine**2)
     y = np.linspace(place - 0.025, min(place + 0.025, 0.0355), 40001)
     depth = arc(y)[0] - drop
     t, height = (y - place) * cosine + depth * sine, depth * cosine - (y - place) * sine
-    return smooth(lambda v: np.interp(v, t, height), 0.5 / radius[0], force)
+    return smooth(lambda v: np.interp(v, t, height), 0.5 / float(radius_there[0]), force)
 
 
 def quartic(curvature: float, cubic: float, fourth: float, force: float) -> Patch:
@@ -95,7 +95,7 @@ def wheel(position: tuple[float, ...], force: float) -> Patch:
     spacing, wide = next(
         grid for least, grid in ((0.6, (0.05, 4.0)), (0.2, (0.1, 12.0)), (0.0, (0.1, 16.0))) if abs(angle) > least
     )
-    gap = wheel_on_rail.gap(y, z, roll, yaw, angle=angle, at=at, step=spacing, half_width=wide, half_length=13.0)
+    gap = wheel_on_rail.gap(y, z, roll, yaw, angle=angle, at=at, step=spacing, half_width=wide, half_length=10.0)
     step, across, curvature = 1e-3 * (gap.t[1] - gap.t[0]), 1e-3 * gap.across, 1e3 * gap.curvature
     strips = loaded([1e-3 * gap.t[0]], [step], across[None], [curvature], MODULUS, [force])
     near = across.argmin() + np.arange(-3, 4)
@@ -114,14 +114,13 @@ def cases() -> Iterator[tuple[str, float, Callable[[], Patch]]]:
         ("cone on R 80, at R 13", 0.02599),
         ("cone on R 13, 1 mm beside R 80", 0.027),
     ):
-        yield name, 8e4, lambda place=place: joined(place, 8e4)  # type: ignore[misc]
+        yield name, 8e4, partial(joined, place, 8e4)
     for bend, cubic, fourth in ((0.3, 0.0, 0.5), (1.0, 0.0, 0.5), (6.0, 0.0, 0.5), (30.0, 0.0, 0.5), (6.0, 0.4, 0.4)):
         name = f"B = {bend:g}/m: B t² (1 + {cubic:g} v + {fourth:g} v²)"
-        yield name, 8e4, lambda chosen=(bend, cubic, fourth): quartic(*chosen, 8e4)  # type: ignore[misc]
+        yield name, 8e4, partial(quartic, bend, cubic, fourth, 8e4)
     for name, position in MANCHESTER.items():
-        for force in (1e4, 8e4) if "root" not in name else (1e4,):
-            chosen = (position, force)
-            yield name, force, lambda chosen=chosen: wheel(*chosen)  # type: ignore[misc]
+        for force in (1e4, 8e4) if abs(position[0]) < 5.0 else (1e4,):
+            yield name, force, partial(wheel, position, force)
 
 
 def row(name: str, force: float, patch: Patch) -> list[str]:

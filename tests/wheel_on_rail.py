@@ -105,7 +105,7 @@ def gap(
     origin = np.array([at, np.interp(at, y_rail, z_rail)])
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     t_rail, n_rail = turn @ (np.stack([y_rail, z_rail]) - origin[:, None])
-    t = step * np.arange(-round(half_width / step), round(half_width / step) + 1)
+    t: Array = step * np.arange(-round(half_width / step), round(half_width / step) + 1)
     rail_height = np.interp(t, *_rising(t_rail, n_rail))
     s = np.arange(-60.0, 40.0, 0.01)
     radius, axle = RADIUS + wheel(s), BACK - FLANGE_BACK + s

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import csv
 import importlib.util
 import itertools
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import mpmath
+import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 import scipy
 
 import wearlaw as wl
+from tests import normal_patches, wheel_on_rail
+from tests.normal_half_space import pressed
 from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_wheelset import _normal as normal
@@ -21,6 +24,7 @@ from wearlaw_wheelset import _normal_loops as loops
 from wearlaw_wheelset._normal import StripPatch, hertz, loaded, penetrated
 
 DOCS = Path(__file__).parents[2] / "docs"
+ROWS = {(row[0], row[1]): row for row in csv.reader(normal_patches.FILE.read_text(encoding="utf-8").splitlines()[1:])}
 A = 1.0 / (2.0 * 0.46)
 MODULUS = 82e9 / (1.0 - 0.28)
 MM = 1e-3
@@ -206,7 +210,9 @@ def test_the_first_penetration_that_carries_the_load_is_taken(compiled: bool) ->
     wl.accelerate(compiled)
     gaps = one_patch(two_humps(bend=0.4))
     penetration = np.geomspace(4e-6, 60e-6, 4001)
-    many = {name: np.repeat(value, penetration.size, axis=0) for name, value in gaps.items() if name != "modulus"}
+    many: dict[str, Any] = {
+        name: np.repeat(value, penetration.size, axis=0) for name, value in gaps.items() if name != "modulus"
+    }
     force = penetrated(**many, modulus=MODULUS, penetration=penetration).normal_force
     falls = np.flatnonzero(np.diff(force) < 0.0)
     jump = penetration[falls[0]]
@@ -291,7 +297,7 @@ def test_samples_may_be_shifted_mirrored_and_cut_off(compiled: bool) -> None:
     moved = penetrated(**{**gaps, "start": gaps["start"] + 0.1}, penetration=[3e-5])
     assert moved.y - 0.1 == pytest.approx(plain.y, abs=1e-15)
     assert moved.centre - 0.1 == pytest.approx(plain.centre, abs=1e-15)
-    mirrored = {**gaps, "gap": gaps["gap"][:, ::-1], "start": -(gaps["start"] + 300.0 * gaps["step"])}
+    mirrored: dict[str, Any] = {**gaps, "gap": gaps["gap"][:, ::-1], "start": -(gaps["start"] + 300.0 * gaps["step"])}
     other = penetrated(**mirrored, penetration=[3e-5])
     assert -other.y[:, ::-1] == pytest.approx(plain.y, abs=1e-12)
     assert other.pressure[:, ::-1] == pytest.approx(plain.pressure, rel=1e-9)
@@ -340,7 +346,9 @@ def test_the_deepest_point_always_touches(compiled: bool) -> None:
     # Steep on one side and flat on the other, so that the middle of the ellipse is far from the deepest point.
     gaps = one_patch(lambda t: np.where(t > 0.0, 400.0, 0.4) * t**2, 2e-2, 2001)
     penetration = np.geomspace(5e-6, 9e-5, 30)
-    many = {name: np.repeat(value, penetration.size, axis=0) for name, value in gaps.items() if name != "modulus"}
+    many: dict[str, Any] = {
+        name: np.repeat(value, penetration.size, axis=0) for name, value in gaps.items() if name != "modulus"
+    }
     found = penetrated(**many, modulus=MODULUS, penetration=penetration)
     assert (found.y[:, 0] < -1e-4).all()
     assert (found.y[:, -1] > 1e-5).all()
@@ -349,7 +357,7 @@ def test_the_deepest_point_always_touches(compiled: bool) -> None:
 
 
 def test_bad_values_raise_errors_that_say_where() -> None:
-    gaps = {
+    gaps: dict[str, Any] = {
         name: np.repeat(value, 3, axis=0)
         for name, value in one_patch(lambda t: 2.0 * t**2, 5e-3, 41).items()
         if name != "modulus"
@@ -365,3 +373,112 @@ def test_bad_values_raise_errors_that_say_where() -> None:
     for bad in (0.0, np.nan, np.inf):
         with pytest.raises(wl.InputError, match=r"normal_force: .* at patch 0; it must be positive"):
             loaded(**gaps, modulus=MODULUS, normal_force=[bad, 1.0, 1.0])
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1.0, 8.0])
+def test_the_half_spaces_of_the_reference_meet_hertz(ratio: float) -> None:
+    exact = hertz(np.array([A]), np.array([A * ratio]), MODULUS, np.array([8e4]))
+    errors = []
+    for elements in (24, 48, 96):
+        x, t = (np.linspace(-1.3, 1.3, elements) * axis[0] for axis in (exact.a, exact.b))
+        gap = A * x[:, None] ** 2 + A * ratio * t**2
+        found = pressed(gap, x[1] - x[0], t[1] - t[0], MODULUS, 8e4)
+        assert found.pressure.sum() * (x[1] - x[0]) * (t[1] - t[0]) == pytest.approx(8e4, rel=1e-12)
+        assert found.pressure.max() == pytest.approx(exact.max_pressure[0], rel=0.3 / elements)
+        assert found.penetration == pytest.approx(exact.penetration[0], rel=0.3 / elements)
+        errors.append(abs(found.area / (np.pi * exact.a[0] * exact.b[0]) - 1.0))
+    assert errors[-1] < 0.01  # steps of the rim
+
+
+CONTACT: dict[str, tuple[tuple[float, ...], float, float, float, float]] = {
+    "centred": ((0.0, 0.1999, 0.0, 0.0, -0.0298, 751.6369), 9996.0, 381.9, 1033, 17.79),
+    "0.5 mm": ((0.5, 0.1945, -2.304e-5, 1.2e-3, -0.0562, 744.6479), 9889.0, 569.8, 939, 20.17),
+    "5 mm": ((5.0, 0.0043, -3.554e-4, 1.2e-2, -0.2823, 727.5827), 9624.0, 1625.0, 225, 29.93),
+    "6 mm": ((6.0, -0.1960, -6.272e-4, 1.44e-2, -0.4176, 725.1370), 9709.7, 1123.1, 319, 27.34),
+}
+"""Positions as in `normal_patches.MANCHESTER`, and CONTACT's results with B = 5: N, p0 [MPa], elements of 0.04 mm² and
+δ [µm]. The first three are printed in its examples/mbench_a22_kpec.ref_out."""
+
+
+def samples_of(position: tuple[float, ...], wide: float = 12.0) -> dict[str, Any]:
+    """Return the gap of a wheel on a rail."""
+    y, z, roll, yaw, angle, at = position
+    gap = wheel_on_rail.gap(y, z, roll, yaw, angle=angle, at=at, half_width=wide, half_length=3.0)
+    start, step = [MM * gap.t[0]], [MM * (gap.t[1] - gap.t[0])]
+    return {"start": start, "step": step, "gap": MM * gap.across[None], "curvature_x": [1e3 * gap.curvature]}
+
+
+@pytest.mark.parametrize("name", CONTACT)
+def test_the_method_is_that_of_contact(name: str) -> None:
+    position, force, pressure, elements, approach = CONTACT[name]
+    gaps = samples_of(position)
+    if name == "centred":  # several penetrations carry this force, and CONTACT finds the largest
+        found = penetrated(**gaps, modulus=MODULUS, penetration=[1e-6 * approach])
+    else:
+        found = loaded(**gaps, modulus=MODULUS, normal_force=[force])
+    # CONTACT's grid of 0.2 mm; at 0.5 mm two humps touch, and the force rises with the sixth power of the penetration.
+    within = 0.025 if name == "0.5 mm" else 0.01
+    assert found.normal_force[0] == pytest.approx(force, rel=within)
+    assert found.max_pressure[0] == pytest.approx(1e6 * pressure, rel=within)
+    assert found.penetration[0] == pytest.approx(1e-6 * approach, rel=within)
+    assert found.area[0] == pytest.approx(0.04e-6 * elements, rel=0.02)
+
+
+FULL = {
+    "S1002 on 60E1, tread, 3 mm": (10030.0, 498.8, 0.01, 0.01),
+    "S1002 on 60E1, centred": (9997.0, 338.3, 0.01, 0.12),
+    "S1002 on 60E1, 0.5 mm": (9870.0, 632.5, 0.02, 0.12),
+    "S1002 on 60E1, 1 mm": (9827.0, 741.3, 0.01, 0.05),
+    "S1002 on 60E1, 2 mm": (9799.0, 744.8, 0.01, 0.01),
+    "S1002 on 60E1, 5 mm": (9619.0, 1556.0, 0.02, 0.05),
+    "S1002 on 60E1, 6 mm": (9709.0, 1149.0, 0.01, 0.02),
+    "S1002 on 60E1, flange root, 8.5 mm": (12310.0, 2638.0, 0.02, 0.025),
+}
+"""CONTACT's normal force and maximum pressure [MPa] with its full theory, from examples/mbench_a22_*.ref_out, and how
+close half-spaces and virtual penetration come. Its grid is 0.2 mm, four elements across the patch at the flange."""
+
+
+@pytest.mark.parametrize("name", FULL)
+def test_pressures_are_near_those_of_contacts_full_theory(name: str) -> None:
+    force, pressure, reference, within = FULL[name]
+    patch = normal_patches.wheel(normal_patches.MANCHESTER[name], force)
+    assert patch.full.pressure.max() == pytest.approx(1e6 * pressure, rel=reference)
+    assert patch.strips.max_pressure[0] == pytest.approx(1e6 * pressure, rel=within)
+
+
+SLOW = {f"S1002 on 60E1, {where}" for where in ("tread, 3 mm", "0.5 mm", "1 mm")}
+
+
+@pytest.mark.parametrize(
+    ("name", "force", "solve"),
+    [
+        pytest.param(*case, id=f"{case[0]} {case[1]:g}")
+        for case in normal_patches.cases()
+        if case[1] > 1e4 and case[0] not in SLOW
+    ],
+)
+def test_the_table_of_the_page_is_what_is_found(name: str, force: float, solve: Any) -> None:
+    row = normal_patches.row(name, force, solve())
+    for found, written in zip(row[2:], ROWS[name, row[1]][2:], strict=True):
+        # Rounded values may differ by one digit on other machines.
+        assert float(found.rstrip(" %")) == pytest.approx(float(written.rstrip(" %")), rel=2e-3, abs=1.0)
+
+
+def test_the_page_says_what_the_table_shows() -> None:
+    text = " ".join((DOCS / "theory-wheelset.md").read_text(encoding="utf-8").split())
+
+    def worst(column: int, chosen: set[str]) -> int:
+        return max(abs(int(row[column].rstrip(" %"))) for (name, _), row in ROWS.items() if name in chosen)
+
+    names = {name for name, _ in ROWS}
+    humps = {f"S1002 on 60E1, {where}" for where in ("centred", "0.5 mm", "1 mm", "2 mm", "5 mm")}
+    sharp, steady = {"cone on R 80, at R 13"}, names - humps - {"cone on R 80, at R 13"}
+    assert len(ROWS) == len(list(normal_patches.cases())) == 24
+    assert (worst(3, steady), worst(9, steady), worst(4, steady)) == (11, 1, 20)
+    assert "within 11 % of the maximum pressure" in text
+    assert "its penetration is within 1 %" in text
+    assert "Hertz is off by up to 20 % there" in text
+    assert (worst(3, sharp), worst(4, sharp)) == (19, 41)
+    assert (worst(3, humps), worst(6, humps), worst(4, humps), worst(7, humps)) == (27, 42, 45, 59)
+    assert "its maximum pressure is off by up to 27 % and its area by up to 42 %" in text
+    assert "is off by up to 45 % and 59 %" in text
