@@ -15,7 +15,7 @@ DEFERRED = {
     ("wearlaw.cli.model_commands", "wearlaw.testing"): "needs hypothesis, which is optional",
     ("wearlaw.figures.plot", "wearlaw.figures.drawing"): "matplotlib takes longer to load than all else; few plot",
     ("wearlaw.numerics.crossings", "scipy.optimize"): "takes as long to load as the rest of wearlaw",
-    ("wearlaw.pipeline.prediction", "xarray"): "takes as long to load as the rest of wearlaw; for profiles alone",
+    ("wearlaw.pipeline.profiles", "xarray"): "takes as long to load as the rest of wearlaw; for profiles alone",
     ("wearlaw.sweeping.evaluation", "zarr"): "is optional",
     ("wearlaw.testing.kit", "pytest"): "is not needed to run the checks of the kit",
     ("wearlaw.wear_tests.tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",

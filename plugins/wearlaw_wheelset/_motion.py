@@ -1,16 +1,17 @@
 """How wheels slide on their rails: creepages and spin at points of contact.
 
 The velocity of the wheel at a place r from the middle of the axle is (V, v_y, 0) + ω × r. The wheelset turns about its
-axle e at Ω and about the vertical at ω_z, that of its yaw and that of a curve, V over its radius. So
+axle e at Ω and about the vertical at ω_z, that of its yaw and that of a curve, V over its radius. And it rolls about f
+as it moves sideways, so that both wheels stay on their rails. So
 
-    ω = -Ω e + ω_z z,  e = (-cos ρ sin ψ, cos ρ cos ψ, sin ρ).
+    ω = -Ω e + ω_z z + ρ' f,  e = (-cos ρ sin ψ, cos ρ cos ψ, sin ρ),  f = (cos ψ, sin ψ, 0).
 
 The bodies stay in contact, so the vertical velocity follows from the lateral one, v_z = v_y tan δ. With the tangent
 (0, cos δ, sin δ) and the normal n = (0, -sin δ, cos δ) of the rail,
 
     ξ = v_x/V,  η = v_y/(V cos δ),  φ = ω·n/V.
 
-All three are wheel minus rail. At small angles ξ = 1 - Ωr/V, η = (v_y/V - ψ)/cos δ and φ = sin δ/r.
+All three are wheel minus rail. At small angles ξ = 1 - Ωr/V, η = ((v_y - ρ'r)/V - ψ)/cos δ and φ = sin δ/r.
 """
 
 from __future__ import annotations
@@ -55,6 +56,24 @@ def placed(section: Section, position: Position, arc: Array) -> Place:
     return Place(at.x, at.y - position.displacement, at.z, angle, radius, rail_arc)
 
 
+def roll_rate(place: Place, lateral_velocity: Array, yaw_velocity: Array) -> Array:
+    """Return the roll velocity at which both wheels stay on their rails [rad/s], positive if it lowers the right one.
+
+    A side whose wheel moves outwards by dy and rolls by dρ opens its gap by tan δ dy - (y + z tan δ) dρ.
+
+    Parameters
+    ----------
+    place : Place
+        Points of contact of both sides, of shape (positions, 2).
+    lateral_velocity, yaw_velocity : ndarray, (positions,)
+        Velocities of the lateral displacement [m/s] and of the yaw [rad/s].
+    """
+    fall = np.tan(place.angle)
+    opening = fall * (lateral_velocity[:, None] + yaw_velocity[:, None] * place.x)
+    rate: Array = opening.sum(axis=-1) / (place.y + fall * place.z).sum(axis=-1)
+    return rate
+
+
 class Creepages(NamedTuple):
     """ξ [-], η [-] and φ [1/m] as linear functions of the speed of rotation: `still` + Ω `turning`."""
 
@@ -67,7 +86,13 @@ class Creepages(NamedTuple):
 
 
 def creepages(
-    position: Position, place: Place, speed: Array, lateral_velocity: Array, turn_rate: Array, side: Array
+    position: Position,
+    place: Place,
+    speed: Array,
+    lateral_velocity: Array,
+    turn_rate: Array,
+    roll_rate: Array,
+    side: Array,
 ) -> Creepages:
     """Return the creepages in the axes of the track.
 
@@ -77,18 +102,19 @@ def creepages(
     place : Place
     speed : ndarray
         V [m/s].
-    lateral_velocity, turn_rate : ndarray
-        v_y [m/s] and ω_z [rad/s], outward, so that they have opposite signs on the left.
+    lateral_velocity, turn_rate, roll_rate : ndarray
+        v_y [m/s], ω_z and ρ' [rad/s], outward, so that they have opposite signs on the left.
     side : ndarray
         1 on the right and -1 on the left.
     """
     _, roll, yaw = position
     axle = -np.cos(roll) * np.sin(yaw), np.cos(roll) * np.cos(yaw), np.sin(roll)
+    rolling = roll_rate * np.cos(yaw), roll_rate * np.sin(yaw)
     upright = speed * np.cos(place.angle)
     still = (
-        1.0 - turn_rate * place.y / speed,
-        side * (lateral_velocity + turn_rate * place.x) / upright,
-        side * turn_rate * np.cos(place.angle) / speed,
+        1.0 + (rolling[1] * place.z - turn_rate * place.y) / speed,
+        side * (lateral_velocity + turn_rate * place.x - rolling[0] * place.z) / upright,
+        side * (turn_rate * np.cos(place.angle) - rolling[1] * np.sin(place.angle)) / speed,
     )
     turning = (
         -(axle[1] * place.z - axle[2] * place.y) / speed,

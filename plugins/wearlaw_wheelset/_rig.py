@@ -17,6 +17,7 @@ from wearlaw import Array
 from wearlaw_wheelset._conicity import equivalent_conicity
 from wearlaw_wheelset._geometry import Geometry, Profiles, geometry, patches, profiles
 from wearlaw_wheelset._loads import Balance, Elastic, Task
+from wearlaw_wheelset._motion import placed, roll_rate
 from wearlaw_wheelset._profile import Profile
 from wearlaw_wheelset._search import Section, Touching, both_sides, searched, section
 from wearlaw_wheelset._search_loops import PATCHES
@@ -303,7 +304,8 @@ class Wheelset(wl.Rig):
         angular_speed : Quantity or str, optional
             Speed of rotation instead of a torque, Ω [rad/s].
         lateral_velocity, yaw_velocity : Quantity or str
-            Velocities of the lateral displacement [m/s] and of the yaw [rad/s].
+            Velocities of the lateral displacement [m/s] and of the yaw [rad/s]. Where no roll is given, the wheelset
+            rolls with them, so that both wheels stay on their rails.
         curve_radius : Quantity or str
             Radius of the curve, positive to the right [m]; infinite on a straight track.
         rolled_distance : Quantity or str, optional
@@ -333,11 +335,9 @@ class Wheelset(wl.Rig):
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
         assert isinstance(problem, _Posed)
-        problem.balance.solve(forces)
         distance = problem.rolled_distance
-        return self._whole(
-            problem.balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1)
-        )
+        balance = problem.balance.solved(forces)
+        return self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
 
     def _balance(self, given: Mapping[str, Array]) -> Balance:
         """Return the loads at positions, SI arrays with one axis, without creep forces."""
@@ -352,13 +352,17 @@ class Wheelset(wl.Rig):
         rolls, found = rolls[which], Touching(*(array[which] for array in found))
         speed = np.full(displacement.shape, scalar(self.rolling_speed))
         turn_rate = given["yaw_velocity"] + speed / given["curve_radius"]
+        position = both_sides(displacement, rolls, yaw)
+        rolling = np.zeros(displacement.shape)
+        if roll is None:
+            place = placed(self._section, position, found.arc[..., 0])
+            rolling = roll_rate(place, given["lateral_velocity"], given["yaw_velocity"])
         task = Task(
-            speed, given["lateral_velocity"], turn_rate, given["vertical_load"],
+            speed, given["lateral_velocity"], turn_rate, rolling, given["vertical_load"],
             np.stack([given["friction_coefficient"], given["flange_friction_coefficient"]], axis=-1),
             scalar(self.flange_angle), given.get("axle_torque", np.zeros(displacement.shape)),
             given.get("angular_speed"),
         )  # fmt: skip
-        position = both_sides(displacement, rolls, yaw)
         hertz = self.pressure == "hertz"
         balance = Balance.begun(self._section, self._elastic, task, position, found, hertz, self.strips)
         balance.check_torque()
@@ -367,7 +371,7 @@ class Wheelset(wl.Rig):
     def _whole(self, balance: Balance, shape: tuple[int, ...], distance: Array | None) -> wl.Problem:
         """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
         found = balance.found
-        flat, patch = balance.posed(found, balance.penetration, balance.rotation, balance.scale)
+        flat, patch = balance.posed()
         size = balance.task.load.size
         exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
         place = found.point, found.side, found.number

@@ -20,9 +20,9 @@ EXISTS = np.array([[[1, 0], [1, 0]], [[1, 0], [1, 0]], [[1, 0], [1, 1]]], dtype=
 SHARE = 0.25
 
 
-def lifted(unit: str, value: wl.QuantityLike) -> Array:
+def lifted(unit: str, value: wl.QuantityLike, name: str) -> Array:
     """Return a condition in SI with axes of length one for sides and patches."""
-    return wl.Unit(unit, positive=False).si(value, "condition")[..., None, None]
+    return wl.Unit(unit, positive=False).si(value, name)[..., None, None]
 
 
 class Axle(wl.Rig):
@@ -31,7 +31,18 @@ class Axle(wl.Rig):
     name: ClassVar[str] = "axle"
     source: ClassVar[str] = "a test"
     creepage: ClassVar[str] = "longitudinal_creepage"
+    example: ClassVar[Mapping[str, Any]] = {**CREEP, "load": "80 kN", "displacement": "7 mm"}
     dims: ClassVar[Mapping[str, tuple[str | int, ...]]] = PATCHES
+
+    @classmethod
+    def conditions(cls) -> tuple[str, ...]:
+        """Return the names of all conditions."""
+        return tuple(cls.example)
+
+    @classmethod
+    def needed(cls) -> tuple[str, ...]:
+        """Return the names of all conditions."""
+        return cls.conditions()
 
     @property
     def bodies(self) -> Mapping[str, wl.Body]:
@@ -48,17 +59,17 @@ class Axle(wl.Rig):
         friction_coefficient: Any,
     ) -> wl.Problem:
         """Return the problem of four patches, of which there are two or three."""
-        place = lifted("mm", displacement)
+        place = lifted("mm", displacement, "displacement")
         creepages: Any = {
-            "longitudinal_creepage": Q(lifted("", longitudinal_creepage), ""),
-            "spin": Q(lifted("1/m", spin), "1/m"),
+            "longitudinal_creepage": Q(lifted("", longitudinal_creepage, "longitudinal_creepage"), ""),
+            "spin": Q(lifted("1/m", spin, "spin"), "1/m"),
             "friction_coefficient": np.asarray(friction_coefficient)[..., None, None],
         }
         flange, right = np.array([0.0, 1.0]), np.array([[-1.0], [1.0]])
         exists = (flange == 0.0) | ((place > FLANGE) & (right > 0.0))
         two = (right > 0.0) & (place > FLANGE)
         share = np.where(two, np.where(flange > 0.0, SHARE, 1.0 - SHARE), 1.0)
-        found = WHEEL.problem(normal_force=Q(share * lifted("N", load), "N"), **creepages)
+        found = WHEEL.problem(normal_force=Q(share * lifted("N", load, "load"), "N"), **creepages)
         exists = np.broadcast_to(exists, found.batch_shape)
         radius = np.broadcast_to(RADIUS + CONICITY * right * place, exists.shape)
         bodies = {"wheel": wl.Body(WHEEL.material, radius), "rail": found.bodies["rail"]}
@@ -94,6 +105,7 @@ class Worn(Cut):
 
     name: ClassVar[str] = "worn"
     hertzian: bool = True
+    """Whether the patches are ellipses."""
 
     @property
     def patch_geometry(self) -> wl.Geometry:

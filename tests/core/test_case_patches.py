@@ -99,6 +99,39 @@ def test_one_operating_point_has_the_axes_of_the_patches_alone() -> None:
     np.testing.assert_allclose(point.wear_rate, moving, rtol=1e-12)  # in another block
 
 
+def test_results_have_the_creepages_and_the_angle_of_each_patch(install_model: InstallModel) -> None:
+    class Inclined(Axle):
+        """The axle with flanges at an angle of 60 degrees, where they spin."""
+
+        name: ClassVar[str] = "inclined"
+
+        def problem(self, **conditions: Any) -> wl.Problem:
+            """Return the problem with contact angles."""
+            found = super().problem(**conditions)
+            angle = np.broadcast_to(np.radians([[-1.0, -60.0], [1.0, 60.0]]), found.batch_shape)
+            return found.replaced(contact_angle=angle, spin=np.sin(angle) / 0.46)
+
+        @classmethod
+        def conditions(cls) -> tuple[str, ...]:
+            return Axle.conditions()
+
+    install_model(Inclined)
+    shown = {"x": "contact_angle", "y": "spin", "sweep": "moving"}
+    study = small(rig={"type": "inclined"}, figures={"one": shown})
+    sweep = study.sweeps["moving"]
+    there = np.where(EXISTS, 1.0, np.nan)
+    np.testing.assert_allclose(sweep.contact_angle, there * [[-1.0, -60.0], [1.0, 60.0]], rtol=8 * EPS)
+    np.testing.assert_allclose(sweep.spin, np.sin(np.radians(sweep.contact_angle)) / 0.46, rtol=8 * EPS)
+    expected = direct("fastsim", "kth", displacement=Q(MOVED, "mm")).creepage.to("%").magnitude
+    np.testing.assert_allclose(sweep.creepage, expected, rtol=1e-12)
+    assert (sweep.lateral_creepage.values[EXISTS] == 0.0).all()
+    assert {"creepage [%]", "lateral_creepage [%]", "spin [1/m]", "contact_angle [deg]"} < {*results_table(study)}
+    assert one_panel(study.figures[0]).x.label == "contact angle [deg]"
+    level = small().sweeps["moving"]
+    assert "contact_angle" not in level
+    assert "creepage" in level
+
+
 def test_a_condition_of_all_patches_keeps_its_name_from_their_variable() -> None:
     rails = small(sweeps={"slippery": {**MOVING, "friction_coefficient": [0.1, 0.3]}, "dry": FLANGING}).sweeps
     assert rails["slippery"].friction_coefficient.dims == ("friction_coefficient",)
@@ -184,7 +217,7 @@ def test_the_mass_lost_can_be_added_over_patches() -> None:
     np.testing.assert_allclose(
         frame.loc["kth on fastsim"].to_numpy(dtype=float), np.nansum(expected, axis=(1, 2)), rtol=8 * EPS
     )
-    assert [value.marks for value in frame.loc["usfd on fastsim"].tolist()] == ["†", "", "", "", "†"]
+    assert [value.marks for value in frame.loc[["usfd on fastsim"]].to_numpy().flat] == ["†", "", "", "", "†"]
     assert len(one_panel(study.figures[0]).curves) == 4
     assert "mass_per_distance [ug/m]" in results_table(study)
     with pytest.raises(wl.ConfigurationError, match=r"figures\.one\.y: 'mass_per_distance' cannot be shown"):
@@ -300,6 +333,7 @@ WRONG: list[tuple[str, Any, str]] = [
     ("patches", {"patch": [1, 3]}, "patches.patch: there is no '3'. There are: 1, 2"),
     ("patches", {"patch": []}, "patches.patch: "),
     ("x", "side", "x: 'side' cannot be shown."),
+    ("x", "load", "x: load is the same at all points of the sweep; give displacement, or what follows from it"),
 ]
 
 
@@ -537,6 +571,14 @@ def test_the_rig_can_be_shown_and_checked() -> None:
     assert "ok pressure_carries_the_load" in checked.stdout
     cases.write(Path("c.toml"), changed("uncertainty.one", FLANGING, ON_AXLE))
     assert_refused(wearlaw("uncertainty", "c.toml"), "uncertainty.one: needs one patch at each operating point")
+
+
+def test_workers_give_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(points, "BLOCK", 8)
+    case = Case(**{**ON_AXLE, "contact_models": ["fastsim"], "wear_laws": ["kth"], "profiles": {}})
+    alone, together = (run(case, workers=workers).sweeps["moving"] for workers in (1, 2))
+    assert len(case.sweeps["moving"].points(case.units).blocks()) == 1, "of points alone"
+    xarray.testing.assert_identical(alone, together)
 
 
 # --- Sections --------------------------------------------------------------------------------------------------------

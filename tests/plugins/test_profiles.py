@@ -6,6 +6,7 @@ import copy
 import json
 import pickle
 import re
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -367,6 +368,9 @@ def test_no_wear_changes_no_more_than_a_spline_does() -> None:
     far = np.abs(middle.s) > 11.0 * MM
     assert np.abs(distance(RAIL.curve, middle.y[far], middle.z[far])).max() < 5e-9
     assert middle.at(0.0)[1] == pytest.approx(0.1 * MM, rel=1e-3)
+    step = RAIL.worn(Q([-10.0, 10.0], "mm"), "0.1 mm").curve  # no wear beyond the ends of s
+    far = np.abs(step.y) > 12.0 * MM
+    assert np.abs(distance(RAIL.curve, step.y[far], step.z[far])).max() < 5e-9
 
 
 @pytest.mark.parametrize(
@@ -598,10 +602,20 @@ def test_a_profile_comes_back_from_json_pickle_and_copies(profile: ws.Profile) -
 
 def test_different_profiles_differ() -> None:
     assert len({*PROFILES, *PROFILES}) == len(PROFILES)
+    for one, other in combinations([*PROFILES, PROFILES[4].turned("1 deg"), sampled(WHEEL, 0.8)], 2):
+        assert one != other
     assert WHEEL != "s1002"
-    assert (
-        ws.Profile.from_points(y=Q(Y * MM, "m"), z=Q(Z * MM, "m"), kind="wheel") == pytest.approx(PROFILES[4]) or True
-    )
+    assert ws.Profile.from_points(y=Q(Y, "mm"), z=Q(Z, "mm"), kind="wheel") == PROFILES[4]
+
+
+def test_points_do_not_change_with_the_arrays_they_were_made_from() -> None:
+    z = Z.copy()
+    profile = ws.Profile.from_points(y=Q(Y, "mm"), z=Q(z, "mm"), kind="wheel")
+    z[5] += 1.0
+    assert profile == PROFILES[4]
+    assert profile.z is not None
+    with pytest.raises(ValueError, match="read-only"):
+        profile.z.magnitude[5] = 0.0
 
 
 def test_a_profile_is_short_where_it_can_be() -> None:

@@ -15,7 +15,7 @@ import xarray
 from wearlaw.errors import OutputError
 from wearlaw.figures.curves import FigureData, FigureFormat
 from wearlaw.figures.drawing import draw
-from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT
+from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw.report.latex import latex_table
 from wearlaw.report.page import report
 from wearlaw.report.tables import tables
@@ -167,7 +167,8 @@ def table(study: Study) -> pd.DataFrame:
     """
     rows = pd.concat([_rows(name, sweep) for name, sweep in study.sweeps.items()], ignore_index=True)
     units = study.case.result_units
-    of_point = [name for name in (*OF_POINT, *study.case.units) if name in rows and name not in OF_CONTACT]
+    known = (*OF_POINT, *study.case.units, *OF_PATCH)
+    of_point = [name for name in known if name in rows and name not in OF_CONTACT]
     of_pairs = [str(v) for sweep in study.sweeps.values() for v in sweep.data_vars if "pair" in sweep[v].dims]
     of_contact = [name for name in OF_CONTACT if name in rows]
     laws = ("wear_law", "law") if study.case.laws else ("wear_law",)

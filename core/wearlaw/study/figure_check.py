@@ -16,7 +16,7 @@ from wearlaw.models.stage import Stage
 from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_POINT, offered
+from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
 from wearlaw.study.composed import composed
 from wearlaw.study.figure_spec import (
     ACROSS,
@@ -86,6 +86,7 @@ class Contents:
     units: Mapping[str, str]
     measured: Collection[str]
     _known: dict[tuple[str, str], Variables] = field(default_factory=dict)
+    _posed: dict[int, Any] = field(default_factory=dict)
 
     def problems(self, figures: Mapping[str, FigureSpec]) -> Iterator[Fault]:
         """Yield the faults of figures: names in them that the case does not have."""
@@ -109,7 +110,7 @@ class Contents:
             for name, message in self._of_window(spec.x, window, known, across=bool(spec.profile)):
                 yield f"{path}{name}", message
         if spec.sweep and spec.x in known.x:
-            yield from self._constant(spec.x, grid)
+            yield from self._constant(spec.x, grid, bool(known.patches))
         yield from self._of_models(spec, grids[asked])
         shown = {spec.x, *(variable for window in spec.windows() for variable in window.shown)}
         missing = sorted(shown.difference(self.measured))
@@ -120,7 +121,7 @@ class Contents:
     def _variables(self, kind: str, name: str, grid: Grid) -> Variables:
         """Return the variables of a sweep or profile, found by predicting its first operating point."""
         if (kind, name) not in self._known:
-            problem = grid.problem(self.rig)
+            problem = self._problem(grid)
             predictions = list(self._predictions(problem))
             of_kind = self._of_sweep(grid, predictions) if kind == "sweep" else self._of_profile(predictions, problem)
             x, y, units = of_kind
@@ -128,6 +129,12 @@ class Contents:
                 x, y = (*x, BY_PATCH), (*y, *((MASS,) if WEAR in self.outcomes else ()))
             self._known[kind, name] = Variables(x, y, units, problem.dims)
         return self._known[kind, name]
+
+    def _problem(self, grid: Grid) -> Any:
+        """Return the problem of the first operating point of a grid, posed once, since a rig may take long."""
+        if id(grid) not in self._posed:
+            self._posed[id(grid)] = grid.problem(self.rig)
+        return self._posed[id(grid)]
 
     def _predictions(self, problem: Any) -> Iterator[Any]:
         """Yield a prediction for each contact model that solves the problem, with the first law that fits it.
@@ -148,10 +155,12 @@ class Contents:
             return None
 
     def _of_sweep(self, grid: Grid, predictions: list[Prediction]) -> _Known:
-        every = {name for one in predictions for name in offered(one, (*OF_CONTACT, *OF_POINT))}
+        every = {name for one in predictions for name in offered(one, (*OF_CONTACT, *OF_POINT, *OF_PATCH))}
         levels = {name: grid.level(name, self.units) for name in grid.given}
         conditions = [name for name, level in levels.items() if isinstance(level, float)]
-        of_contact, of_point = ([name for name in names if name in every] for names in (OF_CONTACT, OF_POINT))
+        of_contact, of_point = (
+            [name for name in names if name in every] for names in (OF_CONTACT, (*OF_POINT, *OF_PATCH))
+        )
         x = tuple(dict.fromkeys((*of_contact, *of_point, *conditions)))
         return x, (*self.outcomes, *of_contact, *of_point), {**UNITS, **self._of_laws(), **self.units}
 
@@ -221,13 +230,14 @@ class Contents:
             for message in wrong_range(first, units[first], window.y_range, window.y_scale):
                 yield "y_range", message
 
-    def _constant(self, x: str, grid: Grid) -> Iterator[tuple[str, str]]:
-        """Yield a fault if nothing changes along the x axis."""
+    def _constant(self, x: str, grid: Grid, several: bool) -> Iterator[tuple[str, str]]:
+        """Yield a fault if nothing changes along the x axis; `several` patches change with any condition."""
         axis = axis_along(grid, x, self.rig.creepage)
         if x == BY_PATCH:
             return
-        of_point = x in OF_POINT or x in grid.given
-        varies = not of_point or x == axis or axis not in UNITS or (x in OF_LOAD and axis in LOADS)
+        of_point = x in grid.given or (x in OF_POINT and not several)
+        unknown = axis not in UNITS and not several
+        varies = not of_point or x == axis or unknown or (x in OF_LOAD and axis in LOADS)
         if grid.axes() and not varies:
             yield "x", f"{x} is the same at all points of the sweep; give {axis}, or what follows from it"
 
@@ -279,7 +289,7 @@ class Contents:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
-                geometry = grid.problem(self.rig).geometry
+                geometry = self._problem(grid).geometry
                 composed(self.rig, contact_model, self.stages, self.laws[law], geometry)
         except CompositionError as error:
             return str(error)

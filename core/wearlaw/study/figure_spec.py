@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import ConfigurationError, Fault, UnitError
-from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_POINT
+from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw.settings.configuration import Configuration
 from wearlaw.study.grid import Grid
 from wearlaw.units.quantities import Unit, from_si
@@ -21,7 +21,7 @@ OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "cr
 ACROSS = ("depth", "sliding_distance")
 """Variables across the patch of an elliptic contact, for one of the bodies."""
 
-OF_CONTACTS = {*OF_CONTACT, *OF_POINT, *OF_PROFILE, "sliding_distance"} - {"wear_rate"}
+OF_CONTACTS = {*OF_CONTACT, *OF_POINT, *OF_PATCH, *OF_PROFILE, "sliding_distance"} - {"wear_rate"}
 """The variables that do not differ from law to law; all others are wear rate, depth, and outcomes of other laws."""
 
 OF_LOAD = (*LOADS, "half_width", "semi_axis_a", "semi_axis_b")
@@ -37,7 +37,7 @@ def _variables(value: Any) -> Any:
     return (value,) if isinstance(value, str) else value
 
 
-_VARIABLE = {"enum": list(dict.fromkeys(("wear_rate", MASS, *OF_CONTACT, *OF_POINT, *OF_PROFILE, *ACROSS)))}
+_VARIABLE = {"enum": list(dict.fromkeys(("wear_rate", MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *OF_PROFILE, *ACROSS)))}
 
 Variables = Annotated[
     tuple[str, ...],
@@ -96,7 +96,7 @@ class FigureSpec(Window):
     """The sweep to show; give this or `profile`."""
     profile: str | None = None
     """The profile to show."""
-    x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", BY_PATCH, *OF_CONTACT, *OF_POINT]})] = "x"
+    x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", BY_PATCH, *OF_CONTACT, *OF_POINT, *OF_PATCH]})] = "x"
     """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it. If the rig
     makes several patches, "patch" shows a point for each."""
     pairs: Annotated[tuple[str, ...], Field(min_length=1)] | None = None

@@ -31,7 +31,7 @@ from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import ERROR, Prediction
-from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_POINT, offered
+from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import known_name, parts
 from wearlaw.study.case import Case
@@ -204,7 +204,7 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
         },
         **{
             v: (("contact_model", *of_patches), np.stack([c.get(v, missing) for c in contacts.values()]))
-            for v in (*OF_CONTACT, *OF_POINT)
+            for v in (*OF_CONTACT, *OF_POINT, *OF_PATCH)
             if any(v in offered for offered in found_in.of_contact.values())
         },
         **{v: (of_patches, any_contact[v]) for v in found_in.of_point},
@@ -274,7 +274,7 @@ def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
             prediction = pair.pipeline.without_law().predict(problem)
         of_contact[pair.contact_model] = [v for v in offered(prediction, OF_CONTACT) if v not in given]
         # A rig may use the name of a variable for something else.
-        same = (v for v in offered(prediction, OF_POINT) if case.units.get(v, UNITS[v]) == UNITS[v])
+        same = (v for v in offered(prediction, (*OF_POINT, *OF_PATCH)) if case.units.get(v, UNITS[v]) == UNITS[v])
         new = [v for v in same if v not in given]
         if type(case.rig).balanced is Rig.balanced:
             of_point |= dict.fromkeys(new)
@@ -282,7 +282,7 @@ def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
             of_contact[pair.contact_model] += new
     known = {*axes, *of_point, *(v for variables in of_contact.values() for v in variables)}
     fixed = {name: level for name, level in conditions.items() if name not in known}
-    return _Variables(of_contact, [v for v in OF_POINT if v in of_point], fixed)
+    return _Variables(of_contact, [v for v in (*OF_POINT, *OF_PATCH) if v in of_point], fixed)
 
 
 def numbers(case: Case) -> int:
