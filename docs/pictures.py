@@ -19,6 +19,7 @@ from matplotlib.figure import Figure
 
 import wearlaw as wl
 from docs.conventions import conventions
+from docs.wheelset_benchmark import picture as wheelsets_beside_contact
 from wearlaw import Q
 from wearlaw.figures.curves import BLACK
 from wearlaw.figures.drawing import LINES, PALETTE, STYLE
@@ -43,6 +44,7 @@ def draw() -> None:
             save(drawing_of(figure), FOLDER / f"{figure.name}.png")
     save(cost_against_error(), FOLDER / "accuracy_cost_against_error.png")
     save(conventions(), FOLDER / "conventions.png")
+    save(wheelsets_beside_contact(), FOLDER / "wheelset_benchmark.png")
     save(fastsim_against_half_space(), FOLDER / "fastsim_against_half_space.png")
     for figure in (creep_forces(), falling_friction()):
         save(drawing_of(figure), FOLDER / f"{figure.name}.png")
