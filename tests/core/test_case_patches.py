@@ -594,12 +594,24 @@ def test_the_rig_can_be_shown_and_checked() -> None:
     assert_refused(wearlaw("uncertainty", "c.toml"), "uncertainty.one: needs one patch at each operating point")
 
 
-def test_workers_give_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(points, "BLOCK", 8)
+def test_blocks_hold_fewer_points_of_several_patches_and_workers_give_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(points, "BLOCK", 8)  # two points of four patches
+    from wearlaw.sweeping import evaluation, sweep
+
+    blocks = []
+
+    def counted(job: Any, block: Any, *arguments: Any) -> Any:
+        blocks.append(block)
+        return evaluation.evaluated(job, block, *arguments)
+
     case = Case(**{**ON_AXLE, "contact_models": ["fastsim"], "wear_laws": ["kth"], "profiles": {}})
-    alone, together = (run(case, workers=workers).sweeps["moving"] for workers in (1, 2))
-    assert len(case.sweeps["moving"].points(case.units).blocks()) == 1, "of points alone"
-    xarray.testing.assert_identical(alone, together)
+    with monkeypatch.context() as patch:
+        patch.setattr(sweep, "evaluated", counted)
+        alone = run(case).sweeps["moving"]
+    assert len(blocks) == 3 * (3 + 1)  # of five points and of one, with both ends of the band
+    xarray.testing.assert_identical(alone, run(case, workers=2).sweeps["moving"])
 
 
 # --- Sections --------------------------------------------------------------------------------------------------------
