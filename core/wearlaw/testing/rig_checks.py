@@ -87,7 +87,7 @@ def values_of(problem: Any) -> dict[str, Any]:
     if problem.strips is not None:
         found |= {name: getattr(problem.strips, name.removesuffix(" of strips")) for name in OF_STRIPS}
     values = {name: value for name, value in found.items() if hasattr(value, "dtype") or isinstance(value, int | float)}
-    exists = values.pop("exists", None)
+    exists: Any = values.pop("exists", None)
     if exists is None:
         return values
     there = {
