@@ -133,7 +133,10 @@ def test_results_have_the_creepages_and_the_angle_of_each_patch(install_model: I
 
 
 def test_a_condition_of_all_patches_keeps_its_name_from_their_variable() -> None:
-    rails = small(sweeps={"slippery": {**MOVING, "friction_coefficient": [0.1, 0.3]}, "dry": FLANGING}).sweeps
+    # With several patches any variable may change with any condition.
+    by_force = {"sweep": "slippery", "x": "normal_force", "y": "wear_rate"}
+    sweeps = {"slippery": {**FLANGING, "friction_coefficient": [0.1, 0.3]}, "dry": FLANGING}
+    rails = small(sweeps=sweeps, figures={"one": by_force}).sweeps
     assert rails["slippery"].friction_coefficient.dims == ("friction_coefficient",)
     assert rails["dry"].friction_coefficient.item() == 0.3
 
