@@ -66,8 +66,8 @@ def joined(place: float, force: float) -> Patch:
     """Return the patch of a cone that touches the uncanted 60E1 rail at a distance from its axis [m]."""
     centres, radii, ends = [(0.0, 0.3)], (0.3, 0.08, 0.013), (0.0105, 0.026)
     for radius, smaller, end in zip(radii, radii[1:], ends, strict=False):
-        (middle, depth), slope = centres[-1], (end - centres[-1][0]) / radius
-        centres.append((middle + (radius - smaller) * slope, depth - (radius - smaller) * np.sqrt(1.0 - slope**2)))
+        (middle, top), slope = centres[-1], (end - centres[-1][0]) / radius
+        centres.append((middle + (radius - smaller) * slope, top - (radius - smaller) * np.sqrt(1.0 - slope**2)))
 
     def arc(y: Array) -> tuple[Array, Array, Array]:
         number = np.searchsorted(ends, np.abs(y))

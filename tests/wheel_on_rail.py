@@ -105,7 +105,8 @@ def gap(
     origin = np.array([at, np.interp(at, y_rail, z_rail)])
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     t_rail, n_rail = turn @ (np.stack([y_rail, z_rail]) - origin[:, None])
-    t: Array = step * np.arange(-round(half_width / step), round(half_width / step) + 1)
+    wide, long = round(half_width / step), round(half_length / step)
+    t = np.linspace(-wide * step, wide * step, 2 * wide + 1)
     rail_height = np.interp(t, *_rising(t_rail, n_rail))
     s = np.arange(-60.0, 40.0, 0.01)
     radius, axle = RADIUS + wheel(s), BACK - FLANGE_BACK + s
@@ -122,7 +123,7 @@ def gap(
 
     coarse = np.arange(-40.0, 40.1, 0.5)
     middle = coarse[np.argmin([row(x).min() for x in coarse])]
-    x = middle + step * np.arange(-round(half_length / step), round(half_length / step) + 1)
+    x = middle + np.linspace(-long * step, long * step, 2 * long + 1)
     height = np.stack([row(v) for v in x])
     return Gap(x, t, height - height.min())
 
