@@ -1,5 +1,7 @@
 """Wheelsets on track as a wearlaw plugin: profiles of wheels and rails, where they touch, and their wear."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from pathlib import Path
 

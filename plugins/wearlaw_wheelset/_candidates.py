@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._motion import placed
-from wearlaw_wheelset._search import Position, Section, Touching, gaps
+from wearlaw_wheelset._search import BLOCK, Position, Section, Touching, gaps
+from wearlaw_wheelset._search_loops import compiled_samples, normal_gap
 
 SAMPLES = 81
 """Samples of the gap under a patch."""
@@ -86,18 +88,26 @@ def candidates(section: Section, position: Position, touching: Touching) -> Cand
 
 def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing: float) -> None:
     """Fill in, in place, the gaps around some of the places at a spacing [m]."""
-    offsets = spacing * (np.arange(SAMPLES) - SAMPLES // 2)
-    arc = found.arc[rows, None] + offsets
-    outside = (arc < section.wheel_y.start) | (arc > section.wheel_y.end)
-    at = gaps(section, Position(*(array[rows] for array in found.position)).widened(), arc)
-    beside = (at.y < section.rail_z.start) | (at.y > section.rail_z.end)
-    own = at.gap[:, SAMPLES // 2, None]
-    rail = np.arctan(at.rail_slope)
-    turned = np.abs(rail - rail[:, SAMPLES // 2, None]) > np.radians(60.0)
-    normal = (at.gap - own) * np.cos(rail) / np.cos(rail - rail[:, SAMPLES // 2, None])
-    found.start[rows] = offsets[0]
+    found.start[rows] = -spacing * (SAMPLES // 2)
     found.step[rows] = spacing
-    found.samples[rows] = np.where(outside | beside | turned, np.inf, normal)
+    if wl.accelerated(rows.size * SAMPLES):
+        samples = np.empty((rows.size, SAMPLES))
+        position = (np.ascontiguousarray(array[rows]) for array in found.position)
+        compiled_samples(
+            *position, found.arc[rows], spacing, *section.wheel_y, *section.wheel_radius, *section.rail_z, samples
+        )
+        found.samples[rows] = samples
+        return
+    offsets = spacing * (np.arange(SAMPLES) - SAMPLES // 2)
+    for start in range(0, rows.size, BLOCK):
+        some = rows[start : start + BLOCK]
+        arc = found.arc[some, None] + offsets
+        at = gaps(section, Position(*(array[some] for array in found.position)).widened(), arc)
+        middle = slice(SAMPLES // 2, SAMPLES // 2 + 1)
+        normal, inside = normal_gap(at.gap - at.gap[:, middle], at.rail_slope, at.rail_slope[:, middle])
+        inside &= (arc >= section.wheel_y.start) & (arc <= section.wheel_y.end)
+        inside &= (at.y >= section.rail_z.start) & (at.y <= section.rail_z.end)
+        found.samples[some] = np.where(inside, normal, np.inf)
 
 
 def separated(found: Candidates, saddle: Array, penetration: Array) -> Candidates:

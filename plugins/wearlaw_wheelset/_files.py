@@ -40,7 +40,6 @@ TEXTS = ("file", "file.mtime", "comment", "type", "units.len", "units.ang")
 """Keys of a Simpack file that say where the points are from."""
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
-QUOTED = re.compile(r"'[^']*'|\"[^\"]*\"")
 TAPING = "WheelDiameterTaperline"
 """Key of a MiniProf file for the distance of the taping line from the back of the flange."""
 
@@ -184,7 +183,7 @@ def _simpack(lines: Sequence[str], units: str) -> Points:
     table, told = _Table(), False
     kind: Kind | None = None
     for number, raw in enumerate(lines, 1):
-        text = _without_comment(raw)
+        text = re.split("[!%]", raw)[0].strip()  # texts in quotes, which may hold these marks, are not read
         if not text:
             continue
         section, _, edge = text.rpartition(".")
@@ -214,12 +213,6 @@ def _simpack(lines: Sequence[str], units: str) -> Points:
         raise FileError(f"it ends in the section '{place[-1]}'; is it whole?" if place else "it has no spline.begin")
     found, rows = table.columns()
     return _changed(found, rows, values, kind, units)
-
-
-def _without_comment(line: str) -> str:
-    """Return a line of a Simpack file without a comment, which begins with ! or % outside of quotes."""
-    masked = QUOTED.sub(lambda match: "'" * len(match[0]), line)
-    return line[: re.search(r"[!%]|$", masked).start()].strip()  # type: ignore[union-attr]  # $ always matches
 
 
 def _nest(place: list[str], section: str, edge: str, line: int) -> None:

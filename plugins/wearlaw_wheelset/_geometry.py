@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._motion import placed
+from wearlaw_wheelset._pictures import Profiles, geometry_figure
 from wearlaw_wheelset._search import Position, Section, Touching
 
 if TYPE_CHECKING:
@@ -100,45 +101,6 @@ def patches(section: Section, position: Position, touching: Touching) -> Patches
     return Patches(**{name: array + none for name, array in found.items()})
 
 
-class Profiles(NamedTuple):
-    """The right wheel and its rail in the middle of the track [m].
-
-    Attributes
-    ----------
-    wheel_y, wheel_z : ndarray
-        The wheel, with y in the track and z from the taping line.
-    wheel_offset : float
-        y of the profile's origin in the track.
-    wheel_arc : ndarray
-        Arc length of the wheel's profile.
-    rail_y, rail_z, rail_arc : ndarray
-        The rail in the track, and the arc length of its profile.
-    """
-
-    wheel_y: Array
-    wheel_z: Array
-    wheel_offset: float
-    wheel_arc: Array
-    rail_y: Array
-    rail_z: Array
-    rail_arc: Array
-
-    def at(self, body: str, arc: float) -> tuple[float, float]:
-        """Return y and z of a place on a profile by its arc length."""
-        s, y, z = self.rail if body == "rail" else self.wheel
-        return float(np.interp(arc, s, y)), float(np.interp(arc, s, z))
-
-    @property
-    def wheel(self) -> tuple[Array, Array, Array]:
-        """Arc length, y and z of the wheel."""
-        return self.wheel_arc, self.wheel_y, self.wheel_z
-
-    @property
-    def rail(self) -> tuple[Array, Array, Array]:
-        """Arc length, y and z of the rail."""
-        return self.rail_arc, self.rail_y, self.rail_z
-
-
 @dataclass(frozen=True)
 class Geometry:
     """Where rigid wheels touch their rails.
@@ -163,10 +125,7 @@ class Geometry:
         The lines join points of the right wheel and its rail that touch each other. The curves run over the lateral
         displacement, with a curve for each yaw.
         """
-        from wearlaw_wheelset._pictures import geometry_figure
-
-        found: Figure = geometry_figure(self.dataset, self._profiles)
-        return found
+        return geometry_figure(self.dataset, self._profiles)
 
 
 def geometry(

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
+
+from wearlaw import Array
 
 if TYPE_CHECKING:
     import xarray
-
-    from wearlaw_wheelset._geometry import Profiles
+    from matplotlib.figure import Figure
 
 APART = 15.0
 """Distance by which wheel and rail are drawn apart [mm]."""
@@ -35,8 +34,50 @@ WAYS = ("lateral_displacement", "yaw")
 """Axes of a geometry besides the side and the patch."""
 
 
+class Profiles(NamedTuple):
+    """The right wheel and its rail in the middle of the track [m].
+
+    Attributes
+    ----------
+    wheel_y, wheel_z : ndarray
+        The wheel, with y in the track and z from the taping line.
+    wheel_offset : float
+        y of the profile's origin in the track.
+    wheel_arc : ndarray
+        Arc length of the wheel's profile.
+    rail_y, rail_z, rail_arc : ndarray
+        The rail in the track, and the arc length of its profile.
+    """
+
+    wheel_y: Array
+    wheel_z: Array
+    wheel_offset: float
+    wheel_arc: Array
+    rail_y: Array
+    rail_z: Array
+    rail_arc: Array
+
+    def at(self, body: str, arc: float) -> tuple[float, float]:
+        """Return y and z of a place on a profile by its arc length."""
+        s, y, z = self.rail if body == "rail" else self.wheel
+        return float(np.interp(arc, s, y)), float(np.interp(arc, s, z))
+
+    @property
+    def wheel(self) -> tuple[Array, Array, Array]:
+        """Arc length, y and z of the wheel."""
+        return self.wheel_arc, self.wheel_y, self.wheel_z
+
+    @property
+    def rail(self) -> tuple[Array, Array, Array]:
+        """Arc length, y and z of the rail."""
+        return self.rail_arc, self.rail_y, self.rail_z
+
+
 def geometry_figure(geometry: xarray.Dataset, profiles: Profiles) -> Figure:
     """Return a figure of contact points on both profiles of the right side, Δr and contact angles."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.4, 6.2), layout="constrained")
         axes = figure.subplot_mosaic([["both", "both"], ["radius", "angle"]], height_ratios=(3.0, 4.0))
@@ -74,6 +115,8 @@ def _curves(axes: Any, values: xarray.DataArray) -> None:
 
 def _contact_points(figure: Figure, axes: Any, geometry: xarray.Dataset, profiles: Profiles) -> None:
     """Draw the right wheel above its rail, apart, with lines between points that touch."""
+    import matplotlib as mpl
+
     wheel_z = 1e3 * profiles.wheel_z - APART
     axes.plot(1e3 * profiles.wheel_y, wheel_z, color="black")
     axes.plot(1e3 * profiles.rail_y, 1e3 * profiles.rail_z, color="black")

@@ -442,9 +442,10 @@ def _named(text: str) -> Any:
     """Return the fields of a formula, or the profile of a file."""
     if text in FORMULAS:
         return {"formula": text}
-    if not os.path.lexists(text):
+    if not os.path.lexists(wl.beside(text)):
         raise wl.InputError(
-            f"'{text}' is neither a profile by formula nor a file in '{Path.cwd()}'{did_you_mean(text, FORMULAS)} The"
+            f"'{text}' is neither a profile by formula nor a file in '{wl.beside('.').absolute()}'"
+            f"{did_you_mean(text, FORMULAS)} The"
             f" formulas are: {', '.join(FORMULAS)}"
         )
     return _of_file({"file": text})
@@ -456,7 +457,7 @@ def _of_file(table: Mapping[str, Any]) -> dict[str, Any]:
         if name not in FILE_FIELDS:
             near = did_you_mean(name, FILE_FIELDS)
             raise wl.InputError(f"unknown field '{name}'{near} With a file, they are: {', '.join(FILE_FIELDS)}")
-    found = read_profile(table["file"], **{name: value for name, value in table.items() if name != "file"})
+    found = read_profile(wl.beside(table["file"]), **{name: value for name, value in table.items() if name != "file"})
     return {name: getattr(found, name) for name in found.model_fields_set}
 
 

@@ -15,9 +15,10 @@ from pydantic import BeforeValidator, Field, model_validator
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._conicity import equivalent_conicity
-from wearlaw_wheelset._geometry import Geometry, Profiles, geometry, patches, profiles
+from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
 from wearlaw_wheelset._loads import Balance, Elastic, Task
 from wearlaw_wheelset._motion import placed, roll_rate
+from wearlaw_wheelset._pictures import Profiles
 from wearlaw_wheelset._profile import Profile
 from wearlaw_wheelset._search import Section, Touching, both_sides, searched, section
 from wearlaw_wheelset._search_loops import PATCHES

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import pandas as pd
 
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._pictures import APART
 from wearlaw_wheelset._rig import Wheelset
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 STEP = 0.25
 """Distance between positions of wear along a profile [mm]."""
@@ -178,8 +174,6 @@ def _positions(rig: Wheelset, body: str) -> Array:
 
 def _table(found: wl.Prediction) -> pd.DataFrame:
     """Return the existing patches in rows."""
-    import pandas as pd
-
     exists = found.problem.exists
     assert exists is not None
     place = np.nonzero(exists)

@@ -344,6 +344,27 @@ def test_a_wrong_choice_of_patches_is_refused_when_the_case_is_read(field: str, 
         Case(**{**ON_AXLE, "figures": figures})
 
 
+@pytest.mark.parametrize("name", ["pair", "load"])
+def test_an_axis_of_patches_cannot_have_the_name_of_another_column(install_model: InstallModel, name: str) -> None:
+    class Misnamed(Axle):
+        """The axle with another name for its sides."""
+
+        name: ClassVar[str] = "misnamed"
+        axis: str
+
+        def problem(self, **conditions: Any) -> wl.Problem:
+            """Return the problem with that name."""
+            return super().problem(**conditions).replaced(dims={self.axis: SIDES, "patch": PATCHES})
+
+        @classmethod
+        def conditions(cls) -> tuple[str, ...]:
+            return Axle.conditions()
+
+    install_model(Misnamed)
+    with pytest.raises(wl.ConfigurationError, match=f"rig: its axis '{name}' has the name of another column"):
+        Case(**{**ON_AXLE, "rig": {"type": "misnamed", "axis": name}})
+
+
 @pytest.mark.parametrize(("field", "value"), [("patches", {"side": "left"}), ("x", "patch")])
 def test_a_rig_with_one_patch_has_none_to_choose(field: str, value: Any) -> None:
     spec = {"sweep": "creepage", "x": "creepage", "y": "wear_rate", field: value}

@@ -135,6 +135,16 @@ def test_applications_that_take_one_patch_say_so() -> None:
         wl.CompositionError, match=r"uncertainty: needs one patch .* 'axle' makes several, along side and patch"
     ):
         wl.uncertainty(PREDICT, **{**GIVEN, "load": wl.uniform("60 kN", "80 kN")}, samples=4).interval()
+    varied = {"displacement": Q([0.0, 1.0, 7.0], "mm"), "longitudinal_creepage": Q([0.1, 0.2, 0.3], "%")}
+    tests = wl.WearTests.from_arrays(
+        friction_coefficient=0.3,
+        other_conditions={"load": "80 kN", "spin": "0.3 1/m", **varied},
+        wear_rate=Q([1.0, 2.0, 3.0], "ug/m/mm^2"),
+    )
+    with pytest.raises(wl.CompositionError, match="compare: needs one patch"):
+        wl.compare([PREDICT], tests)
+    with pytest.raises(wl.CompositionError, match="fit: needs one patch"):
+        wl.fit(PREDICT, tests, free=["hardness"])
     creepages = {name: value for name, value in GIVEN.items() if name != "longitudinal_creepage"}
     with pytest.raises(wl.CompositionError, match="creepage_for: needs one patch"):
         wl.creepage_for(Axle() | wl.contact_model("fastsim"), tangential_force="1 kN", **creepages)

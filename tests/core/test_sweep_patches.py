@@ -68,8 +68,8 @@ def test_blocks_hold_fewer_points_of_several_patches() -> None:
     sizes = [Points({}, varying, weight=weight).block_shape for weight in (1.0, 4.0, 7.5, 54.0)]
     assert sizes == [(30,), (7,), (4,), (1,)]
     one, strips = (rig.problem(**GIVEN) for rig in (Axle(), Cut()))
-    assert (sweeping._weight(one), sweeping._weight(strips)) == (4.0, 4.0 * (1.0 + 12 / 4.0))
-    assert sweeping._weight(one.flatten()) == 1.0
+    assert (sweeping.weight(one), sweeping.weight(strips)) == (4.0, 4.0 * (1.0 + 12 / 4.0))
+    assert sweeping.weight(one.flatten()) == 1.0
 
 
 @pytest.mark.parametrize("workers", [1, 2])

@@ -171,7 +171,7 @@ class Rig(Model):
             problem = self._masked(problem)
         return problem if problem.bodies else problem.replaced(bodies=self.bodies)
 
-    def checked_balance(self, problem: Problem, balanced: Problem) -> Problem:
+    def _checked_balance(self, problem: Problem, balanced: Problem) -> Problem:
         """Return the result of `balanced` for a problem, with NaN for patches that have lifted off.
 
         Raises
@@ -387,7 +387,7 @@ class Pipeline(Configuration, Generic[P]):
             return problem
         with Blame(rig):
             balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
-        return rig.checked_balance(problem, balanced)
+        return rig._checked_balance(problem, balanced)
 
     def predict(
         self,

@@ -66,10 +66,10 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
     """Yield the default figures: outcomes and traction over each sweep, and the fields or wear of each profile."""
     creepage = results.case.rig.creepage
     for name, sweep in results.sweeps.items():
-        axis, by_patch = main_axis(sweep, creepage), bool(patch_axes(sweep))
+        axis, several = main_axis(sweep, creepage), is_of_patches(sweep)
         # One operating point of several patches is no curve. The conditions of a wheelset may be zero or negative.
-        first = BY_PATCH if by_patch and not axes_of(sweep) else axis
-        x_scale: Scale = "linear" if by_patch else "log"
+        first = BY_PATCH if several and not axes_of(sweep) else axis
+        x_scale: Scale = "linear" if several else "log"
         for outcome in outcomes_of(results, sweep):
             for x in (first,) if first == BY_PATCH else ("wear_index", first):
                 y_scale: Scale = "linear" if outcome.signed else "log"
@@ -121,13 +121,14 @@ def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
 
 def _hint(results: Results, spec: FigureSpec, panels: list[Panel]) -> str:
     """Return how to choose patches if a panel has too many lines, or why one has none."""
+    dataset = results.sweeps[spec.sweep] if spec.sweep else results.profiles[spec.profile or ""]
+    if not is_of_patches(dataset):
+        return ""
     if any(not panel.curves for panel in panels):
         return " None of the chosen patches exists here."
-    sweep, most = results.sweeps.get(spec.sweep or ""), max(len(panel.curves) for panel in panels)
-    if sweep is None or not is_of_patches(sweep) or most <= MANY_LINES or spec.x == BY_PATCH:
+    if spec.x == BY_PATCH or all(len(panel.curves) <= MANY_LINES for panel in panels):
         return ""
-    patch = patches_of(sweep)[0]
-    chosen = ", ".join(f"{axis} = {json.dumps(label)}" for axis, label in patch.items())
+    chosen = ", ".join(f"{axis} = {json.dumps(label)}" for axis, label in patches_of(dataset)[0].items())
     return f" To show fewer lines, choose in the table of the figure, as in patches = {{ {chosen} }}."
 
 

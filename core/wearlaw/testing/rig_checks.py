@@ -87,7 +87,7 @@ def values_of(problem: Any) -> dict[str, Any]:
     if problem.strips is not None:
         found |= {name: getattr(problem.strips, name.removesuffix(" of strips")) for name in OF_STRIPS}
     values = {name: value for name, value in found.items() if hasattr(value, "dtype") or isinstance(value, int | float)}
-    exists = values.pop("exists", None)
+    exists: Any = values.pop("exists", None)
     if exists is None:
         return values
     there = {
@@ -121,7 +121,7 @@ def problem_is_finite_and_positive(rig: Rig) -> None:
     for name, value in values_of(problem).items():
         assert np.isfinite(value).all(), f"{name} of the problem is {value!r}, not finite"
     for name in POSITIVE:
-        value = getattr(problem.existing(), name)
+        value = getattr(problem, name)
         assert (np.isfinite(value) & (np.asarray(value) > 0.0)).all(), (
             f"{name} of the problem is {value!r}, not above zero"
         )
