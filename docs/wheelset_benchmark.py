@@ -26,12 +26,8 @@ SIDES = ("left", "right")
 Pressure = Literal["kpec", "hertz"]
 PRESSURES: tuple[Pressure, ...] = ("kpec", "hertz")
 
-ROTATION = (
-    *(4.34811810, 4.34741340, 4.34657520, 4.34624400, 4.34591970, 4.34556270, 4.34515030),
-    *(4.34466880, 4.34409300, 4.34337150, 4.33536370, 4.33188640, 4.32937180, 4.27488340),
-    *(4.26356290, 4.25757470, 4.25348570, 4.25032450, 4.24775610, 4.24556650, 4.24363750),
-)
-"""Speeds of rotation of the 21 cases [rad/s], VPITCH in the input of the benchmark that comes with CONTACT."""
+STEPS = 0.5 * np.arange(21)
+"""Lateral displacements of the benchmark [mm]."""
 
 JUMPS = {("left", 0.0), ("right", 0.0), ("right", 0.5), ("right", 5.0)}
 """Wheels and displacements [mm] at which the point of contact jumps, or is about to."""
@@ -60,12 +56,11 @@ def wheelset(pressure: Pressure = "kpec", speed: float = 2.0) -> ws.Wheelset:
 
 def benchmark(pressure: Pressure) -> dict[str, Array]:
     """Return the results of wearlaw in CONTACT's signs and units, of shape (cases, sides, patches)."""
-    displacement = 0.5 * np.arange(len(ROTATION))
     return solved(
         wheelset(pressure),
-        lateral_displacement=Q(displacement, "mm"),
-        yaw=Q(2.4 * displacement, "mrad"),
-        angular_speed=Q(np.array(ROTATION), "rad/s"),
+        lateral_displacement=Q(STEPS, "mm"),
+        yaw=Q(2.4 * STEPS, "mrad"),
+        angular_speed=Q(reference()["rotation"][:, 0], "rad/s"),
     )
 
 
@@ -91,17 +86,17 @@ def solved(rig: ws.Wheelset, **conditions: Any) -> dict[str, Array]:
     # CONTACT's creepages are those of the rail less the wheel, over the mean of the speeds of rail and wheel
     share = -speed / (0.5 * (speed + rotation * radius))
     return {
-        "ycp_tr_mm": 1e3 * in_track(rig, np.asarray(r.problem.bodies["rail"].profile_position)),
-        "delta_rad": r.contact_angle.m_as("rad"),
-        "cksi": share * r.creepage.m_as(""),
-        "ceta": share * r.lateral_creepage.m_as(""),
-        "cphi_per_mm": share * r.spin.m_as("1/mm"),
-        "fn_N": r.normal_force.m_as("N"),
-        "fx_N": r.longitudinal_force.m_as("N"),
-        "fs_N": r.lateral_force.m_as("N"),
-        "mn_Nmm": r.spin_moment.m_as("N*mm"),
-        "pmax_MPa": r.max_pressure.m_as("MPa"),
-        "fric_power_W": -speed * r.wear_index.m_as("N"),
+        "y": 1e3 * in_track(rig, np.asarray(r.problem.bodies["rail"].profile_position)),
+        "delta": r.contact_angle.m_as("rad"),
+        "xi": share * r.creepage.m_as(""),
+        "eta": share * r.lateral_creepage.m_as(""),
+        "phi": share * r.spin.m_as("1/mm"),
+        "fn": r.normal_force.m_as("N"),
+        "fx": r.longitudinal_force.m_as("N"),
+        "fs": r.lateral_force.m_as("N"),
+        "mn": r.spin_moment.m_as("N*mm"),
+        "pmax": r.max_pressure.m_as("MPa"),
+        "power": -speed * r.wear_index.m_as("N"),
     }
 
 
@@ -117,28 +112,28 @@ def in_track(rig: ws.Wheelset, arc: Array) -> Array:
 
 def blended(found: dict[str, Array]) -> dict[str, Array]:
     """Return one patch for each wheel: sums of forces and powers, the largest pressure, and means weighted with N."""
-    force = found["fn_N"]
+    force = found["fn"]
     share = force / np.nansum(force, axis=-1, keepdims=True)
     whole = {name: np.nansum(share * array, axis=-1) for name, array in found.items()}
-    whole |= {name: np.nansum(found[name], axis=-1) for name in ("fn_N", "fx_N", "fs_N", "mn_Nmm", "fric_power_W")}
-    return whole | {"pmax_MPa": np.nanmax(found["pmax_MPa"], axis=-1), "patches": np.isfinite(force).sum(axis=-1)}
+    whole |= {name: np.nansum(found[name], axis=-1) for name in ("fn", "fx", "fs", "mn", "power")}
+    return whole | {"pmax": np.nanmax(found["pmax"], axis=-1), "patches": np.isfinite(force).sum(axis=-1)}
 
 
 def reference() -> dict[str, Array]:
     """Return CONTACT's results of the benchmark, of shape (cases, sides)."""
-    table = pd.read_csv(DATA / "manchester_a22_contact.csv", comment="#")
+    table = pd.read_csv(DATA / "manchester_a22.csv", comment="#")
     return {name: np.stack([table[name][table.side == side] for side in SIDES], axis=-1) for name in map(str, table)}
 
 
 DIFFERENCES = {
-    "y [mm]": ("ycp_tr_mm", 1.0, 2),
-    "δ [mrad]": ("delta_rad", 1e3, 1),
-    "ξ [10⁻⁵]": ("cksi", 1e5, 1),
-    "η [%]": ("ceta", None, 1),
-    "φ [%]": ("cphi_per_mm", None, 1),
-    "N [%]": ("fn_N", None, 1),
-    "p_max [%]": ("pmax_MPa", None, 1),
-    "power [%]": ("fric_power_W", None, 1),
+    "y [mm]": ("y", 1.0, 2),
+    "δ [mrad]": ("delta", 1e3, 1),
+    "ξ [10⁻⁵]": ("xi", 1e5, 1),
+    "η [%]": ("eta", None, 1),
+    "φ [%]": ("phi", None, 1),
+    "N [%]": ("fn", None, 1),
+    "p_max [%]": ("pmax", None, 1),
+    "power [%]": ("power", None, 1),
 }
 """Heads of the columns of differences: the result, the factor of its unit, or None for percent, and the digits."""
 
@@ -166,16 +161,16 @@ def table(pressure: Pressure) -> Rows:
     found, patches = differences(pressure), blended(benchmark(pressure))["patches"]
     rows: Rows = [("wheel", "displacement [mm]", "patches", *DIFFERENCES)]
     for side, name in enumerate(SIDES):
-        for case in range(len(ROTATION)):
+        for case, displacement in enumerate(STEPS):
             cells = (shown(found[head][case, side], digits) for head, (_, _, digits) in DIFFERENCES.items())
-            rows.append((name, f"{0.5 * case:g}", f"{patches[case, side]}", *cells))
+            rows.append((name, f"{displacement:g}", f"{patches[case, side]}", *cells))
     return rows
 
 
 def summary() -> Rows:
     """Return the largest differences away from jumps, on the tread and on the flange."""
-    at_jump = np.array([[(side, 0.5 * case) in JUMPS for side in SIDES] for case in range(len(ROTATION))])
-    flange = np.abs(reference()["delta_rad"]) > FLANGE
+    at_jump = np.array([[(side, displacement) in JUMPS for side in SIDES] for displacement in STEPS])
+    flange = np.abs(reference()["delta"]) > FLANGE
     rows: Rows = [("contact on", "`pressure`", "wheels", *DIFFERENCES)]
     for place, there in (("tread", ~flange & ~at_jump), ("flange", flange & ~at_jump)):
         for pressure in PRESSURES:
@@ -194,9 +189,9 @@ def of_two_patches() -> Rows:
     rows: Rows = [("displacement [mm]", "program", *heads)]
     found = {pressure: two_patches(pressure) for pressure in PRESSURES}
     for case, displacement in enumerate((5.1, 6.4)):
-        contact = table[table.y_ws_mm == displacement].sort_values("ycp_tr_mm")
+        contact = table[table.displacement == displacement].sort_values("y")
         of_right = {name: {key: array[case, 1] for key, array in one.items()} for name, one in found.items()}
-        order = np.argsort(of_right["kpec"]["ycp_tr_mm"][:2])
+        order = np.argsort(of_right["kpec"]["y"][:2])
         for patch in range(2):
             rows.append((f"{displacement:g}", "CONTACT", *figures(dict(contact.iloc[patch]))))
             for name, one in of_right.items():
@@ -207,10 +202,10 @@ def of_two_patches() -> Rows:
 
 def figures(one: dict[str, Any]) -> tuple[str, ...]:
     """Return the results of a patch for the table."""
-    vertical = one["fn_N"] * np.cos(one["delta_rad"]) + one["fs_N"] * np.sin(one["delta_rad"])
+    vertical = one["fn"] * np.cos(one["delta"]) + one["fs"] * np.sin(one["delta"])
     return (
-        f"{one['ycp_tr_mm']:.1f}", f"{one['delta_rad']:.3f}", f"{vertical:.0f}", f"{one['fx_N']:.0f}",
-        f"{one['pmax_MPa']:.0f}", f"{one['fric_power_W']:.1f}",
+        f"{one['y']:.1f}", f"{one['delta']:.3f}", f"{vertical:.0f}", f"{one['fx']:.0f}",
+        f"{one['pmax']:.0f}", f"{one['power']:.1f}",
     )  # fmt: skip
 
 
@@ -221,15 +216,15 @@ HUMPS = {"N [N]": 0, "p_max [MPa]": 0, "power [W]": 2}
 def humps() -> Rows:
     """Return what the two humps of a right wheel in the middle of the track carry, and their power."""
     table = pd.read_csv(DATA / "contact_two_humps.csv", comment="#")
-    valley = table.pmax_MPa[table.y_tr_mm.between(743.0, 748.0)].idxmin()
+    valley = table.pmax[table.y.between(743.0, 748.0)].idxmin()
     inner, outer = table[:valley], table[valley:]
     found = {key: array[0, 1] for key, array in benchmark("kpec").items()}
-    order = np.argsort(found["ycp_tr_mm"][:2])
+    order = np.argsort(found["y"][:2])
     rows: Rows = [("program", *(f"{what}, {place}" for what in HUMPS for place in ("inner hump", "outer hump")))]
     for name, parts in (
-        ("CONTACT", ([one.fn_N.sum() for one in (inner, outer)], [one.pmax_MPa.max() for one in (inner, outer)],
-                     [one.fric_power_W.sum() for one in (inner, outer)])),
-        ("wearlaw, `kpec`", [found[key][order] for key in ("fn_N", "pmax_MPa", "fric_power_W")]),
+        ("CONTACT", ([one.fn.sum() for one in (inner, outer)], [one.pmax.max() for one in (inner, outer)],
+                     [one.power.sum() for one in (inner, outer)])),
+        ("wearlaw, `kpec`", [found[key][order] for key in ("fn", "pmax", "power")]),
     ):  # fmt: skip
         values = zip(parts, HUMPS.values(), strict=True)
         rows.append((name, *(f"{value:.{digits}f}" for pair, digits in values for value in pair)))
@@ -263,7 +258,6 @@ def _over_displacement(where: Axes, power: Axes) -> None:
     displacement = np.linspace(0.0, 10.0, 401)
     r, contact, rig = predicted(displacement), reference(), wheelset()
     place = np.abs(1e3 * in_track(rig, np.asarray(r.problem.bodies["rail"].profile_position)))
-    given = 0.5 * np.arange(len(ROTATION))
     for side, name in enumerate(SIDES):
         colour: Any = {"color": PALETTE[side]}
         for patch in range(place.shape[-1]):
@@ -271,8 +265,8 @@ def _over_displacement(where: Axes, power: Axes) -> None:
             where.plot(displacement, place[:, side, patch], ".", ms=2.5, label=label, **colour)
         power.plot(displacement, np.nansum(2.0 * r.wear_index.m_as("N")[:, side], axis=-1), ".", ms=2.5, **colour)
         points: Any = {"marker": "o", "ls": "", "ms": 5, "mfc": "none", **colour}
-        where.plot(given, np.abs(contact["ycp_tr_mm"][:, side]), label=f"CONTACT, {name} wheel", **points)
-        power.plot(given, -contact["fric_power_W"][:, side], **points)
+        where.plot(STEPS, np.abs(contact["y"][:, side]), label=f"CONTACT, {name} wheel", **points)
+        power.plot(STEPS, -contact["power"][:, side], **points)
     where.set(xlabel="lateral displacement [mm]", ylabel="y of contact, outwards [mm]")
     power.set(xlabel="lateral displacement [mm]", ylabel="frictional power of a wheel [W]", yscale="log")
 
@@ -282,7 +276,7 @@ def _two_humps(axes: Axes) -> None:
     strips, rig = r.problem.strips, wheelset()
     assert strips is not None
     middle = 1e3 * in_track(rig, np.asarray(r.problem.bodies["rail"].profile_position))
-    axes.plot(table.y_tr_mm, table.pmax_MPa, "o", ms=4, mfc="none", color=PALETTE[1])
+    axes.plot(table.y, table.pmax, "o", ms=4, mfc="none", color=PALETTE[1])
     for patch in (0, 1):
         axes.plot(middle[0, 1, patch] + 1e3 * strips.y[0, 1, patch], 1e-6 * strips.max_pressure[0, 1, patch],
                   ".-", ms=3.0, lw=1.0, color=PALETTE[1])  # fmt: skip
