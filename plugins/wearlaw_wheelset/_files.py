@@ -10,7 +10,7 @@ import os
 import re
 import stat
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -40,7 +40,6 @@ TEXTS = ("file", "file.mtime", "comment", "type", "units.len", "units.ang")
 """Keys of a Simpack file that say where the points are from."""
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
-QUOTED = re.compile(r"'[^']*'|\"[^\"]*\"")
 TAPING = "WheelDiameterTaperline"
 """Key of a MiniProf file for the distance of the taping line from the back of the flange."""
 
@@ -90,24 +89,24 @@ def points_of(path: Path, kind: Kind | None, units: str) -> tuple[Points, Kind]:
         If the file is missing, too large, not regular or not text, or if its content is wrong.
     """
     text = _text_of(path)
-    ending = path.suffix.lower()
-    lines = text.splitlines()
+    ending, lines = path.suffix.lower(), text.splitlines()
+    by_ending: Kind | None = KINDS.get(ending)
     if ending in SIMPACK or any(re.match(r"\s*spline\.begin", line) for line in lines):
         found = _simpack(lines, units)
     elif ending in MINIPROF or (lines and _is_miniprof(lines)):
-        found = _miniprof(lines, KINDS.get(ending, kind), units)
+        found = _miniprof(lines, by_ending or kind, units)
     elif ending in COLUMNS:
         found = _columns(lines, units)
     else:
         raise FileError(f"the ending '{ending}' is not known; give a file that ends in {', '.join(ENDINGS)}")
-    given = {"the argument kind": kind, "its ending": KINDS.get(ending), "its header": found.kind}
-    told: dict[str, Kind] = {source: one for source, one in given.items() if one is not None}
-    if not told:
+    sure = kind or by_ending or found.kind
+    if sure is None:
         raise FileError('it does not say whether it is a wheel or a rail; give kind="wheel" or kind="rail"')
-    if len(set(told.values())) > 1:
-        says = ", ".join(f"{source} says {one}" for source, one in told.items())
+    told = {"the argument kind": kind, "its ending": by_ending, "its header": found.kind}
+    if not {*told.values()} <= {sure, None}:
+        says = ", ".join(f"{source} says {one}" for source, one in told.items() if one)
         raise FileError(f"it is not clear whether it is a wheel or a rail: {says}")
-    return found, next(iter(told.values()))
+    return found, sure
 
 
 def _text_of(path: Path) -> str:
@@ -184,7 +183,7 @@ def _simpack(lines: Sequence[str], units: str) -> Points:
     table, told = _Table(), False
     kind: Kind | None = None
     for number, raw in enumerate(lines, 1):
-        text = _without_comment(raw)
+        text = re.split("[!%]", raw)[0].strip()  # texts in quotes, which may hold these marks, are not read
         if not text:
             continue
         section, _, edge = text.rpartition(".")
@@ -214,12 +213,6 @@ def _simpack(lines: Sequence[str], units: str) -> Points:
         raise FileError(f"it ends in the section '{place[-1]}'; is it whole?" if place else "it has no spline.begin")
     found, rows = table.columns()
     return _changed(found, rows, values, kind, units)
-
-
-def _without_comment(line: str) -> str:
-    """Return a line of a Simpack file without a comment, which begins with ! or % outside of quotes."""
-    masked = QUOTED.sub(lambda match: "'" * len(match[0]), line)
-    return line[: re.search(r"[!%]|$", masked).start()].strip()  # type: ignore[union-attr]  # $ always matches
 
 
 def _nest(place: list[str], section: str, edge: str, line: int) -> None:
@@ -305,7 +298,8 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
             continue
         if ended:
             cells = re.split(r"[\s;]+", re.split("[!%#]", text)[0].strip())
-            table.add(cells, number, len(columns), max(columns.index("X"), columns.index("Y")) + 1)
+            last = max(columns.index("X"), columns.index("Y"))
+            table.add(cells, number, last + 1, last + 1)
             continue
         key, equals, value = (part.strip() for part in text.partition("="))
         if equals:
@@ -315,7 +309,7 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
             if not {"X", "Y"} <= set(columns):
                 raise FileError(f"line {number}: ColumnDef must name the columns X and Y, got '{value[:40]}'")
     if not ended:
-        raise FileError("it has no empty line between its header and its points")
+        raise FileError("it has no empty line between its header and its points; name two columns alone .txt")
     found, rows = table.columns()
     x, y = found[columns.index("X")], found[columns.index("Y")]
     offset = {}
@@ -323,7 +317,7 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
         text = header.get(key, "")
         offset[key] = _number(text, 1, f"{key} in the header") if text else 0.0
     told = header.get("xypoints", "")
-    if told.isdigit() and int(told) != x.size and int(told) != sum(_is_point(line) for line in lines):
+    if told.isdigit() and sum(_is_point(line) for line in lines) < int(told):
         raise FileError(f"XYPoints says {told} points, but it has {x.size}; is it whole?")
     factor = _factor(units)
     x, y = factor * (x + offset["xoffset"]), factor * (y + offset["yoffset"])
@@ -334,7 +328,7 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
 
 def _is_point(line: str) -> bool:
     """Return whether a line holds numbers, commented out or not."""
-    cells = line.strip().lstrip('!"%#').split()
+    cells = re.split("[!%#]", line.strip().lstrip('!"%#'))[0].split()
     return len(cells) > 1 and all(NUMBER.fullmatch(cell) for cell in cells)
 
 
@@ -344,9 +338,9 @@ def _columns(lines: Sequence[str], units: str) -> Points:
     places, factors = (0, 1), [_factor(units)] * 2
     for number, raw in enumerate(lines, 1):
         text = raw.strip()
-        if not text or text[0] in "!%#":
+        if not text or text[0] in "!%#" or text.startswith("sep="):
             continue
-        cells = list(_cells(text))
+        cells = _cells(text)
         if not table.rows and not head and not NUMBER.fullmatch(cells[0].replace(",", ".")):
             head = True
             places, factors = _head(cells, number, factors)
@@ -358,12 +352,13 @@ def _columns(lines: Sequence[str], units: str) -> Points:
     return Points(factors[0] * found[0], factors[1] * found[1], None, rows, None)
 
 
-def _cells(text: str) -> Iterator[str]:
-    """Yield the cells of a line, which are set apart by semicolons, tabs, commas or spaces."""
+def _cells(text: str) -> list[str]:
+    """Return the cells of a line, which are set apart by semicolons, tabs, commas or spaces."""
     mark = next((mark for mark in ";\t," if mark in text), None)
-    for cell in text.split(mark):
-        bare = cell.strip().strip('"')
-        yield bare.replace(",", ".") if mark in (";", "\t") else bare
+    if mark is None:
+        return re.findall(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?", text)  # a name may have its unit behind a space
+    cells = [cell.strip().strip('"') for cell in text.split(mark)]
+    return cells if mark == "," else [cell.replace(",", ".") for cell in cells]
 
 
 def _head(cells: Sequence[str], line: int, factors: list[float]) -> tuple[tuple[int, int], list[float]]:

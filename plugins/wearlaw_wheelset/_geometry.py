@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._motion import placed
+from wearlaw_wheelset._pictures import Profiles, geometry_figure
 from wearlaw_wheelset._search import Position, Section, Touching
 
 if TYPE_CHECKING:
@@ -100,26 +101,6 @@ def patches(section: Section, position: Position, touching: Touching) -> Patches
     return Patches(**{name: array + none for name, array in found.items()})
 
 
-class Profiles(NamedTuple):
-    """The right wheel and its rail in the middle of the track [m].
-
-    Attributes
-    ----------
-    wheel_y, wheel_z : ndarray
-        The wheel, with y in the track and z from the taping line.
-    wheel_offset : float
-        y of the profile's origin in the track.
-    rail_y, rail_z : ndarray
-        The rail in the track.
-    """
-
-    wheel_y: Array
-    wheel_z: Array
-    wheel_offset: float
-    rail_y: Array
-    rail_z: Array
-
-
 @dataclass(frozen=True)
 class Geometry:
     """Where rigid wheels touch their rails.
@@ -144,10 +125,7 @@ class Geometry:
         The lines join points of the right wheel and its rail that touch each other. The curves run over the lateral
         displacement, with a curve for each yaw.
         """
-        from wearlaw_wheelset._pictures import geometry_figure
-
-        found: Figure = geometry_figure(self.dataset, self._profiles)
-        return found
+        return geometry_figure(self.dataset, self._profiles)
 
 
 def geometry(
@@ -194,10 +172,12 @@ def geometry(
 
 def profiles(section: Section, nominal_radius: float) -> Profiles:
     """Return the profiles of the right wheel and its rail in the middle of the track."""
-    rail_y: Array = section.rail_z.start + section.rail_z.step * np.arange(section.rail_z.value.size, dtype=np.float64)
-    offset = section.wheel_y.value[0] - float(section.wheel.at(section.wheel_y.start)[0])
+    table = section.wheel_y
+    wheel_arc: Array = table.start + table.step * np.arange(table.value.size, dtype=np.float64)
+    offset = table.value[0] - float(section.wheel.at(table.start)[0])
     radius = section.wheel_radius.value - nominal_radius
-    return Profiles(section.wheel_y.value, radius, offset, rail_y, section.rail_z.value)
+    rail_y: Array = section.rail_z.start + section.rail_z.step * np.arange(section.rail_z.value.size, dtype=np.float64)
+    return Profiles(table.value, radius, offset, wheel_arc, rail_y, section.rail_z.value, section.rail_position.value)
 
 
 def _si(unit: str) -> str:

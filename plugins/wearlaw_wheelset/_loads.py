@@ -6,15 +6,16 @@ axle is the given one:
     ∑ (N cos δ + Fy sin δ) = Q,  V ∑ (Fx ∂ξ/∂Ω + Fy ∂η/∂Ω + Mz ∂φ/∂Ω) = M.
 
 The unknowns are the vertical penetration h of each wheel and the speed of rotation Ω. All patches of a wheel are
-penetrated by (h - g) cos δ, with the gap g at first touching. The load grows nearly with the power 3/2 of h, and the
-torque grows with Ω; each is found by the secant method, in h in logarithms, and Ω within the bounds found so far.
+penetrated by (h - g) cos δ, with the gap g at first touching. Newton's method finds ln h and Ω together. It estimates
+the rates and learns from its steps, so that each step costs the creep forces once. Where it fails, because the load
+jumps, each unknown is found by the secant method within the bounds found so far.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,35 +23,26 @@ from numpy.typing import NDArray
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset import _normal
+from wearlaw_wheelset._candidates import SPACING, Candidates, candidates, sample, separated
 from wearlaw_wheelset._motion import Creepages, Place, creepages, placed
-from wearlaw_wheelset._search import Position, Section, Touching, gaps
-
-SAMPLES = 81
-"""Samples of the gap under a patch."""
-
-SPACING = 0.25e-3
-"""Distance from one sample to the next [m]; it is doubled where a patch is wider than the samples."""
+from wearlaw_wheelset._search import Position, Section, Touching
 
 WIDENINGS = 2
 """How often the distance is doubled at most."""
 
-SEPARATE = 0.5
-"""Two bumps are patches of their own if the gap between them exceeds this share of the penetration, the share of the
-virtual penetration."""
+LEAST = 1e-5
+"""Smallest penetration of a patch that is followed, as a share of the wheel's. Below it the patch is open, and its load
+is below `BALANCED`."""
 
-SPARE = 1.5
-"""A patch is followed if its gap is at most this share of the penetration under the whole load."""
+BALANCED = 1e-6
+"""Greatest imbalance, as a share of the load, and of the torque of full slip. Creep forces are off by a thousand times
+as much, and those of FASTSIM jump by up to 1e-3 where a strip begins to stick once more."""
 
-LEAST = 1e-6
-"""Smallest penetration of a patch that is followed, as a share of the wheel's; below it the patch is open. Its force is
-a share of 1e-9, less than `BALANCED`."""
+ROUGH = 2e-3
+"""Imbalance that stays where creep forces jump."""
 
-BALANCED = 1e-8
-"""Greatest imbalance, as a share of the load, and of the torque of full slip."""
-
-STEPS, TOGETHER = 300, 20
-"""Greatest number of steps of the balance; five to ten are usual. After the second number, as on steep flanges, the
-speed of rotation only moves where the loads are balanced."""
+NEWTON_STEPS, STEPS = 20, 100
+"""Greatest number of steps by Newton's method, of which four or five are usual, and within bounds."""
 
 WIDEST_STEP, MOST_TURN = 1.0, 0.01
 """Greatest step of the logarithm of the penetration, and of the speed of rotation as a share of it."""
@@ -58,12 +50,11 @@ WIDEST_STEP, MOST_TURN = 1.0, 0.01
 LEAST_SHARE = 0.1
 """Smallest share of the load that a step of the penetration counts with."""
 
-STEEP = 6.0
-"""Greatest slope of the load with the penetration, in logarithms; 1.5 for one patch, and more as others join."""
+FULL = 0.999
+"""Greatest share of full slip that the rates of creep forces count with, so that they never vanish."""
 
-REOPENINGS = 4
-"""How often bounds of a penetration are forgotten, as they were found at other speeds of rotation; then the load jumps
-there."""
+TINY = 1e-300
+"""Keeps divisors from zero."""
 
 CLOSED = 1e-12
 """Bounds have met if they differ by this share."""
@@ -110,115 +101,6 @@ class Task:
     rotation: Array | None
 
 
-@dataclass(frozen=True)
-class Candidates:
-    """Places where wheels may touch under load, as arrays with one entry for each of them.
-
-    Attributes
-    ----------
-    point, side, number : ndarray of int
-        Index of the position, of the side (0 left, 1 right) and of the patch on its side.
-    position : Position
-        In outward coordinates.
-    arc, gap : ndarray
-        Arc length of the wheel's profile, and vertical gap there at first touching [m].
-    cosine : ndarray
-        cos δ there [-].
-    start, step, samples : ndarray
-        The gap normal to the surface around the place, above its least value [m], `samples` of shape (places, samples).
-    curvature_x : ndarray
-        Half the relative curvature along the rolling direction [1/m].
-    """
-
-    point: NDArray[np.intp]
-    side: NDArray[np.intp]
-    number: NDArray[np.intp]
-    position: Position
-    arc: Array
-    gap: Array
-    cosine: Array
-    start: Array
-    step: Array
-    samples: Array
-    curvature_x: Array
-
-    @property
-    def wheel(self) -> NDArray[np.intp]:
-        """Index of the wheel among all wheels."""
-        return 2 * self.point + self.side
-
-    def part(self, rows: NDArray[Any]) -> Candidates:
-        """Return some of the places."""
-        found = {name: getattr(self, name)[rows] for name in self.__dataclass_fields__ if name != "position"}
-        return Candidates(position=Position(*(array[rows] for array in self.position)), **found)
-
-
-def candidates(section: Section, position: Position, touching: Touching) -> Candidates:
-    """Return all places where wheels come close to their rails; positions are of shape (positions, sides)."""
-    point, side, number = np.nonzero(~np.isnan(touching.arc))
-    here = Position(*(array[point, side] for array in position))
-    arc = touching.arc[point, side, number]
-    place = placed(section, here, arc)
-    count = arc.size
-    found = Candidates(
-        point, side, number, here, arc, touching.gap[point, side, number], np.cos(place.angle),
-        np.empty(count), np.empty(count), np.empty((count, SAMPLES)), 0.5 * np.cos(place.angle) / place.radius,
-    )  # fmt: skip
-    sample(section, found, np.arange(count), SPACING)
-    return found
-
-
-def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing: float) -> None:
-    """Fill in, in place, the gaps around some of the places at a spacing [m]."""
-    offsets = spacing * (np.arange(SAMPLES) - SAMPLES // 2)
-    arc = found.arc[rows, None] + offsets
-    outside = (arc < section.wheel_y.start) | (arc > section.wheel_y.end)
-    at = gaps(section, Position(*(array[rows] for array in found.position)).widened(), arc)
-    beside = (at.y < section.rail_z.start) | (at.y > section.rail_z.end)
-    own = at.gap[:, SAMPLES // 2, None]
-    rail = np.arctan(at.rail_slope)
-    turned = np.abs(rail - rail[:, SAMPLES // 2, None]) > np.radians(60.0)
-    normal = (at.gap - own) * np.cos(rail) / np.cos(rail - rail[:, SAMPLES // 2, None])
-    found.start[rows] = offsets[0]
-    found.step[rows] = spacing
-    found.samples[rows] = np.where(outside | beside | turned, np.inf, normal)
-
-
-def separated(found: Candidates, saddle: Array, penetration: Array) -> Candidates:
-    """Return the places that are patches of their own, each with the gap on its own side of the saddles between them.
-
-    Parameters
-    ----------
-    found : Candidates
-    saddle : ndarray
-        Vertical gap of the saddle between each place and the first one of its wheel [m].
-    penetration : ndarray
-        Estimate of the vertical penetration of each place's wheel [m].
-    """
-    own = (found.number == 0) | ((found.gap < SPARE * penetration) & (saddle > SEPARATE * penetration))
-    kept = found.part(own)
-    order = np.argsort(kept.wheel, kind="stable")
-    for shift in (1, 2):
-        for one, other in ((order[shift:], order[:-shift]), (order[:-shift], order[shift:])):
-            same = kept.wheel[one] == kept.wheel[other]
-            _cut(kept, one[same], kept.arc[other[same]])
-    return kept
-
-
-def _cut(found: Candidates, rows: NDArray[np.intp], neighbour: Array) -> None:
-    """Make the gaps infinite, in place, beyond the saddle to a neighbour at an arc length of the wheel [m]."""
-    if not rows.size:
-        return
-    offset = found.start[rows, None] + found.step[rows, None] * np.arange(SAMPLES)
-    towards = np.sign(neighbour - found.arc[rows])[:, None]
-    away = offset * towards
-    between = (away >= 0.0) & (away <= np.abs(neighbour - found.arc[rows])[:, None])
-    samples = found.samples[rows]
-    highest = np.where(between & np.isfinite(samples), samples, -np.inf).argmax(axis=-1)
-    border = np.take_along_axis(away, highest[:, None], axis=-1)
-    found.samples[rows] = np.where(away > border, np.inf, samples)
-
-
 @dataclass
 class _Root:
     """Roots of functions that grow, by the secant method within the bounds found so far; arrays of one shape."""
@@ -238,17 +120,13 @@ class _Root:
         infinite, none = np.full(x.shape, np.inf), np.full(x.shape, np.nan)
         return cls(x, np.full(x.shape, slope), most, -infinite, infinite, none, none)
 
-    def step(self, value: Array, going: NDArray[np.bool_], sure: NDArray[np.bool_]) -> None:
-        """Move the places that are still going; the function has these values at the present ones.
-
-        Only where a value is sure, it gives a slope and a bound; bounds that it contradicts are forgotten.
-        """
+    def step(self, value: Array, going: NDArray[np.bool_]) -> None:
+        """Move the places that are still going; the function has these values at the present ones."""
         with np.errstate(invalid="ignore", divide="ignore"):
             secant = (value - self.value) / (self.x - self.before)
-        self.slope = np.where(sure & (secant > 0.0) & np.isfinite(secant), secant, self.slope)
-        low, high = going & sure & (value < 0.0), going & sure & (value > 0.0)
-        self.low = np.where(low, self.x, np.where(high & (self.x <= self.low), -np.inf, self.low))
-        self.high = np.where(high, self.x, np.where(low & (self.x >= self.high), np.inf, self.high))
+        self.slope = np.where((secant > 0.0) & np.isfinite(secant), secant, self.slope)
+        self.low = np.where(going & (value < 0.0), self.x, self.low)
+        self.high = np.where(going & (value > 0.0), self.x, self.high)
         trial = self.x + np.clip(-value / self.slope, -self.most, self.most)
         bounded = np.isfinite(self.low) & np.isfinite(self.high)
         middle = 0.5 * (np.where(bounded, self.low, trial) + np.where(bounded, self.high, trial))
@@ -260,13 +138,36 @@ class _Root:
         """Return where the bounds have met."""
         return self.high - self.low <= CLOSED * np.abs(self.x)
 
-    def stale(self, value: Array) -> NDArray[np.bool_]:
-        """Return where the bounds are too near to each other for the present value and no slope above `STEEP`."""
-        return np.abs(value) > STEEP * (self.high - self.low)
+    def reopen(self) -> None:
+        """Forget bounds that have met: they were found while something else was still moving."""
+        closed = self.closed()
+        self.low, self.high = np.where(closed, -np.inf, self.low), np.where(closed, np.inf, self.high)
 
-    def reopen(self, where: NDArray[np.bool_]) -> None:
-        """Forget bounds that were found while something else was still moving."""
-        self.low, self.high = np.where(where, -np.inf, self.low), np.where(where, np.inf, self.high)
+
+class _State(NamedTuple):
+    """The loads of some positions at a step.
+
+    Attributes
+    ----------
+    part : Candidates
+        Their places.
+    problem, patch, forces
+        The contact problem of the places, what else is read of them, and the creep forces, or None without.
+    load : ndarray, (2 positions,)
+        Vertical load that each wheel carries [N].
+    grip : ndarray, (positions,)
+        Torque of full slip [N m].
+    miss : ndarray, (positions, 3)
+        Logarithm of the load of both wheels over the given one, and the excess of the torque over `grip`.
+    """
+
+    part: Candidates
+    problem: wl.Problem
+    patch: Patches
+    forces: wl.CreepForces | None
+    load: Array
+    grip: Array
+    miss: Array
 
 
 @dataclass
@@ -285,6 +186,10 @@ class Balance:
     """Speed of rotation at each position, Ω [rad/s]."""
     scale: Array
     """Factor on the pressure of each wheel's patches, 1 except where the load jumps as a hump joins a patch."""
+    correction: Array
+    """What Newton's method has learnt of the rates of `_State.miss`, (positions, 3, 3)."""
+    shapes: dict[str, Array] = field(default_factory=dict)
+    """Strips or ellipses of all places at the last step of each."""
 
     @classmethod
     def begun(
@@ -303,13 +208,12 @@ class Balance:
         first = kept.number == 0
         radius[kept.wheel[first]] = placed(section, kept.part(first).position, kept.arc[first]).radius
         rotation = task.speed / radius.reshape(-1, 2).mean(axis=-1) if task.rotation is None else task.rotation
-        begun = cls(section, elastic, task, kept, hertz, strips, whole, rotation, np.ones(wheels))
-        begun.solve(None)
-        return begun
+        none = np.zeros((task.load.size, 3, 3))
+        return cls(section, elastic, task, kept, hertz, strips, whole, rotation, np.ones(wheels), none).solved(None)
 
     def check_torque(self) -> None:
         """Raise an error for a torque that friction cannot transmit."""
-        problem, patch = self.posed(self.found, self.penetration, self.rotation, self.scale)
+        problem, patch = self.posed()
         _, _, grip = self._sums(self.found, patch, problem, None)
         over = ~(np.abs(self.task.torque) < grip)
         if over.any():
@@ -337,8 +241,8 @@ class Balance:
             sample(section, found, rows[open_], SPACING * 2.0 ** (widening + 1))
         return penetration
 
-    def solve(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> None:
-        """Find the penetrations and the speeds of rotation that balance the loads, in place.
+    def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> Balance:
+        """Return the loads with penetrations and speeds of rotation that balance the creep forces.
 
         Parameters
         ----------
@@ -346,45 +250,83 @@ class Balance:
             Returns the creep forces of a problem with one entry for each patch. None leaves out the creep forces; the
             speed of rotation then stays as it is.
         """
+        copies = {name: getattr(self, name).copy() for name in ("penetration", "rotation", "correction")}
+        found = replace(self, scale=np.ones(self.scale.shape), **copies)
+        left = found._newton(forces)
+        if left.any():
+            found._bracketed(forces, left)
+        return found
+
+    def _newton(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> NDArray[np.bool_]:
+        """Balance the loads by Newton's method in place, and return which positions it leaves.
+
+        Broyden's method corrects the estimated rates. The speed of rotation counts with the torque that it changes.
+        """
         count = self.task.load.size
-        free = self.task.rotation is None and forces is not None
-        self.scale = np.ones(self.scale.shape)
+        open_, unit = np.ones(count, dtype=np.bool_), np.ones((count, 1, 3))
+        step, before = np.zeros((2, count, 3))
+        for iteration in range(NEWTON_STEPS):
+            state = self._state(forces, open_)
+            worst = np.abs(state.miss).max(axis=-1)
+            open_ &= worst > BALANCED
+            rows = np.flatnonzero(open_)
+            if not rows.size or iteration == NEWTON_STEPS - 1:
+                break
+            rates, miss = self._rates(state)[rows], state.miss[rows]
+            if iteration == 0:
+                unit[rows, 0, 2] = rates[:, 2, 2]
+            rates /= unit[rows]
+            moved = step[rows] * unit[rows, 0]
+            unforeseen = miss - before[rows] - ((rates + self.correction[rows]) @ moved[..., None])[..., 0]
+            along = moved / np.maximum((moved**2).sum(axis=-1, keepdims=True), TINY)
+            self.correction[rows] += unforeseen[..., None] * along[:, None, :]
+            ahead = -np.linalg.solve(rates + self.correction[rows], miss[..., None])[..., 0] / unit[rows, 0]
+            ahead[:, :2] = np.clip(ahead[:, :2], -WIDEST_STEP, WIDEST_STEP)
+            most = MOST_TURN * self.rotation[rows]
+            ahead[:, 2] = np.clip(ahead[:, 2], -most, most)
+            step[rows], before[rows] = ahead, miss
+            self.penetration.reshape(-1, 2)[rows] *= np.exp(ahead[:, :2])
+            self.rotation[rows] += ahead[:, 2]
+        rough: NDArray[np.bool_] = open_ & (worst > ROUGH)
+        return rough
+
+    def _bracketed(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> None:
+        """Balance the loads of some positions within bounds, in place, as where they jump."""
         depths = _Root.begun(np.log(self.penetration), 1.5, WIDEST_STEP)
         turns = _Root.begun(self.rotation, np.nan, MOST_TURN * self.rotation)
-        load = self.task.load.repeat(2)
-        open_ = np.ones(count, dtype=np.bool_)
-        reopened = np.zeros(2 * count, dtype=np.intp)
-        for number in range(STEPS):
-            part = self.found.part(open_[self.found.point])
-            problem, patch = self.posed(part, np.exp(depths.x), turns.x, self.scale)
-            force = None if forces is None else forces(problem)
-            carried, torque, grip = self._sums(part, patch, problem, force)
-            excess = np.log(np.maximum(carried / load, LEAST_SHARE))
-            lacking = torque - self.task.torque if free else np.zeros(count)
-            level = (np.abs(excess) <= BALANCED).reshape(-1, 2).all(axis=-1)
-            open_ &= ~(level & (np.abs(lacking) <= BALANCED * grip))
+        for _ in range(STEPS):
+            state = self._state(forces, open_)
+            open_ &= np.abs(state.miss).max(axis=-1) > BALANCED
             if not open_.any():
                 break
-            apart = number >= TOGETHER
-            wheels = open_.repeat(2)
-            stale = wheels & depths.stale(excess) & (reopened < REOPENINGS)
-            depths.reopen(stale)
-            reopened += stale
+            wheels, excess = open_.repeat(2), state.miss[:, :2].reshape(-1)
             jump = wheels & depths.closed()
             self.scale = np.where(jump, self.scale * np.exp(-excess), self.scale)
-            share = np.divide(np.abs(lacking), grip, out=np.zeros(count), where=open_)
-            sure = np.abs(excess) >= share.repeat(2)
-            depths.step(excess, wheels & ~jump & ~(apart & level.repeat(2)), sure | apart)
-            if free:
-                if np.isnan(turns.slope).all():
-                    turns.slope = self._stiffness(part, patch, problem)
-                turns.reopen(turns.closed() | (number == TOGETHER))
-                turning = open_ & (level | (not apart))
-                turns.step(lacking, turning, (share > np.abs(excess).reshape(-1, 2).max(axis=-1)) | (apart & level))
-                if apart:
-                    depths.reopen(turning.repeat(2))
-                    reopened[turning.repeat(2)] = 0
-        self.penetration, self.rotation = np.exp(depths.x), turns.x
+            depths.step(excess, wheels & ~jump)
+            if np.isnan(turns.slope).all():
+                turns.slope = np.maximum(self._rates(state)[:, 2, 2], TINY)
+            turns.reopen()
+            turns.step(state.miss[:, 2], open_)
+            self.penetration, self.rotation = np.exp(depths.x), turns.x
+
+    def _state(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> _State:
+        """Return the loads of some positions as they are."""
+        rows = np.flatnonzero(open_[self.found.point])
+        part = self.found.part(rows)
+        shapes = self._ellipses(part) if self.hertz else self._strips(part)
+        if rows.size == self.found.point.size:
+            self.shapes = shapes
+        else:
+            for name, array in shapes.items():
+                self.shapes[name][rows] = array
+        problem, patch = self._posed(part, shapes)
+        force = None if forces is None else forces(problem)
+        load, torque, grip = self._sums(part, patch, problem, force)
+        miss = np.zeros((open_.size, 3))
+        miss[:, :2] = np.log(np.maximum(load / self.task.load.repeat(2), LEAST_SHARE)).reshape(-1, 2)
+        if force is not None and self.task.rotation is None:
+            miss[:, 2] = (torque - self.task.torque) / np.maximum(grip, TINY)
+        return _State(part, problem, patch, force, load, grip, miss)
 
     def _sums(
         self, part: Candidates, patch: Patches, problem: wl.Problem, force: wl.CreepForces | None
@@ -404,47 +346,92 @@ class Balance:
         torques, grips = (np.asarray(np.bincount(part.point, one, count), np.float64) for one in (torque, grip))
         return np.asarray(load, np.float64), torques, grips
 
-    def _stiffness(self, part: Candidates, patch: Patches, problem: wl.Problem) -> Array:
-        """Return the rate of the torque with the speed of rotation, by Kalker's linear theory [N m s]."""
-        c11 = wl.kalker.coefficients(problem.a / problem.b, self.elastic.poisson_ratio).c11
-        rate = self.elastic.shear_modulus * problem.a * problem.b * c11 * patch.place.radius**2 / problem.rolling_speed
-        return np.maximum(np.bincount(part.point, rate, self.task.load.size), 1e-300)
+    def _rates(self, state: _State) -> Array:
+        """Return estimates of the rates of `_State.miss` with ln h of both wheels and Ω, (positions, 3, 3).
 
-    def posed(self, part: Candidates, penetration: Array, rotation: Array, scale: Array) -> tuple[wl.Problem, Patches]:
-        """Return the contact problem of some patches, with one entry for each, and the patches."""
-        depth = penetration[part.wheel]
-        normal = np.maximum(depth - part.gap, LEAST * depth) * part.cosine
+        The normal force grows with the power 3/2 of the penetration. The creep forces start with Kalker's rates. As f,
+        their share of μN, grows, the rate along the force falls to (1 - f)^(2/3), and that across it to f/(3d) with
+        1 - f = (1 - d)³. This is FASTSIM on a strip, d being the creepage over that of full slip, which falls with the
+        third root of N.
+        """
+        part, problem, patch, force, load, grip, _ = state
+        count = load.size // 2
+        found = np.zeros((count, 3, 3))
+        own, side = patch.normal_force * np.cos(patch.place.angle), np.where(part.side == 1, 1.0, -1.0)
+        grip = np.maximum(grip, TINY)
+        depth = self.penetration[part.wheel]
+        growth = 1.5 / np.maximum(1.0 - part.gap / depth, LEAST)
+        if force is not None:
+            bound = problem.friction_coefficient * patch.normal_force
+            size = np.maximum(force.tangential, TINY)
+            x, y, up = force.longitudinal / size, force.lateral / size, side * np.sin(patch.place.angle)
+            share = np.minimum(size / bound, FULL)
+            stuck = np.cbrt(1.0 - share)
+            across, swelling = (1.0 + stuck + stuck**2) / 3.0, bound * (share - stuck**2 * (1.0 - stuck))
+            c = wl.kalker.coefficients(problem.a / problem.b, self.elastic.poisson_ratio)
+            stiffness, width = self.elastic.shear_modulus * problem.a * problem.b, np.sqrt(problem.a * problem.b)
+            xi, eta, phi = patch.creepages.turning
+            linear_x, linear_y = stiffness * c.c11 * xi, stiffness * (c.c22 * eta + c.c23 * width * phi)
+            along = (stuck**2 - across) * (x * linear_x + y * linear_y)
+            force_x, force_y = across * linear_x + along * x, across * linear_y + along * y
+            own = own + up * y * swelling
+            speed = problem.rolling_speed
+            found[:, :2, 2] = (np.bincount(part.wheel, up * force_y, 2 * count) / load).reshape(-1, 2)
+            found[:, 2, 2] = np.bincount(part.point, speed * (xi * force_x + eta * force_y), count) / grip
+            turned = np.bincount(part.wheel, growth * speed * (xi * x + eta * y) * swelling, 2 * count)
+            found[:, 2, :2] = turned.reshape(-1, 2) / grip[:, None]
+        if force is None or self.task.rotation is not None:
+            found[:, 2] = 0.0, 0.0, 1.0
+        vertical = np.bincount(part.wheel, growth * own, 2 * count) / load
+        found[:, (0, 1), (0, 1)] = vertical.reshape(-1, 2)
+        return found
+
+    def posed(self) -> tuple[wl.Problem, Patches]:
+        """Return the contact problem of all places, with one entry for each, and what else is read of the patches."""
+        return self._posed(self.found, self.shapes)
+
+    def _posed(self, part: Candidates, shapes: Mapping[str, Array]) -> tuple[wl.Problem, Patches]:
         task, elastic = self.task, self.elastic
         side = np.where(part.side == 1, 1.0, -1.0)
-        patch = self._ellipse(part, normal) if self.hertz else self._strips(part, normal, scale[part.wheel])
-        arc = part.arc + patch.pop("centre")
+        arc = part.arc + shapes["centre"]
         place = placed(self.section, part.position, arc)
         sliding = creepages(
             part.position, place, task.speed[part.point], side * task.lateral_velocity[part.point],
             side * task.turn_rate[part.point], side * task.roll_rate[part.point], side,
         )  # fmt: skip
         flange = (np.abs(place.angle) > task.flange_angle).astype(np.intp)
-        longitudinal, lateral, spin = sliding.at(rotation[part.point])
-        make: Callable[..., wl.Problem] = wl.Problem.ellipse_from_si if self.hertz else wl.Problem.of_strips
-        problem = make(
-            **patch,
-            shear_modulus=np.full(side.shape, elastic.shear_modulus),
-            poisson_ratio=np.full(side.shape, elastic.poisson_ratio),
-            density=np.full(side.shape, elastic.density),
-            friction_coefficient=task.friction[part.point, flange],
-            longitudinal_creepage=longitudinal,
-            lateral_creepage=lateral,
-            spin=spin,
-            rolling_speed=task.speed[part.point],
-            contact_angle=side * place.angle,
-        )
-        return problem, Patches(problem.normal_force, arc, place, sliding, depth > part.gap)
+        longitudinal, lateral, spin = sliding.at(self.rotation[part.point])
+        given = {name: shapes[name] for name in ("a", "b")}
+        made = {
+            "shear_modulus": np.full(side.shape, elastic.shear_modulus),
+            "poisson_ratio": np.full(side.shape, elastic.poisson_ratio),
+            "density": np.full(side.shape, elastic.density),
+            "friction_coefficient": task.friction[part.point, flange],
+            "longitudinal_creepage": longitudinal,
+            "lateral_creepage": lateral,
+            "spin": spin,
+            "rolling_speed": task.speed[part.point],
+            "contact_angle": side * place.angle,
+        }
+        if self.hertz:
+            problem = wl.Problem.ellipse_from_si(**given, **made, normal_force=shapes["normal_force"])
+        else:
+            strips = wl.Strips(**{name: shapes[name] for name in wl.Strips.__slots__})
+            problem = wl.Problem.of_strips(strips=strips, **given, **made)
+        touch = self.penetration[part.wheel] > part.gap
+        return problem, Patches(problem.normal_force, arc, place, sliding, touch)
 
-    def _strips(self, part: Candidates, penetration: Array, scale: Array) -> dict[str, Any]:
-        """Return the strips of patches at penetrations normal to the surface [m], and the semi-axes and the centre."""
+    def _depth(self, part: Candidates) -> Array:
+        """Return the penetrations normal to the surface [m]."""
+        depth = self.penetration[part.wheel]
+        normal: Array = np.maximum(depth - part.gap, LEAST * depth) * part.cosine
+        return normal
+
+    def _strips(self, part: Candidates) -> dict[str, Array]:
+        """Return the strips of patches, their semi-axes and their centres."""
         found = _normal.penetrated(
-            part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus, penetration,
-            self.strips,
+            part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
+            self._depth(part), self.strips,
         )  # fmt: skip
         right = (part.side == 1)[:, None]
         across = np.where(right, 1.0, -1.0) * (found.y - found.centre[:, None])
@@ -452,17 +439,17 @@ class Balance:
             "y": across,
             "width": found.width,
             "half_length": found.half_length,
-            "max_pressure": found.pressure * scale[:, None],
+            "max_pressure": found.pressure * self.scale[part.wheel, None],
         }  # y grows on the left too
         strips = {name: np.where(right, array, array[:, ::-1]) for name, array in arrays.items()}
-        return {"strips": wl.Strips(**strips), "a": found.a, "b": found.b, "centre": found.centre}
+        return strips | {"a": found.a, "b": found.b, "centre": found.centre}
 
-    def _ellipse(self, part: Candidates, penetration: Array) -> dict[str, Any]:
+    def _ellipses(self, part: Candidates) -> dict[str, Array]:
         """Return Hertz's ellipses of the curvatures at first touching."""
         at = placed(self.section, part.position, part.arc)
         across = 0.5 * (self.section.wheel.at(part.arc)[3] + self.section.rail.at(at.rail_arc)[3])
         unit = _normal.hertz(part.curvature_x, across, self.elastic.modulus, np.ones(across.shape))
-        share = np.sqrt(penetration / unit.penetration)
+        share = np.sqrt(self._depth(part) / unit.penetration)
         return {"a": unit.a * share, "b": unit.b * share, "normal_force": share**3, "centre": np.zeros(across.shape)}
 
 

@@ -18,7 +18,7 @@ elliptic correction as in the program CONTACT (E. A. H. Vollebregt, src/m_snorm.
 Numerics: cubics through four samples give the gap between samples, with an error of 3/128 h⁴ g'''' at the spacing h and
 of about h²/8 times a step of g''. Strips are even in the angle between the ends of the patch. The integral over x is an
 elliptic one. The integral over t takes Gauss's nodes in s on each side of t_0, t = t_0 + (5 s⁴ - 4 s⁵) L, for the
-logarithm at t_0 and the decay near the ends of long patches. On ellipses its error is 1e-6 for a/b from 1/20 to 20.
+logarithm at t_0 and the decay near the ends of long patches. On ellipses its error is 2e-6 for a/b from 1/20 to 20.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,7 +38,7 @@ from wearlaw_wheelset import _normal_loops as loops
 NODES = 16
 """Nodes of the integral for the displacement, on each side of the deepest point."""
 
-BLOCK = 512
+BLOCK = 500
 """Patches of a block in NumPy: its arrays fit in the cache."""
 
 FEW = 100
@@ -126,7 +126,7 @@ def penetrated(
     Raises
     ------
     InputError
-        If a patch has fewer than four samples.
+        If a patch has fewer than four samples, a value is not positive, or there are fewer than two strips.
     """
     return _patches(start, step, gap, curvature_x, modulus, penetration, 0.0, strips)
 
@@ -154,9 +154,10 @@ def loaded(
 
     Notes
     -----
-    The force is a power of the penetration with a slope near 3/2, so that the secant method in logarithms takes about
-    five steps; it is kept within bounds, and bisected where it leaves them. The force jumps where a second hump of the
-    gap joins the patch, see `StripPatch.jumps`.
+    The force is nearly a power 3/2 of the penetration, so the secant method in logarithms takes four steps. It stays
+    within the penetrations that carry too little and too much, and bisects them where it would leave them. Where a
+    second hump of the gap joins the patch, the force jumps. If it falls there, the penetration from before is taken,
+    the first to carry the force as the bodies approach. If it rises past the given force, see `StripPatch.jumps`.
     """
     if guess is None:  # that of a sphere
         force, curvature, elastic = (np.asarray(value, dtype=float) for value in (normal_force, curvature_x, modulus))
@@ -197,21 +198,21 @@ def _patches(
     given = np.empty((count, 5))
     for column, value in enumerate((step, curvature_x, modulus, penetration, load)):
         given[:, column] = value
-    _check(samples)
+    _check(samples, given, strips)
     cosine, sine = _even(strips)
     share, weight = _nodes()
-    fields, sums = np.empty((count, 3, strips)), np.empty((count, 7))
+    fields, sums = np.empty((count, 3, strips)), np.empty((count, 4))
     if wl.accelerated(count * FEW):
         loops.patch_loop(samples, given, cosine, sine, share, weight, fields, sums)
     else:
-        for block in range(0, count, BLOCK):
-            part = slice(block, block + BLOCK)
-            _solve(samples[part], given[part], cosine, sine, share, weight, fields[part], sums[part])
-    return _result(np.asarray(start, dtype=float), given[:, 0], fields, sums)
+        _solve(samples, given, (cosine, sine, share, weight), fields, sums)
+    return _result(np.asarray(start, dtype=float), given, fields, sums)
 
 
-def _check(samples: Array) -> None:
-    """Raise an error if a patch has too few samples."""
+def _check(samples: Array, given: Array, strips: int) -> None:
+    """Raise an error if the strips or the samples are too few, or a value is not positive."""
+    if strips < 2:
+        raise wl.InputError(f"strips: {strips} given; a patch has at least 2")
     finite = np.isfinite(samples)
     few = finite.sum(axis=1) < loops.NEED
     if few.any():
@@ -220,6 +221,11 @@ def _check(samples: Array) -> None:
             f"gap: patch {at} has {np.count_nonzero(finite[at])} finite samples; at least {loops.NEED} are needed, "
             "so sample it more finely or widen its window"
         )
+    for name, values in zip(("step", "curvature_x", "modulus", "penetration or normal_force"), given.T, strict=False):
+        bad = ~((values > 0.0) & np.isfinite(values))
+        if bad.any():
+            at = int(bad.argmax())
+            raise wl.InputError(f"{name}: {values[at]:g} at patch {at}; it must be positive")
 
 
 @cache
@@ -237,31 +243,40 @@ def _nodes() -> tuple[Array, Array]:
     return s**4 * (5.0 - 4.0 * s), 20.0 * s**3 * (1.0 - s) * weight
 
 
-def _result(start: Array, step: Array, fields: Array, sums: Array) -> StripPatch:
+def _result(start: Array, given: Array, fields: Array, sums: Array) -> StripPatch:
     """Return patches from the strips and sums of the loops."""
-    penetration, force, slope, a, b, warning, longest = sums.T
+    penetration, slope, longest, warning = sums.T
     u, width, square = fields[:, 0], fields[:, 1], fields[:, 2]
-    half_length = np.sqrt(np.maximum(square, (loops.FLOOR * longest[:, None]) ** 2))
-    y = (start + 0.0)[..., None] + step[:, None] * u
     load = width * square
+    total = load.sum(axis=-1)
+    half_length = np.sqrt(np.maximum(square, loops.FLOOR**2 * longest[:, None]))
+    y = start[..., None] + given[:, :1] * u
+    ratio = 2.0 * np.sqrt(longest) / (_reach(u) * given[:, 0])
+    mean = np.sqrt(2.0 / np.pi * (half_length * width).sum(axis=-1))  # √(ab)
     return StripPatch(
         penetration=penetration,
-        normal_force=force,
-        max_pressure=slope * longest,
-        a=a,
-        b=b,
-        centre=(load * y).sum(axis=-1) / load.sum(axis=-1),
+        normal_force=0.5 * np.pi * slope * total,
+        max_pressure=slope * np.sqrt(longest),
+        a=mean * np.sqrt(ratio),
+        b=mean / np.sqrt(ratio),
+        centre=(load * y).sum(axis=-1) / total,
         y=y,
         width=width,
         half_length=half_length,
         pressure=slope[:, None] * half_length,
-        narrow=warning % 2.0 > 0.5,
-        jumps=warning > 1.5,
+        narrow=warning % loops.JUMPS > 0.0,
+        jumps=warning >= loops.JUMPS,
     )
 
 
+def _reach(u: Array) -> Array:
+    """Return the width of patches from their strips."""
+    width: Array = (u[:, -1] - u[:, 0]) / _even(u.shape[1])[0][-1]
+    return width
+
+
 class _Gaps(NamedTuple):
-    """Gaps as arrays: samples (patches, samples), the window, the deepest point, the least gap, spacing and A."""
+    """Gaps as arrays (patches, ...): samples, the window, the deepest point, the least gap, the spacing and A."""
 
     samples: Array
     first: NDArray[np.intp]
@@ -271,28 +286,23 @@ class _Gaps(NamedTuple):
     spacing: Array
     curvature: Array
 
-    def part(self, rows: NDArray[np.intp]) -> Self:
-        """Return some of the gaps."""
-        return type(self)(*(array[rows] for array in self))  # type: ignore[arg-type]
-
     def coefficients(self, cell: NDArray[np.intp]) -> tuple[NDArray[np.intp], tuple[Array, Array, Array, Array]]:
-        """Return the start and the coefficients of the cubics in cells, (patches, ...)."""
-        shape = (-1, *[1] * (cell.ndim - 1))
-        base = np.minimum(np.maximum(cell - 1, self.first.reshape(shape)), self.last.reshape(shape) - 3)
-        flat, at = self.samples.ravel(), base + (np.arange(len(cell)) * self.samples.shape[1]).reshape(shape)
+        """Return the start and the coefficients of the cubics in cells, (..., patches)."""
+        base = np.minimum(np.maximum(cell - 1, self.first), self.last - 3)
+        flat, at = self.samples.ravel(), base + np.arange(len(self.samples)) * self.samples.shape[1]
         g0 = flat[at]
         return base, (g0, *loops.cubic(g0, flat[at + 1], flat[at + 2], flat[at + 3]))
 
     def height(self, u: Array) -> Array:
-        """Return the gap above the least one at places (patches, places)."""
+        """Return the gap above the least one at places (..., patches)."""
         base, (c0, c1, c2, c3) = self.coefficients(u.astype(np.intp))
         x = u - base
-        height: Array = c0 - self.least[:, None] + x * (c1 + x * (c2 + x * c3))
+        height: Array = c0 - self.least + x * (c1 + x * (c2 + x * c3))
         return height
 
 
 class _Region(NamedTuple):
-    """Thresholds, the ends of patches, Hertz's semi-axes and whether the window cuts them off."""
+    """Thresholds, the ends of patches and whether the window cuts them off."""
 
     top: Array
     bend: Array
@@ -300,18 +310,24 @@ class _Region(NamedTuple):
     approach: Array
     start: Array
     end: Array
-    a: Array
-    b: Array
     cut: NDArray[np.bool_]
+
+    def excess(self, gaps: _Gaps, u: Array) -> Array:
+        """Return by how much gaps are below the threshold at places (..., patches)."""
+        level = loops.threshold(self.top, self.bend, self.middle, self.approach, u)
+        return np.maximum(level - gaps.height(u), 0.0)
 
 
 def _gaps(samples: Array, spacing: Array, curvature: Array) -> _Gaps:
-    """Return gaps with their deepest points."""
+    """Return gaps with their deepest points; samples beyond the window become infinite."""
     rows, size = np.arange(len(samples)), samples.shape[1]
     at, place = samples.argmin(axis=1), np.arange(size)
     missing = ~np.isfinite(samples)
-    first = np.where(missing & (place < at[:, None]), place, -1).max(axis=1) + 1
-    last = np.where(missing & (place > at[:, None]), place, size).min(axis=1) - 1
+    first, last = np.zeros_like(at), np.full_like(at, size - 1)
+    if missing.any():
+        first = np.where(missing & (place < at[:, None]), place, -1).max(axis=1) + 1
+        last = np.where(missing & (place > at[:, None]), place, size).min(axis=1) - 1
+        samples = np.where((place < first[:, None]) | (place > last[:, None]), np.inf, samples)
     least = samples[rows, at]
     gaps = _Gaps(samples, first, last, at.astype(float), np.zeros_like(least), spacing, curvature)
     inside = (at > first) & (at < last)
@@ -328,180 +344,190 @@ def _gaps(samples: Array, spacing: Array, curvature: Array) -> _Gaps:
     return gaps._replace(deepest=np.where(better, base + x, at), least=np.where(better, value, least))
 
 
-def _end(
-    gaps: _Gaps, top: Array, bend: Array, middle: Array, cap: Array, direction: int
-) -> tuple[Array, NDArray[np.bool_]]:
-    """Return the outermost places on one side where gaps are at the threshold, and whether the windows end first."""
-    rows, samples, first, last = np.arange(len(top)), gaps.samples, gaps.first, gaps.last
-    if bend.any():
-        place = np.arange(samples.shape[1], dtype=float)
-        level = loops.threshold(top[:, None], bend[:, None], middle[:, None], cap[:, None], place)
-    else:
-        level = top[:, None]
-    within = level + gaps.least[:, None] > samples
-    begin, deepest = (
-        (first, gaps.deepest.astype(np.intp)) if direction < 0 else (last, gaps.deepest.astype(np.intp) + 1)
-    )
-    if direction < 0:
-        within &= np.arange(samples.shape[1]) >= first[:, None]
-        j = within.argmax(axis=1)
-        found = within[rows, j] & (j <= deepest)
-    else:
-        within &= np.arange(samples.shape[1]) <= last[:, None]
-        j = samples.shape[1] - 1 - within[:, ::-1].argmax(axis=1)
-        found = within[rows, j] & (j >= deepest)
-    cut = found & (j == begin)
-    outer = np.where(found, j + direction, deepest)
-    cell = np.minimum(np.maximum(outer if direction < 0 else outer - 1, first), last - 1)
-    inner = np.minimum(gaps.deepest, cell + 1) if direction < 0 else np.maximum(gaps.deepest, cell)
-    base, (c0, c1, c2, c3) = gaps.coefficients(cell)
+def _within(gaps: _Gaps, top: Array, bend: Array | None, middle: Array, cap: Array) -> NDArray[np.bool_]:
+    """Return which samples are below the threshold."""
+    samples, least = gaps.samples, gaps.least
+    below: NDArray[np.bool_] = samples < (cap + least)[:, None]
+    if bend is not None:
+        level = np.arange(samples.shape[1]) - middle[:, None]
+        level *= level
+        level *= -bend[:, None]
+        level += (top + least)[:, None]
+        below &= level > samples
+    return below
+
+
+def _ends(gaps: _Gaps, top: Array, bend: Array | None, middle: Array, cap: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the outermost places where gaps are at the threshold, (2, patches), and whether the window ends first."""
+    rows, size = np.arange(len(top)), gaps.samples.shape[1]
+    within, cell = _within(gaps, top, bend, middle, cap), gaps.deepest.astype(np.intp)
+    low, high = within.argmax(axis=1), size - 1 - within[:, ::-1].argmax(axis=1)
+    found = within[rows, low] & np.stack([low <= cell, high >= np.minimum(cell + 1, gaps.last)])
+    begin, sample = np.stack([gaps.first, gaps.last]), np.stack([low, high])
+    away = np.array([[-1], [1]])
+    cut = found & (sample == begin)
+    outer = np.where(found, sample + away, np.stack([cell, cell + 1]))
+    left = np.minimum(np.maximum(outer - np.array([[0], [1]]), gaps.first), gaps.last - 1)
+    inner, out = np.minimum(np.maximum(gaps.deepest, left), left + 1), outer.astype(float)
+    base, (c0, c1, c2, c3) = gaps.coefficients(left)
     c0 = c0 - gaps.least
-    out = outer.astype(float)
     u = 0.5 * (inner + out)
     for _ in range(loops.NEWTON):
         x = u - base
-        level = loops.threshold(top, bend, middle, cap, u)
+        level = top if bend is None else loops.threshold(top, bend, middle, cap, u)
         value = level - (c0 + x * (c1 + x * (c2 + x * c3)))
         inner, out = np.where(value > 0.0, u, inner), np.where(value > 0.0, out, u)
         slope = -(c1 + x * (2.0 * c2 + x * 3.0 * c3))
-        slope = np.where((level > 0.0) & (level < cap), slope - 2.0 * bend * (u - middle), slope)
+        if bend is not None:
+            slope -= np.where((level > 0.0) & (level < cap), 2.0 * bend * (u - middle), 0.0)
         to = u - value / np.where(slope == 0.0, np.inf, slope)
         good = (to >= np.minimum(inner, out)) & (to <= np.maximum(inner, out)) & (slope != 0.0)
         to = np.where(good, to, 0.5 * (inner + out))
-        moved = np.abs(to - u)
+        moved = (np.abs(to - u) >= loops.STEP * gaps.last) & ~cut
         u = to
-        if not (moved > 1e-13 * last)[~cut].any():
+        if not moved.any():
             break
-    return np.where(cut, begin, u), cut
+    return np.where(cut, begin, u), cut.any(axis=0)
 
 
 def _region(gaps: _Gaps, approach: Array) -> _Region:
     """Return the thresholds and the ends of patches."""
-    half, none = 0.5 * approach, np.zeros_like(approach)
-    low, cut_low = _end(gaps, half, none, none, half, -1)
-    high, cut_high = _end(gaps, half, none, none, half, 1)
-    middle, curvature = 0.5 * (low + high), gaps.curvature
-    across = half / (0.5 * gaps.spacing * (high - low)) ** 2
-    share = loops.hertz_share(np.abs(np.log(across / curvature)))
-    share = np.where(across >= curvature, share, 1.0 - share)
-    a, b = np.sqrt(share * approach / curvature), np.sqrt((1.0 - share) * approach / across)
-    wide = np.maximum(b / gaps.spacing, loops.REACH * np.abs(gaps.deepest - middle))
-    top, bend = approach * share, approach * (2.0 * share - 1.0) / wide**2
-    start, cut_start = _end(gaps, top, bend, middle, approach, -1)
-    end, cut_end = _end(gaps, top, bend, middle, approach, 1)
-    return _Region(top, bend, middle, approach, start, end, a, b, cut_low | cut_high | cut_start | cut_end)
-
-
-def _squares(gaps: _Gaps, region: _Region, u: Array) -> Array:
-    """Return the squares of half the lengths of strips at u, (patches, places)."""
-    top, bend, middle, cap = (array[:, None] for array in region[:4])
-    free = loops.threshold(top, bend, middle, cap, u) - gaps.height(u)
-    return np.maximum(free, 0.0) / gaps.curvature[:, None]
+    half = 0.5 * approach
+    (low, high), narrow = _ends(gaps, half, None, half, half)
+    middle, curvature = 0.5 * (low + high), gaps.curvature * gaps.spacing**2
+    top, bend = loops.correction(approach, curvature, 0.5 * (high - low), np.abs(gaps.deepest - middle))
+    (start, end), cut = _ends(gaps, top, bend, middle, approach)
+    return _Region(top, bend, middle, approach, start, end, narrow | cut)
 
 
 def _evaluated(
-    gaps: _Gaps, modulus: Array, approach: Array, cosine: Array, sine: Array, share: Array, weight: Array
+    gaps: _Gaps, modulus: Array, approach: Array, rules: tuple[Array, Array, Array, Array]
 ) -> tuple[_Region, Array, Array, Array]:
     """Return the region of patches, the slope of their pressure in √(l²-x²), their strips and their forces."""
+    cosine, sine, share, weight = rules
     region = _region(gaps, approach)
-    span = np.stack([gaps.deepest - region.start, region.end - gaps.deepest], axis=1)
-    signed = span * np.array([-1.0, 1.0])
-    u = (gaps.deepest[:, None, None] + signed[..., None] * share).reshape(len(approach), -1)
-    distance = (gaps.spacing[:, None, None] * span[..., None] * share).reshape(u.shape)
-    weights = (gaps.spacing[:, None, None] * span[..., None] * weight).reshape(u.shape)
-    displaced = (weights * loops.compliance(_squares(gaps, region, u), distance)).sum(axis=1)
-    slope = math.pi * modulus * approach / displaced
+    span = np.stack([region.start, region.end])[:, None] - gaps.deepest
+    square = region.excess(gaps, gaps.deepest + share[:, None] * span) / gaps.curvature
+    length = gaps.spacing * np.abs(span)
+    displaced = length * weight[:, None] * loops.compliance(square, length * share[:, None])
+    slope = math.pi * modulus * approach / displaced.sum(axis=(0, 1))
     half = 0.5 * (region.end - region.start)
-    strips = np.empty((len(approach), 3, cosine.size))
-    strips[:, 0] = region.start[:, None] + half[:, None] * (1.0 + cosine)
-    strips[:, 1] = (half * gaps.spacing)[:, None] * sine
-    strips[:, 2] = _squares(gaps, region, strips[:, 0])
-    force = 0.5 * math.pi * slope * (strips[:, 1] * strips[:, 2]).sum(axis=1)
+    strips = np.empty((3, cosine.size, len(approach)))
+    strips[0] = region.start + half * (1.0 + cosine[:, None])
+    strips[1] = half * gaps.spacing * sine[:, None]
+    strips[2] = region.excess(gaps, strips[0]) / gaps.curvature
+    force = 0.5 * math.pi * slope * (strips[1] * strips[2]).sum(axis=0)
     return region, slope, strips, force
 
 
-def _solve(
-    samples: Array, given: Array, cosine: Array, sine: Array, share: Array, weight: Array, fields: Array, sums: Array
-) -> None:
+def _solve(samples: Array, given: Array, rules: tuple[Array, Array, Array, Array], fields: Array, sums: Array) -> None:
     """Fill in the strips and sums of patches with NumPy, as `loops.patch_loop` does."""
-    spacing, curvature, modulus, approach, load = given.T
-    every = _gaps(samples, spacing, curvature)
+    spacing, curvature, modulus, approach, load = (np.ascontiguousarray(column) for column in given.T)
+    gaps = _gaps(samples, spacing, curvature)
+    state = _Search(np.log(approach))
     active = np.arange(len(samples))
-    logarithm, before_log, before = np.log(approach), np.zeros_like(load), np.zeros_like(load)
-    low, high = np.full_like(load, -np.inf), np.full_like(load, np.inf)
     for iteration in range(loops.ITERATIONS):
-        gaps = every if len(active) == len(samples) else every.part(active)
-        here, target = logarithm[active], load[active]
-        region, slope, strips, force = _evaluated(gaps, modulus[active], np.exp(here), cosine, sine, share, weight)
-        wanted = np.where(target > 0.0, target, force)
-        miss = np.log(force / wanted)
-        short = miss < 0.0
-        low[active], high[active] = np.where(short, here, low[active]), np.where(short, high[active], here)
-        jumped = high[active] - low[active] < loops.WIDTH
-        done = (np.abs(miss) < loops.TOLERANCE) | (jumped & short)
-        if iteration == loops.ITERATIONS - 1:
-            done[:] = True
-        if done.any():
-            _finish(
-                gaps,
-                region,
-                slope,
-                strips,
-                force,
-                wanted,
-                jumped & (np.abs(miss) >= loops.TOLERANCE),
-                done,
-                active,
-                fields,
-                sums,
-            )
-        rate = np.full_like(miss, 1.5)
-        if iteration:
-            rate = (miss - before[active]) / (here - before_log[active])
-            rate = np.minimum(np.maximum(rate, loops.LEAST_SLOPE), loops.STEEPEST_SLOPE)
-        to = here - miss / rate
-        to = np.where((to > low[active]) & (to < high[active]), to, 0.5 * (low[active] + high[active]))
-        to = np.where(jumped, low[active], to)
-        before_log[active], before[active], logarithm[active] = here, miss, to
-        active = active[~done]
+        left = []
+        for block in range(0, len(active), BLOCK):
+            at = active[block : block + BLOCK]
+            here, target = state.logarithm[at], load[at]
+            part = _Gaps(*(array[at] for array in gaps))  # type: ignore[arg-type]
+            region, slope, strips, force = _evaluated(part, modulus[at], np.exp(here), rules)
+            wanted = np.where(target > 0.0, target, force)
+            done = state.step(at, np.log(force / wanted), target > 0.0, part, 0.5 * region.approach)
+            done |= iteration == loops.ITERATIONS - 1
+            if done.any():
+                longest = _greatest(part, region, strips[2] * part.curvature) / part.curvature
+                warning = loops.JUMPS * state.jumps[at] + loops.NARROW * region.cut
+                columns = np.stack([region.approach, slope * wanted / force, longest, warning], axis=1)
+                fields[at[done]], sums[at[done]] = strips[..., done].transpose(2, 0, 1), columns[done]
+            left.append(at[~done])
+        active = np.concatenate(left)
         if not len(active):
             break
 
 
-def _finish(
-    gaps: _Gaps,
-    region: _Region,
-    slope: Array,
-    strips: Array,
-    force: Array,
-    wanted: Array,
-    jumps: NDArray[np.bool_],
-    done: NDArray[np.bool_],
-    active: NDArray[np.intp],
-    fields: Array,
-    sums: Array,
-) -> None:
-    """Fill in strips and sums of the patches that are done."""
-    at = active[done]
-    warning = loops.JUMPS * jumps + loops.NARROW * region.cut
-    longest = np.sqrt(_greatest(gaps, region, strips[:, 2]))
-    columns = (region.approach, wanted, slope * wanted / force, region.a, region.b, warning, longest)
-    fields[at], sums[at] = strips[done], np.stack(columns, axis=1)[done]
+class _Search:
+    """The search for the smallest penetrations, from their logarithms."""
+
+    def __init__(self, logarithm: Array) -> None:
+        self.logarithm = logarithm
+        self.found = logarithm.copy()
+        self.before_log, self.before = np.zeros_like(logarithm), np.zeros_like(logarithm)
+        self.low, self.high = np.full_like(logarithm, -np.inf), np.full_like(logarithm, np.inf)
+        self.mode = np.full(logarithm.shape, loops.SOLVES)
+        self.fresh = np.ones(logarithm.shape, dtype=bool)
+        self.jumps = np.zeros(logarithm.shape, dtype=bool)
+
+    def step(
+        self, at: NDArray[np.intp], miss: Array, solves: NDArray[np.bool_], gaps: _Gaps, level: Array
+    ) -> NDArray[np.bool_]:
+        """Choose the next penetrations from the logarithms of force over load, and return which patches are done."""
+        here, mode = self.logarithm[at], self.mode[at]
+        probed = mode == loops.PROBES
+        back, again = probed & (miss < 0.0), probed & (miss >= 0.0)
+        low, high = np.where(again, -np.inf, self.low[at]), np.where(again, here, self.high[at])
+        fresh, jumps = self.fresh[at] | again, self.jumps[at] & ~again
+        mode = np.where(back, loops.FOUND, np.where(again, loops.SOLVES, mode))
+        low, high = np.where((miss < 0.0) & ~back, here, low), np.where((miss < 0.0) | back, high, here)
+        carries, closed = np.abs(miss) < loops.TOLERANCE, high - low < loops.WIDTH
+        candidate = (carries | (closed & (miss < 0.0))) & ~back
+        done: NDArray[np.bool_] = candidate & ((mode == loops.FOUND) | ~solves)
+        jumps |= candidate & ~carries
+        rate = (miss - self.before[at]) / np.where(fresh, 1.0, here - self.before_log[at])
+        rate = np.where(fresh, 1.5, np.minimum(np.maximum(rate, loops.LEAST_SLOPE), loops.STEEPEST_SLOPE))
+        to = here - miss / rate
+        to = np.where(closed, low, np.where((to > low) & (to < high), to, 0.5 * (low + high)))
+        probe = candidate & ~done
+        if probe.any():
+            joined = _joined(gaps, level)
+            done |= probe & (joined == 0.0)
+            probe &= joined > 0.0
+            to = np.where(probe, np.log(2.0 * loops.BEFORE * np.where(probe, joined, 1.0)), to)
+            mode = np.where(probe, loops.PROBES, mode)
+        kept = probe | back
+        self.before_log[at], self.before[at] = np.where(kept, self.before_log[at], here), np.where(kept, 0.0, miss)
+        self.logarithm[at] = np.where(back, self.found[at], to)
+        self.found[at] = np.where(probe, here, self.found[at])
+        self.fresh[at] = fresh & kept
+        self.low[at], self.high[at], self.mode[at], self.jumps[at] = low, high, mode, jumps
+        return done
 
 
-def _greatest(gaps: _Gaps, region: _Region, squares: Array) -> Array:
-    """Return the largest squares of half a strip's length, from parabolas in the angle of strips."""
-    count = squares.shape[1]
+def _joined(gaps: _Gaps, level: Array) -> Array:
+    """Return the greatest levels below the given ones at which a hump joins a patch from outside, or 0."""
+    samples, rows = gaps.samples, np.arange(len(level))
+    cell, size = gaps.deepest.astype(np.intp), gaps.samples.shape[1]
+    other = np.minimum(cell + 1, gaps.last)
+    within, place = samples < (level + gaps.least)[:, None], np.arange(size)
+    low, high = within.argmax(axis=1), size - 1 - within[:, ::-1].argmax(axis=1)
+    with np.errstate(invalid="ignore"):  # between infinite samples
+        rises = np.diff(samples, axis=1) >= 0.0
+    bottom = np.zeros_like(within)
+    bottom[:, :-1] = rises & (place[:-1] >= low[:, None])
+    low = np.minimum(bottom.argmax(axis=1), cell)
+    bottom[:] = False
+    bottom[:, 1:] = ~rises & (place[1:] <= high[:, None])
+    high = np.maximum(size - 1 - bottom[:, ::-1].argmax(axis=1), other)
+    joined = np.zeros_like(level)
+    for at, inside in ((low, low < cell), (high, high > other)):
+        joined = np.maximum(joined, np.where(inside & within[rows, at], samples[rows, at] - gaps.least, 0.0))
+    return joined
+
+
+def _greatest(gaps: _Gaps, region: _Region, excess: Array) -> Array:
+    """Return the largest excess of patches, from parabolas in the angle of strips."""
+    count = len(excess)
     step = math.pi / (count + 1)
-    angle = step * (count - squares.argmax(axis=1))
-    best: Array = squares.max(axis=1)
+    angle = step * (count - excess.argmax(axis=0))
+    best: Array = excess.max(axis=0)
     centre, half = 0.5 * (region.start + region.end), 0.5 * (region.end - region.start)
-    for _ in range(3):
-        angles = np.stack([np.minimum(angle + step, math.pi), angle, np.maximum(angle - step, 0.0)], axis=1)
-        left, here, right = _squares(gaps, region, centre[:, None] + half[:, None] * np.cos(angles)).T
+    for _ in range(loops.PEAK):
+        angles = np.stack([np.minimum(angle + step, math.pi), angle, np.maximum(angle - step, 0.0)])
+        before, here, after = region.excess(gaps, centre + half * np.cos(angles))
         best = np.maximum(best, here)
-        bow = 2.0 * here - left - right
-        ahead = np.where(bow > 0.0, 0.5 * (left - right) / np.where(bow > 0.0, bow, 1.0), 0.0)
+        bow = 2.0 * here - before - after
+        ahead = np.where(bow > 0.0, 0.5 * (before - after) / np.where(bow > 0.0, bow, 1.0), 0.0)
         angle = np.minimum(np.maximum(angle + np.clip(ahead, -1.0, 1.0) * step, 0.0), math.pi)
         step *= 0.25
     return best

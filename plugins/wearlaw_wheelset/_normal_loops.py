@@ -14,7 +14,10 @@ import wearlaw as wl
 from wearlaw import Array
 
 AGM = 6
-"""Steps of the arithmetic-geometric mean: enough for c over √(l²+c²) down to 1e-4, and to 1e-3 of it at 1e-10."""
+"""Steps of an arithmetic-geometric mean: right to 1e-12 for ratios of its numbers from 1e-4, to 1e-3 from 1e-10."""
+
+HERTZ = 3
+"""Newton steps to the axis ratio: right to 1e-11 for ratios of curvatures up to 100, to 3e-10 beyond."""
 
 TOLERANCE = 1e-10
 """Relative error of the force that a penetration is solved to."""
@@ -28,6 +31,12 @@ ITERATIONS = 100
 NEWTON = 60
 """Largest number of steps to an end of the patch; 4 are common."""
 
+STEP = 1e-13
+"""Step at which an end is found, over the number of samples."""
+
+PEAK = 3
+"""Steps to the longest strip."""
+
 LEAST_SLOPE, STEEPEST_SLOPE = 0.5, 6.0
 """Range of d ln N / d ln δ; it is 3/2 where the gap is a parabola."""
 
@@ -39,6 +48,12 @@ FLOOR = 1e-4
 
 NEED = 4
 """Samples of a cubic."""
+
+BEFORE = 1.0 - 1e-12
+"""Factor of a penetration just before a hump joins."""
+
+SOLVES, PROBES, FOUND = 0, 1, 2
+"""States of the search for the smallest penetration."""
 
 NARROW, JUMPS = 1.0, 2.0
 """What may be wrong: the window is too narrow; the force jumps over the given one."""
@@ -91,7 +106,7 @@ def hertz_share(log_ratio: Number) -> Number:
     """
     logarithm: Any = log_ratio * (2.0 / math.pi)
     share: Any = 0.5
-    for _ in range(4):
+    for _ in range(HERTZ):
         kappa = np.exp(-logarithm)
         m = (1.0 - kappa) * (1.0 + kappa)
         mean, other = 0.5 * (1.0 + kappa), np.sqrt(kappa)
@@ -109,6 +124,28 @@ def hertz_share(log_ratio: Number) -> Number:
     return share  # type: ignore[no-any-return]
 
 
+def correction(approach: Number, curvature: Number, reach: Number, skew: Number) -> tuple[Number, Number]:
+    """Return the threshold in the middle of the patch, A a², and its bend, (A a² - B b²)/b².
+
+    Parameters
+    ----------
+    approach
+        The penetration, δ.
+    curvature
+        A, for lengths in the unit of `reach`.
+    reach
+        Half the width of the patch at half the penetration.
+    skew
+        Distance of the deepest point from the middle; the ellipse reaches at least a little beyond that point.
+    """
+    across: Any = 0.5 * approach / (reach * reach)
+    log_ratio: Any = np.log(across / curvature)
+    share: Any = hertz_share(np.abs(log_ratio))
+    share = 0.5 + np.sign(log_ratio) * (share - 0.5)
+    b: Any = np.maximum(np.sqrt((1.0 - share) * approach / across), REACH * skew)
+    return approach * share, approach * (2.0 * share - 1.0) / (b * b)
+
+
 def _coefficients(gap: Array, first: int, last: int, cell: int) -> tuple[int, float, float, float, float]:
     """Return the start and the coefficients of the cubic in the cell from one sample to the next."""
     base = min(max(cell - 1, first), last - 3)
@@ -123,8 +160,11 @@ def height(gap: Array, first: int, last: int, u: float) -> float:
     return c0 + x * (c1 + x * (c2 + x * c3))
 
 
-def _lowest(gap: Array) -> tuple[int, int, float, float]:
-    """Return the first and the last sample of the window, and the place and value of the smallest gap in it."""
+def _lowest(gap: Array, outer: Array) -> tuple[int, int, float, float]:
+    """Return the first and the last sample of the window, and the place and value of the smallest gap in it.
+
+    Fills in the smallest gap from each sample outwards.
+    """
     j = 0
     least = math.inf
     for i in range(gap.size):
@@ -135,6 +175,12 @@ def _lowest(gap: Array) -> tuple[int, int, float, float]:
         first -= 1
     while last < gap.size - 1 and gap[last + 1] < math.inf:
         last += 1
+    outer[first] = gap[first]
+    for i in range(first + 1, j + 1):
+        outer[i] = min(outer[i - 1], gap[i])
+    outer[last] = gap[last]
+    for i in range(last - 1, j, -1):
+        outer[i] = min(outer[i + 1], gap[i])
     if j in (first, last):
         return first, last, float(j), least
     cell = j if gap[j + 1] < gap[j - 1] else j - 1
@@ -151,8 +197,39 @@ def _lowest(gap: Array) -> tuple[int, int, float, float]:
     return first, last, float(j), least
 
 
+def _outermost(outer: Array, begin: int, end: int, level: float) -> int:
+    """Return the first sample from `begin` to `end` below a level, or `end`, by bisection of `_lowest`'s array."""
+    if outer[begin] < level:
+        return begin
+    direction = 1 if end > begin else -1
+    while (end - begin) * direction > 1:
+        middle = (begin + end) // 2
+        if outer[middle] < level:
+            end = middle
+        else:
+            begin = middle
+    return end
+
+
+def _joined(gap: Array, outer: Array, first: int, last: int, deepest: float, least: float, level: float) -> float:
+    """Return the greatest level below the given one at which a hump joins the patch from outside, or 0."""
+    cell = int(deepest)
+    j = _outermost(outer, first, cell, level + least)
+    while j < cell and gap[j + 1] < gap[j]:
+        j += 1
+    joined = gap[j] if j < cell and gap[j] < level + least else -math.inf
+    cell = min(cell + 1, last)
+    j = _outermost(outer, last, cell, level + least)
+    while j > cell and gap[j - 1] < gap[j]:
+        j -= 1
+    if j > cell and gap[j] < level + least:
+        joined = max(joined, gap[j])
+    return max(joined - least, 0.0)
+
+
 def _end(
     gap: Array,
+    outer_least: Array,
     first: int,
     last: int,
     deepest: float,
@@ -165,21 +242,18 @@ def _end(
 ) -> tuple[float, bool]:
     """Return the outermost place on one side where the gap is at the threshold, and whether the window ends first."""
     cell = int(deepest)
-    outer = cell if direction < 0 else cell + 1
-    j = first if direction < 0 else last
-    begin = j
-    while (outer - j) * direction < 0:
-        if threshold(top, bend, middle, cap, float(j)) > gap[j] - least:
-            break
+    begin, last_one = (first, cell) if direction < 0 else (last, min(cell + 1, last))
+    j = _outermost(outer_least, begin, last_one, cap + least)
+    while j != last_one and threshold(top, bend, middle, cap, float(j)) <= gap[j] - least:
         j -= direction
     if threshold(top, bend, middle, cap, float(j)) > gap[j] - least:
         if j == begin:
             return float(j), True
-        outer = j + direction
-    cell = outer if direction < 0 else outer - 1
+        j += direction
+    cell = j if direction < 0 else j - 1
     inner = max(deepest, float(cell)) if direction > 0 else min(deepest, float(cell + 1))
     base, c0, c1, c2, c3 = _coefficients(gap, first, last, cell)
-    out = float(outer)
+    out = float(j)
     u = 0.5 * (inner + out)
     for _ in range(NEWTON):
         x = u - base
@@ -197,35 +271,34 @@ def _end(
             to = 0.5 * (inner + out)
         step = abs(to - u)
         u = to
-        if step < 1e-13 * last:
+        if step < STEP * last:
             break
     return u, False
 
 
 def _region(
-    gap: Array, first: int, last: int, deepest: float, least: float, spacing: float, curvature: float, approach: float
-) -> tuple[float, float, float, float, float, float, float, bool]:
-    """Return the threshold (top, bend and middle), the ends of the patch, Hertz's semi-axes, and what is wrong."""
+    gap: Array,
+    outer: Array,
+    first: int,
+    last: int,
+    deepest: float,
+    least: float,
+    spacing: float,
+    curvature: float,
+    approach: float,
+) -> tuple[float, float, float, float, float, bool]:
+    """Return the threshold (top, bend and middle), the ends of the patch, and whether the window cuts it off."""
     half = 0.5 * approach
-    low, cut_low = _end(gap, first, last, deepest, least, half, 0.0, 0.0, half, -1)
-    high, cut_high = _end(gap, first, last, deepest, least, half, 0.0, 0.0, half, 1)
-    reach = 0.5 * spacing * (high - low)
-    middle = 0.5 * (low + high)
-    across = half / (reach * reach)
-    long = across >= curvature
-    share = hertz_share(abs(math.log(across / curvature)))
-    along_share = share if long else 1.0 - share
-    a = math.sqrt(along_share * approach / curvature)
-    b = math.sqrt((1.0 - along_share) * approach / across)
-    wide = max(b / spacing, REACH * abs(deepest - middle))
-    top = approach * along_share
-    bend = approach * (2.0 * along_share - 1.0) / (wide * wide)
-    start, cut_start = _end(gap, first, last, deepest, least, top, bend, middle, approach, -1)
-    end, cut_end = _end(gap, first, last, deepest, least, top, bend, middle, approach, 1)
-    return top, bend, middle, start, end, a, b, cut_low or cut_high or cut_start or cut_end
+    low, cut_low = _end(gap, outer, first, last, deepest, least, half, 0.0, 0.0, half, -1)
+    high, cut_high = _end(gap, outer, first, last, deepest, least, half, 0.0, 0.0, half, 1)
+    reach, middle = 0.5 * (high - low), 0.5 * (low + high)
+    top, bend = correction(approach, curvature * spacing * spacing, reach, abs(deepest - middle))
+    start, cut_start = _end(gap, outer, first, last, deepest, least, top, bend, middle, approach, -1)
+    end, cut_end = _end(gap, outer, first, last, deepest, least, top, bend, middle, approach, 1)
+    return top, bend, middle, start, end, cut_low or cut_high or cut_start or cut_end
 
 
-def _square(
+def _excess(
     gap: Array,
     first: int,
     last: int,
@@ -234,93 +307,10 @@ def _square(
     bend: float,
     middle: float,
     approach: float,
-    curvature: float,
     u: float,
 ) -> float:
-    """Return the square of half the length of the strip at u."""
-    free = threshold(top, bend, middle, approach, u) - (height(gap, first, last, u) - least)
-    return max(free, 0.0) / curvature
-
-
-def _solve(
-    gap: Array,
-    spacing: float,
-    curvature: float,
-    modulus: float,
-    approach: float,
-    load: float,
-    cosine: Array,
-    sine: Array,
-    share: Array,
-    weight: Array,
-    fields: Array,
-    sums: Array,
-) -> None:
-    """Fill in the strips (y in samples, width, half the length) and the sums of a patch."""
-    first, last, deepest, least = _lowest(gap)
-    count = cosine.size
-    logarithm, before_log, before = math.log(approach), 0.0, 0.0
-    low, high = -math.inf, math.inf
-    warning = 0.0
-    for iteration in range(ITERATIONS):
-        approach = math.exp(logarithm)
-        top, bend, middle, start, end, a, b, cut = _region(
-            gap, first, last, deepest, least, spacing, curvature, approach
-        )
-        displaced = 0.0
-        for k in range(share.size):
-            for side in range(2):
-                span = (end if side else start) - deepest
-                square = _square(
-                    gap, first, last, least, top, bend, middle, approach, curvature, deepest + share[k] * span
-                )
-                distance = spacing * abs(span) * share[k]
-                displaced += spacing * abs(span) * weight[k] * compliance(square, distance)
-        slope = math.pi * modulus * approach / displaced  # of the pressure in √(l²-x²)
-        force, half = 0.0, 0.5 * (end - start)
-        for i in range(count):
-            fields[0, i] = start + half * (1.0 + cosine[i])
-            fields[1, i] = half * spacing * sine[i]
-            fields[2, i] = _square(gap, first, last, least, top, bend, middle, approach, curvature, fields[0, i])
-            force += fields[1, i] * fields[2, i]
-        force *= 0.5 * math.pi * slope
-        if load <= 0.0:
-            break
-        miss = math.log(force / load)
-        if abs(miss) < TOLERANCE:
-            break
-        if miss < 0.0:
-            low = logarithm
-        else:
-            high = logarithm
-        if high - low < WIDTH:
-            if miss < 0.0:
-                warning = JUMPS
-                break
-            to = low
-        else:
-            rate = 1.5
-            if iteration > 0:
-                rate = (miss - before) / (logarithm - before_log)
-                rate = min(max(rate, LEAST_SLOPE), STEEPEST_SLOPE)
-            to = logarithm - miss / rate
-            if not low < to < high:
-                to = 0.5 * (low + high)
-        before_log, before, logarithm = logarithm, miss, to
-    if load > 0.0:
-        slope *= load / force
-        force = load
-    sums[0], sums[1], sums[2], sums[3], sums[4], sums[5] = (
-        approach,
-        force,
-        slope,
-        a,
-        b,
-        warning + (NARROW if cut else 0.0),
-    )
-    sums[6] = math.sqrt(
-        _greatest(gap, first, last, least, top, bend, middle, approach, curvature, start, end, fields[2])
-    )
+    """Return by how much the gap is below the threshold at u."""
+    return max(threshold(top, bend, middle, approach, u) - (height(gap, first, last, u) - least), 0.0)
 
 
 def _greatest(
@@ -332,83 +322,150 @@ def _greatest(
     bend: float,
     middle: float,
     approach: float,
-    curvature: float,
     start: float,
     end: float,
-    squares: Array,
+    excess: Array,
 ) -> float:
-    """Return the largest square of half a strip's length, from parabolas in the angle of strips."""
+    """Return the largest excess, from parabolas in the angle of strips."""
     i = 0
-    for k in range(squares.size):
-        if squares[k] > squares[i]:
+    for k in range(excess.size):
+        if excess[k] > excess[i]:
             i = k
-    step = math.pi / (squares.size + 1)
-    angle = step * (squares.size - i)
-    best: float = squares[i]
-    for _ in range(3):
-        centre = 0.5 * (start + end)
-        half = 0.5 * (end - start)
-        left = _square(
-            gap,
-            first,
-            last,
-            least,
-            top,
-            bend,
-            middle,
-            approach,
-            curvature,
-            centre + half * math.cos(min(angle + step, math.pi)),
-        )
-        here = _square(gap, first, last, least, top, bend, middle, approach, curvature, centre + half * math.cos(angle))
-        right = _square(
-            gap,
-            first,
-            last,
-            least,
-            top,
-            bend,
-            middle,
-            approach,
-            curvature,
-            centre + half * math.cos(max(angle - step, 0.0)),
-        )
+    step = math.pi / (excess.size + 1)
+    angle = step * (excess.size - i)
+    best: float = excess[i]
+    centre, half = 0.5 * (start + end), 0.5 * (end - start)
+    for _ in range(PEAK):
+        left = centre + half * math.cos(min(angle + step, math.pi))
+        right = centre + half * math.cos(max(angle - step, 0.0))
+        before = _excess(gap, first, last, least, top, bend, middle, approach, left)
+        here = _excess(gap, first, last, least, top, bend, middle, approach, centre + half * math.cos(angle))
+        after = _excess(gap, first, last, least, top, bend, middle, approach, right)
         best = max(best, here)
-        bow = 2.0 * here - left - right
+        bow = 2.0 * here - before - after
         if bow <= 0.0:
             break
-        angle += min(max(0.5 * (left - right) / bow, -1.0), 1.0) * step
+        angle += min(max(0.5 * (before - after) / bow, -1.0), 1.0) * step
         angle = min(max(angle, 0.0), math.pi)
         step *= 0.25
     return best
 
 
-ROWS = "float64[:, ::1]"
+def _displacement(weight: Array, square: Array, distance: Array, mean: Array, total: Array) -> float:
+    """Return the weighted sum of `compliance` over nodes, in loops that compilers vectorise; changes `distance`."""
+    for k in range(square.size):
+        mean[k] = math.sqrt(square[k] + distance[k] * distance[k])
+        total[k] = 0.5 * square[k]
+    factor = 1.0
+    for _ in range(AGM):
+        for k in range(square.size):
+            half = 0.5 * (mean[k] - distance[k])
+            distance[k] = math.sqrt(mean[k] * distance[k])
+            mean[k] -= half
+            total[k] += factor * half * half
+        factor *= 2.0
+    result = 0.0
+    for k in range(square.size):
+        result += weight[k] * total[k] / mean[k]
+    return math.pi * result
 
 
-@wl.compiled_loop(
-    f"void({ROWS}, {ROWS}, float64[::1], float64[::1], float64[::1], float64[::1], float64[:, :, ::1], {ROWS})"
-)
+ROWS, ROW = "float64[:, ::1]", "float64[::1]"
+
+
+@wl.compiled_loop(f"void({ROWS}, {ROWS}, {ROW}, {ROW}, {ROW}, {ROW}, float64[:, :, ::1], {ROWS})")
 def patch_loop(
     gap: Array, given: Array, cosine: Array, sine: Array, share: Array, weight: Array, fields: Array, sums: Array
 ) -> None:
-    """Fill in the strips, (patches, 3, strips), and the sums, (patches, 7), of patches.
+    """Fill in the strips, (patches, 3, strips), and the sums, (patches, 4), of patches.
 
     `given` holds the spacing of the samples, the curvature A, the effective modulus, the penetration or a guess of it,
-    and the normal force or 0.
+    and the normal force or 0. The strips are their place, width and square of half the length; the sums the
+    penetration, the slope of the pressure in √(l²-x²), the square of half the longest length, and what is wrong.
     """
+    outer, buffer = np.empty(gap.shape[1]), np.empty((5, 2 * share.size))
     for p in range(len(gap)):
-        _solve(
-            gap[p],
-            given[p, 0],
-            given[p, 1],
-            given[p, 2],
-            given[p, 3],
-            given[p, 4],
-            cosine,
-            sine,
-            share,
-            weight,
-            fields[p],
-            sums[p],
+        _solve(gap[p], given[p], cosine, sine, share, weight, outer, buffer, fields[p], sums[p])
+
+
+def _solve(
+    gap: Array,
+    given: Array,
+    cosine: Array,
+    sine: Array,
+    share: Array,
+    weight: Array,
+    outer: Array,
+    buffer: Array,
+    fields: Array,
+    sums: Array,
+) -> None:
+    """Fill in the strips and the sums of a patch."""
+    spacing, curvature, modulus, approach, load = given[0], given[1], given[2], given[3], given[4]
+    first, last, deepest, least = _lowest(gap, outer)
+    logarithm, before_log, before = math.log(approach), 0.0, 0.0
+    low, high, warning = -math.inf, math.inf, 0.0
+    mode, found, iteration = SOLVES, logarithm, 0
+    for _ in range(ITERATIONS):
+        approach = math.exp(logarithm)
+        top, bend, middle, start, end, cut = _region(
+            gap, outer, first, last, deepest, least, spacing, curvature, approach
         )
+        square, distance, weights = buffer[0], buffer[1], buffer[2]
+        for side in range(2):
+            span = (end if side else start) - deepest
+            length = spacing * abs(span)
+            for k in range(share.size):
+                i = side * share.size + k
+                square[i] = (
+                    _excess(gap, first, last, least, top, bend, middle, approach, deepest + share[k] * span) / curvature
+                )
+                distance[i], weights[i] = length * share[k], length * weight[k]
+        displaced = _displacement(weights, square, distance, buffer[3], buffer[4])
+        slope = math.pi * modulus * approach / displaced
+        force, half = 0.0, 0.5 * (end - start)
+        for i in range(cosine.size):
+            fields[0, i] = start + half * (1.0 + cosine[i])
+            fields[1, i] = half * spacing * sine[i]
+            fields[2, i] = _excess(gap, first, last, least, top, bend, middle, approach, fields[0, i]) / curvature
+            force += fields[1, i] * fields[2, i]
+        force *= 0.5 * math.pi * slope
+        miss = math.log(force / load) if load > 0.0 else 0.0
+        if mode == PROBES:  # a smaller penetration may carry the force, before a hump joined
+            mode = SOLVES
+            if miss < 0.0:
+                mode, logarithm = FOUND, found
+                continue
+            low, high, warning, iteration = -math.inf, logarithm, 0.0, 0
+        carries = abs(miss) < TOLERANCE
+        if miss < 0.0:
+            low = logarithm
+        else:
+            high = logarithm
+        closed = high - low < WIDTH
+        if carries or (closed and miss < 0.0):
+            warning = warning if carries or mode == FOUND else JUMPS
+            joined = _joined(gap, outer, first, last, deepest, least, 0.5 * approach)
+            if mode == FOUND or load <= 0.0 or joined == 0.0:
+                break
+            mode, found, logarithm = PROBES, logarithm, math.log(2.0 * BEFORE * joined)
+            continue
+        if closed:
+            to = low
+        else:
+            rate = 1.5
+            if iteration > 0:
+                rate = (miss - before) / (logarithm - before_log)
+                rate = min(max(rate, LEAST_SLOPE), STEEPEST_SLOPE)
+            to = logarithm - miss / rate
+            if not low < to < high:
+                to = 0.5 * (low + high)
+        before_log, before, logarithm = logarithm, miss, to
+        iteration += 1
+    for i in range(cosine.size):
+        fields[2, i] *= curvature
+    longest = _greatest(gap, first, last, least, top, bend, middle, approach, start, end, fields[2])
+    for i in range(cosine.size):
+        fields[2, i] /= curvature
+    sums[0], sums[1], sums[2] = approach, slope * load / force if load > 0.0 else slope, longest / curvature
+    sums[3] = warning + (NARROW if cut else 0.0)

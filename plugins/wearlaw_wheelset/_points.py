@@ -22,6 +22,8 @@ NARROWEST, WIDEST = 20e-3, 300e-3
 """Bounds of the width of a profile [m]."""
 CLEAR = 5e-3
 """Height by which a profile must stand out to show which way up it is, or on which side its flange is [m]."""
+TIP = 1e-3
+"""Height by which the top of a flange stands above both ends of the profile [m]."""
 BLOCK = 64
 """Steps in a block whose bounding box is compared with those of others."""
 
@@ -97,7 +99,9 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
     across = np.linspace(y.min(), y.max(), 201)
     level = float(np.median(np.interp(across, y[order], z[order])))
     up, down = level - float(z.min()), float(z.max()) - level
-    if up > max(down, CLEAR):
+    # The field side of a wheel may rise more than its flange falls, up to the end of the profile.
+    tip = kind == "rail" or z.min() + TIP < min(z[0], z[-1])
+    if up > max(down, CLEAR) and tip:
         part = "flange" if kind == "wheel" else "side"
         place = int(np.argmin(z))
         raise wl.InputError(
@@ -131,9 +135,9 @@ def crossed_steps(y: Array, z: Array) -> tuple[int, int] | None:
     near = np.ones((starts.size, starts.size), dtype=np.bool_)
     for least, most in zip(low, high, strict=True):
         near &= (least[:, None] <= most) & (least <= most[:, None])
-    for first, second in np.argwhere(np.triu(near)):
-        one = np.arange(starts[first], min(starts[first] + BLOCK, count))[:, None]
-        other = np.arange(starts[second], min(starts[second] + BLOCK, count))[None, :]
+    for first, second in BLOCK * np.argwhere(np.triu(near)):
+        one = first + np.arange(min(BLOCK, count - first))[:, None]
+        other = second + np.arange(min(BLOCK, count - second))[None, :]
         crosses = (other > one + 1) & _cross(y, z, one, other)
         if crosses.any():
             row, column = np.argwhere(crosses)[0]

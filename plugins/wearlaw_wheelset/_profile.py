@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from functools import cache, cached_property
 from pathlib import Path
@@ -29,6 +29,10 @@ CONVEX = {"wheel": -1.0, "rail": 1.0}
 
 CONSTRUCTORS = {"s1002": "Profile.s1002()", "uic60": "Profile.uic60()"}
 """How each profile by formula is made."""
+
+
+FILE_FIELDS = ("file", "kind", "units", "mirror_y", "mirror_z", "shift_y", "shift_z", "smoothing")
+"""Fields of a table that names a file of a profile."""
 
 
 class _Coordinates:
@@ -81,8 +85,8 @@ class Profile(wl.Configuration):
     its origin at its top, on its axis, and is not canted; its gauge side is at y < 0.
 
     Make one by `s1002`, `uic60`, `from_points` or `read_profile`. In files, a profile is the name of a formula, such as
-    "s1002", the path of a file that `read_profile` reads, or a table of these fields. A formula or the points come
-    first, then the mirror, the turn and the shifts.
+    "s1002", the path of a file, a table with `file` and options of `read_profile`, or a table of these fields. A
+    formula or the points come first, then the mirror, the turn and the shifts.
     """
 
     kind: Kind
@@ -174,7 +178,7 @@ class Profile(wl.Configuration):
         if isinstance(given, str | os.PathLike):
             given = _named(os.fspath(given))
         elif isinstance(given, Mapping) and "file" in given:
-            return read_profile(**{"path" if key == "file" else key: value for key, value in given.items()})
+            return _of_file(given)
         if isinstance(given, Mapping) and given.get("formula") in FORMULAS and "kind" not in given:
             return {**given, "kind": FORMULAS[given["formula"]][0]}
         return given
@@ -267,7 +271,7 @@ class Profile(wl.Configuration):
 
         It is the angle at which the head is most like its mirror image: the top, within 20 mm of the middle between
         the sides, has no slope. The sides are taken 10 mm below the top. NaN for a wheel, or if a side does not reach
-        so far down. Wear of one side changes it, by about 1/120 for 5 mm.
+        so far down. Wear of one side changes it, by about 1/110 for 5 mm.
         """
         return wl.Q(_lean(self.curve) if self.kind == "rail" else np.nan, "rad")
 
@@ -385,8 +389,11 @@ class Profile(wl.Configuration):
     def __get_pydantic_json_schema__(
         cls, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        text = {"type": "string", "description": "the name of a formula, such as s1002, or the path of a file"}
-        return {"anyOf": [super().__get_pydantic_json_schema__(schema, handler), text]}
+        table = super().__get_pydantic_json_schema__(schema, handler)
+        table.pop("required", None)  # a formula knows its kind
+        names = {"type": "string", "description": "the name of a formula, such as s1002, or the path of a file"}
+        file = {"type": "object", "required": ["file"], "properties": {key: {} for key in FILE_FIELDS}}
+        return {"anyOf": [table, {**file, "additionalProperties": False}, names]}
 
     @cached_property
     def _identity(self) -> tuple[object, ...]:
@@ -435,14 +442,29 @@ def _named(text: str) -> Any:
     """Return the fields of a formula, or the profile of a file."""
     if text in FORMULAS:
         return {"formula": text}
-    if not os.path.lexists(text):
-        near = get_close_matches(text.lower(), FORMULAS, n=1)
-        hint = f"; did you mean '{near[0]}'?" if near else "."
+    if not os.path.lexists(wl.beside(text)):
         raise wl.InputError(
-            f"'{text}' is neither a profile by formula nor a file in '{Path.cwd()}'{hint} The formulas are:"
-            f" {', '.join(FORMULAS)}"
+            f"'{text}' is neither a profile by formula nor a file in '{wl.beside('.').absolute()}'"
+            f"{did_you_mean(text, FORMULAS)} The"
+            f" formulas are: {', '.join(FORMULAS)}"
         )
-    return read_profile(text)
+    return _of_file({"file": text})
+
+
+def _of_file(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fields of the profile of a file, which a table names with the options of `read_profile`."""
+    for name in table:
+        if name not in FILE_FIELDS:
+            near = did_you_mean(name, FILE_FIELDS)
+            raise wl.InputError(f"unknown field '{name}'{near} With a file, they are: {', '.join(FILE_FIELDS)}")
+    found = read_profile(wl.beside(table["file"]), **{name: value for name, value in table.items() if name != "file"})
+    return {name: getattr(found, name) for name in found.model_fields_set}
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Return "; did you mean 'x'?" for the nearest known word, or a full stop if no word is near."""
+    near = get_close_matches(word.lower(), list(known), n=1)
+    return f"; did you mean '{near[0]}'?" if near else "."
 
 
 def read_profile(
@@ -482,6 +504,9 @@ def read_profile(
     """
     file = Path(path)
     try:
+        for option, value in (("mirror_y", mirror_y), ("mirror_z", mirror_z)):
+            if not isinstance(value, bool):
+                raise wl.InputError(f"{option}: must be true or false, got {value!r}")
         found, told = points_of(file, kind, units)
         length = wl.Unit("mm", positive=False)
         y = (-1.0 if mirror_y else 1.0) * found.y + float(length.si(shift_y, "shift_y"))

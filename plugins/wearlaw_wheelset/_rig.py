@@ -15,15 +15,16 @@ from pydantic import BeforeValidator, Field, model_validator
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._conicity import equivalent_conicity
-from wearlaw_wheelset._geometry import Geometry, geometry, patches
+from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
 from wearlaw_wheelset._loads import Balance, Elastic, Task
 from wearlaw_wheelset._motion import placed, roll_rate
+from wearlaw_wheelset._pictures import Profiles
 from wearlaw_wheelset._profile import Profile
 from wearlaw_wheelset._search import Section, Touching, both_sides, searched, section
 from wearlaw_wheelset._search_loops import PATCHES
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
 DIMS: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch": (1, 2, 3)}
 """The axes of patches."""
@@ -251,6 +252,15 @@ class Wheelset(wl.Rig):
         position = both_sides(displacement, rolls, turned)
         return geometry(self._section, axes, rolls, found, position, most, scalar(self.nominal_radius))
 
+    def on_rails(self, displacement: Array) -> NDArray[np.bool_]:
+        """Return whether both wheels touch their rails at lateral displacements [m], without yaw."""
+        _, found = searched(self._section, displacement, np.zeros_like(displacement))
+        return ~np.asarray(np.isnan(found.arc[..., 0]).any(axis=-1))
+
+    def profiles_in_track(self) -> Profiles:
+        """Return the right wheel and its rail in the middle of the track, as SI arrays."""
+        return profiles(self._section, scalar(self.nominal_radius))
+
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
         """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, by EN 15302."""
         most = scalar(wl.Unit("mm").si(amplitude, "amplitude"))
@@ -331,11 +341,9 @@ class Wheelset(wl.Rig):
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
         assert isinstance(problem, _Posed)
-        problem.balance.solve(forces)
         distance = problem.rolled_distance
-        return self._whole(
-            problem.balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1)
-        )
+        balance = problem.balance.solved(forces)
+        return self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
 
     def _balance(self, given: Mapping[str, Array]) -> Balance:
         """Return the loads at positions, SI arrays with one axis, without creep forces."""
@@ -369,7 +377,7 @@ class Wheelset(wl.Rig):
     def _whole(self, balance: Balance, shape: tuple[int, ...], distance: Array | None) -> wl.Problem:
         """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
         found = balance.found
-        flat, patch = balance.posed(found, balance.penetration, balance.rotation, balance.scale)
+        flat, patch = balance.posed()
         size = balance.task.load.size
         exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
         place = found.point, found.side, found.number

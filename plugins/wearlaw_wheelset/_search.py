@@ -66,6 +66,9 @@ ON_EDGE = 1e-6
 BLOCK = 256
 """Positions that NumPy searches at once: their arrays stay in the cache."""
 
+FIRST = 4
+"""One in so many coarse points gives the first estimate of the roll."""
+
 LOOPS = 1000
 """Formulas of a position in one search, to judge whether compiled loops are worth while."""
 
@@ -314,13 +317,13 @@ class Touching(NamedTuple):
     least: Array
 
 
-def touching(section: Section, position: Position, near: NDArray[np.intp] | None = None) -> Touching:
+def touching(section: Section, position: Position, near: NDArray[np.intp] | None = None, every: int = 1) -> Touching:
     """Return the places where the gaps of wheels are least; positions are of shape (positions, sides).
 
     `near`, of shape (positions, sides), limits the search to `WINDOW` coarse points around the given ones; the saddles
-    are then those of the window.
+    are then those of the window. `every` leaves out coarse points, for a first estimate.
     """
-    points = section.coarse
+    points = Coarse(*(array[::every] for array in section.coarse))
     if near is not None:
         start = np.clip(near - WINDOW // 2, 0, points.arc.size - WINDOW)[..., None]
         points = Coarse(*(array[start + np.arange(WINDOW)] for array in points))
@@ -435,7 +438,7 @@ def _compiled(section: Section, displacement: Array, yaw: Array, roll: Array | N
 
 def _searched(section: Section, displacement: Array, yaw: Array, given: Array | None) -> tuple[Array, Touching]:
     roll = np.zeros_like(displacement) if given is None else given
-    found = touching(section, both_sides(displacement, roll, yaw))
+    found = touching(section, both_sides(displacement, roll, yaw), every=1 if given is not None else FIRST)
     if given is not None:
         return roll, found
     open_ = np.arange(displacement.size)

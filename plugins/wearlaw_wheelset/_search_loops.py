@@ -94,6 +94,21 @@ def cubic(t: Any, step: float, left: Any, right: Any, d_left: Any, d_right: Any)
     return left + t * (first + t * (square + t * cube)), (first + t * (2.0 * square + 3.0 * t * cube)) / step
 
 
+def normal_gap(rise: Any, slope: Any, own_slope: Any) -> tuple[Any, Any]:
+    """Return the gap normal to the surface around a contact point [m], and whether the rail turns by less than 60°.
+
+    Parameters
+    ----------
+    rise : float or ndarray
+        Vertical gap above that at the contact point [m].
+    slope, own_slope : float or ndarray
+        Slope of the rail, and that at the contact point [-].
+    """
+    own = np.sqrt(1.0 + own_slope * own_slope)
+    along, half = 1.0 + slope * own_slope, 0.5 * own * np.sqrt(1.0 + slope * slope)
+    return rise * own / np.maximum(along, half), along > half
+
+
 def at(x: float, start: float, step: float, value: Array, slope: Array) -> tuple[float, float]:
     """Return the value and the slope of a table at x; beyond its ends those of the outermost cubic."""
     share = (x - start) / step
@@ -242,3 +257,46 @@ def compiled_search(
             whole = lost or not abs(excess) > ROLL_ACCURACY
             if not whole:
                 roll[point] += roll_step(excess, lever[0] + lever[1])
+
+
+@wl.compiled_loop(f"void({VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, float64, {TABLE}, {TABLE}, {TABLE}, float64[:, ::1])")
+def compiled_samples(
+    displacement: Array,
+    roll: Array,
+    yaw: Array,
+    arc: Array,
+    spacing: float,
+    y_start: float,
+    y_step: float,
+    y_value: Array,
+    y_slope: Array,
+    r_start: float,
+    r_step: float,
+    r_value: Array,
+    r_slope: Array,
+    z_start: float,
+    z_step: float,
+    z_value: Array,
+    z_slope: Array,
+    samples: Array,
+) -> None:
+    """Fill in the gaps around contact points, (points, samples), for wheels in outward coordinates."""
+    count = samples.shape[1]
+    end, rail_end = y_start + y_step * (y_value.size - 1), z_start + z_step * (z_value.size - 1)
+    for point in range(arc.size):
+        turn = math.sin(roll[point]), math.cos(roll[point]), math.sin(yaw[point]), math.cos(yaw[point])
+        own = own_slope = 0.0
+        for step in range(count + 1):
+            k = step - 1 if step else count // 2  # the contact point first
+            place = arc[point] + spacing * (k - count // 2)
+            there, d_there = at(place, y_start, y_step, y_value, y_slope)
+            size, d_size = at(place, r_start, r_step, r_value, r_slope)
+            _, across, down, _ = locus(there, size, d_size / d_there, displacement[point], turn)
+            rail, slope = at(across, z_start, z_step, z_value, z_slope)
+            if not step:
+                own, own_slope = rail - down, slope
+            elif place < y_start or place > end or across < z_start or across > rail_end:
+                samples[point, k] = np.inf
+            else:
+                normal, facing = normal_gap(rail - down - own, slope, own_slope)
+                samples[point, k] = normal if facing else np.inf

@@ -74,7 +74,7 @@ def test_the_loss_at_a_position_is_the_mean_around_it_to_second_order(
 def test_cells_that_are_the_strips_lose_what_the_strips_lose() -> None:
     y, width = even(20)
     loss = np.random.default_rng(7).random(y.shape)
-    positions = 0.05 + 0.1 * np.arange(-20, 20)  # the strips, and more on both sides
+    positions = 0.05 + 0.1 * np.arange(-20.0, 20.0)  # the strips, and more on both sides
     expected = np.zeros(positions.size)
     expected[10:30] = loss[0]
     np.testing.assert_allclose(spread(y, width, loss, positions)[0], expected, rtol=0.0, atol=64 * EPS)

@@ -349,8 +349,8 @@ def test_a_patch_in_the_plane_of_another_slides_as_in_contact() -> None:
 )
 def test_two_patches_share_the_load_as_in_contact(share: float) -> None:
     # CONTACT's approaches, 23.7 and 11.4 µm, make a gap of 13.3 µm at first touching; it is 12.1 µm between the
-    # formulas of the profiles. The difference is a shift of y by 7 µm. By the stiffnesses 3/2 N/δ of both, 4.2e8 and
-    # 4.7e8 N/m, the 1.3 µm move 290 N from one patch to the other; 100 N more are 1 % of the load.
+    # formulas of the profiles. The difference is a shift of y by 7 µm. By the stiffnesses 3/2 N/δ of both patches,
+    # 4.2e8 and 4.7e8 N/m, the 1.3 µm move 290 N from one patch to the other; 100 N more are 1 % of the load.
     found, _ = two("tread")
     assert found[:, 6] == pytest.approx(TWO["tread"][2][:, 6], rel=0.0, abs=share * 10e3)
     assert found[:, 7] == pytest.approx(TWO["tread"][2][:, 7], rel=0.05)

@@ -262,7 +262,7 @@ def test_a_wheel_beside_its_rail_is_an_error(displacement: str, compiled: bool) 
     if compiled:
         pytest.importorskip("numba")
     wl.accelerate(compiled)
-    with pytest.raises(wl.ConditionsError, match="the (left|right) wheel does not touch its rail"):
+    with pytest.raises(wl.ConditionsError, match=r"the (left|right) wheel does not touch its rail"):
         STANDARD.geometry(lateral_displacement=displacement)
 
 

@@ -46,6 +46,7 @@ ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_
 LINE = 100
 """Longest pipeline shown on one line, in characters; a longer one has a line for each part."""
 
+TOUCH_NOWHERE = "rig '{}': the bodies touch nowhere under these conditions; check the conditions"
 
 P = ParamSpec("P")
 
@@ -170,6 +171,25 @@ class Rig(Model):
             problem = self._masked(problem)
         return problem if problem.bodies else problem.replaced(bodies=self.bodies)
 
+    def _checked_balance(self, problem: Problem, balanced: Problem) -> Problem:
+        """Return the result of `balanced` for a problem, with NaN for patches that have lifted off.
+
+        Raises
+        ------
+        ModelError
+            If it is no problem, or not one of the same geometry, shape and axes.
+        """
+        if not isinstance(balanced, Problem):
+            raise ModelError(f"`balanced` of rig '{self.name}' returned {balanced!r}, not a wearlaw.Problem")
+        shapes = [(one.geometry, one.batch_shape, one.dims) for one in (balanced, problem)]
+        if shapes[0] != shapes[1]:
+            found, given = (f"geometry '{one[0]}', shape {one[1]} and axes {one[2]!r}" for one in shapes)
+            raise ModelError(
+                f"`balanced` of rig '{self.name}' returned a problem of {found} for one of {given}; return one like it,"
+                " as from `Problem.replaced`"
+            )
+        return balanced if balanced.exists is None or balanced.exists is problem.exists else self._masked(balanced)
+
     def _placed(self, problem: Problem, name: str) -> Body:
         """Return a body with the places of its patches on its profile in the shape of the batch."""
         body, batch = problem.bodies[name], problem.batch_shape
@@ -209,7 +229,10 @@ class Rig(Model):
                 f"rig '{self.name}' gave {type_name(exists)} as `exists`; it must be an array of bool of the shape of"
                 f" the batch, {problem.batch_shape}"
             )
-        masked = problem.mapped(lambda array: np.where(exists, array, np.nan))
+        of_strips = exists[..., None]
+        masked = problem.mapped(
+            lambda array: np.where(exists, array, np.nan), lambda array: np.where(of_strips, array, np.nan)
+        )
         return masked.replaced(exists=exists)
 
     def check_names(self, conditions: Mapping[str, Any]) -> None:
@@ -364,9 +387,7 @@ class Pipeline(Configuration, Generic[P]):
             return problem
         with Blame(rig):
             balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
-        if not isinstance(balanced, Problem):
-            raise ModelError(f"`balanced` of rig '{rig.name}' returned {balanced!r}, not a wearlaw.Problem")
-        return balanced
+        return rig._checked_balance(problem, balanced)
 
     def predict(
         self,
@@ -391,6 +412,8 @@ class Pipeline(Configuration, Generic[P]):
                 f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"
                 f" the geometry '{self.rig.patch_geometry}'; make it with the `problem` method of the rig"
             )
+        if problem.exists is not None and not problem.exists.any():
+            raise ConditionsError(TOUCH_NOWHERE.format(self.rig.name))
         self.warn_of_problem(problem, stacklevel + 1)
         watch = self.range_watch()
         found = self.watched(problem, watch, on_block)
@@ -420,6 +443,8 @@ class Pipeline(Configuration, Generic[P]):
         """Return the result of `predict` without its warnings; `watch` sees the operating points."""
         if problem.geometry == "line":
             check_traction(self.contact_model, problem)
+        if problem.dims:
+            watch.counted = "patches"
         model, problem = prepared(self.staged_model, problem)
         if not self.laws:
             return self._without_law(model, problem, watch, on_block)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import cached_property
@@ -267,6 +268,22 @@ class Prediction:
     def creepage(self) -> Quantity:
         """Longitudinal creepage, ξ [-], positive if body 1 is the faster one."""
         return from_si(self.problem.longitudinal_creepage, "%")
+
+    @property
+    def lateral_creepage(self) -> Quantity:
+        """Lateral creepage, η [-]; zero on a line."""
+        return from_si(self.problem.lateral_creepage, "%")
+
+    @property
+    def spin(self) -> Quantity:
+        """Spin, φ [1/m]; zero on a line."""
+        return from_si(self.problem.spin, "1/m")
+
+    @property
+    def contact_angle(self) -> Quantity:
+        """Contact angle, δ [rad], of the surface to the axle; zero if the problem gives none."""
+        angle, level = self.problem.contact_angle, 0.0 * self.problem.normal_force  # NaN where there is no patch
+        return from_si(level if angle is None else angle, "deg")
 
     @property
     def friction_coefficient(self) -> Quantity:
@@ -627,7 +644,12 @@ class Prediction:
     def __repr__(self) -> str:
         names = (*named_outcomes(self.laws), *SHOWN[self.problem.geometry])
         rows = "".join(f"\n  {name:<20} {_brief(self[name])}" for name in names)
-        points = "1 operating point" if self.problem.size == 1 else f"{self.problem.size} operating points"
+        problem = self.problem
+        own_axes = len(problem.dims)
+        count = math.prod(problem.batch_shape[: len(problem.batch_shape) - own_axes])
+        points = "1 operating point" if count == 1 else f"{count} operating points"
+        if own_axes or problem.exists is not None:
+            points = f"{problem.size} {'patch' if problem.size == 1 else 'patches'} at {points}"
         return f"{type(self).__name__} of {points}{rows}"
 
 
@@ -642,7 +664,10 @@ def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Pr
 
 
 def _brief(quantity: Quantity) -> str:
-    """Format a scalar as it is and an array as its range."""
-    if np.ndim(quantity.magnitude) == 0:
+    """Format a scalar as it is and an array as its range, without the NaN of missing patches."""
+    there = ~np.isnan(quantity.magnitude)
+    if not there.any():
+        return "no patch"
+    if there.ndim == 0:
         return repr(quantity)
-    return f"{quantity.min()!r} to {quantity.max()!r}"
+    return f"{quantity[there].min()!r} to {quantity[there].max()!r}"

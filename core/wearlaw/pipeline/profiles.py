@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -77,7 +78,7 @@ def on_profile(
     names = axis_names(problem)
     rest = {name: size for name, size in zip(names, problem.batch_shape, strict=True) if name != PATCH}
     sums = {name: np.zeros((*rest.values(), positions.size)) for name in columns}
-    rows = np.arange(int(np.prod([*rest.values()], dtype=np.intp))).reshape(tuple(rest.values()))
+    rows = np.arange(math.prod(rest.values())).reshape(tuple(rest.values()))
     if PATCH in names:
         rows = np.expand_dims(rows, names.index(PATCH))
     there = np.broadcast_to(rows, problem.batch_shape).reshape(-1)

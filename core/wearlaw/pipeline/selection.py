@@ -98,7 +98,7 @@ class Selection:
         exists = None if problem.exists is None else self._of(problem.exists)
         if exists is not None and exists.all():
             exists = None
-        return problem.mapped(self.of).replaced(dims=dims, exists=exists)
+        return problem.mapped(self.of, self.of).replaced(dims=dims, exists=exists)
 
     def of_forces(self, forces: CreepForces) -> CreepForces:
         """Return the forces at the chosen entries."""

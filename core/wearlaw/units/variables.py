@@ -157,6 +157,9 @@ VARIABLES: Mapping[str, Variable] = {
     "wear_rate_error": Variable(
         WEAR_RATE, "wear rate error", "Estimate of the error in `wear_rate`", "", "not negative"
     ),
+    "mass_per_distance": Variable(
+        "ug/m", "mass lost per metre rolled", "Mass lost per metre rolled", "", "not negative"
+    ),
     "wear_rate_uncertainty": Variable(
         WEAR_RATE, "wear rate uncertainty", "Standard uncertainty of a measured wear rate"
     ),
