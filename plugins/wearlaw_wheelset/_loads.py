@@ -34,9 +34,9 @@ LEAST = 1e-5
 """Smallest penetration of a patch that is followed, as a share of the wheel's. Below it the patch is open, and its load
 is below `BALANCED`."""
 
-BALANCED = 1e-6
-"""Greatest imbalance, as a share of the load, and of the torque of full slip. Creep forces are off by a thousand times
-as much, and those of FASTSIM jump by up to 1e-3 where a strip begins to stick once more."""
+BALANCED = 1e-7
+"""Greatest imbalance, as a share of the load, and of the torque of full slip. Creep forces are off by 1e-3 and more, and
+those of FASTSIM jump by up to 1e-3 where a strip begins to stick once more."""
 
 ROUGH = 2e-3
 """Imbalance that stays where creep forces jump."""
