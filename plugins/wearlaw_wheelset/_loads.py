@@ -31,15 +31,18 @@ WIDENINGS = 2
 """How often the distance is doubled at most."""
 
 LEAST = 1e-5
-"""Smallest penetration of a patch that is followed, as a share of the wheel's. Below it the patch is open, and its load
-is below `BALANCED`."""
+"""Smallest penetration of a patch that is followed, as a share of the wheel's. Below it the patch is open, and its
+load is below `BALANCED`."""
 
 BALANCED = 1e-7
-"""Greatest imbalance, as a share of the load, and of the torque of full slip. Creep forces are off by 1e-3 and more, and
-those of FASTSIM jump by up to 1e-3 where a strip begins to stick once more."""
+"""Greatest imbalance, as a share of the load, and of the torque of full slip. Creep forces are off by 1e-3 and more,
+and those of FASTSIM jump by up to 1e-3 where a strip begins to stick once more."""
 
 ROUGH = 2e-3
 """Imbalance that stays where creep forces jump."""
+
+MOST = 100.0
+"""Greatest penetration that is tried, over that of the load without creep forces."""
 
 NEWTON_STEPS, STEPS = 20, 100
 """Greatest number of steps by Newton's method, of which four or five are usual, and within bounds."""
@@ -184,6 +187,10 @@ class Balance:
     """Vertical penetration of each wheel, h [m]."""
     rotation: Array
     """Speed of rotation at each position, Ω [rad/s]."""
+    whole: Array
+    """The penetration if one patch of each wheel carried the load without creep forces [m]."""
+    balanced: NDArray[np.bool_]
+    """Whether the loads of each position balance."""
     scale: Array
     """Factor on the pressure of each wheel's patches, 1 except where the load jumps as a hump joins a patch."""
     correction: Array
@@ -209,7 +216,10 @@ class Balance:
         radius[kept.wheel[first]] = placed(section, kept.part(first).position, kept.arc[first]).radius
         rotation = task.speed / radius.reshape(-1, 2).mean(axis=-1) if task.rotation is None else task.rotation
         none = np.zeros((task.load.size, 3, 3))
-        return cls(section, elastic, task, kept, hertz, strips, whole, rotation, np.ones(wheels), none).solved(None)
+        right = np.ones(task.load.size, dtype=np.bool_)
+        return cls(
+            section, elastic, task, kept, hertz, strips, whole, rotation, whole, right, np.ones(wheels), none
+        ).solved(None)
 
     def check_torque(self) -> None:
         """Raise an error for a torque that friction cannot transmit."""
@@ -251,7 +261,8 @@ class Balance:
             speed of rotation then stays as it is.
         """
         copies = {name: getattr(self, name).copy() for name in ("penetration", "rotation", "correction")}
-        found = replace(self, scale=np.ones(self.scale.shape), **copies)
+        every = np.ones(self.balanced.shape, dtype=np.bool_)
+        found = replace(self, scale=np.ones(self.scale.shape), balanced=every, **copies)
         left = found._newton(forces)
         if left.any():
             found._bracketed(forces, left)
@@ -291,23 +302,47 @@ class Balance:
         return rough
 
     def _bracketed(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> None:
-        """Balance the loads of some positions within bounds, in place, as where they jump."""
-        depths = _Root.begun(np.log(self.penetration), 1.5, WIDEST_STEP)
+        """Balance some positions in place, the torque within bounds, and at each speed of rotation the loads.
+
+        Positions that stay unbalanced are marked: friction holds a flange, so that no penetration carries the load.
+        """
+        start, going = self.penetration.copy(), open_.copy()
+        self.penetration = np.where(open_.repeat(2), self.whole, start)
         turns = _Root.begun(self.rotation, np.nan, MOST_TURN * self.rotation)
         for _ in range(STEPS):
-            state = self._state(forces, open_)
-            open_ &= np.abs(state.miss).max(axis=-1) > BALANCED
-            if not open_.any():
+            state = self._carried(forces, going)
+            lost = (np.abs(state.miss[:, :2]) > ROUGH).any(axis=-1)
+            going &= (np.abs(state.miss[:, 2]) > BALANCED) & ~lost & ~turns.closed()
+            if not going.any():
                 break
-            wheels, excess = open_.repeat(2), state.miss[:, :2].reshape(-1)
+            if np.isnan(turns.slope).all():
+                turns.slope = np.maximum(self._rates(state)[:, 2, 2], TINY)
+            turns.step(state.miss[:, 2], going)
+            self.rotation = turns.x
+        final = self._state(forces, open_)
+        self.balanced &= ~(open_ & (np.abs(final.miss).max(axis=-1) > ROUGH))
+
+    def _carried(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> _State:
+        """Balance the vertical loads of some positions at their speed of rotation, in place."""
+        depths, going = _Root.begun(np.log(self.penetration), 1.5, WIDEST_STEP), open_.copy()
+        self.scale = np.where(open_.repeat(2), 1.0, self.scale)
+        for _ in range(STEPS):
+            state = self._state(forces, going)
+            excess = state.miss[:, :2].reshape(-1)
+            deep = (self.penetration > MOST * self.whole).reshape(-1, 2).any(axis=-1)
+            going &= (np.abs(state.miss[:, :2]) > BALANCED).any(axis=-1) & ~deep
+            if not going.any():
+                break
+            wheels = going.repeat(2)
             jump = wheels & depths.closed()
             self.scale = np.where(jump, self.scale * np.exp(-excess), self.scale)
             depths.step(excess, wheels & ~jump)
-            if np.isnan(turns.slope).all():
-                turns.slope = np.maximum(self._rates(state)[:, 2, 2], TINY)
-            turns.reopen()
-            turns.step(state.miss[:, 2], open_)
-            self.penetration, self.rotation = np.exp(depths.x), turns.x
+            self.penetration = np.where(wheels, np.exp(depths.x), self.penetration)
+            if self.hertz:  # only creep forces jump, which a scale does not mend
+                going &= ~jump.reshape(-1, 2).any(axis=-1)
+            if not going.any():
+                break
+        return self._state(forces, open_)
 
     def _state(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> _State:
         """Return the loads of some positions as they are."""

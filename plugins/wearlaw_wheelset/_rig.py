@@ -343,6 +343,8 @@ class Wheelset(wl.Rig):
         assert isinstance(problem, _Posed)
         distance = problem.rolled_distance
         balance = problem.balance.solved(forces)
+        if not balance.balanced.all():
+            self._warn_of_jams(balance)
         return self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
 
     def _balance(self, given: Mapping[str, Array]) -> Balance:
@@ -381,7 +383,7 @@ class Wheelset(wl.Rig):
         size = balance.task.load.size
         exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
         place = found.point, found.side, found.number
-        exists[place] = patch.touch
+        exists[place] = patch.touch & balance.balanced[found.point]
 
         def wide(array: Array) -> Array:
             full = np.full(exists.shape, np.nan)
@@ -439,6 +441,20 @@ class Wheelset(wl.Rig):
                 wl.RangeWarning,
                 stacklevel=5,
             )
+
+    @staticmethod
+    def _warn_of_jams(balance: Balance) -> None:
+        """Warn of positions without a balance of loads."""
+        point = int(np.argmin(balance.balanced))
+        here = balance.found.point == point
+        displacement = float(balance.found.position.displacement[here & (balance.found.side == 1)][0])
+        warnings.warn(
+            f"{np.count_nonzero(~balance.balanced)} of {balance.balanced.size} positions have no result, the first at a"
+            f" lateral displacement of {1e3 * displacement:.4g} mm: friction holds a flange, and no normal force"
+            " carries the vertical load",
+            wl.RangeWarning,
+            stacklevel=5,
+        )
 
     @cached_property
     def _steepest(self) -> float:
