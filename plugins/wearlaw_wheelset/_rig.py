@@ -24,7 +24,7 @@ from wearlaw_wheelset._search import Section, Touching, both_sides, searched, se
 from wearlaw_wheelset._search_loops import PATCHES
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
 DIMS: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch": (1, 2, 3)}
 """The axes of patches."""
@@ -252,6 +252,11 @@ class Wheelset(wl.Rig):
         self._check_contact(displacement, found)
         position = both_sides(displacement, rolls, turned)
         return geometry(self._section, axes, rolls, found, position, most, scalar(self.nominal_radius))
+
+    def on_rails(self, displacement: Array) -> NDArray[np.bool_]:
+        """Return whether both wheels touch their rails at lateral displacements [m], without yaw."""
+        _, found = searched(self._section, displacement, np.zeros_like(displacement))
+        return ~np.asarray(np.isnan(found.arc[..., 0]).any(axis=-1))
 
     def profiles_in_track(self) -> Profiles:
         """Return the right wheel and its rail in the middle of the track, as SI arrays."""

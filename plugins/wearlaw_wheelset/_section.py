@@ -66,7 +66,8 @@ def section(study: wl.Study) -> wl.Section:
 
 def _geometry(rig: Wheelset) -> wl.FigureData:
     """Return rolling radius difference and contact angle of rigid wheels."""
-    found = rig.geometry(lateral_displacement=wl.Q(_on_rails(rig), "mm")).dataset
+    there = DISPLACEMENTS[rig.on_rails(1e-3 * DISPLACEMENTS)]
+    found = rig.geometry(lateral_displacement=wl.Q(there, "mm")).dataset
     across = found["lateral_displacement"].values
     x = wl.PlotAxis("lateral displacement [mm]")
     radius = wl.Curve("right minus left", across, found["rolling_radius_difference"].values, points=True)
@@ -87,18 +88,6 @@ def _geometry(rig: Wheelset) -> wl.FigureData:
         caption="Rigid wheels and rails, no yaw. The equivalent conicity at 3 mm is"
         f" {conicity.magnitude:.3f} (EN 15302).",
     )
-
-
-def _on_rails(rig: Wheelset) -> Array:
-    """Return the displacements [mm] at which both wheels touch their rails."""
-    able = []
-    for displacement in DISPLACEMENTS:
-        try:
-            rig.geometry(lateral_displacement=wl.Q(float(displacement), "mm"))
-        except wl.ConditionsError:
-            continue
-        able.append(displacement)
-    return np.array(able)
 
 
 def _contact(rig: Wheelset, name: str, found: wl.Prediction) -> wl.FigureData:

@@ -133,7 +133,10 @@ def test_results_have_the_creepages_and_the_angle_of_each_patch(install_model: I
 
 
 def test_a_condition_of_all_patches_keeps_its_name_from_their_variable() -> None:
-    rails = small(sweeps={"slippery": {**MOVING, "friction_coefficient": [0.1, 0.3]}, "dry": FLANGING}).sweeps
+    # With several patches any variable may change with any condition.
+    by_force = {"sweep": "slippery", "x": "normal_force", "y": "wear_rate"}
+    sweeps = {"slippery": {**FLANGING, "friction_coefficient": [0.1, 0.3]}, "dry": FLANGING}
+    rails = small(sweeps=sweeps, figures={"one": by_force}).sweeps
     assert rails["slippery"].friction_coefficient.dims == ("friction_coefficient",)
     assert rails["dry"].friction_coefficient.item() == 0.3
 
@@ -594,12 +597,24 @@ def test_the_rig_can_be_shown_and_checked() -> None:
     assert_refused(wearlaw("uncertainty", "c.toml"), "uncertainty.one: needs one patch at each operating point")
 
 
-def test_workers_give_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(points, "BLOCK", 8)
+def test_blocks_hold_fewer_points_of_several_patches_and_workers_give_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(points, "BLOCK", 8)  # two points of four patches
+    from wearlaw.sweeping import evaluation, sweep
+
+    blocks = []
+
+    def counted(job: Any, block: Any, *arguments: Any) -> Any:
+        blocks.append(block)
+        return evaluation.evaluated(job, block, *arguments)
+
     case = Case(**{**ON_AXLE, "contact_models": ["fastsim"], "wear_laws": ["kth"], "profiles": {}})
-    alone, together = (run(case, workers=workers).sweeps["moving"] for workers in (1, 2))
-    assert len(case.sweeps["moving"].points(case.units).blocks()) == 1, "of points alone"
-    xarray.testing.assert_identical(alone, together)
+    with monkeypatch.context() as patch:
+        patch.setattr(sweep, "evaluated", counted)
+        alone = run(case).sweeps["moving"]
+    assert len(blocks) == 3 * (3 + 1)  # of five points and of one, with both ends of the band
+    xarray.testing.assert_identical(alone, run(case, workers=2).sweeps["moving"])
 
 
 # --- Sections --------------------------------------------------------------------------------------------------------

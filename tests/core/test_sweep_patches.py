@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ClassVar
@@ -286,3 +287,27 @@ def test_outputs_of_an_evaluator_have_the_axes_of_the_patches() -> None:
     )
     found = evaluate("map", pipeline(), points, ["wear_rate"], PATCHES)
     assert found["wear_rate"].shape == (5, 5, 2, 2)
+
+
+class Warns(Axle):
+    """Warns of large displacements."""
+
+    name: ClassVar[str] = "warns"
+
+    def problem(self, *, displacement: wl.QuantityLike, **conditions: Any) -> wl.Problem:
+        most = float(wl.Unit("mm", positive=False).si(displacement, "displacement").max())
+        if most > 6e-3:
+            warnings.warn(f"the wheel climbs at {1e3 * most:g} mm", wl.RangeWarning, stacklevel=2)
+        return super().problem(displacement=displacement, **conditions)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_sweep_repeats_the_first_warning_of_its_rig(workers: int, tmp_path: Path) -> None:
+    predict: Any = Warns() | wl.contact_model("fastsim") | KTH
+    given: Any = {**CREEP, "load": "80 kN", "displacement": Q([0.0, 5.0, 7.0], "mm")}
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = wl.sweep(predict, workers=workers, store=tmp_path / "map.zarr", **given)
+    said = [str(one.message) for one in caught if "climbs" in str(one.message)]
+    assert said == ["the wheel climbs at 7 mm"]
+    assert "the wheel climbs at 7 mm" in found.attrs["notes"]

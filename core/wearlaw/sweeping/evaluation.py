@@ -17,7 +17,7 @@ from wearlaw.arrays import kernels
 from wearlaw.arrays.array import Array
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, InputError, ModelError, did_you_mean
+from wearlaw.errors import CompositionError, InputError, ModelError, RangeWarning, WearlawWarning, did_you_mean
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
@@ -76,13 +76,16 @@ class BlockRecord:
         For each variable that leaves the range of the law: lowest and highest mean over the patch in SI, and the number
         of points outside.
     checksum : int
-        Checksum of the outputs and of the values above.
+        Checksum of the outputs and of the other values.
+    remarks : tuple of str
+        Warnings of the rig, such as that a wheel climbs its rail.
     """
 
     points: int
     overload: Overload | None
     ranges: Mapping[str, tuple[float, float, int]]
     checksum: int
+    remarks: tuple[str, ...] = ()
 
 
 def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, BlockRecord]:
@@ -91,7 +94,10 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     `on_block` is called with the number of points just done, several times for a long block.
     """
     kernels.accelerate(job.accelerate)
-    problem = job.pipeline.posed(part.conditions())
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", WearlawWarning)
+        problem = job.pipeline.posed(part.conditions())
+    remarks = dict.fromkeys(str(one.message) for one in caught if isinstance(one.message, WearlawWarning))
     if job.dims or problem.dims:
         _check_axes(job, problem, part)
         on_block = on_block and _in_points(on_block, part.size, problem.size)
@@ -101,7 +107,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
         outputs = {name: _in_unit(prediction[name], unit) for name, unit in job.units.items()}
     else:  # the bodies touch nowhere
         outputs = {name: np.full(problem.batch_shape, np.nan) for name in job.units}
-    seen = BlockRecord(watch.points, watch.overload, watch.seen, checksum=0)
+    seen = BlockRecord(watch.points, watch.overload, watch.seen, checksum=0, remarks=tuple(remarks))
     return outputs, replace(seen, checksum=checksum(seen, outputs.values()))
 
 
@@ -167,14 +173,15 @@ def checksum(seen: BlockRecord, outputs: Iterable[Array]) -> int:
     CRC-32 is the fastest checksum of the standard library, above 1 GB/s, and misses one in 2³² cases of accidental
     damage. It does not protect against forgery.
     """
-    found = zlib.crc32(json.dumps([seen.points, seen.overload, seen.ranges]).encode())
-    for values in outputs:
-        found = zlib.crc32(np.ascontiguousarray(values).data, found)
+    values = [seen.points, seen.overload, seen.ranges, *([seen.remarks] if seen.remarks else [])]
+    found = zlib.crc32(json.dumps(values).encode())
+    for output in outputs:
+        found = zlib.crc32(np.ascontiguousarray(output).data, found)
     return found
 
 
 def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
-    """Return the warnings of a prediction at the points of all blocks together."""
+    """Return the warnings of a prediction at the points of all blocks together, and the first one of the rig."""
     every = list(blocks)
     watch = job.pipeline.range_watch()
     if job.dims:
@@ -187,7 +194,9 @@ def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         watch.warn(stacklevel=1)
-    return [one.message for one in caught if isinstance(one.message, Warning)]
+    found = [one.message for one in caught if isinstance(one.message, Warning)]
+    remark = next((text for one in every for text in one.remarks), None)
+    return found if remark is None else [*found, RangeWarning(remark)]
 
 
 def output_units(

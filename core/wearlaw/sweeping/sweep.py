@@ -16,7 +16,7 @@ import numpy as np
 import xarray
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConditionsError, InputError, ModelError, ResumeWarning, WorkerWarning
+from wearlaw.errors import ConditionsError, InputError, ModelError, ResumeWarning, WearlawWarning, WorkerWarning
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig
 from wearlaw.settings.configuration import parts
@@ -165,7 +165,9 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
 
     def along(dim: str, values: slice) -> Problem:
         line = points.part(values if other == dim else slice(0, 1) for other in points.dims)
-        return pipeline.rig.checked_problem({**not_given, **line.conditions()})
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", WearlawWarning)  # the blocks record them
+            return pipeline.rig.checked_problem({**not_given, **line.conditions()})
 
     first = along(points.dims[0], slice(0, SAMPLE))
     _check_names(pipeline.rig, first, points)
