@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from functools import partial
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 import pytest
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
+from tests.plugins.wheelsets import wheelset
 from wearlaw import Q
 from wearlaw.numerics.integrate import integrate_forces
+from wearlaw_wheelset._candidates import SPACING, candidates, sample
 from wearlaw_wheelset._loads import BALANCED, ROUGH
+from wearlaw_wheelset._search import both_sides, searched
 
 MODEL = wl.contact_model("fastsim")
-
-
-def wheelset(**settings: Any) -> ws.Wheelset:
-    given = dict(ws.Wheelset.example_fields) | {"wheel": ws.Profile.s1002(), "rail": ws.Profile.uic60()}
-    return ws.Wheelset(**given | {"material": wl.steel()} | settings)
 
 
 def conditions(count: int, seed: int = 0) -> dict[str, Any]:
@@ -63,3 +61,33 @@ def test_a_balance_does_not_depend_on_those_before_or_beside_it() -> None:
     alone = pipeline.posed({name: value[7] for name, value in given.items()})
     # The steps are the same but for rounding, which FASTSIM and the normal problem may sum in another order.
     np.testing.assert_allclose(alone.normal_force, first.normal_force[7], rtol=1e-9)
+
+
+@pytest.mark.skipif(not find_spec("numba"), reason="needs numba")
+@pytest.mark.parametrize("spacing", [SPACING, 4.0 * SPACING])
+def test_compiled_gaps_around_contact_points_are_those_of_numpy(spacing: float) -> None:
+    section, draw = wheelset()._section, np.random.default_rng(1)
+    displacement, yaw = draw.uniform(-7e-3, 7e-3, 300), draw.uniform(-0.02, 0.02, 300)
+    roll, touching = searched(section, displacement, yaw)
+    found = candidates(section, both_sides(displacement, roll, yaw), touching)
+    samples = []
+    try:
+        for on in (True, False):
+            wl.accelerate(on)
+            sample(section, found, np.arange(found.arc.size), spacing)
+            samples.append(found.samples.copy())
+    finally:
+        wl.accelerate(None)
+    assert np.isinf(samples[0]).any()
+    # Gaps are differences of heights near 0.46 m, with a few roundings of 5e-17 m each; cosines enlarge them tenfold.
+    np.testing.assert_allclose(samples[0], samples[1], rtol=1e-12, atol=5e-15)
+
+
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+@pytest.mark.parametrize("march", ["adaptive", "uniform"])
+def test_forces_of_fastsim_are_those_of_its_fields(pressure: str, march: str) -> None:
+    model = wl.contact_model("fastsim", march=march)
+    problem = (wheelset(pressure=pressure) | MODEL).posed(conditions(10))
+    forces, fields = model.creep_forces(problem), model.solve(problem).forces
+    for name in ("longitudinal", "lateral", "spin_moment"):
+        np.testing.assert_array_equal(getattr(forces, name), getattr(fields, name))

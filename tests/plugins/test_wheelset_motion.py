@@ -122,7 +122,7 @@ STATES = [
     "wheelset",
     "Creepages and spin of a wheelset with roll and yaw",
     source="numerical differentiation of the motion of its material points in space (scipy)",
-    held_to="{relative:g} of V, and 1/m",
+    held_to="{relative:g} of V, and per metre",
     relative=1e-9,
 )
 @pytest.mark.parametrize("pair", [STANDARD, CONES], ids=["s1002", "cones"])
@@ -150,7 +150,7 @@ MOVING = [
     "wheelset",
     "Creepages of a wheelset that moves sideways, yaws and rolls with it",
     source="numerical differentiation of the motion of its material points in space (scipy)",
-    held_to="{relative:g} of V, and 1/m",
+    held_to="{relative:g} of V, and per metre",
     relative=1e-7,
 )
 @pytest.mark.parametrize("pair", [STANDARD, CONES], ids=["s1002", "cones"])
@@ -176,7 +176,7 @@ CURVES = [
     "wheelset",
     "Creepages of a wheelset in a curve",
     source="numerical differentiation of the motion of its material points along a circle (scipy)",
-    held_to="{relative:g} of V, and 1/m",
+    held_to="{relative:g} of V, and per metre",
     relative=1e-9,
 )
 @pytest.mark.parametrize("state", CURVES, ids=str)
