@@ -1,7 +1,5 @@
 """Wear across the profile of the outer wheel, on straight track and in two curves."""
 
-import warnings
-
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -9,44 +7,29 @@ import wearlaw as wl
 import wearlaw_wheelset as ws
 from wearlaw import Q
 
-warnings.simplefilter("ignore", wl.PlasticityWarning)  # the flange yields
 
-
-@wl.as_wear_law(
-    inputs={"wear_index_density": "N/mm^2"}, returns="ug/m/mm^2", breakpoints={}, source="USFD's mild regime"
-)
+@wl.as_wear_law(inputs={"wear_index_density": "N/mm^2"}, returns="ug/m/mm^2", breakpoints={}, source="USFD, mild")
 def energy_law(wear_index_density):
     return 5.3 * wear_index_density
 
 
-wheel = ws.Profile.s1002()
-pair = ws.Wheelset(
-    wheel=wheel, rail=ws.Profile.uic60(), nominal_radius="460 mm", flange_back_distance="1360 mm", gauge="1435 mm",
-    rail_cant="1:40", material=wl.steel(), rolling_speed="20 m/s",
-)  # fmt: skip
+wheel, sizes = ws.Profile.s1002(), {"nominal_radius": "460 mm", "flange_back_distance": "1360 mm", "gauge": "1435 mm"}
+sizes |= {"rail": ws.Profile.uic60(), "rail_cant": "1:40", "material": wl.steel()}
+pair = ws.Wheelset(wheel=wheel, **sizes, rolling_speed="20 m/s")
 predict = pair | wl.contact_model("fastsim") | energy_law
-track = {
-    "straight": {"lateral_displacement": "0.8 mm"},
-    "curve of 500 m": {"lateral_displacement": "5.5 mm", "yaw": "5 mrad", "curve_radius": "-500 m"},
-    "curve of 200 m": {"lateral_displacement": "6.12 mm", "yaw": "20 mrad", "curve_radius": "-200 m"},
-}
-
 plt.style.use("seaborn-v0_8-colorblind")
-ratios = {"height_ratios": (2, 3)}
-figure, (shape, loss) = plt.subplots(2, 1, figsize=(6.4, 5.0), sharex=True, layout="constrained", gridspec_kw=ratios)
+form = {"figsize": (6.4, 5.0), "layout": "constrained", "gridspec_kw": {"height_ratios": (2, 3)}}
+figure, (shape, loss) = plt.subplots(2, 1, sharex=True, **form)
 places = np.arange(-60.0, 45.0, 0.25)
-y, z, _, _ = wheel.curve.at(1e-3 * places)
-shape.plot(1e3 * y, 1e3 * z, color="black")
-shape.invert_yaxis()
-for (name, conditions), line in zip(track.items(), ("-", "--", ":"), strict=True):
-    r = predict(vertical_load="60 kN", friction_coefficient=0.3, **conditions)
+y, z, *_ = 1e3 * np.array(wheel.curve.at(1e-3 * places))
+shape.plot(y, z, color="black")
+for radius, moved, yaw, line in (-np.inf, 0.8, 0, "-"), (-500, 5.5, 5, "--"), (-200, 6.12, 20, ":"):
+    track = {"lateral_displacement": Q(moved, "mm"), "yaw": Q(yaw, "mrad"), "curve_radius": Q(radius, "m")}
+    r = predict(**track, vertical_load="60 kN", friction_coefficient=0.3)
     depth = r.sel(side="right").wear_profile("wheel", at=Q(places, "mm")).depth
-    (drawn,) = loss.plot(1e3 * y, depth.where(depth > 0.0), line, label=name)
-    shape.plot(1e3 * y, np.where(depth > 0.0, 1e3 * z, np.nan), lw=6.0, alpha=0.5, color=drawn.get_color())
-
-shape.set(ylabel="z of the wheel [mm]", aspect="equal")
-loss.set(xlabel="y of the wheel [mm]", ylabel="depth lost per distance rolled [µm/km]", yscale="log", ylim=(1e-2, None))
-loss.legend(title="outer wheel")
-for axes in (shape, loss):
-    axes.grid(alpha=0.3)
+    (drawn,) = loss.plot(y, depth.where(depth > 0.0), line, label=f"{-radius} m")
+    shape.plot(y, np.where(depth > 0.0, z, np.nan), lw=6.0, alpha=0.5, color=drawn.get_color())
+shape.set(ylabel="z of the wheel [mm]", aspect="equal", ylim=shape.get_ylim()[::-1])
+loss.set(xlabel="y of the wheel [mm]", ylabel="depth lost per distance [µm/km]", yscale="log", ylim=(1e-2, None))
+loss.legend(title="radius of the curve")
 figure.savefig("wheelset_curve.png", dpi=150)

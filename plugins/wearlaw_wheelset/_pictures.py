@@ -10,6 +10,7 @@ from wearlaw import Array
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
 APART = 15.0
@@ -75,13 +76,12 @@ class Profiles(NamedTuple):
 
 def geometry_figure(geometry: xarray.Dataset, profiles: Profiles) -> Figure:
     """Return a figure of contact points on both profiles of the right side, Δr and contact angles."""
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
+    import matplotlib.figure
 
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(7.4, 6.2), layout="constrained")
+    with matplotlib.rc_context(STYLE):
+        figure = matplotlib.figure.Figure(figsize=(7.4, 6.2), layout="constrained")
         axes = figure.subplot_mosaic([["both", "both"], ["radius", "angle"]], height_ratios=(3.0, 4.0))
-        _contact_points(figure, axes["both"], geometry, profiles)
+        _contact_points(axes["both"], geometry, profiles, matplotlib.cm.ScalarMappable(cmap="viridis"))
         radius, angle = geometry.rolling_radius_difference, geometry.contact_angle.sel(side="right")
         _curves(axes["radius"], radius.expand_dims("patch", -1))
         _curves(axes["angle"], angle)
@@ -113,24 +113,21 @@ def _curves(axes: Any, values: xarray.DataArray) -> None:
     axes.set_xlabel(_label(along))
 
 
-def _contact_points(figure: Figure, axes: Any, geometry: xarray.Dataset, profiles: Profiles) -> None:
+def _contact_points(axes: Any, geometry: xarray.Dataset, profiles: Profiles, shades: ScalarMappable) -> None:
     """Draw the right wheel above its rail, apart, with lines between points that touch."""
-    import matplotlib as mpl
-
     wheel_z = 1e3 * profiles.wheel_z - APART
     axes.plot(1e3 * profiles.wheel_y, wheel_z, color="black")
     axes.plot(1e3 * profiles.rail_y, 1e3 * profiles.rail_z, color="black")
     along = next((name for name in WAYS if name in geometry.dims), None)
     right = geometry.sel(side="right").expand_dims(() if along else "one")
     rows = right.isel({along or "one": slice(None, None, -(-right.sizes[along or "one"] // LINES))})
-    shades, scale = mpl.colormaps["viridis"], mpl.colors.Normalize()
     if along is not None:
-        scale.autoscale(right[along])
-        bar = figure.colorbar(mpl.cm.ScalarMappable(scale, shades), ax=axes, pad=0.01, shrink=0.9)
+        shades.set_clim(float(right[along].min()), float(right[along].max()))
+        bar = axes.figure.colorbar(shades, ax=axes, pad=0.01, shrink=0.9)
         bar.set_label(_label(right[along]))
     for number in range(rows.sizes[along or "one"]):
         one = rows.isel({along or "one": number})
-        colour = shades(scale(float(one[along]))) if along else "C0"
+        colour = tuple(shades.to_rgba(one[along].values)) if along else "C0"
         ends = np.stack([one.wheel_y + 1e3 * profiles.wheel_offset, one.y]), np.stack([one.wheel_z - APART, one.z])
         axes.plot(*(end.reshape(2, -1) for end in ends), color=colour, lw=0.8)
     axes.text(1e3 * profiles.wheel_y[-1], wheel_z[-1] - 1.0, "wheel", ha="right", va="bottom")

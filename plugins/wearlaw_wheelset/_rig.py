@@ -83,17 +83,18 @@ class _Posed(wl.Problem):
 class Wheelset(wl.Rig):
     """Two wheels on an axle that roll on two rails, with the profiles of wheels and rails.
 
-    Each wheel touches its rail in one to three patches. The roll is found so that both wheels touch. The vertical load
-    of each wheel is carried by the normal forces and the lateral creep forces of its patches, which share it by their
-    penetration. The wheelset turns at the speed at which the creep forces balance the torque on the axle.
+    Each wheel touches its rail in one to three patches. The rig finds them, the roll at which both wheels touch, and
+    the creepages of each patch. The normal and lateral creep forces of its patches carry the vertical load of a wheel,
+    and the wheelset turns at the speed at which the creep forces balance the torque on the axle.
 
-    The motion is steady or given: masses, suspensions and bending of the axle are not part of the rig. A program for
-    vehicle dynamics gives lateral displacement, yaw and loads. Both wheels have the same profile, and so do both rails.
+    Prefer this rig to `WheelRail` where you have profiles, or where a wheel touches in several places. It has no
+    dynamics: lateral displacement, yaw and loads come from a program for vehicle dynamics. Both wheels have the same
+    profile and load, and so do both rails.
 
-    Axes are those of the track: x forwards, y to the right, z down. Results have the axes "side" and "patch", in which
-    patch 1 is the one that touches first.
+    Axes are those of the track: x forwards, y to the right, z down. Results have the axes "side" and "patch". Patch 1
+    is the place where rigid bodies touch first; missing patches are NaN.
 
-    Materials may differ. The rig then takes E* and Kalker's means of G and ν.
+    Materials of wheels and rails may differ. The rig then takes E* and Kalker's means of G and ν.
     """
 
     name: ClassVar[str] = "wheelset"
@@ -124,11 +125,11 @@ class Wheelset(wl.Rig):
     rail: Profile
     """Profile of the rails, without cant; a file may give "uic60" or a path."""
     nominal_radius: wl.Length
-    """Radius of the wheels at the origin of their profile [m]."""
+    """Radius of the wheels at the origin of their profile, the taping line [m]."""
     flange_back_distance: wl.Length
     """Distance between the inner faces of the wheels [m]."""
     flange_back_position: Place = Field(default="-70 mm", validate_default=True)
-    """y of the inner face in the wheel's profile [m]."""
+    """Place of the inner face in the wheel's profile, y [m]."""
     gauge: wl.Length
     """Track gauge, the distance between the rails [m]."""
     gauge_depth: wl.Length = Field(default="14 mm", validate_default=True)
@@ -136,10 +137,10 @@ class Wheelset(wl.Rig):
     rail_cant: Cant = Field(default="0 rad", validate_default=True)
     """Angle by which the rails lean inwards, such as "1:40" [rad]."""
     flange_angle: Angle = Field(default="30 deg", validate_default=True)
-    """Contact angle beyond which a patch is one of the flange and takes `flange_friction_coefficient` [rad]."""
+    """Contact angle beyond which a patch takes `flange_friction_coefficient` [rad]."""
     pressure: Literal["kpec", "hertz"] = "kpec"
-    """Normal problem. "kpec": strips by the method of Kik and Piotrowski with elliptic correction. "hertz": ellipses by
-    the curvatures where the bodies first touch, for profiles whose curvature hardly varies over the patch."""
+    """Normal problem. "kpec": strips by the method of Kik and Piotrowski with elliptic correction, for any profile.
+    "hertz": ellipses with the curvatures where rigid bodies touch, for curvatures that hardly vary over the patch."""
     strips: Annotated[int, Field(ge=5, le=500, strict=True)] = 20
     """Number of strips of a patch with `pressure = "kpec"`."""
     material: wl.MaterialField
@@ -220,18 +221,18 @@ class Wheelset(wl.Rig):
         roll: wl.QuantityLike | None = None,
         within: wl.QuantityLike = "0.1 mm",
     ) -> Geometry:
-        """Return where rigid wheels touch their rails, at all combinations of displacements and yaws.
+        """Return where rigid wheels touch their rails, at all combinations of lateral displacements and yaws.
 
         Parameters
         ----------
         lateral_displacement : Quantity or str
-            Lateral displacement of the wheelset, positive to the right [m], one value or of one axis.
+            Lateral displacement of the wheelset, positive to the right [m]: one value, or an array with one axis.
         yaw : Quantity or str
-            Yaw, positive clockwise from above [rad], one value or of one axis.
+            Yaw, positive clockwise from above [rad]: one value, or an array with one axis.
         roll : Quantity or str, optional
             One roll, positive if it lowers the right wheel [rad]. By default both wheels touch.
         within : Quantity or str
-            Patches beside the first one are listed if their vertical gap is at most this [m].
+            Greatest vertical gap of further places beside the first one [m]. Under load they may touch too.
 
         Raises
         ------
@@ -300,20 +301,22 @@ class Wheelset(wl.Rig):
         friction_coefficient : array_like of float
             Friction coefficient, μ [-].
         yaw : Quantity or str
-            Yaw, positive clockwise from above [rad].
+            Yaw, positive clockwise from above, ψ [rad].
         roll : Quantity or str, optional
-            Roll, positive if it lowers the right wheel [rad]. By default both wheels touch.
+            Roll, positive if it lowers the right wheel, ρ [rad]. By default both wheels touch.
         flange_friction_coefficient : array_like of float, optional
-            Friction coefficient where the contact angle exceeds `flange_angle`, as on lubricated flanges [-].
+            Friction coefficient where the contact angle exceeds `flange_angle`, as on a lubricated flange [-].
         axle_torque : Quantity or str, optional
-            Torque on the axle, positive if it drives [N m]; zero, a free axle, by default.
+            Torque on the axle, positive if it drives, M [N m]. By default zero, a free axle.
         angular_speed : Quantity or str, optional
             Speed of rotation instead of a torque, Ω [rad/s].
-        lateral_velocity, yaw_velocity : Quantity or str
-            Velocities of the lateral displacement [m/s] and of the yaw [rad/s]. Where no roll is given, the wheelset
-            rolls with them, so that both wheels stay on their rails.
+        lateral_velocity : Quantity or str
+            Velocity of the lateral displacement [m/s].
+        yaw_velocity : Quantity or str
+            Velocity of the yaw [rad/s]. Where no roll is given, the wheelset rolls with both velocities, so that both
+            wheels stay on their rails.
         curve_radius : Quantity or str
-            Radius of the curve, positive to the right [m]; infinite on a straight track.
+            Radius of the curve, positive to the right [m]. Infinite on straight track.
         rolled_distance : Quantity or str, optional
             Distance rolled since the bodies were new [m], for laws of running-in.
 
