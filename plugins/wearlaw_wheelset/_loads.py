@@ -125,12 +125,13 @@ class _Root:
 
     def step(self, value: Array, going: NDArray[np.bool_]) -> None:
         """Move the places that are still going; the function has these values at the present ones."""
-        with np.errstate(invalid="ignore", divide="ignore"):
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             secant = (value - self.value) / (self.x - self.before)
-        self.slope = np.where((secant > 0.0) & np.isfinite(secant), secant, self.slope)
+            self.slope = np.where((secant > 0.0) & np.isfinite(secant), secant, self.slope)
+            ahead = np.clip(-value / self.slope, -self.most, self.most)
         self.low = np.where(going & (value < 0.0), self.x, self.low)
         self.high = np.where(going & (value > 0.0), self.x, self.high)
-        trial = self.x + np.clip(-value / self.slope, -self.most, self.most)
+        trial = self.x + ahead
         bounded = np.isfinite(self.low) & np.isfinite(self.high)
         middle = 0.5 * (np.where(bounded, self.low, trial) + np.where(bounded, self.high, trial))
         trial = np.where((trial <= self.low) | (trial >= self.high), middle, trial)
