@@ -38,6 +38,7 @@ from wearlaw_wheelset._search_loops import (
     ROLLS,
     ROOTS,
     ROUNDING,
+    WIDER,
     WINDOW,
     compiled_search,
     cubic,
@@ -343,7 +344,10 @@ def touching(section: Section, position: Position, near: NDArray[np.intp] | None
     begin, end = (
         np.where(np.isinf(gap[side]), arcs[other], arcs[side]) for side, other in ((left, right), (right, left))
     )
-    arc[place] = _root(section, there, begin, end, rise[left], rise[right])
+    wider = np.where(begin == end, 0.0, WIDER * section.spacing)
+    begin = np.maximum(begin - wider, section.wheel_y.start)
+    end = np.minimum(end + wider, section.wheel_y.end)
+    arc[place] = _root(section, there, begin, end)
     height[place] = gaps(section, there, arc[place]).gap
     order = np.argsort(height, axis=-1)
     arc, height, index = (np.take_along_axis(one, order, axis=-1) for one in (arc, height, index))
@@ -376,8 +380,9 @@ def _saddles(gap: Array, index: NDArray[np.intp]) -> Array:
     return np.stack(found, axis=-1)
 
 
-def _root(section: Section, position: Position, left: Array, right: Array, at_left: Array, at_right: Array) -> Array:
+def _root(section: Section, position: Position, left: Array, right: Array) -> Array:
     """Return the arc lengths between `left` and `right` where the gap is least, by the Illinois method."""
+    at_left, at_right = (gaps(section, position, arc).rise for arc in (left, right))
     for _ in range(ROOTS):
         span = at_right - at_left
         share = np.divide(at_right, span, out=np.zeros_like(span), where=span != 0.0)

@@ -31,6 +31,9 @@ MOST_ROLL = 5e-3
 WINDOW = 16
 """Coarse points around a contact point among which it is looked for after a small roll: 8 mm."""
 
+WIDER = 0.1
+"""Share of the spacing of coarse points by which their interval is widened: slopes there are interpolated."""
+
 ROUNDING = 1e-12
 """Difference between slopes at a contact point that is rounding."""
 
@@ -211,17 +214,27 @@ def compiled_search(
                         left = right
                     if gap[k + 1] == np.inf:
                         right = left
-                    at_left, at_right = rise[k], rise[k + 1]
-                    across = down = 0.0
-                    for _ in range(ROOTS):
-                        share = at_right / (at_right - at_left) if at_right != at_left else 0.0
-                        root = right - share * (right - left)
+                    if left < right:
+                        left = max(left - WIDER * spacing, arc[0])
+                        right = min(right + WIDER * spacing, arc[arc.size - 1])
+                    at_left = at_right = 0.0
+                    for iteration in range(ROOTS + 2):
+                        root = left if iteration == 0 else right  # the ends first
+                        if iteration > 1:
+                            share = at_right / (at_right - at_left) if at_right != at_left else 0.0
+                            root = right - share * (right - left)
                         there, d_there = at(root, y_start, y_step, y_value, y_slope)
                         size, d_size = at(root, r_start, r_step, r_value, r_slope)
                         _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
                         rail, rail_slope = at(across, z_start, z_step, z_value, z_slope)
                         value = rail_slope - steep
+                        if iteration == 0:
+                            at_left = value
+                            continue
                         height[patch] = rail - down
+                        if iteration == 1:
+                            at_right = value
+                            continue
                         if value * at_right > 0.0:
                             at_left *= 0.5
                         else:

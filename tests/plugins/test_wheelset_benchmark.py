@@ -227,18 +227,21 @@ def test_pressures_are_those_of_the_benchmark(rolled: bool, share: float) -> Non
     "wheelset",
     "Roll at which both wheels touch, up to 6 mm",
     source="input of CONTACT (Vollebregt), Manchester benchmark A-2.2",
-    held_to="{radians:g} rad",
-    radians=5e-6,
+    held_to="what {shift:g} mm of displacement change",
+    shift=0.1,
 )
-def test_rolls_are_those_of_the_benchmark(radians: float) -> None:
-    data = file()
-    pair = wheelset()
-    found = [
-        pair.geometry(lateral_displacement=Q(u, "mm"), yaw=Q(2.4 * u, "mrad")).dataset["roll"].item()
-        for u in data["displacement"][:, 0]
-        if u < CLIMBING
-    ]
-    assert 1e-3 * np.array(found) == pytest.approx(data["roll"][: len(found), 0], rel=0.0, abs=radians)
+def test_rolls_are_those_of_the_benchmark(shift: float) -> None:
+    """The benchmark holds places of contact to 0.1 mm, and a roll can be no better."""
+    data, pair = file(), wheelset()
+
+    def roll(displacement: float, yaw: float) -> float:
+        found = pair.geometry(lateral_displacement=Q(displacement, "mm"), yaw=Q(yaw, "mrad"))
+        return 1e-3 * float(found.dataset["roll"].item())
+
+    for u, expected in zip(data["displacement"][:, 0], data["roll"][:, 0], strict=True):
+        if u < CLIMBING:
+            there, moved = roll(u, 2.4 * u), roll(u + shift, 2.4 * u)
+            assert abs(there - expected) <= abs(moved - there)
 
 
 def test_jumps_have_two_patches_about_the_middle_of_the_benchmark() -> None:

@@ -141,7 +141,7 @@ def test_shifted_rail_profiles_change_nothing() -> None:
 
 # ------------------------------------------------------------------------------------------------------------ jumps
 
-JUMPS = [(0.2185e-3, 10.1e-3), (4.8555e-3, 10.4e-3)]
+JUMPS = [(0.2089e-3, 10.2e-3), (4.8479e-3, 10.48e-3)]
 """Displacements at which the contact point of the right wheel jumps without yaw, and about how far [m]."""
 
 
