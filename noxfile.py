@@ -55,6 +55,7 @@ def bench(session: nox.Session) -> None:
     session.install("-e", ".[fast]")
     session.run("python", "-m", "tests.benchmarks.speed", *session.posargs)
     session.run("python", "-m", "tests.benchmarks.wheel_rail")
+    session.run("python", "-m", "tests.benchmarks.wheelset")
     session.run("python", "-m", "tests.benchmarks.checks")
     session.run("python", "-m", "tests.benchmarks.fit")
     session.run("python", "tests/benchmarks/study.py")

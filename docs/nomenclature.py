@@ -4,13 +4,14 @@ import csv
 import inspect
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cached_property, reduce
 from itertools import takewhile
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import wearlaw as wl
+import wearlaw_wheelset as ws
 from wearlaw.plugins.loader import installed
 from wearlaw.rigs.twin_disc import TwinDiscConditions
 from wearlaw.rigs.wheel_rail import WheelRailConditions
@@ -22,7 +23,7 @@ TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
 CLASSES = (
     *(wl.Problem, wl.Contact, TwinDiscConditions, wl.Prediction, wl.LocalWear),
-    *(wl.CreepForces, WheelRailConditions),
+    *(wl.CreepForces, WheelRailConditions, wl.Body),
 )
 OF_ANY_UNIT = ("outcome", "outcome_error", "value", "local_value")
 """Quantities of a law, whose unit is that of its outcome."""
@@ -53,7 +54,9 @@ def documented() -> Iterator[Documented]:
     for cls in CLASSES:
         for name, text in (*attributes(cls), *properties(cls)):
             yield read(name, SHOWN_AS.get(cls.__name__, cls.__name__), text)
-    for record in (wl.TwinDisc.suros(), wheel_rail(), falling_friction()):
+    for name, text in parameters(ws.Wheelset.problem):
+        yield read(name, "conditions", text)
+    for record in (wl.TwinDisc.suros(), wheel_rail(), wheelset(), falling_friction()):
         for holder, name in fields(record):
             yield read(name, type(holder).__name__, field_docstrings(type(holder))[name])
     for model in (*shipped_models(), *shipped_stages()):
@@ -64,6 +67,11 @@ def documented() -> Iterator[Documented]:
 def wheel_rail() -> wl.WheelRail:
     """Return a wheel on a rail."""
     return wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
+
+
+def wheelset() -> ws.Wheelset:
+    """Return a wheelset on its rails."""
+    return ws.Wheelset.model_validate({**ws.Wheelset.example_fields, "material": wl.steel()})
 
 
 def falling_friction() -> wl.FallingFriction:
@@ -94,6 +102,13 @@ def attributes(cls: type) -> Iterator[tuple[str, str]]:
     """Yield name and text of each number under "Attributes" in the docstring of a class."""
     _, _, section = (inspect.getdoc(cls) or "").partition("Attributes\n----------\n")
     for found in ATTRIBUTE.finditer(section):
+        yield found["name"], found["text"]
+
+
+def parameters(function: Callable[..., object]) -> Iterator[tuple[str, str]]:
+    """Yield name and text of each number under "Parameters" in the docstring of a function."""
+    _, _, section = (inspect.getdoc(function) or "").partition("Parameters\n----------\n")
+    for found in ATTRIBUTE.finditer(section.partition("\n\n")[0] + "\n"):
         yield found["name"], found["text"]
 
 

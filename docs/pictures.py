@@ -19,6 +19,8 @@ from matplotlib.figure import Figure
 
 import wearlaw as wl
 from docs.conventions import conventions
+from docs.wheelset_benchmark import picture as wheelsets_beside_contact
+from docs.wheelset_benchmark import wheelset
 from wearlaw import Q
 from wearlaw.figures.curves import BLACK
 from wearlaw.figures.drawing import LINES, PALETTE, STYLE
@@ -43,6 +45,9 @@ def draw() -> None:
             save(drawing_of(figure), FOLDER / f"{figure.name}.png")
     save(cost_against_error(), FOLDER / "accuracy_cost_against_error.png")
     save(conventions(), FOLDER / "conventions.png")
+    save(wheelsets_beside_contact(), FOLDER / "wheelset_benchmark.png")
+    geometry = wheelset().geometry(lateral_displacement=Q(np.linspace(-8.0, 8.0, 161), "mm"))
+    save(geometry.plot(), FOLDER / "wheelset_geometry.png")
     save(fastsim_against_half_space(), FOLDER / "fastsim_against_half_space.png")
     for figure in (creep_forces(), falling_friction()):
         save(drawing_of(figure), FOLDER / f"{figure.name}.png")

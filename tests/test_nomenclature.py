@@ -5,12 +5,14 @@ from __future__ import annotations
 import contextlib
 import csv
 import dataclasses
+import inspect
 from collections import defaultdict
 from collections.abc import Iterable
 
 import pytest
 
 import wearlaw as wl
+import wearlaw_wheelset as ws
 from docs import nomenclature
 from docs.nomenclature import Documented, read
 from tests.environments import ROOT
@@ -22,6 +24,7 @@ SYMBOLS_OF_SEVERAL_NAMES = {
     "k": "KTH's map has a wear coefficient in each of its four fields",
     "a": "half the width of a line and the semi-axis of an ellipse in the rolling direction",
     "ξ": "the only creepage of discs, the longitudinal one of wheel and rail",
+    "ρ": "the mass density, and the roll of a wheelset",
     "A": "the area of the patch, and the limit of falling friction in its source",
 }
 NAMES_OF_SEVERAL_SYMBOLS = {"wear_index_density": "q·s at a point, and Tγ/A as its mean over the patch"}
@@ -72,7 +75,8 @@ def test_all_fields_of_the_records_and_all_conditions_are_in_the_table(documente
     for record in (wl.Problem, wl.Contact, wl.CreepForces):
         numbers = {field.name for field in dataclasses.fields(record)} - OF_OTHER_KINDS
         assert numbers <= names(documented, record.__name__)
-    assert names(documented, "conditions") == {*TWIN_DISC.names, *WHEEL_RAIL.names}
+    of_wheelset = {*inspect.signature(ws.Wheelset.problem).parameters} - {"self"}
+    assert names(documented, "conditions") == {*TWIN_DISC.names, *WHEEL_RAIL.names, *of_wheelset}
 
 
 def test_all_quantities_of_results_are_in_the_table_with_a_unit_of_their_dimension(

@@ -75,6 +75,7 @@ from wearlaw.plugins.loader import (
 from wearlaw.rigs.twin_disc import Disc, TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.settings.configuration import Configuration
+from wearlaw.settings.text_files import beside
 from wearlaw.study.sections import CheckedClaim, Section, Verdict
 from wearlaw.uncertainties.distributions import lognormal, normal, published_range, uniform
 from wearlaw.units.quantities import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
@@ -172,6 +173,7 @@ __all__ = [
     "accelerate",
     "accelerated",
     "as_wear_law",
+    "beside",
     "compare",
     "compiled_loop",
     "contact_model",

@@ -125,6 +125,13 @@ class Fastsim(wl.LineContactModel):
         contact = _solution.on_given_strips(problem, patches, self.strips)
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 
+    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
+        """Return the forces of an ellipse or of strips, without the fields that only wear needs."""
+        if self.march == "uniform" and problem.geometry == "ellipse":
+            return self.solve(problem).forces
+        patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
+        return _solution.forces(problem, patches, self.strips)
+
     def on_strips(self, problem: wl.Problem, shares: Array) -> wl.Contact | None:
         """Return the contact on strips at y = `shares` × b; a uniform march has its own strips."""
         if self.march == "uniform" or problem.geometry == "strips":

@@ -56,14 +56,30 @@ def on_given_strips(problem: wl.Problem, patches: Ellipses, count: int) -> wl.Co
     return _on_strips(problem, patches, count, _strips.given_layout(problem.flatten(), patches.elliptic))
 
 
-def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, layout: _strips.Layout) -> wl.Contact:
-    flat = problem.flatten()
+def forces(problem: wl.Problem, patches: Ellipses, count: int) -> wl.CreepForces:
+    """Return the forces on strips with adaptive nodes, those of `adaptive` or of `on_given_strips`."""
+    if problem.geometry == "strips":
+        layout = _strips.given_layout(problem.flatten(), patches.elliptic)
+    else:
+        layout = _strips.layout_on(patches, *_strips.even_strips(count))
+    found = _strips.forces(layout, _fields(patches, count, layout))
+    names = ("longitudinal", "lateral", "spin_moment")
+    return wl.CreepForces(**{name: problem.unflatten(getattr(found, name)) for name in names})
+
+
+def _fields(patches: Ellipses, count: int, layout: _strips.Layout) -> _strips.StripFields:
     along = max(round(STICK_NODES_PER_STRIP * count), 4), max(round(SLIP_NODES_PER_STRIP * count), 8)
     found = _strips.strips(patches, layout, *along)
-    rolls_freely = (flat.longitudinal_creepage == 0.0) & (flat.lateral_creepage == 0.0) & (flat.spin == 0.0)
+    creepages = patches.longitudinal_creepage, patches.lateral_creepage, patches.spin
+    rolls_freely = (creepages[0] == 0.0) & (creepages[1] == 0.0) & (creepages[2] == 0.0)
     if rolls_freely.any():  # otherwise nodes of zero length at the trailing edge slip
         for field in (found.traction_x, found.traction_y, found.slip_x, found.slip_y):
             field[rolls_freely] = 0.0
+    return found
+
+
+def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, layout: _strips.Layout) -> wl.Contact:
+    flat, found = problem.flatten(), _fields(patches, count, layout)
     contact = wl.Contact.from_strips(
         flat,
         _strips.forces(layout, found),

@@ -24,7 +24,11 @@ WRONG: list[tuple[str, Any, str]] = [
         "rig: no rig is called 'twin_disk'; did you mean 'twin_disc'? Installed: twin_disc, wheel_rail",
     ),
     ("rig", 1, "rig: must be a rig, its name, or a table of its name and fields; got 1"),
-    ("rig", {}, 'rig: needs a type, such as type = "twin_disc". Installed: twin_disc, wheel_rail; or a preset: suros'),
+    (
+        "rig",
+        {},
+        'rig: needs a type, such as type = "twin_disc". Installed: twin_disc, wheel_rail, wheelset; or a preset: suros',
+    ),
     ("rig", {"wheel_radius": "460 mm"}, 'rig: needs a type, such as type = "wheel_rail". Installed: '),
     ("rig", {"type": "twin_disc"}, "rig.disc_1: is missing"),
     ("rig.type", "twin_disk", "rig.type: no rig is called 'twin_disk'; did you mean 'twin_disc'?"),

@@ -84,7 +84,7 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
     assert head == ["kind", "name", "distribution", "version"]
     ours = [row for row in rows if row[-2] == "wearlaw"]
     assert ours == [
-        *(["rig", name, "wearlaw", wl.__version__] for name in ("twin_disc", "wheel_rail")),
+        *(["rig", name, "wearlaw", wl.__version__] for name in ("twin_disc", "wheel_rail", "wheelset")),
         *(
             ["contact", "model", name, "wearlaw", wl.__version__]
             for name in ("exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins")
@@ -92,9 +92,10 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
         *(["stage", name, "wearlaw", wl.__version__] for name in ("patch_mean", "thermal", "third_body")),
         *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("brr", "kth", "usfd")),
         ["material", "steel", "wearlaw", wl.__version__],
-        *(["case", name, "wearlaw", wl.__version__] for name in ("tassini2010", "wheel_on_rail")),
+        *(["case", name, "wearlaw", wl.__version__] for name in ("tassini2010", "wheel_on_rail", "wheelset")),
         ["test", "set", "lewis2004", "wearlaw", wl.__version__],
         *(["section", f"tassini2010_{name}", "wearlaw", wl.__version__] for name in ("claims", "table_4", "tables")),
+        ["section", "wheelset", "wearlaw", wl.__version__],
     ]
     assert result.stderr == ""
 

@@ -186,6 +186,37 @@ def test_axes_have_their_labels_scales_and_ends() -> None:
     assert (axes.get_xlim(), axes.get_ylim()) == ((0.5, 8.0), (-1.0, 7.0))
 
 
+@pytest.mark.parametrize("ends", [None, (0.5, 8.0)])
+def test_an_inverted_axis_runs_the_other_way(ends: tuple[float, float] | None) -> None:
+    axes = axes_of(x=PlotAxis("y [mm]", ends=ends), y=PlotAxis("z [mm]", ends=ends, inverted=True))
+    assert axes.get_xlim()[0] < axes.get_xlim()[1]
+    assert axes.get_ylim()[0] > axes.get_ylim()[1]
+    assert ends is None or axes.get_ylim() == ends[::-1]
+
+
+def test_with_equal_axes_a_length_is_as_long_in_x_as_in_y() -> None:
+    axes = axes_of(curve(y=X), curve(y=-X), equal=True)
+    box, (left, right), (low, high) = axes.get_window_extent(), axes.get_xlim(), axes.get_ylim()
+    assert box.width / (right - left) == pytest.approx(box.height / (high - low), rel=1e-9)
+    assert axes_of().get_aspect() == "auto"
+
+
+def test_named_values_have_their_names_on_the_axis() -> None:
+    axes = axes_of(x=PlotAxis("patch", names=("left 1", "$right$ 1")))
+    assert [text.get_text() for text in axes.get_xticklabels()] == ["left 1", r"\$right\$ 1"]
+    assert list(axes.get_xticks()) == [0, 1]
+
+
+def test_a_point_of_a_line_without_neighbours_has_a_marker_and_gaps_stay_open() -> None:
+    x = np.arange(6.0)
+    gaps = curve(x=x, y=np.array([1.0, np.nan, 1.0, 1.0, np.nan, 1.0]))
+    (line,) = axes_of(gaps).lines
+    assert (line.get_marker(), line.get_markevery()) == (MARKERS[0], [0, 5])
+    np.testing.assert_array_equal(line.get_ydata(), gaps.y)
+    together = axes_of(gaps, curve(x=x, y=x, colour=1)).lines
+    assert {0, 5} < set(together[0].get_markevery())  # type: ignore[arg-type]
+
+
 def test_without_ends_all_of_the_curves_is_seen() -> None:
     axes = axes_of(y=PlotAxis("b", "log"))
     assert axes.get_xlim()[0] <= 1.0 < 4.0 <= axes.get_xlim()[1]

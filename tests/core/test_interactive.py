@@ -106,6 +106,32 @@ def test_axes_have_their_labels_scales_and_ends() -> None:
     assert layout["yaxis2"]["range"] == [-1.0, 1.0]  # plotly.js takes the exponents of 0.1 and 10
 
 
+@pytest.mark.parametrize("ends", [None, (0.1, 10.0)])
+def test_axes_can_be_inverted_equal_and_named(ends: tuple[float, float] | None) -> None:
+    y = PlotAxis("z [mm]", "log", ends, inverted=True)
+    panel = Panel(PlotAxis("patch", names=("left & 1", "right 1")), y, (data.FALLING,), equal=True)
+    drawn = plotly_figure(FigureData("f", "", (panel, panel)))
+    go.Figure(drawn)
+    layout = drawn["layout"]
+    for number in ("", 2):
+        x, y_axis = layout[f"xaxis{number}"], layout[f"yaxis{number}"]
+        assert (x["tickvals"], x["ticktext"]) == ([0, 1], ["left &amp; 1", "right 1"])
+        assert y_axis["scaleanchor"] == f"x{number}"
+        assert x["constrain"] == y_axis["constrain"] == "domain"
+        assert y_axis.get("range") == (None if ends is None else [1.0, -1.0])
+        assert y_axis.get("autorange") == ("reversed" if ends is None else None)
+    plain = plotly_figure(ONE)["layout"]
+    assert not {"scaleanchor", "constrain", "autorange", "tickvals"} & {*plain["xaxis"], *plain["yaxis"]}
+
+
+def test_a_point_between_gaps_has_a_marker() -> None:
+    curve = Curve("gaps", np.arange(5.0), np.array([1.0, np.nan, 1.0, 1.0, np.nan]))
+    (trace,) = traces(FigureData("f", "", (Panel(PlotAxis("x"), PlotAxis("y"), (curve,)),))).values()
+    assert (trace["mode"], trace["selectedpoints"]) == ("lines+markers", [0])
+    assert trace["y"] == [1.0, None, 1.0, 1.0, None]
+    assert "connectgaps" not in trace
+
+
 def bands(figure: FigureData) -> dict[str, Any]:
     return {trace["legendgroup"]: trace for trace in plotly_figure(figure)["data"] if trace.get("fill")}
 

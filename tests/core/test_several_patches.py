@@ -2,55 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import warnings
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.core.axles import (
+    ALONE,
+    CONICITY,
+    CREEP,
+    CUT,
+    EXISTS,
+    GIVEN,
+    KTH,
+    LOADS,
+    PATCHES,
+    PREDICT,
+    RADIUS,
+    WHEEL,
+    Axle,
+    Worn,
+    of,
+)
 from tests.strategies import EPS
 from wearlaw import Array, Q
-
-RADIUS, CONICITY, FLANGE = 0.46, 0.05, 6e-3
-WHEEL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
-PATCHES: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch": (1, 2)}
-CREEP: Any = {"longitudinal_creepage": "0.2 %", "spin": "0.3 1/m", "friction_coefficient": 0.3}
-GIVEN: Any = {"load": "80 kN", "displacement": Q([0.0, 5.0, 7.0], "mm"), **CREEP}
-EXISTS = np.array([[[1, 0], [1, 0]], [[1, 0], [1, 0]], [[1, 0], [1, 1]]], dtype=bool)
-SHARE = 0.25
-
-
-class Axle(wl.Rig):
-    """Two wheels; beyond a displacement of 6 mm the right one also touches with its flange, which takes a quarter."""
-
-    name: ClassVar[str] = "axle"
-    source: ClassVar[str] = "a test"
-    creepage: ClassVar[str] = "longitudinal_creepage"
-    dims: ClassVar[Mapping[str, tuple[str | int, ...]]] = PATCHES
-
-    @property
-    def bodies(self) -> Mapping[str, wl.Body]:
-        """Those of one wheel."""
-        return WHEEL.bodies
-
-    def problem(self, *, load: wl.QuantityLike, displacement: wl.QuantityLike, **creepages: Any) -> wl.Problem:
-        """Return the problem of four patches, of which there are two or three."""
-        place = wl.Unit("mm", positive=False).si(displacement, "displacement")[..., None, None]
-        flange, right = np.array([0.0, 1.0]), np.array([[-1.0], [1.0]])
-        exists = (flange == 0.0) | ((place > FLANGE) & (right > 0.0))
-        two = (right > 0.0) & (place > FLANGE)
-        share = np.where(two, np.where(flange > 0.0, SHARE, 1.0 - SHARE), 1.0)
-        found = WHEEL.problem(normal_force=Q(share * wl.Unit("N").si(load, "load"), "N"), **creepages)
-        radius = np.broadcast_to(RADIUS + CONICITY * right * place, exists.shape)
-        bodies = {"wheel": wl.Body(WHEEL.material, radius), "rail": found.bodies["rail"]}
-        return found.replaced(dims=self.dims, exists=exists, bodies=bodies)
-
-
-KTH = wl.wear_law("kth")
-PREDICT: Any = Axle() | wl.contact_model("fastsim") | KTH
-ALONE: Any = WHEEL | wl.contact_model("fastsim") | KTH
-LOADS = Q(np.array([[[80.0, np.nan]] * 2] * 2 + [[[80.0, np.nan], [60.0, 20.0]]]), "kN")
 
 
 def alone(name: str) -> Array:
@@ -154,11 +132,19 @@ def test_a_wrong_mask_is_the_rigs_fault(exists: Any) -> None:
 
 def test_applications_that_take_one_patch_say_so() -> None:
     with pytest.raises(
-        wl.CompositionError, match=r"sweep: needs one patch .* 'axle' makes several, along side and patch"
+        wl.CompositionError, match=r"uncertainty: needs one patch .* 'axle' makes several, along side and patch"
     ):
-        wl.sweep(PREDICT, **GIVEN)
-    with pytest.raises(wl.CompositionError, match="uncertainty: needs one patch"):
         wl.uncertainty(PREDICT, **{**GIVEN, "load": wl.uniform("60 kN", "80 kN")}, samples=4).interval()
+    varied = {"displacement": Q([0.0, 1.0, 7.0], "mm"), "longitudinal_creepage": Q([0.1, 0.2, 0.3], "%")}
+    tests = wl.WearTests.from_arrays(
+        friction_coefficient=0.3,
+        other_conditions={"load": "80 kN", "spin": "0.3 1/m", **varied},
+        wear_rate=Q([1.0, 2.0, 3.0], "ug/m/mm^2"),
+    )
+    with pytest.raises(wl.CompositionError, match="compare: needs one patch"):
+        wl.compare([PREDICT], tests)
+    with pytest.raises(wl.CompositionError, match="fit: needs one patch"):
+        wl.fit(PREDICT, tests, free=["hardness"])
     creepages = {name: value for name, value in GIVEN.items() if name != "longitudinal_creepage"}
     with pytest.raises(wl.CompositionError, match="creepage_for: needs one patch"):
         wl.creepage_for(Axle() | wl.contact_model("fastsim"), tangential_force="1 kN", **creepages)
@@ -245,3 +231,145 @@ def test_labels_of_axes_must_fit_the_batch(dims: Any) -> None:
     predict = Mislabelled() | wl.contact_model("fastsim")
     with pytest.raises(wl.ModelError, match=r"rig 'mislabelled' gave .* a batch of shape \(3, 2, 2\).*with a label"):
         predict(**GIVEN)
+
+
+@pytest.mark.parametrize("hertzian", [True, False])
+def test_friction_may_differ_by_patch(hertzian: bool) -> None:
+    dry, greased = 0.3, 0.08
+
+    class Lubricated(Worn):
+        """The axle with a lubricated flange."""
+
+        name: ClassVar[str] = "lubricated"
+
+        def problem(self, **conditions: Any) -> wl.Problem:
+            found = super().problem(**conditions)
+            friction = np.broadcast_to(np.array([dry, greased]), found.batch_shape)
+            return found.replaced(friction_coefficient=friction)
+
+    rig = Lubricated(hertzian=hertzian)
+    predict: Any = rig | wl.contact_model("fastsim") | KTH
+    found = predict(**GIVEN)
+    np.testing.assert_array_equal(of(found, "friction_coefficient"), np.where(EXISTS, [dry, greased], np.nan))
+    for patch, friction in enumerate((dry, greased)):
+        alike: Any = Worn(hertzian=hertzian) | wl.contact_model("fastsim") | KTH
+        of_one = alike(**{**GIVEN, "friction_coefficient": friction})
+        for name in ("wear_rate", "longitudinal_force", "spin_moment", "mean_slip", "wear_index", "first_yield"):
+            np.testing.assert_allclose(
+                of(found, name)[..., patch], of(of_one, name)[..., patch], rtol=64 * EPS, err_msg=name
+            )
+    ratio = of(found, "traction_coefficient")
+    assert (ratio[EXISTS] <= np.broadcast_to([dry, greased], EXISTS.shape)[EXISTS] * (1.0 + 64 * EPS)).all()
+    staged: Any = rig | wl.contact_model("fastsim") | wl.stage("third_body", reduction=0.5) | KTH
+    halved = staged(**GIVEN).friction_coefficient.magnitude
+    np.testing.assert_array_equal(halved, of(found, "friction_coefficient"))  # a third body changes the slope alone
+
+
+@pytest.mark.parametrize("predict", [PREDICT, CUT])
+def test_a_prediction_prints_the_patches_that_exist(predict: Any) -> None:
+    found = predict(**GIVEN)
+    first, *rows = repr(found).splitlines()
+    assert first == "Prediction of 7 patches at 3 operating points"
+    assert "nan" not in repr(found)
+    rate = found.wear_rate[found.problem.exists]
+    assert rows[0] == f"  wear_rate            {rate.min()!r} to {rate.max()!r}"
+    flange = found.sel(side="right", patch=2)
+    assert repr(flange).startswith("Prediction of 1 patch at 3 operating points\n")
+    assert "nan" not in repr(flange)
+    assert repr(flange.isel(point_0=2)).startswith("Prediction of 1 operating point\n")
+    missing = repr(flange.isel(point_0=0)).splitlines()
+    assert missing[0] == "Prediction of 0 patches at 1 operating point"
+    assert all(row.endswith(" no patch") for row in missing[1:])
+
+
+def test_creepages_and_the_contact_angle_of_each_patch() -> None:
+    angles, lateral = np.deg2rad([3.0, 70.0]), np.array([1e-3, 2e-3])
+
+    class Angled(Worn):
+        """The axle with angles and lateral creepages of its own."""
+
+        name: ClassVar[str] = "angled"
+
+        def problem(self, **conditions: Any) -> wl.Problem:
+            found = super().problem(**conditions)
+            shape = found.batch_shape
+            return found.replaced(
+                contact_angle=np.broadcast_to(angles, shape),
+                lateral_creepage=np.broadcast_to(lateral, shape),
+                spin=np.sin(np.broadcast_to(angles, shape)) / RADIUS,
+            )
+
+    for hertzian in (True, False):
+        predict: Any = Angled(hertzian=hertzian) | wl.contact_model("fastsim") | KTH
+        found = predict(**GIVEN)
+        np.testing.assert_array_equal(of(found, "lateral_creepage"), np.where(EXISTS, lateral, np.nan))
+        np.testing.assert_allclose(of(found, "contact_angle"), np.where(EXISTS, angles, np.nan), rtol=4 * EPS)
+        np.testing.assert_allclose(of(found, "spin"), np.where(EXISTS, np.sin(angles) / RADIUS, np.nan), rtol=4 * EPS)
+        assert (str(found.contact_angle.units), str(found.spin.units)) == ("degree", "1 / meter")
+        given = {name: value for name, value in GIVEN.items() if name != "spin"}
+        swept = wl.sweep(
+            predict,
+            **{**given, "spin": Q([0.0], "1/m")},
+            outputs=["contact_angle", "lateral_creepage", "creepage", "wear_index"],
+        )
+        assert swept.contact_angle.attrs == {"units": "deg", "long_name": "contact angle"}
+        assert swept.lateral_creepage.attrs == {"units": "%", "long_name": "lateral creepage"}
+        np.testing.assert_allclose(swept.contact_angle.values[:, 0], np.where(EXISTS, [3.0, 70.0], np.nan))
+    level = PREDICT(**GIVEN).contact_angle.magnitude
+    np.testing.assert_array_equal(level, np.where(EXISTS, 0.0, np.nan))
+    discs = (wl.TwinDisc.suros() | wl.contact_model("exact"))(
+        creepage=Q([1.0, 2.0], "%"), max_pressure="1.5 GPa", friction_coefficient=0.4
+    )
+    for name in ("contact_angle", "spin", "lateral_creepage"):
+        assert getattr(discs, name).magnitude.tolist() == [0.0, 0.0]
+
+
+def test_warnings_and_limits_on_strips_look_at_patches_that_exist() -> None:
+    with pytest.warns(wl.RangeWarning) as on_strips:
+        found = CUT(**{**GIVEN, "load": "8000 kN"})
+    with pytest.warns(wl.RangeWarning) as on_ellipses:
+        PREDICT(**{**GIVEN, "load": "8000 kN"})
+    said, expected = ([str(one.message) for one in these] for these in (on_strips, on_ellipses))
+    assert len(said) == len(expected) == 2
+    assert "is beyond the shakedown limit" in said[0]
+    assert "7 of 7 patches lie outside" in said[1]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        missing = CUT(**{**GIVEN, "load": "8000 kN"}).sel(side="left", patch=2)
+    for name in ("first_yield", "shakedown_limit", "outside_range"):
+        assert (np.isnan(of(found, name)) == ~EXISTS).all()
+        assert np.isnan(of(missing, name)).all()
+    assert (of(found, "outside_range")[EXISTS] == 1.0).all()
+    assert (of(found, "max_pressure") > of(found, "shakedown_limit"))[EXISTS].all()
+
+
+@pytest.mark.parametrize(
+    "index", [np.s_[1], np.s_[1:], np.s_[0, 1], np.s_[..., 0], np.array([2, 0]), EXISTS, np.s_[:, None]]
+)
+def test_strips_are_indexed_as_the_other_arrays(index: Any) -> None:
+    problem = CUT.rig.problem(**GIVEN)
+    found, positions = problem[index], np.arange(EXISTS.size).reshape(EXISTS.shape)[index]
+    for name in ("y", "width", "half_length", "max_pressure"):
+        expected = getattr(problem.strips, name).reshape(EXISTS.size, -1)[positions]
+        np.testing.assert_array_equal(getattr(found.strips, name), expected)
+    np.testing.assert_array_equal(found.a, problem.a.reshape(-1)[positions])
+    wide = problem[0].broadcast_to((3, 2, 2))
+    np.testing.assert_array_equal(wide.strips.y, np.broadcast_to(problem.strips.y[0], (3, 2, 2, 12)))
+
+
+# --- A field that chooses the shape ----------------------------------------------------------------------------------
+
+
+def test_a_rig_may_choose_its_geometry_by_a_field() -> None:
+    ellipse = (Worn() | wl.contact_model("polach"))(**GIVEN)
+    assert ellipse.problem.geometry == "ellipse"
+    strips: Any = Worn(hertzian=False) | wl.contact_model("fastsim") | KTH
+    np.testing.assert_array_equal(of(strips(**GIVEN), "wear_rate"), of(CUT(**GIVEN), "wear_rate"))
+    with pytest.raises(
+        wl.CompositionError,
+        match="contact model 'polach' solves elliptic contacts only, but a Worn makes patches of strips;"
+        r" those that solve them: .*fastsim",
+    ):
+        Worn(hertzian=False) | wl.contact_model("polach")
+    with pytest.raises(wl.InputError, match=r"problem: has the geometry 'ellipse', but a Worn makes .*'strips'"):
+        strips.predict(ellipse.problem)

@@ -136,7 +136,7 @@ class Humps(wl.Rig):
     name: ClassVar[str] = "humps"
     source: ClassVar[str] = "a test"
     creepage: ClassVar[str] = "creepage"
-    geometry: ClassVar[wl.Geometry | None] = "strips"
+    patch_geometry: ClassVar[wl.Geometry | None] = "strips"
 
     @property
     def bodies(self) -> dict[str, wl.Body]:

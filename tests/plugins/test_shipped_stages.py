@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.test_several_patches import EXISTS, GIVEN, Axle
+from tests.core.axles import EXISTS, GIVEN, Axle
 from wearlaw import Q
 
 SUROS = wl.TwinDisc.suros()

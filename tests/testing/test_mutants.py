@@ -13,6 +13,7 @@ import pytest
 from hypothesis import Phase, settings
 
 import wearlaw as wl
+from tests.core.axle_case import Axle
 from tests.testing import (
     cells,
     strips,
@@ -151,6 +152,16 @@ def two_slopes(wear_index_density: Any, *, mild: float = 5.0, severe: float = 15
 
 @conformance(two_slopes)
 def test_a_law_from_one_function_passes(check: Check) -> None:
+    check()
+
+
+@conformance(Axle())
+def test_a_rig_with_several_patches_passes(check: Check) -> None:
+    check()
+
+
+@conformance(wrong_rigs.OnStrips())
+def test_a_rig_with_patches_of_strips_passes(check: Check) -> None:
     check()
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from pydantic import Field
 
 import wearlaw as wl
+from tests.core.axle_case import Axle
 
 DISCS = wl.TwinDisc.suros()
 
@@ -25,7 +26,7 @@ class Weight(wl.Rig):
 
     name: ClassVar[str] = "weight"
     source: ClassVar[str] = "made up for the tests"
-    geometry: ClassVar[wl.Geometry | None] = "line"
+    patch_geometry: ClassVar[wl.Geometry | None] = "line"
     example: ClassVar[Mapping[str, Any]] = {"mass": "20 kg", "creepage": "1 %", "friction_coefficient": 0.4}
 
     arm: wl.Length = Field(default="50 cm", validate_default=True)
@@ -288,7 +289,7 @@ class RunsIn(Changed):
 class WrongGeometry(Weight):
     """Says that its patch is an ellipse."""
 
-    geometry: ClassVar[wl.Geometry | None] = "ellipse"
+    patch_geometry: ClassVar[wl.Geometry | None] = "ellipse"
 
 
 class BodiesWithSpaces(Weight):
@@ -339,6 +340,82 @@ class UnpicklableRig(Weight):
         return self.cached, ()
 
 
+class OnStrips(wl.Rig):
+    """A right one of strips: an axle whose patches are cut into strips."""
+
+    name: ClassVar[str] = "on_strips"
+    source: ClassVar[str] = "made up for the tests"
+    patch_geometry: ClassVar[wl.Geometry] = "strips"
+    creepage: ClassVar[str] = "displacement"
+    example: ClassVar[Mapping[str, Any]] = Axle.example
+
+    @classmethod
+    def conditions(cls) -> tuple[str, ...]:
+        return Axle.conditions()
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        Axle().check_names(conditions)
+        ellipse = Axle().problem(**conditions)
+        y = np.linspace(-0.9, 0.9, 10)
+        height = np.sqrt(1.0 - y**2)
+        strips = wl.Strips(
+            y=ellipse.b[..., None] * y,
+            width=0.2 * ellipse.b[..., None] * np.ones(10),
+            half_length=ellipse.a[..., None] * height,
+            max_pressure=ellipse.max_pressure[..., None] * height,
+        )
+        return self.loaded(ellipse.replaced(geometry="strips", strips=strips))
+
+    def loaded(self, problem: wl.Problem) -> wl.Problem:
+        assert problem.strips is not None
+        return problem.replaced(normal_force=problem.strips.normal_force.sum(axis=-1))
+
+
+class LoadOfTheEllipse(OnStrips):
+    """The load of Hertz's ellipse, of which ten strips carry a little more."""
+
+    def loaded(self, problem: wl.Problem) -> wl.Problem:
+        return problem
+
+
+class WeightlessFlange(Axle):
+    """A flange that exists and bears nothing."""
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        problem = super().problem(**conditions)
+        return problem.replaced(normal_force=np.where([True, False], problem.normal_force, 0.0))
+
+    @classmethod
+    def conditions(cls) -> tuple[str, ...]:
+        return Axle.conditions()
+
+
+class SidesFirst(Axle):
+    """The axes of the patches before those of the conditions."""
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        problem = super().problem(**conditions)
+        return problem.mapped(lambda array: np.moveaxis(array, (-2, -1), (0, 1))).replaced(dims={})
+
+    @classmethod
+    def conditions(cls) -> tuple[str, ...]:
+        return Axle.conditions()
+
+
+class FlangesOfTheFirst(Axle):
+    """All operating points have the patches of the first."""
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        problem = super().problem(**conditions)
+        assert problem.exists is not None
+        exists = np.broadcast_to(problem.exists.reshape(-1, 2, 2)[0], problem.batch_shape).copy()
+        return problem.replaced(exists=exists)
+
+    @classmethod
+    def conditions(cls) -> tuple[str, ...]:
+        return Axle.conditions()
+
+
 CAUGHT: dict[type[wl.Rig], str] = {
     NoFriction: "problem_is_finite_and_positive",
     InfiniteSpeed: "problem_is_finite_and_positive",
@@ -373,5 +450,9 @@ CAUGHT: dict[type[wl.Rig], str] = {
     NoSourceOfRig: "model_is_documented",
     LosesArm: "round_trip_through_toml",
     UnpicklableRig: "round_trip_through_pickle",
+    LoadOfTheEllipse: "pressure_carries_the_load",
+    WeightlessFlange: "problem_is_finite_and_positive",
+    SidesFirst: "problem_has_the_shape_of_the_conditions",
+    FlangesOfTheFirst: "arrays_equal_single_calls",
 }
 """The check that must catch each."""

@@ -100,7 +100,7 @@ def _summary(summary: NamedTable) -> Table:
     for value in values:
         table.add_column(value, justify="right", no_wrap=True)
     for pair, *values_of_pair in summary.frame.itertuples(index=False, name=None):
-        table.add_row(Text(pair), *(f"{value:.4g}" for value in values_of_pair))
+        table.add_row(Text(pair), *("" if value != value else f"{value:.4g}" for value in values_of_pair))
     return table
 
 

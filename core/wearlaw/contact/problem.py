@@ -49,10 +49,18 @@ class Body:
     rolling_radius : float or ndarray
         Radius of the rolling surface [m], one for all operating points or an array of the batch shape; infinite for a
         flat or straight body, such as a rail.
+    profile_position : ndarray, float or None
+        Arc length along the body's profile at y = 0 of the patch [m]; None if it is not known. A rig may give an array
+        that broadcasts to the batch shape.
+    profile_direction : float or ndarray
+        1 where the arc length grows with y, -1 where it falls, as on the left wheel if y is to the right and the arc
+        runs outwards.
     """
 
     material: Material
     rolling_radius: float | Array
+    profile_position: Array | float | None = None
+    profile_direction: float | Array = 1.0
 
     @cached_property
     def strength(self) -> tuple[float, float] | None:
@@ -61,10 +69,13 @@ class Body:
         return None if stress is None else (scalar_si(stress, "Pa"), self.material.poisson_ratio)
 
     def mapped(self, function: Callable[[Array], Array]) -> Body:
-        """Return the body with a function applied to its radius if the radius is an array."""
-        if not isinstance(self.rolling_radius, np.ndarray):
+        """Return the body with a function applied to those of its values that are arrays."""
+        if not isinstance(self.rolling_radius, np.ndarray) and self.profile_position is None:
             return self
-        return Body(self.material, function(self.rolling_radius))
+        names = ("rolling_radius", "profile_position", "profile_direction")
+        values: dict[str, Any] = {name: getattr(self, name) for name in names}
+        values |= {name: function(value) for name, value in values.items() if isinstance(value, np.ndarray)}
+        return Body(self.material, **values)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -101,9 +112,15 @@ class Strips:
         """Normal force on each strip, π/4 of its area times its maximum pressure [N]."""
         return 0.25 * np.pi * self.area * self.max_pressure
 
-    def mapped(self, function: Callable[[Array], Array]) -> Self:
-        """Return the strips with a function of the batch applied to each of their arrays."""
+    def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
+        """Return the strips with a function of the batch applied to each of their arrays.
+
+        `of_strips` is the same function for arrays with an axis of strips after the batch, if there is one. It is much
+        faster.
+        """
         arrays = {name: getattr(self, name) for name in self.__slots__}
+        if of_strips is not None:
+            return type(self)(**{name: of_strips(array) for name, array in arrays.items()})
         by_strip = {name: [function(strip) for strip in np.moveaxis(array, -1, 0)] for name, array in arrays.items()}
         return type(self)(**{name: np.stack(strips, axis=-1) for name, strips in by_strip.items()})
 
@@ -530,7 +547,12 @@ class Problem:
 
     def __getitem__(self, index: Any) -> Self:
         """Return the problem at some operating points of the batch; `index` is any NumPy index."""
-        return self.mapped(lambda array: array[index])
+
+        def chosen(array: Array) -> Array:
+            return array[index]  # type: ignore[no-any-return]
+
+        first_axes = isinstance(index, slice | np.ndarray)  # another index may count axes from the last
+        return self.mapped(chosen, chosen if first_axes else None)
 
     def broadcast_to(self, shape: tuple[int, ...]) -> Self:
         """Return the problem broadcast to a larger batch shape; the new axes come first."""
@@ -540,11 +562,10 @@ class Problem:
         """Return the problem with a batch of one axis that holds the existing patches."""
         if self.longitudinal_creepage.ndim == 1 and not self.dims and self.exists is None:
             return self
-        flat = self.mapped(_flat)
-        if not flat.dims and flat.exists is None:
-            return flat
-        flat = flat.replaced(dims={}, exists=None)
-        return flat if self.exists is None else flat[self.exists.reshape(-1)]
+        if self.exists is not None:
+            return self[self.exists].replaced(dims={}, exists=None)
+        flat = self.mapped(_flat, _flat_strips)
+        return flat.replaced(dims={}) if flat.dims else flat
 
     def existing(self) -> Self:
         """Return the problem of the existing patches, which is `self` if all patches exist."""
@@ -562,14 +583,14 @@ class Problem:
         found[self.exists] = values
         return found
 
-    def mapped(self, function: Callable[[Array], Array]) -> Self:
-        """Return the problem with a function applied to each of its arrays."""
-        fields: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
+    def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
+        """Return the problem with a function applied to each of its arrays; `of_strips` as in `Strips.mapped`."""
+        fields: dict[str, Any] = {name: getattr(self, name) for name in self.__dataclass_fields__}
         for name in ARRAYS:
             if fields[name] is not None:
                 fields[name] = function(fields[name])
         if self.strips is not None:
-            fields["strips"] = self.strips.mapped(function)
+            fields["strips"] = self.strips.mapped(function, of_strips)
         fields["bodies"] = {name: body.mapped(function) for name, body in self.bodies.items()}
         return type(self)(**fields)
 
@@ -583,6 +604,11 @@ def _flat(array: Array) -> Array:
     if array.ndim > 1 and not any(array.strides) and array.size:
         return np.broadcast_to(array[(0,) * array.ndim], array.size)
     return array.reshape(-1)
+
+
+def _flat_strips(array: Array) -> Array:
+    """Return an array of strips with one axis for the batch."""
+    return array.reshape(-1, array.shape[-1])
 
 
 def _si(

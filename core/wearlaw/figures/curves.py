@@ -69,11 +69,27 @@ class Shade:
 
 @dataclass(frozen=True, eq=False)
 class PlotAxis:
-    """An axis of a panel: its label with the unit, its scale, and its ends if the curves do not set them."""
+    """An axis of a panel.
+
+    Attributes
+    ----------
+    label : str
+        Its label with the unit.
+    scale : {"linear", "log"}
+        Linear or logarithmic.
+    ends : tuple of (float, float), or None
+        The lower and the higher end; None if the curves set them.
+    inverted : bool
+        Whether values grow from right to left or from top to bottom, as for a depth.
+    names : tuple of str
+        Names of the values 0, 1, 2 and so on, which stand on the axis in place of numbers.
+    """
 
     label: str
     scale: Literal["linear", "log"] = "linear"
     ends: tuple[float, float] | None = None
+    inverted: bool = False
+    names: tuple[str, ...] = ()
 
     def shows(self, values: Array) -> NDArray[np.bool_]:
         """Return which values lie between the ends."""
@@ -83,13 +99,17 @@ class PlotAxis:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """A pair of axes with its curves and shades; a darker shade lies over a lighter one."""
+    """A pair of axes with its curves and shades; a darker shade lies over a lighter one.
+
+    With `equal`, a length in x is as long as in y, as for the shape of a body.
+    """
 
     x: PlotAxis
     y: PlotAxis
     curves: tuple[Curve, ...]
     title: str = ""
     shades: tuple[Shade, ...] = ()
+    equal: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,3 +164,10 @@ def in_parts(curve: Curve) -> tuple[Array, Array | None]:
     near[1:] |= outside[:-1]
     near[:-1] |= outside[1:]
     return np.where(outside, np.nan, curve.y), np.where(near, curve.y, np.nan)
+
+
+def lone_points(curve: Curve) -> list[int]:
+    """Return the indices of the points of a line without a neighbour to join them to; only a marker shows them."""
+    seen = np.concatenate([[False], np.isfinite(curve.x) & np.isfinite(curve.y), [False]])
+    lone: list[int] = np.flatnonzero(seen[1:-1] & ~seen[:-2] & ~seen[2:]).tolist()
+    return lone

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from wearlaw.arrays.array import Array
-from wearlaw.figures.curves import OUTSIDE, has_band, in_parts, shows_outside
+from wearlaw.figures.curves import OUTSIDE, has_band, in_parts, lone_points, shows_outside
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,6 +43,8 @@ STYLE: Any = {
 }
 WIDTH, ROW_HEIGHT = 7.4, 3.6
 """Width of a figure and height of a row of panels, in inches."""
+AROUND = 0.9
+"""Height and width that the labels of a panel take, in inches."""
 SHADES = ("#f4f4f4", "#e4e4e4")
 """Greys of the levels of shades."""
 THIN, PALE = 0.8, 0.6
@@ -56,14 +58,26 @@ def draw(figure: FigureData) -> Figure:
     count = len(figure.panels)
     cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
     rows: Any = [cells[start : start + 2] for start in range(0, len(cells), 2)]
+    heights = [max(_height(figure.panels[cell], WIDTH / len(set(row))) for cell in row) for row in rows]
     with mpl.rc_context(STYLE):
-        drawn = Figure(figsize=(WIDTH, 1.2 + ROW_HEIGHT * len(rows)), layout="constrained")
-        axes: dict[int, Axes] = drawn.subplot_mosaic(rows)
+        drawn = Figure(figsize=(WIDTH, 1.2 + sum(heights)), layout="constrained")
+        axes: dict[int, Axes] = drawn.subplot_mosaic(rows, height_ratios=heights)
         for number, panel in enumerate(figure.panels):
             _fill(axes[number], panel, has_markers(figure))
         drawn.suptitle(_literal(figure.title))
         _legend(drawn, figure, list(axes.values()))
     return drawn
+
+
+def _height(panel: Panel, width: float) -> float:
+    """Return the height of a panel of a width, in inches; a shape takes as much as it needs."""
+    if not panel.equal:
+        return ROW_HEIGHT
+    lengths = []
+    for axis, name in ((panel.x, "x"), (panel.y, "y")):
+        values = np.concatenate([np.asarray(axis.ends or getattr(curve, name), dtype=float) for curve in panel.curves])
+        lengths.append(float(np.nanmax(values) - np.nanmin(values)))
+    return min(AROUND + (width - AROUND) * lengths[1] / lengths[0], ROW_HEIGHT)
 
 
 def has_markers(figure: FigureData) -> bool:
@@ -112,6 +126,13 @@ def _fill(axes: Axes, panel: Panel, markers: bool) -> None:
     axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label), title=_literal(panel.title))
     axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
     axes.set(xlim=_ends(panel.x), ylim=_ends(panel.y))
+    for axis, drawn in ((panel.x, axes.xaxis), (panel.y, axes.yaxis)):
+        if axis.inverted:
+            drawn.set_inverted(True)
+        if axis.names:
+            drawn.set_ticks(range(len(axis.names)), [_literal(name) for name in axis.names])
+    if panel.equal:
+        axes.set_aspect("equal", adjustable="box")
 
 
 def _ends(axis: PlotAxis) -> Any:
@@ -141,7 +162,8 @@ def _looks(curve: Curve, marked: list[int] | None) -> dict[str, Any]:
     looks |= {"linestyle": LINES[curve.dash % len(LINES)], "markerfacecolor": "white", "markersize": 5}
     if curve.x.size == 1:
         return looks  # a single point is invisible without a marker
-    return {**looks, "marker": ""} if marked is None else {**looks, "markevery": marked}
+    every = sorted({*(marked or ()), *lone_points(curve)})
+    return {**looks, "marker": ""} if marked is None and not every else {**looks, "markevery": every}
 
 
 def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -329,10 +329,31 @@ def outcome_error(model: ContactModel, law: Law, problem: Problem, totals: Total
     return _by_block(solver, problem, columns)["error"]
 
 
+class Across(NamedTuple):
+    """Wear and slip integrated along each strip, as SI arrays of the batch shape and an axis of strips.
+
+    Attributes
+    ----------
+    y : ndarray, (batch, strips)
+        Position of each strip [m].
+    width : ndarray, (batch, strips)
+        Width that it represents [m].
+    wear : ndarray, (batch, strips)
+        ∫ rate dx along it [kg/m²].
+    slid : ndarray, (batch, strips)
+        ∫ |s| dx along it [m].
+    """
+
+    y: Array
+    width: Array
+    wear: Array
+    slid: Array
+
+
 def integrate_across(
     model: ContactModel, law: Law, problem: Problem, strips: int | None, solved_before: Contact | None = None
-) -> tuple[Array, Array, Array]:
-    """Return the wear and slip integrated along each strip of an ellipse, of the batch shape and an axis of strips.
+) -> Across:
+    """Return the wear and slip integrated along each strip of an ellipse; NaN for missing patches.
 
     Parameters
     ----------
@@ -343,11 +364,6 @@ def integrate_across(
         Number of strips of equal width. By default, and if the model cannot choose strips, the model's own strips.
     solved_before : Contact, optional
         As in `Totals.contact`.
-
-    Returns
-    -------
-    y, wear, slid : ndarray, (batch, strips)
-        Position of each strip [m], ∫ rate dx [kg/m²] and ∫ |s| dx [m] along it.
     """
     model, problem = prepared(model, problem)
     solver, flat = Solver(model), problem.flatten()
@@ -364,10 +380,10 @@ def integrate_across(
         solver.check(chosen, part, totals=False)
         return chosen
 
-    def along(part: Problem, contact: Contact) -> tuple[Array, Array, Array]:
+    def along(part: Problem, contact: Contact) -> Across:
         contact = _contact_of(law, contact, part)
         wear = contact.over_strip(split_rates(solver, law, contact, part, law.numbers))
-        return contact.y[..., 0, :], wear, contact.over_strip(contact.slip)
+        return Across(contact.y[..., 0, :], contact.strip_width, wear, contact.over_strip(contact.slip))
 
     if strips is None and solved_before is not None:
         found = [along(flat, solved_before)]
@@ -375,8 +391,7 @@ def integrate_across(
         block = max(ELLIPSE_NODES // solved(flat[:1]).pressure.size, 1)
         parts = (flat[points] for points in blocks(flat.size, block))
         found = [along(part, solved(part)) for part in parts]
-    y, wear, slid = (problem.unflatten(np.concatenate(values)) for values in zip(*found, strict=True))
-    return y, wear, slid
+    return Across(*(problem.unflatten(np.concatenate(values)) for values in zip(*found, strict=True)))
 
 
 def _columns(forces: CreepForces) -> Columns:

@@ -73,7 +73,7 @@ class Staged(ContactModel):
             )
         if there is problem:
             return found
-        return found.mapped(problem.unflatten).replaced(dims=problem.dims, exists=problem.exists)
+        return found.mapped(problem.unflatten, problem.unflatten).replaced(dims=problem.dims, exists=problem.exists)
 
     def refined(self) -> ContactModel | None:
         """Return the stage around the refined model, or None if the model cannot be refined."""

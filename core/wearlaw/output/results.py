@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -14,11 +15,12 @@ import xarray
 from wearlaw.errors import OutputError
 from wearlaw.figures.curves import FigureData, FigureFormat
 from wearlaw.figures.drawing import draw
-from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT
+from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw.report.latex import latex_table
 from wearlaw.report.page import report
 from wearlaw.report.tables import tables
 from wearlaw.study.case import CASE_FILE, Case, written
+from wearlaw.study.results import patch_axes
 from wearlaw.study.study import Study, numbers
 from wearlaw.sweeping.storage import ITEM, check_disk, check_memory
 
@@ -45,7 +47,9 @@ def check_room(case: Case, folder: Path) -> None:
         If they would not; the message says how much they need.
     """
     count = numbers(case)
-    rows = sum(grid.size for grid in case.sweeps.values()) * len(case.contact_models) * len(case.laws_by_label)
+    patches = math.prod(map(len, next(iter(case.sweeps.values())).problem(case.rig).dims.values()))
+    points = sum(grid.size for grid in case.sweeps.values())
+    rows = points * patches * len(case.contact_models) * len(case.laws_by_label)
     check_memory(COPIES * ITEM * count + ROW_IN_MEMORY * rows, "give the sweeps fewer points")
     check_disk(2 * ITEM * count + ROW_ON_DISK * rows, folder)
 
@@ -158,22 +162,29 @@ def write_netcdf(study: Study, path: Path) -> None:
 def table(study: Study) -> pd.DataFrame:
     """Return the results of all sweeps as one tidy table, a row for each pair at each operating point.
 
-    Columns that a sweep lacks stay empty, and so do outcomes that the law of a pair does not predict.
+    If the rig makes several patches, there is a row for each existing patch. Columns that a sweep lacks stay empty, and
+    so do outcomes that the law of a pair does not predict.
     """
     rows = pd.concat([_rows(name, sweep) for name, sweep in study.sweeps.items()], ignore_index=True)
     units = study.case.result_units
-    of_point = [name for name in (*OF_POINT, *study.case.units) if name in rows and name not in OF_CONTACT]
+    known = (*OF_POINT, *study.case.units, *OF_PATCH)
+    of_point = [name for name in known if name in rows and name not in OF_CONTACT]
     of_pairs = [str(v) for sweep in study.sweeps.values() for v in sweep.data_vars if "pair" in sweep[v].dims]
     of_contact = [name for name in OF_CONTACT if name in rows]
     laws = ("wear_law", "law") if study.case.laws else ("wear_law",)
-    names = dict.fromkeys(("sweep", "contact_model", *laws, *of_point, *of_pairs, *of_contact))
+    patches = [axis for sweep in study.sweeps.values() for axis in patch_axes(sweep)]
+    names = dict.fromkeys(("sweep", "contact_model", *laws, *patches, *of_point, *of_pairs, *of_contact))
     return rows[list(names)].rename(columns={name: f"{name} [{units[name]}]" for name in names if units.get(name)})
 
 
 def _rows(name: str, sweep: xarray.Dataset) -> pd.DataFrame:
     of_contact = [v for v in sweep.data_vars if "contact_model" in sweep[v].dims]
     by_contact = sweep[of_contact].sel(contact_model=sweep.pair_contact_model).drop_vars("contact_model")
-    flat = sweep.drop_dims("contact_model").assign(by_contact.data_vars).to_dataframe().reset_index()
+    every = sweep.drop_dims("contact_model").assign(by_contact.data_vars)
+    flat = every.to_dataframe().reset_index()
+    axes = patch_axes(sweep)
+    if axes:
+        flat = flat.dropna(how="all", subset=[v for v in every.data_vars if axes[0] in every[v].dims])
     flat = flat.rename(columns={"pair_contact_model": "contact_model", "pair_wear_law": "wear_law", "pair_law": "law"})
     flat.insert(0, "sweep", name)
     return flat.drop(columns="pair")

@@ -209,11 +209,17 @@ def warn_of_unlike_materials(model: ContactModel, problem: Problem, stacklevel: 
 
 def check_one_patch(problem: Problem, rig: Model, application: str) -> None:
     """Raise an error if an application takes one patch at each operating point and the rig makes several."""
-    if problem.dims:
-        raise CompositionError(
-            f"{application}: needs one patch at each operating point; rig '{rig.name}' makes several, along"
-            f" {' and '.join(problem.dims)}"
-        )
+    several = several_patches(problem, rig)
+    if several:
+        raise CompositionError(f"{application}: {several}")
+
+
+def several_patches(problem: Problem, rig: Model) -> str:
+    """Return the message for an application that takes one patch if the rig makes several, or "" if it makes one."""
+    if not problem.dims:
+        return ""
+    axes = " and ".join(problem.dims)
+    return f"needs one patch at each operating point; rig '{rig.name}' makes several, along {axes}"
 
 
 def check_traction(model: ContactModel, problem: Problem) -> None:

@@ -5,17 +5,18 @@ The order is rig | contact model | stages, if any, | laws.
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from functools import cached_property, partial
-from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self
+from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast
 
 import numpy as np
 from pydantic import model_validator
 
 from wearlaw.arrays.array import Array, extremes, type_name
-from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
+from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
 from wearlaw.models.law import WEAR, Law
@@ -45,6 +46,7 @@ ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_
 LINE = 100
 """Longest pipeline shown on one line, in characters; a longer one has a line for each part."""
 
+TOUCH_NOWHERE = "rig '{}': the bodies touch nowhere under these conditions; check the conditions"
 
 P = ParamSpec("P")
 
@@ -72,9 +74,9 @@ class Rig(Model):
 
     kind: ClassVar[str] = "rig"
 
-    geometry: ClassVar[Geometry | None] = None
+    patch_geometry: ClassVar = cast(Any, None)  # Any: for type checkers, a subclass may make it a property
     """The shape of the patch. A contact model that cannot solve it raises an error at once. None if the shape is known
-    only from the problem."""
+    only from the problem. A rig with a field that chooses the shape can make it a property."""
 
     creepage: ClassVar[str] = "creepage"
     """Name of the condition that sets the creepage: `creepage_for` solves for it, and the tables of a case run along
@@ -160,9 +162,52 @@ class Rig(Model):
             raise ModelError(f"rig '{self.name}' returned {problem!r}, not a wearlaw.Problem")
         if problem.dims:
             self._check_dims(problem)
+        for body in problem.bodies.values():
+            if body.profile_position is not None:
+                bodies = {name: self._placed(problem, name) for name in problem.bodies}
+                problem = problem.replaced(bodies=bodies)
+                break
         if problem.exists is not None:
             problem = self._masked(problem)
         return problem if problem.bodies else problem.replaced(bodies=self.bodies)
+
+    def _checked_balance(self, problem: Problem, balanced: Problem) -> Problem:
+        """Return the result of `balanced` for a problem, with NaN for patches that have lifted off.
+
+        Raises
+        ------
+        ModelError
+            If it is no problem, or not one of the same geometry, shape and axes.
+        """
+        if not isinstance(balanced, Problem):
+            raise ModelError(f"`balanced` of rig '{self.name}' returned {balanced!r}, not a wearlaw.Problem")
+        shapes = [(one.geometry, one.batch_shape, one.dims) for one in (balanced, problem)]
+        if shapes[0] != shapes[1]:
+            found, given = (f"geometry '{one[0]}', shape {one[1]} and axes {one[2]!r}" for one in shapes)
+            raise ModelError(
+                f"`balanced` of rig '{self.name}' returned a problem of {found} for one of {given}; return one like it,"
+                " as from `Problem.replaced`"
+            )
+        return balanced if balanced.exists is None or balanced.exists is problem.exists else self._masked(balanced)
+
+    def _placed(self, problem: Problem, name: str) -> Body:
+        """Return a body with the places of its patches on its profile in the shape of the batch."""
+        body, batch = problem.bodies[name], problem.batch_shape
+        if body.profile_position is None:
+            return body
+        found: dict[str, Any] = {}
+        for field in ("profile_position", "profile_direction"):
+            given = getattr(body, field)
+            try:
+                found[field] = np.broadcast_to(np.asarray(given, dtype=np.float64), batch)
+            except (TypeError, ValueError):
+                raise ModelError(
+                    f"rig '{self.name}' gave {type_name(given)} of shape {np.shape(given)} as `{field}` of {name}; it"
+                    f" must be a number or an array that broadcasts to the shape of the batch, {batch}"
+                ) from None
+        if not (np.abs(found["profile_direction"]) == 1.0).all():
+            raise ModelError(f"rig '{self.name}' gave a `profile_direction` of {name} that is neither 1 nor -1")
+        return dataclasses.replace(body, **found)
 
     def _check_dims(self, problem: Problem) -> None:
         """Raise an error if the labels of the rig's own axes do not fit the shape of the batch."""
@@ -184,7 +229,10 @@ class Rig(Model):
                 f"rig '{self.name}' gave {type_name(exists)} as `exists`; it must be an array of bool of the shape of"
                 f" the batch, {problem.batch_shape}"
             )
-        masked = problem.mapped(lambda array: np.where(exists, array, np.nan))
+        of_strips = exists[..., None]
+        masked = problem.mapped(
+            lambda array: np.where(exists, array, np.nan), lambda array: np.where(of_strips, array, np.nan)
+        )
         return masked.replaced(exists=exists)
 
     def check_names(self, conditions: Mapping[str, Any]) -> None:
@@ -252,7 +300,7 @@ class Pipeline(Configuration, Generic[P]):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        check_geometry(self.rig, self.contact_model, self.rig.geometry)
+        check_geometry(self.rig, self.contact_model, self.rig.patch_geometry)
         for law in self.laws:
             check_scale(self.scale, self.contact_model, law)
             law.check_variables()
@@ -305,7 +353,7 @@ class Pipeline(Configuration, Generic[P]):
         if not isinstance(part, Law):
             raise CompositionError(f"a {before} is followed by {after}, not by {part!r}; {ORDER}")
         pipeline = self.with_law(*self.laws, part)
-        warn_of_calibration(self.rig.geometry, self.contact_model, self.scale, part)
+        warn_of_calibration(self.rig.patch_geometry, self.contact_model, self.scale, part)
         warn_of_materials(self.rig.bodies, part)
         if part.body is not None and self.rig.bodies:
             warn_of_body(self.rig.bodies, part, part.body, stacklevel=3)
@@ -339,9 +387,7 @@ class Pipeline(Configuration, Generic[P]):
             return problem
         with Blame(rig):
             balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
-        if not isinstance(balanced, Problem):
-            raise ModelError(f"`balanced` of rig '{rig.name}' returned {balanced!r}, not a wearlaw.Problem")
-        return balanced
+        return rig._checked_balance(problem, balanced)
 
     def predict(
         self,
@@ -361,11 +407,13 @@ class Pipeline(Configuration, Generic[P]):
         stacklevel : int
             The caller that warnings name; 2 is the caller of this method.
         """
-        if self.rig.geometry not in (None, problem.geometry):
+        if self.rig.patch_geometry not in (None, problem.geometry):
             raise InputError(
                 f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"
-                f" the geometry '{self.rig.geometry}'; make it with the `problem` method of the rig"
+                f" the geometry '{self.rig.patch_geometry}'; make it with the `problem` method of the rig"
             )
+        if problem.exists is not None and not problem.exists.any():
+            raise ConditionsError(TOUCH_NOWHERE.format(self.rig.name))
         self.warn_of_problem(problem, stacklevel + 1)
         watch = self.range_watch()
         found = self.watched(problem, watch, on_block)
@@ -379,7 +427,7 @@ class Pipeline(Configuration, Generic[P]):
         If the rig declares its geometry or its bodies, composing the pipeline gave the warning. `stacklevel` 1 is this
         method.
         """
-        rig, declared = self.rig, self.rig.geometry is not None
+        rig, declared = self.rig, self.rig.patch_geometry is not None
         for law in self.laws:
             calibration = law.calibration
             if not declared and calibration is not None and calibration.geometry not in ("any", problem.geometry):
@@ -395,6 +443,8 @@ class Pipeline(Configuration, Generic[P]):
         """Return the result of `predict` without its warnings; `watch` sees the operating points."""
         if problem.geometry == "line":
             check_traction(self.contact_model, problem)
+        if problem.dims:
+            watch.counted = "patches"
         model, problem = prepared(self.staged_model, problem)
         if not self.laws:
             return self._without_law(model, problem, watch, on_block)

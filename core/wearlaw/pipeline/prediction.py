@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pint
@@ -23,9 +24,11 @@ from wearlaw.numerics.integrate import SlipTotals, Totals
 from wearlaw.numerics.solving import Solver
 from wearlaw.numerics.staged import without_stages
 from wearlaw.pipeline.composition import law_among, other_materials, warn_of_body
+from wearlaw.pipeline.profiles import across_patch, along_patch, on_profile
 from wearlaw.pipeline.ranges import elastic_limits, outside_range
-from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, in_unit, scalar_si
-from wearlaw.units.variables import UNITS, name_of
+from wearlaw.pipeline.selection import Label, Selection
+from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
+from wearlaw.units.variables import UNITS
 
 if TYPE_CHECKING:
     import xarray
@@ -87,6 +90,55 @@ class Prediction:
         self._asked_for: set[tuple[int, str]] = set()
         self._errors: dict[int, Array] = {}
 
+    _whole: tuple[Prediction, Selection] | None = None
+    """The prediction that this one is a part of, and the selection; None if it is no part."""
+
+    def sel(self, **labels: Label | Sequence[Label]) -> Prediction:
+        """Return the prediction for some of the patches, by the labels of the rig's own axes.
+
+        Nothing is solved again. A label drops its axis, and a list of labels keeps it: ``sel(side="right")``,
+        ``sel(side="right", patch=1)``, ``sel(patch=[1, 2])``.
+
+        Parameters
+        ----------
+        **labels
+            A label or a list of labels for each axis to select from.
+
+        Raises
+        ------
+        InputError
+            If there is no such axis or label; the message lists those that exist.
+        """
+        return self._part(Selection.by_label(self.problem, labels))
+
+    def isel(self, **positions: int | slice | Sequence[int]) -> Prediction:
+        """Return the prediction for some operating points or patches, by their positions along the axes.
+
+        Nothing is solved again. The axes of the conditions are point_0, point_1 and so on; those that stay are numbered
+        anew. The rig's own axes follow under their names. An integer drops its axis; a slice or a list keeps it:
+        ``isel(point_0=2)``, ``isel(point_0=slice(0, 3), side=1)``.
+
+        Parameters
+        ----------
+        **positions
+            Positions from 0 for each axis to select from; negative ones count from the end.
+
+        Raises
+        ------
+        InputError
+            If there is no such axis or position; the message lists those that exist.
+        """
+        return self._part(Selection.by_position(self.problem, positions))
+
+    def _part(self, chosen: Selection) -> Prediction:
+        """Return the prediction for some entries along the axes."""
+        totals = self._totals and chosen.of_totals(self._totals, self.problem)
+        forces = chosen.of_forces(self._forces)
+        found = Prediction(chosen.of_problem(self.problem), self._model, self.laws, forces=forces, totals=totals)
+        found._whole = self, chosen
+        found._asked_for = self._asked_for
+        return found
+
     def __getitem__(self, name: str) -> Quantity:
         """Return an outcome by its name in results, such as "rcf_damage" or "wear_rate_rail", or another variable.
 
@@ -131,6 +183,9 @@ class Prediction:
 
     def error_of_law(self, index: int) -> Array:
         """Return an estimate of the numerical error of the outcome of a law in SI, by the index of the law."""
+        if self._whole is not None:
+            whole, chosen = self._whole
+            return chosen.of(whole.error_of_law(index))
         if index not in self._errors:
             law, totals = self.laws[index], self._solved_totals
             self._errors[index] = integrate.outcome_error(self._model, law, self.problem, totals, index)
@@ -215,6 +270,22 @@ class Prediction:
         return from_si(self.problem.longitudinal_creepage, "%")
 
     @property
+    def lateral_creepage(self) -> Quantity:
+        """Lateral creepage, η [-]; zero on a line."""
+        return from_si(self.problem.lateral_creepage, "%")
+
+    @property
+    def spin(self) -> Quantity:
+        """Spin, φ [1/m]; zero on a line."""
+        return from_si(self.problem.spin, "1/m")
+
+    @property
+    def contact_angle(self) -> Quantity:
+        """Contact angle, δ [rad], of the surface to the axle; zero if the problem gives none."""
+        angle, level = self.problem.contact_angle, 0.0 * self.problem.normal_force  # NaN where there is no patch
+        return from_si(level if angle is None else angle, "deg")
+
+    @property
     def friction_coefficient(self) -> Quantity:
         """Friction coefficient, μ [-]."""
         return from_si(self.problem.friction_coefficient, "")
@@ -283,6 +354,9 @@ class Prediction:
         """The solved contact as SI arrays, on nodes that suit the law or that the contact model chose."""
         if self._solved is not None:
             return self._solved.unflattened(self.problem)
+        if self._whole is not None and self.problem.size == 0:  # a missing patch alone has no nodes
+            whole, chosen = self._whole
+            return whole.contact.mapped(chosen.of).replaced(problem=self.problem)
         if self.problem.geometry != "line" or len(self.laws) != 1:
             return integrate.solve(self._model, self.problem)
         contact = integrate.contact_for(self._model, self.laws[0], self.problem.flatten())
@@ -302,6 +376,8 @@ class Prediction:
         """Return the contact of the existing patches, on uniform cells if the model can give them."""
         model, problem = self._model, self.problem
         problem.needs("line", "profile")
+        if problem.size == 0:
+            raise InputError("profile: none of these patches exists; select others")
         if self.scale == "cells" and isinstance(model, LineContactModel):
             there = problem.existing()
             return Solver(model).at(there, uniform_cells(there.half_width, PROFILE_CELLS), totals=False)
@@ -310,19 +386,9 @@ class Prediction:
     def _profile(self, more: dict[str, tuple[Array, str]]) -> xarray.Dataset:
         contact = self._cells()
         names = ("x", "pressure", "traction", "traction_bound", "slip")
-        columns = {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more}
-        batch = _batch_dims(len(self.problem.batch_shape), self.problem.dims)
-        dims = [*batch, "cell"] if batch else ["x"]
-        data = {
-            name: (dims, in_unit(self._in_batch(values), unit), {"units": unit})
-            for name, (values, unit) in columns.items()
-        }
-        return _dataset({"x": data.pop("x")}, data)
+        return along_patch(self.problem, {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more})
 
-    def _in_batch(self, values: Array) -> Array:
-        return values if self.problem.exists is None else self.problem.unflatten(values)
-
-    def wear_profile(self, body: str, strips: int | None = None) -> xarray.Dataset:
+    def wear_profile(self, body: str, strips: int | None = None, at: QuantityLike | None = None) -> xarray.Dataset:
         """Return the depth lost and the distance slid across an elliptic patch, over y.
 
         A point of the wheel's tread is in contact once in each revolution, so the depth that it loses per metre rolled
@@ -336,6 +402,10 @@ class Prediction:
         strips : int, optional
             Number of strips of equal width; more make a smoother profile. The default is the contact model's strips,
             at no extra cost. A contact model that cannot choose its strips keeps its own.
+        at : Quantity or str, optional
+            Increasing positions along the body's profile, such as ``Q(np.linspace(-40, 30, 141), "mm")``. The result is
+            then over these positions, zero where there is no patch, and summed over the axis "patch" if the rig has
+            one: patches along it lie on one profile. The rig must know where its patches lie on the profile.
 
         Returns
         -------
@@ -343,17 +413,19 @@ class Prediction:
             `depth` and `sliding_distance` over the coordinate `y`, per metre rolled for the wheel and per passage for
             the rail, with units in attrs. With several operating points it also has the axes of the batch. y and the
             depth are tangential and normal to the surface. If the problem has a contact angle δ, `depth_vertical` and
-            `depth_lateral` are the parts of the depth along these directions, depth × cos δ and depth × abs(sin δ).
+            `depth_lateral` are the parts of the depth along these directions, depth × cos δ and depth × abs(sin δ). If
+            the rig knows where its patches lie, the coordinate `profile_position` is the position along the profile.
+            Missing patches are NaN.
 
         Raises
         ------
         InputError
-            If the rig has no such body.
+            If the rig has no such body, or `at` is wrong or not possible with this rig.
         CompositionError
             If the contact is a line or is not resolved across the patch.
         """
-        problem = self.problem
-        radius, density = np.asarray(problem.body(body).rolling_radius), self._density(body)
+        problem, worn = self.problem, self.problem.body(body)
+        radius, density = np.asarray(worn.rolling_radius), self._density(body)
         if problem.geometry == "line":
             raise CompositionError("wear_profile: a line wears evenly across its width; take depth_per_distance")
         if self.scale == "patch":
@@ -365,20 +437,27 @@ class Prediction:
             raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
         index = self._wear_law(body)
         self._warn_of(index, body, stacklevel=3)
-        y, wear, slid = integrate.integrate_across(
-            self._model, self._law_of(index, body), problem, strips, self._solved
-        )
+        across = self._across(self._law_of(index, body), strips)
         turns = bool(np.isfinite(radius).any())
         once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
         units = ("um/km", "mm/m") if turns else ("nm", "um")
         per = "metre rolled" if turns else "passage of a wheel"
-        depth = wear / (density * once)
-        columns = {"depth": (depth, units[0]), "sliding_distance": (slid / once, units[1])}
+        depth = across.wear / (density * once)
+        columns = {"depth": (depth, units[0]), "sliding_distance": (across.slid / once, units[1])}
         if problem.contact_angle is not None:
             angle = problem.contact_angle[..., None]
             columns["depth_vertical"] = depth * np.cos(angle), units[0]
             columns["depth_lateral"] = depth * np.abs(np.sin(angle)), units[0]
-        return _across_patch(y, columns, per, problem.dims)
+        if at is not None:
+            return on_profile(problem, worn, across.y, across.width, columns, per, at)
+        return across_patch(problem, worn, across.y, columns, per)
+
+    def _across(self, law: Law, strips: int | None) -> integrate.Across:
+        """Return the result of `integrate_across`, which is NaN for missing patches."""
+        if self.problem.size == 0 and self._whole is not None:  # a missing patch alone has no strips
+            whole, chosen = self._whole
+            return integrate.Across(*map(chosen.of, whole._across(law, strips)))
+        return integrate.integrate_across(self._model, law, self.problem, strips, self._solved)
 
     @property
     def wear_rate(self) -> Quantity:
@@ -499,6 +578,9 @@ class Prediction:
     def _slip(self) -> SlipTotals:
         if self._totals is not None and self._totals.slip is not None:
             return self._totals.slip
+        if self._whole is not None:
+            whole, chosen = self._whole
+            return chosen.of_slip(whole._slip)
         return integrate.integrate_slip(self._model, self.problem, self._solved)
 
     @property
@@ -509,6 +591,9 @@ class Prediction:
     @cached_property
     def _patch_area(self) -> Array:
         if self._totals is None:
+            if self._whole is not None:
+                whole, chosen = self._whole
+                return chosen.of(whole._patch_area)
             return integrate.patch_area(self._model, self.problem)
         return self.problem.patch_area if self._totals.patch_area is None else self._totals.patch_area
 
@@ -533,7 +618,7 @@ class Prediction:
         of_body = self.problem.worn_on(body)
         self._warn_of(index, body, stacklevel + 1)
         law = self.laws[index]
-        if law.body is not None or of_body is self.problem:
+        if law.body is not None or of_body is self.problem or self.problem.size == 0:
             return self._solved_totals.values[index]
         return integrate.integrate_laws(self._model, (self._law_of(index, body),), self.problem).values[0]
 
@@ -559,7 +644,12 @@ class Prediction:
     def __repr__(self) -> str:
         names = (*named_outcomes(self.laws), *SHOWN[self.problem.geometry])
         rows = "".join(f"\n  {name:<20} {_brief(self[name])}" for name in names)
-        points = "1 operating point" if self.problem.size == 1 else f"{self.problem.size} operating points"
+        problem = self.problem
+        own_axes = len(problem.dims)
+        count = math.prod(problem.batch_shape[: len(problem.batch_shape) - own_axes])
+        points = "1 operating point" if count == 1 else f"{count} operating points"
+        if own_axes or problem.exists is not None:
+            points = f"{problem.size} {'patch' if problem.size == 1 else 'patches'} at {points}"
         return f"{type(self).__name__} of {points}{rows}"
 
 
@@ -573,30 +663,11 @@ def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Pr
     return found
 
 
-def _across_patch(y: Array, columns: dict[str, tuple[Array, str]], per: str, named: Collection[str]) -> xarray.Dataset:
-    batch = _batch_dims(y.ndim - 1, named)
-    dims = [*batch, "strip"] if batch else ["y"]
-    place = (dims, in_unit(y, "mm"), {"units": "mm", "long_name": name_of("y")})
-    data = {
-        name: (dims, in_unit(values, unit), {"units": unit, "long_name": f"{name.replace('_', ' ')} per {per}"})
-        for name, (values, unit) in columns.items()
-    }
-    return _dataset({"y": place}, data)
-
-
-def _dataset(coordinates: Mapping[str, Any], variables: Mapping[str, Any]) -> xarray.Dataset:
-    import xarray
-
-    return xarray.Dataset(variables, coordinates)
-
-
-def _batch_dims(axes: int, named: Collection[str]) -> list[str]:
-    """Return names for the axes of a batch; the rig may have named the last ones."""
-    return [*(f"point_{axis}" for axis in range(axes - len(named))), *named]
-
-
 def _brief(quantity: Quantity) -> str:
-    """Format a scalar as it is and an array as its range."""
-    if np.ndim(quantity.magnitude) == 0:
+    """Format a scalar as it is and an array as its range, without the NaN of missing patches."""
+    there = ~np.isnan(quantity.magnitude)
+    if not there.any():
+        return "no patch"
+    if there.ndim == 0:
         return repr(quantity)
-    return f"{quantity.min()!r} to {quantity.max()!r}"
+    return f"{quantity[there].min()!r} to {quantity[there].max()!r}"

@@ -30,7 +30,11 @@ class RangeWatch:
         The points outside, by the index of the law and the variable that leaves its range, as in "0 pressure".
     overload : Overload or None
         The operating point furthest beyond first yield.
+    counted : str
+        Word for the points in the warnings: each patch is one if a rig makes several.
     """
+
+    counted = "operating points"
 
     def __init__(self, *laws: Law) -> None:
         self.laws = laws
@@ -81,7 +85,7 @@ class RangeWatch:
                 source = f" ({calibration.source})" if calibration and name in calibration.range_in_si else ""
                 warnings.warn(
                     f"{law.kind} '{law.name}' has a known range of mean {name.replace('_', ' ')} from {shown[0]} to"
-                    f" {shown[1]}{source}; {seen.outside} of {self.points} operating points lie outside, as far as"
+                    f" {shown[1]}{source}; {seen.outside} of {self.points} {self.counted} lie outside, as far as"
                     f" {shown[2]}",
                     RangeWarning,
                     stacklevel=stacklevel + 1,

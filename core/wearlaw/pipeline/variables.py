@@ -42,6 +42,11 @@ OF_POINT = (
 )
 """Variables that depend on the operating point alone; no prediction has all of them."""
 
+OF_PATCH = ("lateral_creepage", "spin", "contact_angle")
+"""Variables of one of several patches, which differ in them; with one patch they repeat the conditions."""
+
+MASS = "mass_per_distance"
+"""The variable of a wear law that can be added over several patches, unlike the wear rate."""
 
 OF_OTHERS: Mapping[Geometry, frozenset[str]] = {
     "line": frozenset({"longitudinal_force", "lateral_force", "spin_moment", "cell_wear_index"}),
@@ -53,7 +58,12 @@ OF_OTHERS: Mapping[Geometry, frozenset[str]] = {
 
 def offered(prediction: Prediction, variables: Iterable[str]) -> tuple[str, ...]:
     """Return the variables that the results of a prediction show."""
-    others = OF_OTHERS[prediction.problem.geometry]
+    problem = prediction.problem
+    others = OF_OTHERS[problem.geometry]
+    if problem.dims and problem.geometry != "line":
+        others = (others - {"creepage"}) | ({"contact_angle"} if problem.contact_angle is None else set())
+    else:
+        others |= {*OF_PATCH}
     return tuple(name for name in variables if name not in others and _has(prediction, name))
 
 

@@ -11,7 +11,17 @@ from typing import Any
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.figures.curves import OUTSIDE, Curve, FigureData, Panel, PlotAxis, has_band, in_parts, shows_outside
+from wearlaw.figures.curves import (
+    OUTSIDE,
+    Curve,
+    FigureData,
+    Panel,
+    PlotAxis,
+    has_band,
+    in_parts,
+    lone_points,
+    shows_outside,
+)
 from wearlaw.figures.drawing import LINES, MARKERS, PALE, PALETTE, THIN, has_markers, marked_points
 
 DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
@@ -66,6 +76,9 @@ def plotly_figure(figure: FigureData) -> Json:
     for (number, panel), (across, up) in zip(numbered, _places(len(numbered)), strict=True):
         layout[f"xaxis{number}"] = {**_axis(panel.x), "domain": across, "anchor": f"y{number}"}
         layout[f"yaxis{number}"] = {**_axis(panel.y), "domain": up, "anchor": f"x{number}"}
+        if panel.equal:
+            layout[f"xaxis{number}"] |= {"constrain": "domain"}
+            layout[f"yaxis{number}"] |= {"constrain": "domain", "scaleanchor": f"x{number}"}
     return {"data": data, "layout": layout}
 
 
@@ -120,18 +133,20 @@ def _traces(curve: Curve, panel: Panel, number: str, markers: bool) -> list[Json
         "xaxis": f"x{number}",
         "yaxis": f"y{number}",
     }
-    marked = markers or np.isfinite(curve.y).sum() == 1
+    lone = lone_points(curve)
+    some = markers or 0 < len(lone) < np.isfinite(curve.y).sum()
     inside, outside = in_parts(curve)
     style: Json = {"color": colour, "dash": DASHES[LINES[curve.dash % len(LINES)]], "width": 2}
     line = {
         **common,
-        **(_sparse(curve, panel) if markers and not curve.points else {}),
+        **(_sparse(curve, panel, lone, markers) if some and not curve.points else {}),
         "x": _numbers(curve.x),
         "y": _numbers(inside),
-        "mode": "markers" if curve.points else "lines+markers" if marked else "lines",
+        "mode": "markers" if curve.points else "lines+markers" if some or lone else "lines",
         "line": style,
         "marker": _marker(curve, colour),
         "hovertemplate": _hover(curve, panel),
+        **_texts(curve, panel),
         "showlegend": True,
     }
     lines = [line]
@@ -153,14 +168,25 @@ def _marker(curve: Curve, colour: str) -> Json:
     return {"color": colour, "symbol": f"{symbol}-open", "size": 9, "line": {"width": 2}}
 
 
-def _sparse(curve: Curve, panel: Panel) -> Json:
+def _sparse(curve: Curve, panel: Panel, lone: list[int], markers: bool) -> Json:
     """Show markers at some points only: plotly.js would space them by index, not along the line."""
-    return {"selectedpoints": marked_points(curve, panel), "unselected": {"marker": {"opacity": 0}}}
+    marked = marked_points(curve, panel) if markers else []
+    return {"selectedpoints": sorted({*marked, *lone}), "unselected": {"marker": {"opacity": 0}}}
+
+
+def _texts(curve: Curve, panel: Panel) -> Json:
+    """Return the names of the points on an axis with names: of each point the one nearest to it."""
+    for axis, values in ((panel.x, curve.x), (panel.y, curve.y)):
+        if axis.names:
+            nearest = np.clip(np.nan_to_num(values).round().astype(int), 0, len(axis.names) - 1)
+            return {"text": [literal(axis.names[number]) for number in nearest]}
+    return {}
 
 
 def _hover(curve: Curve, panel: Panel) -> str:
-    lines = [f"<b>{literal(curve.label)}</b>", f"{literal(panel.x.label)}: %{{x:.4~g}}"]
-    lines.append(f"{literal(panel.y.label)}: %{{y:.4~g}}")
+    lines = [f"<b>{literal(curve.label)}</b>"]
+    for axis, value in ((panel.x, "x"), (panel.y, "y")):
+        lines.append("%{text}" if axis.names else f"{literal(axis.label)}: %{{{value}:.4~g}}")
     if curve.low is not None:
         lines.append("from %{customdata[0]:.4~g} to %{customdata[1]:.4~g}")
     return "<br>".join(lines) + "<extra></extra>"
@@ -199,7 +225,12 @@ def _axis(axis: PlotAxis) -> Json:
         "zeroline": False,
     }
     if axis.ends is not None:
-        described["range"] = [float(end) for end in (np.log10(axis.ends) if axis.scale == "log" else axis.ends)]
+        ends = [float(end) for end in (np.log10(axis.ends) if axis.scale == "log" else axis.ends)]
+        described["range"] = ends[::-1] if axis.inverted else ends
+    elif axis.inverted:
+        described["autorange"] = "reversed"
+    if axis.names:
+        described |= {"tickvals": [*range(len(axis.names))], "ticktext": [literal(name) for name in axis.names]}
     return described
 
 

@@ -5,10 +5,11 @@ Each can be written as CSV with all digits, and for LaTeX with the digits shown.
 
 from __future__ import annotations
 
+import itertools
 import numbers
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -17,9 +18,21 @@ import xarray
 
 from wearlaw.models.contact_model import Model
 from wearlaw.models.labels import labelled
+from wearlaw.pipeline.variables import MASS
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.study.results import along_main_axis, axes_of, beyond_limits, main_axis, outcomes_of, predicting
+from wearlaw.study.results import (
+    Patch,
+    along_main_axis,
+    axes_of,
+    beyond_limits,
+    labelled_by,
+    main_axis,
+    outcomes_of,
+    patch_axes,
+    patches_of,
+    predicting,
+)
 from wearlaw.study.study import Study, used
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import label as label_of
@@ -87,16 +100,16 @@ def tables(study: Study) -> list[NamedTable]:
 
 
 def summaries(study: Study) -> list[NamedTable]:
-    """Return a short table of each outcome for each sweep."""
+    """Return a short table of each outcome for each sweep, and of the mass lost at all patches if there are several."""
     creepage = study.case.rig.creepage
     return [
         _marked(
-            f"{outcome.name}_{name}",
-            f"Sweep '{name}'{_fixed(sweep, creepage)}",
-            summary(sweep, creepage, outcome.name, predicting(study, outcome.name, sweep.pair.values.tolist())),
+            f"{outcome}_{name}",
+            f"Sweep '{name}'{_fixed(sweep, creepage)}{', all patches together' if outcome == MASS else ''}",
+            summary(sweep, creepage, outcome, predicting(study, outcome, sweep.pair.values.tolist())),
         )
         for name, sweep in study.sweeps.items()
-        for outcome in outcomes_of(study, sweep)
+        for outcome in (*(one.name for one in outcomes_of(study, sweep)), *((MASS,) if MASS in sweep else ()))
     ]
 
 
@@ -124,20 +137,23 @@ def _fixed(sweep: xarray.Dataset, creepage: str) -> str:
 
 
 def summary(sweep: xarray.Dataset, creepage: str, outcome: str, pairs: list[str]) -> pd.DataFrame:
-    """Return an outcome at a few values of the main axis, with a row for each pair and for the ends of its band."""
+    """Return an outcome at a few values of the main axis, with a row for each pair and for the ends of its band.
+
+    If the rig makes several patches, there is a row for each of them, or one for the sum of `MASS` over all.
+    """
     axis = main_axis(sweep, creepage)
     line = along_main_axis(sweep, creepage)
     count = line.sizes[axis]
     line = line.isel({axis: sorted({round(step * (count - 1) / (COLUMNS - 1)) for step in range(COLUMNS)})})
-    beyond = beyond_limits(line)
     rows: dict[str, Any] = {}
     low, high = f"{outcome}_low", f"{outcome}_high"
-    for pair in pairs:
-        one = line.sel(pair=pair)
+    parts = [_together(line)] if outcome == MASS else [_of_patch(line, patch) for patch in patches_of(line)]
+    for pair, (patch, here, beyond) in itertools.product(pairs, parts):
+        one, label = here.sel(pair=pair), labelled_by(patch, pair)
         marks = _marks(one.outside_range.values > 0.0, beyond, one.pair_contact_model.item())
-        values = {pair: one[outcome]}
+        values = {label: one[outcome]}
         if low in one and (one[high] > one[low]).any():
-            values |= {f"{pair}, low end": one[low], f"{pair}, high end": one[high]}
+            values |= {f"{label}, low end": one[low], f"{label}, high end": one[high]}
         rows |= {label: list(map(Marked, each.values, marks)) for label, each in values.items()}
     heads = [_four_digits(value) for value in line[axis].values]
     frame = pd.DataFrame(list(rows.values()), columns=heads, dtype=object)
@@ -146,26 +162,49 @@ def summary(sweep: xarray.Dataset, creepage: str, outcome: str, pairs: list[str]
     return frame
 
 
+_Part: TypeAlias = tuple[Patch, xarray.Dataset, dict[str, xarray.DataArray]]
+"""A patch, the results there, and where it is beyond its limits."""
+
+
+def _of_patch(line: xarray.Dataset, patch: Patch) -> _Part:
+    return patch, line.sel(patch), beyond_limits(line.sel(patch))
+
+
+def _together(line: xarray.Dataset) -> _Part:
+    """Return the sum of the mass lost at all patches, marked if any patch is."""
+    axes = patch_axes(line)
+    mass = line[[MASS]].sum(axes, min_count=1, keep_attrs=True)
+    outside = line.outside_range.max(axes)
+    return {}, mass.assign(outside_range=outside), {name: one.any(axes) for name, one in beyond_limits(line).items()}
+
+
 def profiles(study: Study) -> list[NamedTable]:
-    """Return a short table for each profile across the patch: the greatest depth on each body, by pair."""
+    """Return a short table for each profile across the patch: the greatest depth on each body, by pair and patch."""
     found = []
     for name, profile in study.profiles.items():
-        columns: dict[str, Any] = {"pair": profile.pair.values} if "y" in profile.coords else {}
-        beyond = beyond_limits(profile) if columns else {}
-        for body in _worn(profile, study) if columns else ():
-            depth = profile[f"{body}_depth"]
-            unit = depth.attrs["units"].replace("um", "µm")
-            greatest = dict(zip(profile.pair.values, depth.max("y").values, strict=True))
-            columns[f"{body}: greatest depth [{unit}]"] = [
-                Marked(value, *_marks([study.is_outside(profile, pair, body)], beyond, study.pair(pair).contact_model))
-                for pair, value in greatest.items()
-            ]
-            columns[f"{body}: at y [mm]"] = depth.fillna(0.0).idxmax("y").where(depth.notnull().any("y")).values
-        if columns:
-            title = f"Profile '{name}': wear across the patch, {_per(profile, study)}"
-            frame = pd.DataFrame({head: np.array(values, dtype=object) for head, values in columns.items()})
-            found.append(_marked(f"profile_{name}", title, frame))
+        if "y" not in profile:
+            continue
+        rows = [(pair, patch) for pair in profile.pair.values.tolist() for patch in patches_of(profile)]
+        columns: dict[str, Any] = {"pair": [labelled_by(patch, pair) for pair, patch in rows]}
+        for body in _worn(profile, study):
+            unit = profile[f"{body}_depth"].attrs["units"].replace("um", "µm")
+            deepest = [_deepest(study, profile.sel(patch), pair, body) for pair, patch in rows]
+            columns[f"{body}: greatest depth [{unit}]"], columns[f"{body}: at y [mm]"] = zip(*deepest, strict=True)
+        title = f"Profile '{name}': wear across the patch, {_per(profile, study)}"
+        frame = pd.DataFrame({head: np.array(values, dtype=object) for head, values in columns.items()})
+        found.append(_marked(f"profile_{name}", title, frame))
     return found
+
+
+def _deepest(study: Study, profile: xarray.Dataset, pair: str, body: str) -> tuple[Marked, float]:
+    """Return the greatest depth that a pair gives for a body, with its marks, and its position."""
+    depth, model = profile[f"{body}_depth"].sel(pair=pair), study.pair(pair).contact_model
+    (marks,) = _marks([study.is_outside(profile, pair, body)], beyond_limits(profile), model)
+    if depth.isnull().all():  # a law for the other body
+        return Marked(np.nan, marks), np.nan
+    place = profile.y.sel(contact_model=model) if "contact_model" in profile.y.dims else profile.y
+    deepest = int(np.nanargmax(depth.values))
+    return Marked(depth[deepest].item(), marks), place[deepest].item()
 
 
 def _per(profile: xarray.Dataset, study: Study) -> str:

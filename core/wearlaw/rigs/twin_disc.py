@@ -104,7 +104,7 @@ class TwinDisc(Rig):
         "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(c), after Tassini et al., Wear"
         " 268 (2010) 660-667, eqs. (1) and (2)"
     )
-    geometry: ClassVar[Geometry | None] = "line"
+    patch_geometry: ClassVar[Geometry | None] = "line"
     example: ClassVar[Mapping[str, Any]] = {
         "max_pressure": "1500 MPa",
         "creepage": "1 %",

@@ -105,7 +105,7 @@ class WheelRail(Rig):
 
     name: ClassVar[str] = "wheel_rail"
     source: ClassVar[str] = "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(b)"
-    geometry: ClassVar[Geometry | None] = "ellipse"
+    patch_geometry: ClassVar[Geometry | None] = "ellipse"
     creepage: ClassVar[str] = "longitudinal_creepage"
     example: ClassVar[Mapping[str, Any]] = {
         "normal_force": "80 kN",

@@ -3,12 +3,38 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 
 from wearlaw.errors import InputError
 
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 """The byte order marks of UTF-16, which `>` writes in Windows PowerShell 5."""
+
+
+_READ: ContextVar[Path | None] = ContextVar("folder of the file that is being read", default=None)
+
+
+@contextmanager
+def reading(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Let `beside` find files that the file at `path` names, while this context lasts."""
+    token = _READ.set(Path(path).parent)
+    try:
+        yield
+    finally:
+        _READ.reset(token)
+
+
+def beside(path: str | os.PathLike[str]) -> Path:
+    """Return the path of a file that a case file names: it is relative to the case file.
+
+    Outside of a case file, it is relative to the working folder. A field that takes the path of a file calls this
+    function where it reads the file.
+    """
+    folder = _READ.get()
+    return Path(path) if folder is None else folder / path
 
 
 def read_text(path: str | os.PathLike[str]) -> str:

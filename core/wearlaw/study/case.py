@@ -12,7 +12,6 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
 import tomli_w
@@ -45,12 +44,13 @@ from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.labels import labelled, labels
 from wearlaw.models.law import WEAR, Law, Outcome
 from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Pipeline, Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
 from wearlaw.plugins.shelf import Shelf
 from wearlaw.settings.configuration import Configuration, known_as
-from wearlaw.settings.text_files import read_text
+from wearlaw.settings.text_files import beside, read_text, reading
 from wearlaw.study.figure_check import Contents
 from wearlaw.study.figure_spec import FigureSpec
 from wearlaw.study.grid import Condition, Grid
@@ -147,7 +147,7 @@ LISTS = ("stages", "laws", "wear_laws")
 """The lists of models that may be empty; a case that is written down leaves empty ones out."""
 
 RESERVED = ("pair", "contact_model", "sweep", "law", "wear_law")
-"""Names of other columns of results, which no outcome may have."""
+"""Names of other columns of results, which no outcome and no axis of a rig may have."""
 
 
 class Case(Configuration):
@@ -283,7 +283,7 @@ class Case(Configuration):
             if profile.axes():
                 raise ValueError(f"profiles.{name}: a profile is at one operating point; give each condition one value")
         labels(self.contact_models)
-        wrong = [*self._wrong_outcomes(), *self._wrong_stages()]
+        wrong = [*self._wrong_axes(), *self._wrong_outcomes(), *self._wrong_stages()]
         if wrong:
             raise ConfigurationError(self.subject(), wrong)
         for name, point in self.uncertainty.items():
@@ -301,6 +301,9 @@ class Case(Configuration):
                 except InputError as error:
                     raise ValueError(f"{kind}.{name}.{error}") from None
         if self.measured:
+            several = several_patches(next(iter(self.sweeps.values())).problem(self.rig), self.rig)
+            if several:
+                raise ValueError(f"measured: {several}; leave [measured] out")
             try:
                 check_rig(self.measured.data, self.rig)
             except InputError as error:
@@ -309,6 +312,13 @@ class Case(Configuration):
         if wrong:
             raise ConfigurationError(self.subject(), wrong)
         return self
+
+    def _wrong_axes(self) -> Iterator[Fault]:
+        """Yield the axes of the rig's patches that results would mix up with other columns."""
+        conditions = {name for grid in (*self.sweeps.values(), *self.profiles.values()) for name in grid.given}
+        for axis in next(iter(self.sweeps.values())).problem(self.rig).dims:
+            if axis in (*RESERVED, "node", *conditions):
+                yield Fault(("rig",), f"its axis '{axis}' has the name of another column of results; rename the axis")
 
     def _wrong_outcomes(self) -> Iterator[Fault]:
         """Yield the laws whose results would be mixed up with others."""
@@ -522,21 +532,24 @@ def load_case(name_or_path: str) -> Case:
     """
     text = case_text(name_or_path)
     try:
-        case = Case(**_beside(name_or_path, tomllib.loads(text)))
+        fields = tomllib.loads(text)
+        if name_or_path in loader.installed().cases.providers:
+            return known_as(name_or_path, Case(**fields))
+        with reading(name_or_path):
+            return Case(**_beside(fields))
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"case '{name_or_path}' is not valid TOML: {error}") from None
     except ConfigurationError as error:
         raise CaseError(with_problems(f"case '{name_or_path}' is wrong in:", error.problems)) from None
-    return known_as(name_or_path, case) if name_or_path in loader.installed().cases.providers else case
 
 
-def _beside(name_or_path: str, fields: dict[str, Any]) -> dict[str, Any]:
+def _beside(fields: dict[str, Any]) -> dict[str, Any]:
     """Return the fields of a case, with the path of its tests made relative to here instead of to the case file."""
-    found, measured = loader.installed(), fields.get("measured")
-    if isinstance(measured, dict) and name_or_path not in found.cases.providers:
+    measured = fields.get("measured")
+    if isinstance(measured, dict):
         tests = measured.get("tests")
-        if isinstance(tests, str) and tests not in found.test_sets.providers:
-            return {**fields, "measured": {**measured, "tests": str(Path(name_or_path).parent / tests)}}
+        if isinstance(tests, str) and tests not in loader.installed().test_sets.providers:
+            return {**fields, "measured": {**measured, "tests": str(beside(tests))}}
     return fields
 
 

@@ -30,7 +30,7 @@ def composed(
     CompositionError
         If its parts do not fit each other.
     """
-    check_geometry(rig, model, geometry or rig.geometry)
+    check_geometry(rig, model, geometry or rig.patch_geometry)
     contact = rig | model
     for stage in stages:
         contact |= stage

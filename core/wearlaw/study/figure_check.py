@@ -6,7 +6,7 @@ import itertools
 import warnings
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean
@@ -16,9 +16,18 @@ from wearlaw.models.stage import Stage
 from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, offered
+from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
 from wearlaw.study.composed import composed
-from wearlaw.study.figure_spec import ACROSS, OF_LOAD, OF_PROFILE, FigureSpec, Window, axis_along, wrong_range
+from wearlaw.study.figure_spec import (
+    ACROSS,
+    BY_PATCH,
+    OF_LOAD,
+    OF_PROFILE,
+    FigureSpec,
+    Window,
+    axis_along,
+    wrong_range,
+)
 from wearlaw.study.grid import Grid
 from wearlaw.units.variables import UNITS
 
@@ -33,11 +42,18 @@ class Variables:
         Those for each axis.
     units : mapping of str to str
         The unit of each; wear across a patch has an entry for each body, such as "wheel_depth".
+    patches : mapping of str to tuple
+        The labels along each axis of the patches, {} if the rig makes one patch.
     """
 
     x: tuple[str, ...]
     y: tuple[str, ...]
     units: Mapping[str, str]
+    patches: Mapping[str, tuple[str | int, ...]]
+
+
+_Known: TypeAlias = tuple[tuple[str, ...], tuple[str, ...], Mapping[str, str]]
+"""The variables for each axis, and their units."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +86,7 @@ class Contents:
     units: Mapping[str, str]
     measured: Collection[str]
     _known: dict[tuple[str, str], Variables] = field(default_factory=dict)
+    _posed: dict[int, Any] = field(default_factory=dict)
 
     def problems(self, figures: Mapping[str, FigureSpec]) -> Iterator[Fault]:
         """Yield the faults of figures: names in them that the case does not have."""
@@ -93,7 +110,7 @@ class Contents:
             for name, message in self._of_window(spec.x, window, known, across=bool(spec.profile)):
                 yield f"{path}{name}", message
         if spec.sweep and spec.x in known.x:
-            yield from self._constant(spec.x, grid)
+            yield from self._constant(spec.x, grid, bool(known.patches))
         yield from self._of_models(spec, grids[asked])
         shown = {spec.x, *(variable for window in spec.windows() for variable in window.shown)}
         missing = sorted(shown.difference(self.measured))
@@ -104,11 +121,20 @@ class Contents:
     def _variables(self, kind: str, name: str, grid: Grid) -> Variables:
         """Return the variables of a sweep or profile, found by predicting its first operating point."""
         if (kind, name) not in self._known:
-            problem = grid.problem(self.rig)
+            problem = self._problem(grid)
             predictions = list(self._predictions(problem))
-            found = self._of_sweep(grid, predictions) if kind == "sweep" else self._of_profile(predictions, problem)
-            self._known[kind, name] = found
+            of_kind = self._of_sweep(grid, predictions) if kind == "sweep" else self._of_profile(predictions, problem)
+            x, y, units = of_kind
+            if kind == "sweep" and problem.dims:
+                x, y = (*x, BY_PATCH), (*y, *((MASS,) if WEAR in self.outcomes else ()))
+            self._known[kind, name] = Variables(x, y, units, problem.dims)
         return self._known[kind, name]
+
+    def _problem(self, grid: Grid) -> Any:
+        """Return the problem of the first operating point of a grid, posed once, since a rig may take long."""
+        if id(grid) not in self._posed:
+            self._posed[id(grid)] = grid.problem(self.rig)
+        return self._posed[id(grid)]
 
     def _predictions(self, problem: Any) -> Iterator[Any]:
         """Yield a prediction for each contact model that solves the problem, with the first law that fits it.
@@ -128,23 +154,26 @@ class Contents:
         except WearlawError:
             return None
 
-    def _of_sweep(self, grid: Grid, predictions: list[Prediction]) -> Variables:
-        every = {name for one in predictions for name in offered(one, (*OF_CONTACT, *OF_POINT))}
+    def _of_sweep(self, grid: Grid, predictions: list[Prediction]) -> _Known:
+        every = {name for one in predictions for name in offered(one, (*OF_CONTACT, *OF_POINT, *OF_PATCH))}
         levels = {name: grid.level(name, self.units) for name in grid.given}
         conditions = [name for name, level in levels.items() if isinstance(level, float)]
-        of_contact, of_point = ([name for name in names if name in every] for names in (OF_CONTACT, OF_POINT))
+        of_contact, of_point = (
+            [name for name in names if name in every] for names in (OF_CONTACT, (*OF_POINT, *OF_PATCH))
+        )
         x = tuple(dict.fromkeys((*of_contact, *of_point, *conditions)))
-        return Variables(x, (*self.outcomes, *of_contact, *of_point), {**UNITS, **self._of_laws(), **self.units})
+        return x, (*self.outcomes, *of_contact, *of_point), {**UNITS, **self._of_laws(), **self.units}
 
     def _of_laws(self) -> dict[str, str]:
         return {name: outcome.unit for name, outcome in self.outcomes.items()}
 
-    def _of_profile(self, predictions: list[Prediction], problem: Any) -> Variables:
+    def _of_profile(self, predictions: list[Prediction], problem: Any) -> _Known:
         units = {**UNITS, **self._of_laws()}
         if all(one.problem.geometry == "line" for one in predictions):
             local = [name for name, outcome in self.outcomes.items() if outcome.of == "area mean"]
-            known = dict.fromkeys((*(name for name in OF_PROFILE if name != WEAR or WEAR in local), *local))
-            return Variables(("x",), tuple(known), units)
+            left_out = {WEAR, *(("creepage",) if problem.dims else ())} - {*local}  # patches differ in creepage
+            known = dict.fromkeys((*(name for name in OF_PROFILE if name not in left_out), *local))
+            return ("x",), tuple(known), units
         for body in self.rig.bodies:
             for model, law in itertools.product(self.contact_models.values(), self.laws.values()):
                 if law.outcome.name != WEAR or law.body not in (None, body) or not self._resolves(model):
@@ -156,7 +185,7 @@ class Contents:
                         columns = found.wear_profile(body).data_vars.items()
                     units |= {f"{body}_{name}": column.attrs["units"] for name, column in columns}
                     break
-        return Variables(("x", "y"), ACROSS, units)
+        return ("x", "y"), ACROSS, units
 
     def _resolves(self, model: ContactModel) -> bool:
         """Return whether laws see the cells of a contact model after its stages."""
@@ -169,6 +198,16 @@ class Contents:
         for name in whole:
             yield "y", f"{name} has no profile; show it in a figure of a sweep"
         yield from _unknown("y", [name for name in window.shown if name not in whole], known.y)
+        for axis, labels in (window.patches or {}).items():
+            if not known.patches:
+                yield "patches", "the rig makes one patch at each operating point; leave it out"
+                break
+            if axis not in known.patches:
+                yield "patches", f"the rig has no axis {_choice(axis, known.patches)}"
+                continue
+            for label in labels:
+                if label not in known.patches[axis]:
+                    yield f"patches.{axis}", f"there is no {_choice(str(label), [*map(str, known.patches[axis])])}"
         across = across and known.y == ACROSS
         bodies = tuple(self.rig.bodies)
         if window.body is not None and not across:
@@ -191,11 +230,14 @@ class Contents:
             for message in wrong_range(first, units[first], window.y_range, window.y_scale):
                 yield "y_range", message
 
-    def _constant(self, x: str, grid: Grid) -> Iterator[tuple[str, str]]:
-        """Yield a fault if nothing changes along the x axis."""
+    def _constant(self, x: str, grid: Grid, several: bool) -> Iterator[tuple[str, str]]:
+        """Yield a fault if nothing changes along the x axis; `several` patches change with any condition."""
         axis = axis_along(grid, x, self.rig.creepage)
-        of_point = x in OF_POINT or x in grid.given
-        varies = not of_point or x == axis or axis not in UNITS or (x in OF_LOAD and axis in LOADS)
+        if x == BY_PATCH:
+            return
+        of_point = x in grid.given or (x in OF_POINT and not several)
+        unknown = axis not in UNITS and not several
+        varies = not of_point or x == axis or unknown or (x in OF_LOAD and axis in LOADS)
         if grid.axes() and not varies:
             yield "x", f"{x} is the same at all points of the sweep; give {axis}, or what follows from it"
 
@@ -247,7 +289,7 @@ class Contents:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
-                geometry = grid.problem(self.rig).geometry
+                geometry = self._problem(grid).geometry
                 composed(self.rig, contact_model, self.stages, self.laws[law], geometry)
         except CompositionError as error:
             return str(error)

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import ConfigurationError, Fault, UnitError
-from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT
+from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw.settings.configuration import Configuration
 from wearlaw.study.grid import Grid
 from wearlaw.units.quantities import Unit, from_si
@@ -21,11 +21,14 @@ OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "cr
 ACROSS = ("depth", "sliding_distance")
 """Variables across the patch of an elliptic contact, for one of the bodies."""
 
-OF_CONTACTS = {*OF_CONTACT, *OF_POINT, *OF_PROFILE, "sliding_distance"} - {"wear_rate"}
+OF_CONTACTS = {*OF_CONTACT, *OF_POINT, *OF_PATCH, *OF_PROFILE, "sliding_distance"} - {"wear_rate"}
 """The variables that do not differ from law to law; all others are wear rate, depth, and outcomes of other laws."""
 
 OF_LOAD = (*LOADS, "half_width", "semi_axis_a", "semi_axis_b")
 """The variables that the load alone determines."""
+
+BY_PATCH = "patch"
+"""The `x` of a figure with a point for each patch, if the rig makes several."""
 
 Scale = Literal["linear", "log"]
 
@@ -34,7 +37,7 @@ def _variables(value: Any) -> Any:
     return (value,) if isinstance(value, str) else value
 
 
-_VARIABLE = {"enum": list(dict.fromkeys(("wear_rate", *OF_CONTACT, *OF_POINT, *OF_PROFILE, *ACROSS)))}
+_VARIABLE = {"enum": list(dict.fromkeys(("wear_rate", MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *OF_PROFILE, *ACROSS)))}
 
 Variables = Annotated[
     tuple[str, ...],
@@ -43,6 +46,16 @@ Variables = Annotated[
     WithJsonSchema({"anyOf": [_VARIABLE, {"type": "array", "items": _VARIABLE, "minItems": 1}]}),
 ]
 """One variable, or several with the same unit."""
+
+Labels = Annotated[
+    tuple[str | int, ...],
+    BeforeValidator(lambda value: (value,) if isinstance(value, str | int) else value),
+    Field(min_length=1),
+    WithJsonSchema(
+        {"anyOf": [_LABEL := {"type": ["string", "integer"]}, {"type": "array", "items": _LABEL, "minItems": 1}]}
+    ),
+]
+"""One label of an axis of patches, or several."""
 
 Range = tuple[float | str, float | str]
 """Two ends of an axis, each with its unit if the variable has one."""
@@ -55,6 +68,8 @@ class Window(Configuration):
     """Title above the panel."""
     y: Variables | None = None
     """The variable to show, or several with the same unit."""
+    patches: dict[str, Labels] | None = None
+    """The patches to show if the rig makes several, such as { side = "right", patch = 1 }. Default: all."""
     body: str | None = None
     """The body whose wear across the patch is shown, such as "wheel". Default: the first of the rig."""
     x_range: Range | None = None
@@ -81,8 +96,9 @@ class FigureSpec(Window):
     """The sweep to show; give this or `profile`."""
     profile: str | None = None
     """The profile to show."""
-    x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", *OF_CONTACT, *OF_POINT]})] = "x"
-    """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it."""
+    x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", BY_PATCH, *OF_CONTACT, *OF_POINT, *OF_PATCH]})] = "x"
+    """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it. If the rig
+    makes several patches, "patch" shows a point for each."""
     pairs: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """The pairs whose wear rates or other outcomes are shown, such as "usfd on exact". Default: all."""
     contact_models: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
@@ -101,7 +117,7 @@ class FigureSpec(Window):
 
     def windows(self) -> tuple[Window, ...]:
         """Return the panels, each with the fields that it inherits."""
-        inherited = ("y", "body", "x_range", "y_range", "x_scale", "y_scale")
+        inherited = ("y", "patches", "body", "x_range", "y_range", "x_scale", "y_scale")
         common = {name: getattr(self, name) for name in inherited}
         own = [{name: value for name, value in panel if value is not None} for panel in self.panels] or [{}]
         return tuple(Window(**{**common, **window}) for window in own)
@@ -165,8 +181,11 @@ def ends(variable: str, unit: str, given: Range) -> tuple[float, float]:
 def axis_along(grid: Grid, x: str, creepage: str) -> str:
     """Return the axis of a grid along which a figure runs: its x, else the creepage, else the longest axis.
 
-    For an x that depends on the load, the axis is the load, or the first condition that only the rig knows.
+    For an x that depends on the load, the axis is the load, or the first condition that only the rig knows. A figure by
+    patch runs along none, "".
     """
+    if x == BY_PATCH:
+        return ""
     axes = grid.axes()
     loads = [name for name in axes if name in LOADS] or [name for name in axes if name not in UNITS]
     if x in axes:

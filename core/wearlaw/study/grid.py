@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import Annotated, Any, Literal
@@ -12,7 +13,7 @@ import pint
 from pydantic import BeforeValidator, Field, model_validator
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import ConfigurationError, Fault, InputError, UnitError, WearlawError, did_you_mean
+from wearlaw.errors import ConfigurationError, Fault, InputError, UnitError, WearlawError, WearlawWarning, did_you_mean
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.settings.configuration import Configuration
 from wearlaw.sweeping.points import Points, Varying
@@ -160,6 +161,13 @@ class Grid(Configuration, extra="allow"):
         }
         return Points({name: value for name, value in self.given.items() if name not in varying}, varying)
 
+    def conditions(self) -> dict[str, Any]:
+        """Return the conditions as arguments of a pipeline; each axis is an array along a dimension of its own."""
+        last = len(self._axes) - 1
+        shapes = {name: (-1,) + (1,) * (last - number) for number, name in enumerate(self._axes)}
+        axes = {name: axis.given(axis.values.reshape(shapes[name])) for name, axis in self._axes.items()}
+        return {**self.given, **axes}
+
     def level(self, name: str, units: Mapping[str, str]) -> float | str:
         """Return the value of a condition in the given unit, or its text; for an axis, its middle value."""
         if name in self._axes:
@@ -174,7 +182,7 @@ class Grid(Configuration, extra="allow"):
     def problem(self, rig: Rig) -> Any:
         """Return the contact problem of the first operating point."""
         first = {name: axis.given(float(axis.values[0])) for name, axis in self._axes.items()}
-        return rig.checked_problem({**self.given, **first})
+        return _quietly(rig, {**self.given, **first})
 
 
 def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
@@ -190,11 +198,18 @@ def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
     if unknown or missing:
         return
     try:
-        rig.checked_problem(given)
+        _quietly(rig, given)
     except WearlawError as error:
         text = str(error)
         about = next((name for name in given if text.startswith(f"{name}: ")), None)
         yield Fault((), text) if about is None else Fault((about,), text.removeprefix(f"{about}: "))
+
+
+def _quietly(rig: Rig, conditions: Mapping[str, Any]) -> Any:
+    """Return the rig's problem without its warnings, which running the case repeats."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", WearlawWarning)
+        return rig.checked_problem(conditions)
 
 
 def with_units(conditions: Mapping[str, Array]) -> dict[str, Any]:

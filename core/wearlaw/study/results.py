@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import xarray
 
 from wearlaw.errors import InputError, did_you_mean
-from wearlaw.models.law import Outcome
+from wearlaw.models.law import WEAR, Outcome
 from wearlaw.pipeline.composition import fitted_to_other_body
+from wearlaw.pipeline.variables import MASS
 from wearlaw.study.case import Case
 from wearlaw.study.pairs import Pair
-from wearlaw.units.variables import UNITS
+from wearlaw.units.variables import UNITS, name_of
+
+Patch: TypeAlias = Mapping[str, Any]
+"""Labels of a patch along the axes of its rig, such as {"side": "left", "patch": 1}; {} if the rig makes one patch."""
+
+PATCH_AXES = "patch_axes"
+"""Attribute of a sweep with the names of the axes that its rig adds for several patches."""
 
 LIMITS = {"first_yield": "beyond first yield", "shakedown_limit": "beyond shakedown"}
 """The limits of the maximum pressure, with words for a contact beyond them."""
@@ -39,6 +48,23 @@ class Results:
             raise InputError(f"the case has no sweep '{name}'{did_you_mean(name, self.sweeps)} Add [sweeps.{name}]")
         return self.sweeps[name]
 
+    def conditions(self, *, sweep: str | None = None, profile: str | None = None) -> dict[str, Any]:
+        """Return the conditions of a sweep or a profile of the case, as arguments of a pipeline.
+
+        The axes of a sweep are arrays, each along a dimension of its own. A section can predict more than the results
+        hold: ``study.pairs[0].pipeline(**study.conditions(sweep="curve"))``.
+
+        Raises
+        ------
+        InputError
+            If the case has none of that name.
+        """
+        kind, name = ("sweep", sweep) if sweep is not None else ("profile", profile or "")
+        grids = self.case.sweeps if kind == "sweep" else self.case.profiles
+        if name not in grids:
+            raise InputError(f"the case has no {kind} '{name}'{did_you_mean(name, grids)} Add [{kind}s.{name}]")
+        return grids[name].conditions()
+
     def pair(self, label: str) -> Pair:
         """Return the pair with a label."""
         (found,) = (pair for pair in self.pairs if pair.label == label)
@@ -52,8 +78,9 @@ class Results:
 
 
 def predicting(results: Results, outcome: str, labels: Sequence[str]) -> list[str]:
-    """Return the pairs among these whose law predicts an outcome."""
-    return [label for label in labels if results.pair(label).outcome.name == outcome]
+    """Return the pairs among these whose law predicts an outcome; a wear law also predicts `MASS`."""
+    of_law = WEAR if outcome == MASS else outcome
+    return [label for label in labels if results.pair(label).outcome.name == of_law]
 
 
 def outcomes_of(results: Results, sweep: xarray.Dataset) -> list[Outcome]:
@@ -63,7 +90,64 @@ def outcomes_of(results: Results, sweep: xarray.Dataset) -> list[Outcome]:
 
 def axes_of(sweep: xarray.Dataset) -> list[str]:
     """Return the axes of a sweep's grid."""
-    return [str(dim) for dim in sweep.dims if dim not in ("pair", "contact_model")]
+    others = ("pair", "contact_model", *patch_axes(sweep))
+    return [str(dim) for dim in sweep.dims if dim not in others]
+
+
+def patch_axes(sweep: xarray.Dataset) -> list[str]:
+    """Return the axes of a sweep that its rig adds for several patches."""
+    return [axis for axis in _names_of_patch_axes(sweep) if axis in sweep.dims]
+
+
+def is_of_patches(line: xarray.Dataset) -> bool:
+    """Return whether a sweep, or a part of it such as one patch, is that of a rig that makes several patches."""
+    return bool(_names_of_patch_axes(line))
+
+
+def _names_of_patch_axes(sweep: xarray.Dataset) -> list[str]:
+    names: list[str] = sweep.attrs.get(PATCH_AXES, "").split()
+    return names
+
+
+def patches_of(sweep: xarray.Dataset, asked: Mapping[str, Collection[Any]] | None = None) -> list[Patch]:
+    """Return the labels of each patch that exists at any point of a sweep; [{}] if the rig makes one patch.
+
+    `asked` holds the labels to choose from, by axis.
+    """
+    axes = patch_axes(sweep)
+    if not axes:
+        return [{}]
+    of_contact = next(one for one in sweep.data_vars.values() if {"contact_model", *axes} <= set(one.dims))
+    there = of_contact.notnull().any([dim for dim in of_contact.dims if dim not in axes])
+    return [
+        patch
+        for patch in possible_patches(sweep)
+        if there.sel(patch) and all(patch[axis] in labels for axis, labels in (asked or {}).items())
+    ]
+
+
+def possible_patches(sweep: xarray.Dataset) -> list[Patch]:
+    """Return the labels of each patch that the rig can make, whether it exists or not."""
+    axes = patch_axes(sweep)
+    labels = itertools.product(*(sweep[axis].values.tolist() for axis in axes))
+    return [dict(zip(axes, one, strict=True)) for one in labels]
+
+
+def by_patch(point: xarray.Dataset, asked: Mapping[str, Collection[Any]] | None = None) -> xarray.Dataset:
+    """Return an operating point along an axis "patch" of its existing patches, with their numbers from 0."""
+    axes, found = patch_axes(point), patches_of(point, asked)
+    each = [point.sel(patch).drop_vars(axes) for patch in found]
+    return xarray.concat(each, xarray.Variable("patch", range(len(each))), coords="minimal", compat="override")
+
+
+def in_words(patch: Patch) -> str:
+    """Return the labels of a patch in words, such as "left, patch 1"; a number stands behind the name of its axis."""
+    return ", ".join(one if isinstance(one, str) else f"{name_of(axis)} {one}" for axis, one in patch.items())
+
+
+def labelled_by(patch: Patch, label: str) -> str:
+    """Return a label with a patch in words behind it, if the rig makes several."""
+    return f"{label}, {in_words(patch)}" if patch else label
 
 
 def main_axis(sweep: xarray.Dataset, creepage: str) -> str:
@@ -89,6 +173,11 @@ def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
         return line
     at = axis if axis in line else _other(line)
     return line.set_coords(at).expand_dims(at)
+
+
+def middle_of(sweep: xarray.Dataset) -> xarray.Dataset:
+    """Return a sweep at the middle of all its axes."""
+    return sweep.isel({axis: sweep.sizes[axis] // 2 for axis in axes_of(sweep)})
 
 
 def _other(point: xarray.Dataset) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import json
+import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import xarray
@@ -29,16 +31,17 @@ from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import ERROR, Prediction
-from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, offered
+from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import known_name, parts
 from wearlaw.study.case import Case
 from wearlaw.study.figures import figures_of
 from wearlaw.study.pairs import Pair, pairs_of
-from wearlaw.study.results import Results
+from wearlaw.study.results import PATCH_AXES, Results
 from wearlaw.study.sections import Section
 from wearlaw.sweeping.checkpoint import Checkpoint, Evaluator
 from wearlaw.sweeping.points import Points
+from wearlaw.sweeping.sweep import weight
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
 
@@ -46,6 +49,9 @@ if TYPE_CHECKING:
     from wearlaw.figures.curves import FigureData
     from wearlaw.plugins.shelf import Shelf
     from wearlaw.study.grid import Grid
+
+Dims: TypeAlias = Mapping[str, tuple[str | int, ...]]
+"""The axes that a rig adds for several patches, with their labels."""
 
 LIMITS = ("max_pressure", "first_yield", "shakedown_limit")
 """Variables that show whether the contact of a profile stays elastic, if the yield stress of a body is known."""
@@ -172,40 +178,46 @@ def used(case: Case) -> dict[str, dict[str, str]]:
 
 def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: Evaluator) -> xarray.Dataset:
     """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
-    points = grid.points(case.units)
+    first = grid.problem(case.rig)
+    points = replace(grid.points(case.units), weight=weight(first))
     axes = points.dims
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
-    found_in, first = _variables(grid, case, usable), grid.problem(case.rig)
+    found_in = _variables(grid, case, usable)
     rates: list[dict[str, Array]] = []
     contacts: dict[str, dict[str, Array]] = {}
     for number, pair in enumerate(usable):
         new = found_in.of_contact[pair.contact_model] if pair.contact_model not in contacts else ()
-        outputs = [*_of_pair(pair), *new, *(found_in.of_point if not contacts else ())]
+        outputs = [*_of_pair(pair, first), *new, *(found_in.of_point if not contacts else ())]
         with notes.of(f"sweep '{name}'"):
             warn_of_unlike_materials(pair.pipeline.contact_model, first, stacklevel=1)
-            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs)
+            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first.dims)
         contacts.setdefault(pair.contact_model, found)
-        band = _band(f"{name}-{number}", pair, points, found, evaluator)
-        rates.append({v: found[v] for v in _of_pair(pair)} | band)
+        band = _band(f"{name}-{number}", pair, points, first.dims, found, evaluator)
+        rates.append({v: found[v] for v in _of_pair(pair, first)} | band)
     any_contact = next(iter(contacts.values()))
-    missing = np.full(points.shape, np.nan)
+    of_patches = (*axes, *first.dims)
+    missing = np.full(points.shape + tuple(map(len, first.dims.values())), np.nan)
     variables: dict[str, Any] = {
         **{
-            v: (("pair", *axes), np.stack([rate.get(v, missing) for rate in rates]))
+            v: (("pair", *of_patches), np.stack([rate.get(v, missing) for rate in rates]))
             for v in dict.fromkeys(v for rate in rates for v in rate)
         },
         **{
-            v: (("contact_model", *axes), np.stack([c.get(v, missing) for c in contacts.values()]))
-            for v in OF_CONTACT
+            v: (("contact_model", *of_patches), np.stack([c.get(v, missing) for c in contacts.values()]))
+            for v in (*OF_CONTACT, *OF_POINT, *OF_PATCH)
             if any(v in offered for offered in found_in.of_contact.values())
         },
-        **{v: (axes, any_contact[v]) for v in found_in.of_point},
+        **{v: (of_patches, any_contact[v]) for v in found_in.of_point},
         **{v: (axes, np.full(points.shape, level)) for v, level in found_in.conditions.items()},
     }
     units = case.result_units
-    dataset = xarray.Dataset({v: (dims, values, {"units": units[v]}) for v, (dims, values) in variables.items()})
+    dataset = xarray.Dataset(
+        {v: (dims, values, {"units": units[v]}) for v, (dims, values) in variables.items()},
+        attrs={PATCH_AXES: " ".join(first.dims)} if first.dims else {},
+    )
     return dataset.assign_coords(
         {axis: (axis, one.values, {"units": units[axis]}) for axis, one in points.varying.items()}
+        | {axis: (axis, list(labels)) for axis, labels in first.dims.items()}
         | {"pair": [pair.label for pair in usable], "contact_model": list(contacts)}
         | {"pair_contact_model": ("pair", [pair.contact_model for pair in usable])}
         | {f"pair_{kind}": ("pair", labels) for kind, labels in _labels_of_laws(case, usable).items()}
@@ -218,10 +230,14 @@ def _labels_of_laws(case: Case, pairs: list[Pair]) -> dict[str, list[str]]:
     return found | ({"law": [pair.law if pair.outcome.name != WEAR else "" for pair in pairs]} if case.laws else {})
 
 
-def _of_pair(pair: Pair) -> tuple[str, ...]:
-    """Return the variables of a pair: its outcome, the error of a mean over the patch, and whether it is outside."""
+def _of_pair(pair: Pair, problem: Any) -> tuple[str, ...]:
+    """Return the variables of a pair: its outcome, the error of a mean over the patch, and whether it is outside.
+
+    With several patches there is also the mass lost at each, since wear rates cannot be added.
+    """
     error = (f"{pair.outcome.name}{ERROR}",) if pair.outcome.of == "area mean" else ()
-    return (pair.outcome.name, *error, "outside_range")
+    mass = (MASS,) if problem.dims and pair.outcome.name == WEAR else ()
+    return (pair.outcome.name, *error, "outside_range", *mass)
 
 
 @dataclass(frozen=True)
@@ -231,9 +247,10 @@ class _Variables:
     Attributes
     ----------
     of_contact : dict of str to list of str
-        For each contact model, the variables that its predictions have.
+        For each contact model, the variables that its predictions have. If the rig balances its loads with the forces,
+        they include those of the operating points.
     of_point : list of str
-        Variables of the operating points.
+        Variables of the operating points, which do not depend on the contact model.
     conditions : dict of str to float
         Conditions that are the same at all points.
     """
@@ -246,20 +263,26 @@ class _Variables:
 def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
     """Return the variables of a sweep, found by predicting its first operating point."""
     problem, axes = grid.problem(case.rig), grid.axes()
+    levels = {name: grid.level(name, case.units) for name in grid.given}
+    conditions = {name: level for name, level in levels.items() if isinstance(level, float)}
+    given = conditions if problem.dims else axes  # a condition for all patches is not the variable of one of them
     of_contact: dict[str, list[str]] = {}
     of_point: dict[str, None] = {}
     for pair in {pair.contact_model: pair for pair in pairs}.values():
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", WearlawWarning)  # the sweep repeats them
             prediction = pair.pipeline.without_law().predict(problem)
-        of_contact[pair.contact_model] = [v for v in offered(prediction, OF_CONTACT) if v not in axes]
+        of_contact[pair.contact_model] = [v for v in offered(prediction, OF_CONTACT) if v not in given]
         # A rig may use the name of a variable for something else.
-        same = (v for v in offered(prediction, OF_POINT) if case.units.get(v, UNITS[v]) == UNITS[v])
-        of_point |= dict.fromkeys(v for v in same if v not in axes)
+        same = (v for v in offered(prediction, (*OF_POINT, *OF_PATCH)) if case.units.get(v, UNITS[v]) == UNITS[v])
+        new = [v for v in same if v not in given]
+        if type(case.rig).balanced is Rig.balanced:
+            of_point |= dict.fromkeys(new)
+        else:
+            of_contact[pair.contact_model] += new
     known = {*axes, *of_point, *(v for variables in of_contact.values() for v in variables)}
-    levels = {name: grid.level(name, case.units) for name in grid.given if name not in known}
-    conditions = {name: level for name, level in levels.items() if isinstance(level, float)}
-    return _Variables(of_contact, [v for v in OF_POINT if v in of_point], conditions)
+    fixed = {name: level for name, level in conditions.items() if name not in known}
+    return _Variables(of_contact, [v for v in (*OF_POINT, *OF_PATCH) if v in of_point], fixed)
 
 
 def numbers(case: Case) -> int:
@@ -269,8 +292,10 @@ def numbers(case: Case) -> int:
         usable = _usable(f"sweep '{name}'", grid, pairs, Notes())
         found = _variables(grid, case, usable)
         of_contact = sum(len(variables) for variables in found.of_contact.values())
-        of_pair = len(usable) * len({v for pair in usable for v in (*_of_pair(pair), *_band_names(pair))})
-        total += grid.size * (len(found.of_point) + len(found.conditions) + of_contact + of_pair)
+        first = grid.problem(case.rig)
+        of_pair = len(usable) * len({v for pair in usable for v in (*_of_pair(pair, first), *_band_names(pair))})
+        patches = math.prod(map(len, first.dims.values()))
+        total += grid.size * (patches * (len(found.of_point) + of_contact + of_pair) + len(found.conditions))
         total += sum(grid.axes().values())
     return total
 
@@ -288,13 +313,15 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
     return usable
 
 
-def _band(key: str, pair: Pair, points: Points, found: dict[str, Array], evaluator: Evaluator) -> dict[str, Array]:
+def _band(
+    key: str, pair: Pair, points: Points, dims: Dims, found: dict[str, Array], evaluator: Evaluator
+) -> dict[str, Array]:
     """Return the ends of the outcome over the published range of the law's parameters."""
     ends, outcome = [], pair.outcome.name
     for end, one in zip(_band_names(pair), _band_ends(pair.pipeline), strict=False):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band gave them already
-            ends.append(evaluator(f"{key}-{end}", one, points, [outcome])[outcome])
+            ends.append(evaluator(f"{key}-{end}", one, points, [outcome], dims)[outcome])
     return dict(zip(_band_names(pair), ends or [found[outcome]] * 2, strict=False))
 
 
@@ -328,7 +355,8 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
             notes.add(f"profile '{name}': {pair.label} is left out, since only wear is shown across a patch")
             continue
         with notes.of(f"profile '{name}'"):
-            of_pair, whole = _seen(pair.pipeline.predict(problem), case.rig)
+            prediction = pair.pipeline.predict(pair.pipeline.posed(grid.conditions()))
+            of_pair, whole = _by_patch(prediction, case.rig) if problem.dims else _seen(prediction, case.rig)
         if not whole:
             notes.add(f"profile '{name}' is left out: rig '{case.rig.name}' does not name its bodies")
             return xarray.Dataset()
@@ -342,7 +370,32 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
         return xarray.Dataset()
     # A model with nodes of its own has NaN at the nodes of others.
     dataset = xarray.concat(list(contacts.values()), xarray.Variable("contact_model", list(contacts)), join="outer")
+    if problem.dims:
+        dataset.attrs[PATCH_AXES] = " ".join(problem.dims)
     return dataset.assign(xarray.concat(of_pairs, "pair", join="outer").data_vars).assign_coords(pair=shown)
+
+
+def _by_patch(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
+    """Return the result of `_seen` for several patches, with their axes.
+
+    Each patch lies elsewhere, so its position is a variable over the axis "node".
+    """
+    axes, exists = prediction.problem.dims, prediction.problem.exists
+    of_law: list[str] = []
+    each = []
+    for labels in itertools.product(*axes.values()):
+        patch = dict(zip(axes, labels, strict=True))
+        place = tuple(known.index(label) for known, label in zip(axes.values(), labels, strict=True))
+        if exists is None or exists[place]:
+            of_law, one = _seen(prediction.sel(**patch), rig)
+            if not one:
+                return [], one
+            (position,) = map(str, one.dims)
+            one = one.reset_index(position).rename_dims({position: "node"}).reset_coords(position)
+            numbered = one.assign_coords(node=range(one.sizes["node"]))
+            each.append(numbered.expand_dims({axis: [label] for axis, label in patch.items()}))
+    found = xarray.merge(each, join="outer", compat="no_conflicts")
+    return of_law, found.reindex({axis: np.array(labels) for axis, labels in axes.items()})
 
 
 def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
@@ -359,9 +412,9 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
         local = [law.outcome.name] if law.outcome.of == "area mean" else []
         return [*local, *of_law], prediction.profile.assign(whole | of_law)
     bodies = [body for body in rig.bodies if law.body in (None, body)]
-    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in bodies}
+    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS).reset_coords() for body in bodies}
     named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
     if not named:
         return [], xarray.Dataset()
-    shown = [name for name in named if not name.endswith("_sliding_distance")]
+    shown = [name for name in named if not name.endswith(("_sliding_distance", "_profile_position"))]
     return [*shown, *of_law], xarray.Dataset(named).assign(whole | of_law)

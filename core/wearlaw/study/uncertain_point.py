@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from wearlaw.errors import ConfigurationError, Fault, InputError, did_you_mean
 from wearlaw.models.law import Law
+from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.settings.configuration import Configuration
 from wearlaw.study.grid import Value, wrong_conditions
@@ -87,13 +88,15 @@ class UncertainPoint(Configuration, extra="allow"):
         Raises
         ------
         ConfigurationError
-            If a distribution is impossible, or the rig does not take the conditions, tried at the first number of each
-            distribution.
+            If a distribution is impossible, the rig makes several patches, or it does not take the conditions, tried at
+            the first number of each distribution.
         """
         conditions = self.conditions()
         spread = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
         middle = {name: one.first for name, one in spread.items()}
         wrong = list(wrong_conditions(rig, {**conditions, **middle}))
+        if not wrong and (several := several_patches(rig.checked_problem({**conditions, **middle}), rig)):
+            wrong = [Fault((), f"{several}; leave it out")]
         if not wrong:
             wrong = [Fault((name,), fault) for name, one in spread.items() if (fault := one.fault())]
         if wrong:

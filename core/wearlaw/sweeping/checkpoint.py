@@ -6,7 +6,7 @@ import json
 import os
 import shutil
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 
@@ -132,13 +132,21 @@ class Evaluator:
         self._workers = workers
         self._checkpoint = checkpoint
 
-    def __call__(self, key: str, pipeline: Pipeline[...], points: Points, outputs: Sequence[str]) -> dict[str, Array]:
+    def __call__(
+        self,
+        key: str,
+        pipeline: Pipeline[...],
+        points: Points,
+        outputs: Sequence[str],
+        dims: Mapping[str, tuple[str | int, ...]] | None = None,
+    ) -> dict[str, Array]:
         """Return outputs in their usual units and in the shape of the points; `key` names the sweep.
 
-        The usual units are those of the outcomes of the laws, and of `variables.UNITS`.
+        The usual units are those of the outcomes of the laws, and of `variables.UNITS`. `dims` are the rig's own axes,
+        which follow those of the points.
         """
         units = {**UNITS, **outcome_units(pipeline.laws)}
-        job = Job(pipeline, {name: units[name] for name in outputs})
+        job = Job(pipeline, {name: units[name] for name in outputs}, dims or {})
         workers = min(self._workers, len(points.blocks()))
         if workers > 1:
             check_importable(pipeline)
@@ -146,4 +154,4 @@ class Evaluator:
         with closing(target):
             for warning in run(target, self._on_block, workers):
                 warnings.warn(warning, stacklevel=2)
-        return {name: values.reshape(points.shape) for name, values in target.arrays.items()}
+        return {name: values.reshape(points.shape + job.own_shape) for name, values in target.arrays.items()}

@@ -17,7 +17,7 @@ from wearlaw.arrays import kernels
 from wearlaw.arrays.array import Array
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, InputError, did_you_mean
+from wearlaw.errors import CompositionError, InputError, ModelError, RangeWarning, WearlawWarning, did_you_mean
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
@@ -29,7 +29,7 @@ from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS, name_of
 
 Outputs = dict[str, Array]
-"""Results of a block by name, (points,) each, in the units of the job."""
+"""Results of a block by name, (points, *axes of the rig) each, in the units of the job."""
 
 
 @dataclass(frozen=True)
@@ -41,13 +41,21 @@ class Job:
     pipeline : Pipeline
     units : mapping of str to str
         The unit of each output, by its name.
+    dims : mapping of str to tuple
+        The rig's own axes with their labels, as in `Problem.dims`.
     accelerate : bool or None
         The setting of `wearlaw.accelerate`, to apply in every process.
     """
 
     pipeline: Pipeline[...]
     units: Mapping[str, str]
+    dims: Mapping[str, tuple[str | int, ...]] = field(default_factory=dict)
     accelerate: bool | None = field(default_factory=kernels.chosen)
+
+    @property
+    def own_shape(self) -> tuple[int, ...]:
+        """Shape of the results at one operating point: the numbers of labels of the rig's own axes."""
+        return tuple(map(len, self.dims.values()))
 
     def attributes(self, name: str) -> dict[str, str]:
         """Return the attributes of an output in results: its unit and its long name."""
@@ -61,20 +69,23 @@ class BlockRecord:
     Attributes
     ----------
     points : int
-        Number of operating points.
+        Number of operating points, or of patches if there are several at each point.
     overload : Overload or None
         The one furthest beyond first yield.
     ranges : mapping of str to tuple
         For each variable that leaves the range of the law: lowest and highest mean over the patch in SI, and the number
         of points outside.
     checksum : int
-        Checksum of the outputs and of the values above.
+        Checksum of the outputs and of the other values.
+    remarks : tuple of str
+        Warnings of the rig, such as that a wheel climbs its rail.
     """
 
     points: int
     overload: Overload | None
     ranges: Mapping[str, tuple[float, float, int]]
     checksum: int
+    remarks: tuple[str, ...] = ()
 
 
 def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, BlockRecord]:
@@ -83,12 +94,44 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     `on_block` is called with the number of points just done, several times for a long block.
     """
     kernels.accelerate(job.accelerate)
-    problem = job.pipeline.posed(part.conditions())
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", WearlawWarning)
+        problem = job.pipeline.posed(part.conditions())
+    remarks = dict.fromkeys(str(one.message) for one in caught if isinstance(one.message, WearlawWarning))
+    if job.dims or problem.dims:
+        _check_axes(job, problem, part)
+        on_block = on_block and _in_points(on_block, part.size, problem.size)
     watch = job.pipeline.range_watch()
-    prediction = job.pipeline.watched(problem, watch, on_block)
-    outputs = {name: _in_unit(prediction[name], unit) for name, unit in job.units.items()}
-    seen = BlockRecord(watch.points, watch.overload, watch.seen, checksum=0)
+    if problem.size:
+        prediction = job.pipeline.watched(problem, watch, on_block)
+        outputs = {name: _in_unit(prediction[name], unit) for name, unit in job.units.items()}
+    else:  # the bodies touch nowhere
+        outputs = {name: np.full(problem.batch_shape, np.nan) for name in job.units}
+    seen = BlockRecord(watch.points, watch.overload, watch.seen, checksum=0, remarks=tuple(remarks))
     return outputs, replace(seen, checksum=checksum(seen, outputs.values()))
+
+
+def _check_axes(job: Job, problem: Problem, part: Points) -> None:
+    """Raise an error unless the axes of a block's problem are the operating points and the rig's own axes."""
+    wanted = (part.size, *job.own_shape) if part.dims else job.own_shape
+    if problem.dims != job.dims or problem.batch_shape != wanted:
+        raise ModelError(
+            f"rig '{job.pipeline.rig.name}' gave a batch of shape {problem.batch_shape} with the axes {problem.dims!r}"
+            f" for {part.size} operating points, but of shape {wanted} with {job.dims!r} for the first of them. In the"
+            " rig, give each condition an axis of length one for each of the rig's axes, as in values[..., None, None]"
+        )
+
+
+def _in_points(on_block: Callable[[int], None], points: int, patches: int) -> Callable[[int], None]:
+    """Return a function that takes numbers of patches and passes on numbers of operating points in proportion."""
+    done = 0
+
+    def advance(more: int) -> None:
+        nonlocal done
+        before, done = done * points // patches, done + more
+        on_block(done * points // patches - before)
+
+    return advance
 
 
 def evaluated(
@@ -98,7 +141,7 @@ def evaluated(
     outputs, seen = evaluate(job, part, on_block)
     if store is None:
         return outputs, seen
-    write_block(store, block, {name: values.reshape(part.shape) for name, values in outputs.items()})
+    write_block(store, block, {name: values.reshape(part.shape + job.own_shape) for name, values in outputs.items()})
     return {}, seen
 
 
@@ -106,7 +149,7 @@ def write_block(store: str, block: Block, outputs: Mapping[str, Array]) -> None:
     """Write the outputs of a block to a zarr store."""
     group = zarr_group(store)
     for name, values in outputs.items():
-        group[name][block.slices] = values
+        group[name][(*block.slices, ...)] = values
 
 
 @functools.lru_cache(maxsize=8)
@@ -130,16 +173,19 @@ def checksum(seen: BlockRecord, outputs: Iterable[Array]) -> int:
     CRC-32 is the fastest checksum of the standard library, above 1 GB/s, and misses one in 2³² cases of accidental
     damage. It does not protect against forgery.
     """
-    found = zlib.crc32(json.dumps([seen.points, seen.overload, seen.ranges]).encode())
-    for values in outputs:
-        found = zlib.crc32(np.ascontiguousarray(values).data, found)
+    values = [seen.points, seen.overload, seen.ranges, *([seen.remarks] if seen.remarks else [])]
+    found = zlib.crc32(json.dumps(values).encode())
+    for output in outputs:
+        found = zlib.crc32(np.ascontiguousarray(output).data, found)
     return found
 
 
-def range_warnings(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> list[Warning]:
-    """Return the warnings of a prediction at the points of all blocks together."""
+def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
+    """Return the warnings of a prediction at the points of all blocks together, and the first one of the rig."""
     every = list(blocks)
-    watch = pipeline.range_watch()
+    watch = job.pipeline.range_watch()
+    if job.dims:
+        watch.counted = "patches"
     watch.points = sum(one.points for one in every)
     for one in every:
         for name, seen in one.ranges.items():
@@ -148,7 +194,9 @@ def range_warnings(pipeline: Pipeline[...], blocks: Iterable[BlockRecord]) -> li
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         watch.warn(stacklevel=1)
-    return [one.message for one in caught if isinstance(one.message, Warning)]
+    found = [one.message for one in caught if isinstance(one.message, Warning)]
+    remark = next((text for one in every for text in one.remarks), None)
+    return found if remark is None else [*found, RangeWarning(remark)]
 
 
 def output_units(

@@ -49,6 +49,8 @@ def run_of(job: Job, points: Points) -> Run:
         "outputs": dict(job.units),
         "blocks": list(points.block_shape),
     }
+    if job.dims:
+        run["axes"] = {name: list(labels) for name, labels in job.dims.items()}
     as_read: Run = json.loads(json.dumps(run))
     return as_read
 

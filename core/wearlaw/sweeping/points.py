@@ -77,6 +77,12 @@ class Block:
     slices: tuple[slice, ...]
     flat: slice
 
+    @property
+    def size(self) -> int:
+        """Number of operating points."""
+        size: int = self.flat.stop - self.flat.start
+        return size
+
 
 @dataclass(frozen=True, eq=False)
 class Points:
@@ -90,11 +96,15 @@ class Points:
         Other conditions. Those along one dimension vary together; different dimensions are combined.
     rows : mapping of str to object
         Labels of a table's rows, by their dimension.
+    weight : float
+        Size of an operating point compared with a single line or ellipse, such as the number of its patches. Blocks
+        have fewer points in proportion.
     """
 
     fixed: Mapping[str, Any]
     varying: Mapping[str, Varying]
     rows: Mapping[str, Any] = field(default_factory=dict)
+    weight: float = 1.0
 
     @cached_property
     def sizes(self) -> dict[str, int]:
@@ -119,7 +129,7 @@ class Points:
     @cached_property
     def block_shape(self) -> tuple[int, ...]:
         """The shape of a block: last dimensions in full, the one before in even parts, single values of the others."""
-        shape, room = [], BLOCK
+        shape, room = [], max(int(BLOCK / self.weight), 1)
         for size in reversed(self.shape):
             parts = math.ceil(size / max(room, 1))
             shape.append(math.ceil(size / parts))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 from abc import ABC, abstractmethod
@@ -62,7 +63,7 @@ class Target(ABC):
 
     @abstractmethod
     def places(self, block: Block) -> list[Array]:
-        """Return arrays for the returned outputs of a block, (points,) each, in the order of the job."""
+        """Return arrays for the returned outputs of a block, (points, *axes of the rig), in the order of the job."""
 
     def add(self, number: int, seen: BlockRecord) -> None:
         """Record a finished block, also in the journal if there is one."""
@@ -90,9 +91,14 @@ class Target(ABC):
         """Return the outputs of a block from disk, or nothing if they cannot be read."""
 
     @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of an output with one axis for all operating points: (points, *axes of the rig)."""
+        return (self.points.size, *self.job.own_shape)
+
+    @property
     def size(self) -> int:
         """Bytes of the outputs."""
-        return self.points.size * len(self.job.units) * ITEM
+        return math.prod(self.shape) * len(self.job.units) * ITEM
 
 
 class Arrays(Target):
@@ -100,7 +106,7 @@ class Arrays(Target):
 
     Attributes
     ----------
-    arrays : dict of str to ndarray, (points,)
+    arrays : dict of str to ndarray, (points, *axes of the rig)
         The outputs by name.
     """
 
@@ -119,7 +125,7 @@ class Memory(Arrays):
     def __init__(self, job: Job, points: Points) -> None:
         super().__init__(job, points)
         check_memory(self.size, 'give a folder for them, store="..."')
-        self.arrays = {name: np.empty(points.size) for name in job.units}
+        self.arrays = {name: np.empty(self.shape) for name in job.units}
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Return the results as a labelled dataset."""
@@ -160,8 +166,8 @@ class Files(Arrays):
     def _mapped(self, path: Path) -> np.memmap[Any, Any]:
         """Return the memory map of a file; create or resize the file if needed."""
         path.touch()
-        os.truncate(path, self.points.size * ITEM)
-        return np.memmap(path, dtype=np.float64, mode="r+", shape=(self.points.size,))
+        os.truncate(path, math.prod(self.shape) * ITEM)
+        return np.memmap(path, dtype=np.float64, mode="r+", shape=self.shape)
 
     def _sync(self, _: list[int]) -> None:
         for one in self._maps.values():
@@ -195,16 +201,16 @@ class Store(Target):
             shutil.rmtree(self.path / name, ignore_errors=True)
         for name in ("", *self.job.units):
             (self.path / name / METADATA).unlink(missing_ok=True)
-        group = load_zarr().open_group(self.store, mode="a", zarr_format=3)
+        group, own = load_zarr().open_group(self.store, mode="a", zarr_format=3), self.job.own_shape
         for name in self.job.units:
             group.create_array(
                 name,
-                shape=self.points.shape,
-                chunks=self.points.block_shape,
+                shape=self.points.shape + own,
+                chunks=self.points.block_shape + own,
                 dtype="float64",
                 compressors=None,
                 fill_value=np.nan,
-                dimension_names=self.points.dims,
+                dimension_names=(*self.points.dims, *self.job.dims),
                 attributes=self.job.attributes(name),
             )
         empty.to_zarr(self.store, mode="a", consolidated=False, zarr_format=3)
@@ -216,7 +222,7 @@ class Store(Target):
     def _kept(self, block: Block) -> list[Array]:
         """Return the outputs of a block from disk, or nothing if they cannot be read."""
         try:
-            return [zarr_group(self.store)[name][block.slices] for name in self.job.units]
+            return [zarr_group(self.store)[name][(*block.slices, ...)] for name in self.job.units]
         except (OSError, ValueError):
             return []
 
@@ -225,7 +231,9 @@ class Store(Target):
         for name in self.job.units:
             array = zarr_group(self.store)[name]
             for number in numbers:
-                which = (one.start // size for one, size in zip(blocks[number].slices, array.chunks, strict=True))
+                shape = self.points.block_shape
+                which = [one.start // size for one, size in zip(blocks[number].slices, shape, strict=True)]
+                which += [0] * len(self.job.dims)
                 with suppress(FileNotFoundError):  # zarr writes no file if all values are NaN
                     sync_file(self.path / name / array.metadata.encode_chunk_key(tuple(which)))
 
@@ -283,17 +291,27 @@ def _opened(path: Path) -> xarray.Dataset:
 
 
 def dataset(points: Points, variables: Mapping[str, Array], job: Job) -> xarray.Dataset:
-    """Return results, (points,) each, as a dataset with the conditions as coordinates."""
-    coordinates: dict[str, Any] = dict(points.rows)
+    """Return results, (points, *axes of the rig) each, as a dataset with the conditions as coordinates."""
+    coordinates: dict[str, Any] = {**points.rows, **_labels(job)}
     for name, one in points.varying.items():
         coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
     numbers = {name: _number(value) for name, value in points.fixed.items()}
     coordinates |= {name: number for name, number in numbers.items() if number is not None}
     data = {
-        name: (points.dims, values.reshape(points.shape), job.attributes(name)) for name, values in variables.items()
+        name: ((*points.dims, *job.dims), values.reshape(points.shape + job.own_shape), job.attributes(name))
+        for name, values in variables.items()
     }
     others = {name: str(points.fixed[name]) for name, number in numbers.items() if number is None}
     return xarray.Dataset(data, coordinates, others)
+
+
+def _labels(job: Job) -> dict[str, Any]:
+    """Return the labels of the rig's own axes; zarr has a stable format only for texts of any length."""
+    found = {}
+    for name, labels in job.dims.items():
+        integers = all(isinstance(label, int) for label in labels)
+        found[name] = (name, np.array(labels, dtype=np.int64 if integers else object))
+    return found
 
 
 def _number(value: Any) -> Any:

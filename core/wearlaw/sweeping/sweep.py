@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import math
 import os
 import pickle
 import warnings
@@ -10,12 +12,13 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import xarray
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import InputError, ResumeWarning, WorkerWarning
-from wearlaw.pipeline.composition import check_one_patch, warn_of_unlike_materials
-from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.errors import ConditionsError, InputError, ModelError, ResumeWarning, WearlawWarning, WorkerWarning
+from wearlaw.pipeline.composition import warn_of_unlike_materials
+from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
 from wearlaw.sweeping.points import Block, Points, from_table, outer_product
@@ -26,6 +29,10 @@ from wearlaw.units.quantities import shortened
 
 if TYPE_CHECKING:
     import pandas
+
+
+SAMPLE = 250
+"""A rig that makes several patches is checked at this many values along a dimension, or up to twice as many."""
 
 
 def sweep(
@@ -93,6 +100,7 @@ def sweep(
     points = outer_product(conditions) if table is None else from_table(table, conditions)
     not_given = {name: None for name, value in conditions.items() if value is None}
     first = _checked_conditions(predict, points, not_given)
+    points = dataclasses.replace(points, weight=weight(first))
     job = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
     if store is None:
         if resume:
@@ -128,7 +136,8 @@ def _checked_job(
         raise InputError(f'outputs: must be a list of names, such as ["wear_rate"], got {outputs!r}')
     if elsewhere:
         check_importable(pipeline)
-    return Job(pipeline, output_units(pipeline, first, points, list(dict.fromkeys(names)) or None))
+    one = first.flatten()[:1]
+    return Job(pipeline, output_units(pipeline, one, points, list(dict.fromkeys(names)) or None), first.dims)
 
 
 def check_importable(pipeline: Pipeline[...]) -> None:
@@ -148,20 +157,43 @@ def check_importable(pipeline: Pipeline[...]) -> None:
 
 
 def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapping[str, None]) -> Problem:
-    """Return the problem of the first operating point, after checks of the conditions.
+    """Return the problem of some of the first operating points, after checks of the conditions.
 
-    They are checked along each dimension, at the first values of the others.
+    They are checked along each dimension, at the first values of the others. A rig that makes several patches may take
+    long, so that it is asked for a sample of the values.
     """
-    problems = []
-    for dim in points.dims:
-        line = points.part(slice(None) if other == dim else slice(0, 1) for other in points.dims)
-        problems.append(pipeline.rig.checked_problem({**not_given, **line.conditions()}))
-    first = problems[0]
-    check_one_patch(first, pipeline.rig, "sweep")
+
+    def along(dim: str, values: slice) -> Problem:
+        line = points.part(values if other == dim else slice(0, 1) for other in points.dims)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", WearlawWarning)  # the blocks record them
+            return pipeline.rig.checked_problem({**not_given, **line.conditions()})
+
+    first = along(points.dims[0], slice(0, SAMPLE))
+    _check_names(pipeline.rig, first, points)
+    every = {dim: max(size // SAMPLE, 1) if first.dims else 1 for dim, size in points.sizes.items()}
+    known = points.sizes[points.dims[0]] <= SAMPLE
+    problems = [first, *(along(dim, slice(None, None, every[dim])) for dim in points.dims[1 if known else 0 :])]
     pipeline.warn_of_problem(first, stacklevel=4)
-    slipperiest = min(problems, key=lambda one: one.friction_coefficient.min())
+    slipperiest = min(problems, key=lambda one: np.nanmin(one.friction_coefficient, initial=np.inf))
     warn_of_unlike_materials(pipeline.contact_model, slipperiest, stacklevel=4)
-    return first.flatten()[:1]
+    there = next((one for one in problems if one.size), None)
+    if there is None:
+        raise ConditionsError(TOUCH_NOWHERE.format(pipeline.rig.name))
+    return there
+
+
+def _check_names(rig: Rig, problem: Problem, points: Points) -> None:
+    """Raise an error if an axis of the rig has the name of a condition."""
+    taken = {*points.dims, *points.varying, *points.fixed} & problem.dims.keys()
+    if taken:
+        raise ModelError(f"rig '{rig.name}' has an axis and a condition named '{min(taken)}'; rename one of the two")
+
+
+def weight(problem: Problem) -> float:
+    """Return the size of an operating point of a problem; four numbers of a strip count as one of 16 for a patch."""
+    strips = 0 if problem.strips is None else problem.strips.y.shape[-1]
+    return math.prod(map(len, problem.dims.values())) * (1.0 + 0.25 * strips)
 
 
 def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[Warning]:
@@ -177,7 +209,7 @@ def run(target: Target, on_block: Callable[[int], None], workers: int = 1, clien
         As in `sweep`.
     """
     left = [block for block in target.points.blocks() if block.number not in target.done]
-    on_block(sum(seen.points for seen in target.done.values()))
+    on_block(target.points.size - sum(block.size for block in left))
     several = client is not None or workers > 1
     with closing(_elsewhere(target, left, workers, client) if several else _here(target, left, on_block)) as every:
         for block, seen, deaths in every:
@@ -185,8 +217,8 @@ def run(target: Target, on_block: Callable[[int], None], workers: int = 1, clien
             for death in deaths:
                 warnings.warn(death, WorkerWarning, stacklevel=3)
             if several:
-                on_block(seen.points)
-    return range_warnings(target.job.pipeline, target.done.values())
+                on_block(block.size)
+    return range_warnings(target.job, target.done.values())
 
 
 def _elsewhere(target: Target, blocks: list[Block], workers: int, client: Any) -> Generator[Done, None, None]:

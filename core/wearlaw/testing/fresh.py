@@ -14,6 +14,8 @@ import tomllib
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from wearlaw.errors import described
 from wearlaw.numerics.staged import staged
 from wearlaw.plugins.loader import contact_model
@@ -22,9 +24,7 @@ from wearlaw.plugins.loader import contact_model
 def computed(model: Any, arguments: list[Any]) -> list[Any]:
     """Return the results of a law for contacts, of a contact model or a stage for problems, of a rig for conditions."""
     if hasattr(model, "problem"):
-        problems = [model.problem(**conditions) for conditions in arguments]
-        values = [getattr(problem, field.name) for problem in problems for field in dataclasses.fields(problem)]
-        return [value for value in values if hasattr(value, "dtype")]
+        return [value for conditions in arguments for value in numbers(model.problem(**conditions))]
     if hasattr(model, "rate"):
         return [model.rate(contact, model.numbers) for contact in arguments]
     if hasattr(model, "altered"):
@@ -32,6 +32,14 @@ def computed(model: Any, arguments: list[Any]) -> list[Any]:
         return [contact.tangential_force for contact in solved]
     contacts = [model.solve(problem) for problem in arguments]
     return [value for found in contacts for value in (found.tangential_force, found.traction, found.slip)]
+
+
+def numbers(problem: Any) -> list[Any]:
+    """Return the arrays of a problem, without the values of missing patches."""
+    holders = [problem] if problem.strips is None else [problem, problem.strips]
+    values = [getattr(one, field.name) for one in holders for field in dataclasses.fields(one)]
+    arrays = [value.astype(float) for value in values if hasattr(value, "dtype")]
+    return arrays if problem.exists is None else [np.nan_to_num(value) for value in arrays]
 
 
 def made_again(way: Callable[[], Any], arguments: list[Any]) -> tuple[str, Any]:

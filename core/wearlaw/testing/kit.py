@@ -249,7 +249,9 @@ def _of(model: Model) -> tuple[list[CheckFunction], list[CheckFunction]]:
 
 
 def _of_rig(rig: Rig) -> tuple[list[CheckFunction], list[CheckFunction]]:
-    idle = [] if rig.creepage in rig_checks.varied(rig) else [*rig_checks.OF_CREEPAGE]
+    # Several patches have creepages of their own, which are in proportion to no condition.
+    one = rig.creepage in rig_checks.varied(rig) and not rig_checks.makes_several_patches(rig)
+    idle = [] if one else [*rig_checks.OF_CREEPAGE]
     return [*rig_checks.CHECKS, *rig_checks.OF_CREEPAGE, *COMMON], idle
 
 

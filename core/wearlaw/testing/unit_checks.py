@@ -104,8 +104,8 @@ def units_of_conditions_do_not_matter(model: Model) -> None:
 
 
 def _made(rig: Rig, given: Mapping[str, Any]) -> Array:
-    """Return the numbers of the problem that a rig makes, along a first axis."""
-    return np.stack(np.broadcast_arrays(*values_of(rig.checked_problem(given)).values()))
+    """Return the numbers of the problem that a rig makes, one after the other."""
+    return np.concatenate([np.ravel(value) for value in values_of(rig.checked_problem(given)).values()])
 
 
 def _compare_conditions(rig: Rig) -> None:

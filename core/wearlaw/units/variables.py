@@ -86,6 +86,7 @@ VARIABLES: Mapping[str, Variable] = {
         "any",
     ),
     "y": Variable("mm", "position y across the patch", "Position across the rolling direction", "y", "any"),
+    "profile_position": Variable("mm", "position along the profile", "Arc length along the body's profile", "", "any"),
     "area": Variable("mm^2", "area", "Area of the patch that the node represents", "", "not negative"),
     "pressure": Variable("MPa", "pressure p", "Normal pressure", "p", "not negative"),
     "traction": Variable("MPa", "traction q", "Tangential traction, with the sign of the creepage", "q", "any"),
@@ -155,6 +156,9 @@ VARIABLES: Mapping[str, Variable] = {
     ),
     "wear_rate_error": Variable(
         WEAR_RATE, "wear rate error", "Estimate of the error in `wear_rate`", "", "not negative"
+    ),
+    "mass_per_distance": Variable(
+        "ug/m", "mass lost per metre rolled", "Mass lost per metre rolled", "", "not negative"
     ),
     "wear_rate_uncertainty": Variable(
         WEAR_RATE, "wear rate uncertainty", "Standard uncertainty of a measured wear rate"

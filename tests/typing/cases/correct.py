@@ -85,6 +85,18 @@ rolled = Roller() | wl.contact_model("fastsim") | wl.wear_law("kth")
 assert_type(rolled(mass="20 kg", creepage="1 %"), wl.Prediction)
 
 
+class Chosen(Roller):
+    """A rig with a field that chooses the shape of its patch."""
+
+    name: ClassVar[str] = "chosen"
+    crowned: bool = False
+
+    @property
+    def patch_geometry(self) -> wl.Geometry:
+        """The shape of the patch."""
+        return "ellipse" if self.crowned else "line"
+
+
 class Patch(wl.WearLaw):
     """A law of the whole patch."""
 

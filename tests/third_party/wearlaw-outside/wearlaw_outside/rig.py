@@ -15,7 +15,7 @@ class Weighted(wl.Rig):
 
     name: ClassVar[str] = "weighted"
     source: ClassVar[str] = "made up for tests"
-    geometry: ClassVar[wl.Geometry | None] = "line"
+    patch_geometry: ClassVar[wl.Geometry | None] = "line"
     example: ClassVar[Mapping[str, Any]] = {"mass": "20 kg", "creepage": "1 %", "friction_coefficient": 0.4}
     example_fields: ClassVar[Mapping[str, Any]] = {"material": "made_up_steel"}
 

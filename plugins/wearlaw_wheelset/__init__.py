@@ -1,0 +1,37 @@
+"""Wheelsets on track as a wearlaw plugin: profiles of wheels and rails, where they touch, and their wear."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import wearlaw as wl
+from wearlaw_wheelset._geometry import Geometry
+from wearlaw_wheelset._profile import Profile, read_profile, write_profile
+from wearlaw_wheelset._rig import Wheelset
+
+__all__ = ["Geometry", "Profile", "Wheelset", "read_profile", "write_profile"]
+
+
+@wl.hookimpl
+def wearlaw_rigs() -> list[type[wl.Rig]]:
+    """Return the rig of this plugin."""
+    return [Wheelset]
+
+
+@wl.hookimpl
+def wearlaw_cases() -> dict[str, str]:
+    """Return a study of a wheelset on straight track and in a curve."""
+    return {"wheelset": Path(__file__).with_name("wheelset.toml").read_text(encoding="utf-8")}
+
+
+@wl.hookimpl
+def wearlaw_sections() -> dict[str, Callable[[wl.Study], wl.Section]]:
+    """Return the section with contact points, forces, and wear across the profiles."""
+    return {"wheelset": _make_section}
+
+
+def _make_section(study: wl.Study) -> wl.Section:
+    from wearlaw_wheelset._section import section
+
+    return section(study)

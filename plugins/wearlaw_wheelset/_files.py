@@ -1,0 +1,432 @@
+"""Files of profiles: Simpack, MiniProf and two columns.
+
+All readers return coordinates as wearlaw has them: y outwards, z down.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import stat
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+import wearlaw as wl
+from wearlaw import Array
+
+LARGEST = 4 * 1024 * 1024
+"""Size of the largest file that is read [bytes]."""
+
+Kind = Literal["wheel", "rail"]
+
+KINDS: dict[str, Kind] = {".prw": "wheel", ".whl": "wheel", ".prr": "rail", ".ban": "rail"}
+"""Kind of profile by the ending of a file."""
+SIMPACK, MINIPROF, COLUMNS = (".prw", ".prr"), (".whl", ".ban"), (".csv", ".txt", ".dat", ".asc", "")
+ENDINGS = (*KINDS, ".csv", ".txt")
+
+NUMBERS = (
+    "approx.smooth", "point.dist.min", "shift.y", "shift.z", "rotate", "bound.y.min", "bound.y.max", "bound.z.min",
+    "bound.z.max", "mirror.y", "mirror.z", "inversion", "units.len.f", "units.ang.f",
+)  # fmt: skip
+"""Keys of a Simpack file whose values are read."""
+TEXTS = ("file", "file.mtime", "comment", "type", "units.len", "units.ang")
+"""Keys of a Simpack file that say where the points are from."""
+
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
+TAPING = "WheelDiameterTaperline"
+"""Key of a MiniProf file for the distance of the taping line from the back of the flange."""
+
+
+class FileError(wl.InputError):
+    """A file of a profile is wrong; the message has no name of the file yet."""
+
+
+@dataclass(frozen=True)
+class Points:
+    """The points of a file, in metres.
+
+    Attributes
+    ----------
+    y, z : ndarray of float64, shape (n,)
+        Positions, outwards and down [m].
+    weights : ndarray of float64, shape (n,), or None
+        Weights, None if the file gives none.
+    lines : ndarray of int, shape (n,)
+        Line of each point in the file.
+    kind : "wheel", "rail" or None
+        Kind by the file's content; None if that does not say.
+    """
+
+    y: Array
+    z: Array
+    weights: Array | None
+    lines: NDArray[np.intp]
+    kind: Kind | None
+
+
+def points_of(path: Path, kind: Kind | None, units: str) -> tuple[Points, Kind]:
+    """Return the points of a file, and their kind.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    kind : "wheel", "rail" or None
+        Kind that the user gave.
+    units : str
+        Unit of length, where the file does not give it.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, too large, not regular or not text, or if its content is wrong.
+    """
+    text = _text_of(path)
+    ending, lines = path.suffix.lower(), text.splitlines()
+    by_ending: Kind | None = KINDS.get(ending)
+    if ending in SIMPACK or any(re.match(r"\s*spline\.begin", line) for line in lines):
+        found = _simpack(lines, units)
+    elif ending in MINIPROF or (lines and _is_miniprof(lines)):
+        found = _miniprof(lines, by_ending or kind, units)
+    elif ending in COLUMNS:
+        found = _columns(lines, units)
+    else:
+        raise FileError(f"the ending '{ending}' is not known; give a file that ends in {', '.join(ENDINGS)}")
+    sure = kind or by_ending or found.kind
+    if sure is None:
+        raise FileError('it does not say whether it is a wheel or a rail; give kind="wheel" or kind="rail"')
+    told = {"the argument kind": kind, "its ending": by_ending, "its header": found.kind}
+    if not {*told.values()} <= {sure, None}:
+        says = ", ".join(f"{source} says {one}" for source, one in told.items() if one)
+        raise FileError(f"it is not clear whether it is a wheel or a rail: {says}")
+    return found, sure
+
+
+def _text_of(path: Path) -> str:
+    try:
+        status = path.stat()
+    except FileNotFoundError:
+        raise FileError(f"there is no such file in '{path.parent.absolute()}'") from None
+    except (OSError, ValueError) as error:
+        raise FileError(f"it cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    if stat.S_ISDIR(status.st_mode):
+        raise FileError("it is a folder; give a file")
+    if not stat.S_ISREG(status.st_mode):
+        raise FileError("it is not a regular file, so reading it might never end; copy it into one")
+    if status.st_size > LARGEST:
+        raise FileError(
+            f"it has {status.st_size / 2**20:.3g} MiB, but a profile may have {LARGEST / 2**20:g} MiB; is it a profile?"
+        )
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise FileError(f"it cannot be read: {error.strerror or error}") from None
+    if b"\0" in content and not content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise FileError("it is not text; export the points of the profile as text")
+    for encoding in ("utf-16",) if content.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "cp1252"):
+        try:
+            return content.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    raise FileError("it is not text in UTF-8; save it in UTF-8")
+
+
+def _number(text: str, line: int, what: str) -> float:
+    """Return a finite number."""
+    if NUMBER.fullmatch(text):
+        value = float(text.translate({ord("d"): "e", ord("D"): "e"}))
+        if math.isfinite(value):
+            return value
+    comma = "; write decimals with a point" if NUMBER.fullmatch(text.replace(",", ".")) else ""
+    raise FileError(f"line {line}: {what} must be a number, got '{text[:40]}'{comma}")
+
+
+def _factor(units: str) -> float:
+    """Return a unit of length in metres."""
+    return float(wl.Unit("mm").si(wl.Q(1.0, units), "units"))
+
+
+class _Table:
+    """Collects rows of numbers with their lines."""
+
+    def __init__(self) -> None:
+        self.rows: list[list[float]] = []
+        self.lines: list[int] = []
+
+    def add(self, cells: Sequence[str], line: int, least: int, most: int) -> None:
+        """Add a row with so many cells at least, of which the first `most` are read."""
+        if len(cells) < least:
+            raise FileError(f"line {line}: a point has {least} numbers, found {len(cells)}")
+        self.rows.append([_number(cell, line, "a coordinate") for cell in cells[:most]])
+        self.lines.append(line)
+
+    def columns(self) -> tuple[Array, NDArray[np.intp]]:
+        """Return the numbers, one row for each column, and the lines."""
+        if not self.rows:
+            raise FileError("it has no points")
+        width = max(map(len, self.rows))
+        rows = [row + [1.0] * (width - len(row)) for row in self.rows]
+        return np.array(rows).T.copy(), np.array(self.lines)
+
+
+def _simpack(lines: Sequence[str], units: str) -> Points:
+    """Return the points of a Simpack profile, after the changes that its header asks for, in their order."""
+    place: list[str] = []
+    values: dict[str, float] = {}
+    table, told = _Table(), False
+    kind: Kind | None = None
+    for number, raw in enumerate(lines, 1):
+        text = re.split("[!%]", raw)[0].strip()  # texts in quotes, which may hold these marks, are not read
+        if not text:
+            continue
+        section, _, edge = text.rpartition(".")
+        key, equals, value = (part.strip() for part in text.partition("="))
+        if edge in ("begin", "end") and section in ("header", "spline", "point"):
+            _nest(place, section, edge, number)
+            told |= text == "spline.end"
+            if told:
+                break
+        elif place[-1:] == ["point"] and not equals:
+            table.add(text.split(), number, 2, 3)
+        elif not equals:
+            raise FileError(
+                f"line {number}: expected 'key = value' or the begin or end of a section, found '{text[:40]}'"
+            )
+        elif place == ["header"] and key == "type":
+            if value not in ("0", "1"):
+                raise FileError(f"line {number}: type must be 0 for a rail or 1 for a wheel, got '{value[:40]}'")
+            kind = "wheel" if value == "1" else "rail"
+        elif place == ["spline"] and key in NUMBERS:
+            values[key] = _number(value, number, key)
+        elif place == ["spline"] and key not in TEXTS:
+            warnings.warn(
+                f"line {number} of a profile: the key '{key}' is not known and left out", wl.WearlawWarning, 4
+            )
+    if not told:
+        raise FileError(f"it ends in the section '{place[-1]}'; is it whole?" if place else "it has no spline.begin")
+    found, rows = table.columns()
+    return _changed(found, rows, values, kind, units)
+
+
+def _nest(place: list[str], section: str, edge: str, line: int) -> None:
+    """Enter or leave a section."""
+    outer = ["spline"] if section == "point" else []
+    expected = outer if edge == "begin" else [*outer, section]
+    if place != expected:
+        where = f"inside '{place[-1]}'" if place else "outside of any section"
+        raise FileError(f"line {line}: '{section}.{edge}' stands {where}")
+    place[:] = [*outer, section] if edge == "begin" else outer
+
+
+def _changed(found: Array, rows: NDArray[np.intp], values: dict[str, float], kind: Kind | None, units: str) -> Points:
+    """Return the points after the changes of a Simpack header, in the order of the numbers that the files print."""
+    if values.get("approx.smooth", 0.0):
+        warnings.warn(
+            f"the profile asks for approx.smooth = {values['approx.smooth']:g}, whose meaning Simpack does not publish;"
+            " the points are not smoothed by it, so give smoothing as a length",
+            wl.WearlawWarning,
+            stacklevel=5,
+        )
+    y, z = found[0], found[1]
+    weights = found[2] if found.shape[0] > 2 else np.ones(y.size)
+    keep = _spaced(y, z, values.get("point.dist.min", 0.0))
+    y, z = y + values.get("shift.y", 0.0), z + values.get("shift.z", 0.0)
+    turn = values.get("rotate", 0.0) / _positive(values, "units.ang.f", 1.0)
+    if turn:
+        y, z = np.cos(turn) * y - np.sin(turn) * z, np.sin(turn) * y + np.cos(turn) * z
+    for name, value in (("y", y), ("z", z)):
+        low, high = values.get(f"bound.{name}.min", 1.0), values.get(f"bound.{name}.max", 0.0)
+        if low < high:
+            keep &= (value >= low) & (value <= high)
+    y = -y if values.get("mirror.y", 0.0) else y
+    z = -z if values.get("mirror.z", 0.0) else z
+    keep &= weights > 0.0
+    order = np.flatnonzero(keep)[:: -1 if values.get("inversion", 0.0) else 1]
+    if not order.size:
+        raise FileError("its header leaves out all of its points, by point.dist.min, bounds or weights of zero")
+    factor = 1.0 / _positive(values, "units.len.f", 1.0) if "units.len.f" in values else _factor(units)
+    kept = weights[order] if np.ptp(weights[order]) > 0.0 else None
+    return Points(factor * y[order], factor * z[order], kept, rows[order], kind)
+
+
+def _positive(values: dict[str, float], key: str, otherwise: float) -> float:
+    value = values.get(key, otherwise)
+    if value <= 0.0:
+        raise FileError(f"{key} must be positive, got {value:g}")
+    return value
+
+
+def _spaced(y: Array, z: Array, least: float) -> NDArray[np.bool_]:
+    """Return which points are at least a distance from the last one before them that is kept."""
+    keep = np.ones(y.size, dtype=np.bool_)
+    last = 0
+    for index in range(1, y.size if least > 0.0 else 0):
+        keep[index] = math.hypot(y[index] - y[last], z[index] - z[last]) >= least
+        last = index if keep[index] else last
+    return keep
+
+
+def _is_miniprof(lines: Sequence[str]) -> bool:
+    return any(re.match(r"\s*#?\s*(MINIPROF|MINIWHEELPROF|ProgramName=|ColumnDef=)", line) for line in lines[:40])
+
+
+def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
+    """Return the points of a MiniProf file.
+
+    The header ends with an empty line. In the newer generation it has lines such as Key=Value. X of a wheel is
+    outwards from the back of the flange, and its Y positive towards the flange, so down. X of a rail is positive
+    towards the gauge side, and its Y positive up.
+    """
+    if not kind:
+        raise FileError('it does not say whether it is a wheel or a rail; give kind="wheel" or kind="rail"')
+    header: dict[str, str] = {}
+    table, ended = _Table(), False
+    columns = ["X", "Y"]
+    for number, raw in enumerate(lines, 1):
+        text = raw.strip()
+        if not text:
+            ended |= number > 1
+            continue
+        if text[0] in '!"%#':
+            continue
+        if ended:
+            cells = re.split(r"[\s;]+", re.split("[!%#]", text)[0].strip())
+            last = max(columns.index("X"), columns.index("Y"))
+            table.add(cells, number, last + 1, last + 1)
+            continue
+        key, equals, value = (part.strip() for part in text.partition("="))
+        if equals:
+            header[key.lower()] = value
+        if key == "ColumnDef":
+            columns = [one.strip() for one in value.split(",")]
+            if not {"X", "Y"} <= set(columns):
+                raise FileError(f"line {number}: ColumnDef must name the columns X and Y, got '{value[:40]}'")
+    if not ended:
+        raise FileError("it has no empty line between its header and its points; name two columns alone .txt")
+    found, rows = table.columns()
+    x, y = found[columns.index("X")], found[columns.index("Y")]
+    offset = {}
+    for key in ("xoffset", "yoffset", TAPING.lower()):
+        text = header.get(key, "")
+        offset[key] = _number(text, 1, f"{key} in the header") if text else 0.0
+    told = header.get("xypoints", "")
+    if told.isdigit() and sum(_is_point(line) for line in lines) < int(told):
+        raise FileError(f"XYPoints says {told} points, but it has {x.size}; is it whole?")
+    factor = _factor(units)
+    x, y = factor * (x + offset["xoffset"]), factor * (y + offset["yoffset"])
+    if kind == "wheel":
+        return Points(x - factor * offset[TAPING.lower()], y, None, rows, None)
+    return Points(-x, -y, None, rows, None)
+
+
+def _is_point(line: str) -> bool:
+    """Return whether a line holds numbers, commented out or not."""
+    cells = re.split("[!%#]", line.strip().lstrip('!"%#'))[0].split()
+    return len(cells) > 1 and all(NUMBER.fullmatch(cell) for cell in cells)
+
+
+def _columns(lines: Sequence[str], units: str) -> Points:
+    """Return the points of two columns, y outwards and z down, with a header or without."""
+    table, head = _Table(), False
+    places, factors = (0, 1), [_factor(units)] * 2
+    for number, raw in enumerate(lines, 1):
+        text = raw.strip()
+        if not text or text[0] in "!%#" or text.startswith("sep="):
+            continue
+        cells = _cells(text)
+        if not table.rows and not head and not NUMBER.fullmatch(cells[0].replace(",", ".")):
+            head = True
+            places, factors = _head(cells, number, factors)
+            continue
+        if len(cells) <= max(places):
+            raise FileError(f"line {number}: a point has two numbers, y and z, found {len(cells)}")
+        table.add([cells[place] for place in places], number, 2, 2)
+    found, rows = table.columns()
+    return Points(factors[0] * found[0], factors[1] * found[1], None, rows, None)
+
+
+def _cells(text: str) -> list[str]:
+    """Return the cells of a line, which are set apart by semicolons, tabs, commas or spaces."""
+    mark = next((mark for mark in ";\t," if mark in text), None)
+    if mark is None:
+        return re.findall(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?", text)  # a name may have its unit behind a space
+    cells = [cell.strip().strip('"') for cell in text.split(mark)]
+    return cells if mark == "," else [cell.replace(",", ".") for cell in cells]
+
+
+def _head(cells: Sequence[str], line: int, factors: list[float]) -> tuple[tuple[int, int], list[float]]:
+    """Return the places of y and z, and their factors to metres, from a header such as "y [mm]"."""
+    names = [re.split(r"[\s\[(]", cell.lower())[0] for cell in cells]
+    places = (names.index("y"), names.index("z")) if {"y", "z"} <= set(names) else (0, 1)
+    if len(cells) <= max(places):
+        raise FileError(f"line {line}: a header names y and z, found {len(cells)} columns")
+    found = list(factors)
+    for index, place in enumerate(places):
+        unit = re.search(r"[\[(]\s*([^\])]+?)\s*[\])]", cells[place])
+        if unit is not None:
+            try:
+                found[index] = _factor(unit[1])
+            except wl.UnitError as error:
+                raise FileError(f"line {line}: {error}") from None
+    return places, found
+
+
+def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
+    """Write points to a file whose ending gives its format, whole or not at all.
+
+    Coordinates are written in mm with nine decimals.
+
+    Raises
+    ------
+    InputError
+        If the ending is not known or belongs to the other kind of profile.
+    OutputError
+        If the file cannot be written.
+    """
+    ending = path.suffix.lower()
+    if ending not in ENDINGS:
+        raise wl.InputError(f"cannot write '{path}': its ending must be one of {', '.join(ENDINGS)}")
+    if KINDS.get(ending, kind) != kind:
+        right = next(one for one in (SIMPACK if ending in SIMPACK else MINIPROF) if KINDS[one] == kind)
+        raise wl.InputError(f"cannot write '{path}': the profile is that of a {kind}, so its ending must be {right}")
+    writers: dict[str, Callable[[str, Array, Array], list[str]]] = dict.fromkeys(SIMPACK, _as_simpack)
+    writers |= dict.fromkeys(MINIPROF, _as_miniprof)
+    text = "\n".join(writers.get(ending, _as_columns)(kind, 1e3 * y, 1e3 * z)) + "\n"
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        try:
+            temporary.write_text(text, encoding="utf-8", newline="\n")
+            os.replace(temporary, path)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except (OSError, ValueError) as error:
+        raise wl.OutputError(f"cannot write '{path}': {getattr(error, 'strerror', None) or error}") from None
+
+
+def _rows(y: Array, z: Array, mark: str) -> list[str]:
+    return [f"{one:.9f}{mark}{other:.9f}" for one, other in zip(y.tolist(), z.tolist(), strict=True)]
+
+
+def _as_simpack(kind: str, y: Array, z: Array) -> list[str]:
+    head = ["header.begin", "version = 1", f"type = {int(kind == 'wheel')}", "header.end", "spline.begin"]
+    head += ["approx.smooth = 0.0", f"comment = 'wearlaw {wl.__version__}'", "mirror.y = 0", "mirror.z = 0"]
+    head += ["inversion = 0", "units.len.f = 1000.0", "units.ang.f = 1.0", "point.begin"]
+    return [*head, *_rows(y, z, " "), "point.end", "spline.end"]
+
+
+def _as_miniprof(kind: str, y: Array, z: Array) -> list[str]:
+    sign = 1.0 if kind == "wheel" else -1.0
+    head = ["ProgramName=wearlaw", f"ProgramVer={wl.__version__}", "XOffset=0.0", "YOffset=0.0"]
+    head += [f"{TAPING}=0.0"] if kind == "wheel" else []
+    return [*head, "ColumnDef=X,Y", f"XYPoints={y.size}", "", *_rows(sign * y, sign * z, " ")]
+
+
+def _as_columns(kind: str, y: Array, z: Array) -> list[str]:
+    return [f"# profile of a {kind}: outwards, down", "y [mm],z [mm]", *_rows(y, z, ",")]

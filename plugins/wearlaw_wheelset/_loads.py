@@ -1,0 +1,500 @@
+"""Patches of a wheelset under load, and the balance of its loads with the creep forces.
+
+On each wheel the patches carry the vertical load together with their lateral creep forces, and the torque about the
+axle is the given one:
+
+    ∑ (N cos δ + Fy sin δ) = Q,  V ∑ (Fx ∂ξ/∂Ω + Fy ∂η/∂Ω + Mz ∂φ/∂Ω) = M.
+
+The unknowns are the vertical penetration h of each wheel and the speed of rotation Ω. All patches of a wheel are
+penetrated by (h - g) cos δ, with the gap g at first touching. Newton's method finds ln h and Ω together. It estimates
+the rates and learns from its steps, so that each step costs the creep forces once. Where it fails, because the load
+jumps, each unknown is found by the secant method within the bounds found so far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw_wheelset import _normal
+from wearlaw_wheelset._candidates import SPACING, Candidates, candidates, sample, separated
+from wearlaw_wheelset._motion import Creepages, Place, creepages, placed
+from wearlaw_wheelset._search import Position, Section, Touching
+
+WIDENINGS = 2
+"""How often the distance is doubled at most."""
+
+LEAST = 1e-5
+"""Smallest penetration of a patch that is followed, as a share of the wheel's. Below it the patch is open, and its
+load is below `BALANCED`."""
+
+BALANCED = 1e-7
+"""Greatest imbalance, as a share of the load, and of the torque of full slip. Creep forces are off by 1e-3 and more,
+and those of FASTSIM jump by up to 1e-3 where a strip begins to stick once more."""
+
+ROUGH = 2e-3
+"""Imbalance that stays where creep forces jump."""
+
+MOST = 100.0
+"""Greatest penetration that is tried, over that of the load without creep forces."""
+
+NEWTON_STEPS, STEPS = 20, 100
+"""Greatest number of steps by Newton's method, of which four or five are usual, and within bounds."""
+
+WIDEST_STEP, MOST_TURN = 1.0, 0.01
+"""Greatest step of the logarithm of the penetration, and of the speed of rotation as a share of it."""
+
+LEAST_SHARE = 0.1
+"""Smallest share of the load that a step of the penetration counts with."""
+
+FULL = 0.999
+"""Greatest share of full slip that the rates of creep forces count with, so that they never vanish."""
+
+TINY = 1e-300
+"""Keeps divisors from zero."""
+
+CLOSED = 1e-12
+"""Bounds have met if they differ by this share."""
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """E* [Pa], G [Pa] and ν of the pair, and the density of the wheel [kg/m³]."""
+
+    modulus: float
+    shear_modulus: float
+    poisson_ratio: float
+    density: float
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is asked of a wheelset at each position, as SI arrays of shape (positions,) except where stated.
+
+    Attributes
+    ----------
+    speed, lateral_velocity, turn_rate, roll_rate : ndarray
+        V and v_y [m/s], ω_z and ρ' [rad/s].
+    load : ndarray
+        Vertical load of each wheel, Q [N].
+    friction : ndarray, (positions, 2)
+        Friction coefficient on the tread and on the flange [-].
+    flange_angle : float
+        Contact angle beyond which a patch is one of the flange [rad].
+    torque : ndarray
+        Torque on the axle, M [N m], positive if it drives.
+    rotation : ndarray or None
+        Given speed of rotation, Ω [rad/s]; the torque then follows.
+    """
+
+    speed: Array
+    lateral_velocity: Array
+    turn_rate: Array
+    roll_rate: Array
+    load: Array
+    friction: Array
+    flange_angle: float
+    torque: Array
+    rotation: Array | None
+
+
+@dataclass
+class _Root:
+    """Roots of functions that grow, by the secant method within the bounds found so far; arrays of one shape."""
+
+    x: Array
+    slope: Array
+    most: Array | float
+    """Greatest step."""
+    low: Array
+    high: Array
+    before: Array
+    value: Array
+
+    @classmethod
+    def begun(cls, x: Array, slope: float, most: Array | float) -> _Root:
+        """Return the search from first guesses of the roots and of the slope."""
+        infinite, none = np.full(x.shape, np.inf), np.full(x.shape, np.nan)
+        return cls(x, np.full(x.shape, slope), most, -infinite, infinite, none, none)
+
+    def step(self, value: Array, going: NDArray[np.bool_]) -> None:
+        """Move the places that are still going; the function has these values at the present ones."""
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            secant = (value - self.value) / (self.x - self.before)
+            self.slope = np.where((secant > 0.0) & np.isfinite(secant), secant, self.slope)
+            ahead = np.clip(-value / self.slope, -self.most, self.most)
+        self.low = np.where(going & (value < 0.0), self.x, self.low)
+        self.high = np.where(going & (value > 0.0), self.x, self.high)
+        trial = self.x + ahead
+        bounded = np.isfinite(self.low) & np.isfinite(self.high)
+        middle = 0.5 * (np.where(bounded, self.low, trial) + np.where(bounded, self.high, trial))
+        trial = np.where((trial <= self.low) | (trial >= self.high), middle, trial)
+        self.before, self.value = np.where(going, self.x, self.before), np.where(going, value, self.value)
+        self.x = np.where(going, trial, self.x)
+
+    def closed(self) -> NDArray[np.bool_]:
+        """Return where the bounds have met."""
+        return self.high - self.low <= CLOSED * np.abs(self.x)
+
+    def reopen(self) -> None:
+        """Forget bounds that have met: they were found while something else was still moving."""
+        closed = self.closed()
+        self.low, self.high = np.where(closed, -np.inf, self.low), np.where(closed, np.inf, self.high)
+
+
+class _State(NamedTuple):
+    """The loads of some positions at a step.
+
+    Attributes
+    ----------
+    part : Candidates
+        Their places.
+    problem, patch, forces
+        The contact problem of the places, what else is read of them, and the creep forces, or None without.
+    load : ndarray, (2 positions,)
+        Vertical load that each wheel carries [N].
+    grip : ndarray, (positions,)
+        Torque of full slip [N m].
+    miss : ndarray, (positions, 3)
+        Logarithm of the load of both wheels over the given one, and the excess of the torque over `grip`.
+    """
+
+    part: Candidates
+    problem: wl.Problem
+    patch: Patches
+    forces: wl.CreepForces | None
+    load: Array
+    grip: Array
+    miss: Array
+
+
+@dataclass
+class Balance:
+    """The loads of a wheelset's patches at some positions."""
+
+    section: Section
+    elastic: Elastic
+    task: Task
+    found: Candidates
+    hertz: bool
+    strips: int
+    penetration: Array
+    """Vertical penetration of each wheel, h [m]."""
+    rotation: Array
+    """Speed of rotation at each position, Ω [rad/s]."""
+    whole: Array
+    """The penetration if one patch of each wheel carried the load without creep forces [m]."""
+    balanced: NDArray[np.bool_]
+    """Whether the loads of each position balance."""
+    scale: Array
+    """Factor on the pressure of each wheel's patches, 1 except where the load jumps as a hump joins a patch."""
+    correction: Array
+    """What Newton's method has learnt of the rates of `_State.miss`, (positions, 3, 3)."""
+    shapes: dict[str, Array] = field(default_factory=dict)
+    """Strips or ellipses of all places at the last step of each."""
+
+    @classmethod
+    def begun(
+        cls, section: Section, elastic: Elastic, task: Task, position: Position, touching: Touching, hertz: bool,
+        strips: int,
+    ) -> Balance:  # fmt: skip
+        """Return the loads without creep forces, under which the wheelset turns with the mean of its radii."""
+        found = candidates(section, position, touching)
+        first = found.number == 0
+        wheels = 2 * task.load.size
+        whole = np.zeros(wheels)
+        whole[found.wheel[first]] = cls._alone(section, elastic, task, found, np.flatnonzero(first))
+        saddle = touching.saddle[found.point, found.side, found.number]
+        kept = separated(found, saddle, whole[found.wheel])
+        radius = np.full(wheels, np.nan)
+        first = kept.number == 0
+        radius[kept.wheel[first]] = placed(section, kept.part(first).position, kept.arc[first]).radius
+        rotation = task.speed / radius.reshape(-1, 2).mean(axis=-1) if task.rotation is None else task.rotation
+        none = np.zeros((task.load.size, 3, 3))
+        right = np.ones(task.load.size, dtype=np.bool_)
+        return cls(
+            section, elastic, task, kept, hertz, strips, whole, rotation, whole, right, np.ones(wheels), none
+        ).solved(None)
+
+    def check_torque(self) -> None:
+        """Raise an error for a torque that friction cannot transmit."""
+        problem, patch = self.posed()
+        _, _, grip = self._sums(self.found, patch, problem, None)
+        over = ~(np.abs(self.task.torque) < grip)
+        if over.any():
+            point = int(np.argmax(over))
+            raise wl.ConditionsError(
+                f"axle_torque: {self.task.torque[point]:.4g} N*m is more than friction can transmit, about"
+                f" {grip[point]:.4g} N*m under this load"
+            )
+
+    @staticmethod
+    def _alone(section: Section, elastic: Elastic, task: Task, found: Candidates, rows: NDArray[np.intp]) -> Array:
+        """Return the vertical penetration if one patch of each wheel carries the whole load, and widen its samples."""
+        penetration = np.empty(rows.size)
+        open_ = np.arange(rows.size)
+        for widening in range(WIDENINGS + 1):
+            part = found.part(rows[open_])
+            patch = _normal.loaded(
+                part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, elastic.modulus,
+                task.load[part.point] / part.cosine, 5,
+            )  # fmt: skip
+            penetration[open_] = patch.penetration / part.cosine
+            open_ = open_[patch.narrow]
+            if not open_.size or widening == WIDENINGS:
+                break
+            sample(section, found, rows[open_], SPACING * 2.0 ** (widening + 1))
+        return penetration
+
+    def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> Balance:
+        """Return the loads with penetrations and speeds of rotation that balance the creep forces.
+
+        Parameters
+        ----------
+        forces : callable or None
+            Returns the creep forces of a problem with one entry for each patch. None leaves out the creep forces; the
+            speed of rotation then stays as it is.
+        """
+        copies = {name: getattr(self, name).copy() for name in ("penetration", "rotation", "correction")}
+        every = np.ones(self.balanced.shape, dtype=np.bool_)
+        found = replace(self, scale=np.ones(self.scale.shape), balanced=every, **copies)
+        left = found._newton(forces)
+        if left.any():
+            found._bracketed(forces, left)
+        return found
+
+    def _newton(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> NDArray[np.bool_]:
+        """Balance the loads by Newton's method in place, and return which positions it leaves.
+
+        Broyden's method corrects the estimated rates. The speed of rotation counts with the torque that it changes.
+        """
+        count = self.task.load.size
+        open_, unit = np.ones(count, dtype=np.bool_), np.ones((count, 1, 3))
+        step, before = np.zeros((2, count, 3))
+        for iteration in range(NEWTON_STEPS):
+            state = self._state(forces, open_)
+            worst = np.abs(state.miss).max(axis=-1)
+            open_ &= worst > BALANCED
+            rows = np.flatnonzero(open_)
+            if not rows.size or iteration == NEWTON_STEPS - 1:
+                break
+            rates, miss = self._rates(state)[rows], state.miss[rows]
+            if iteration == 0:
+                unit[rows, 0, 2] = rates[:, 2, 2]
+            rates /= unit[rows]
+            moved = step[rows] * unit[rows, 0]
+            unforeseen = miss - before[rows] - ((rates + self.correction[rows]) @ moved[..., None])[..., 0]
+            along = moved / np.maximum((moved**2).sum(axis=-1, keepdims=True), TINY)
+            self.correction[rows] += unforeseen[..., None] * along[:, None, :]
+            ahead = -np.linalg.solve(rates + self.correction[rows], miss[..., None])[..., 0] / unit[rows, 0]
+            ahead[:, :2] = np.clip(ahead[:, :2], -WIDEST_STEP, WIDEST_STEP)
+            most = MOST_TURN * self.rotation[rows]
+            ahead[:, 2] = np.clip(ahead[:, 2], -most, most)
+            step[rows], before[rows] = ahead, miss
+            self.penetration.reshape(-1, 2)[rows] *= np.exp(ahead[:, :2])
+            self.rotation[rows] += ahead[:, 2]
+        rough: NDArray[np.bool_] = open_ & (worst > ROUGH)
+        return rough
+
+    def _bracketed(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> None:
+        """Balance some positions in place, the torque within bounds, and at each speed of rotation the loads.
+
+        Positions that stay unbalanced are marked: friction holds a flange, so that no penetration carries the load.
+        """
+        start, going = self.penetration.copy(), open_.copy()
+        self.penetration = np.where(open_.repeat(2), self.whole, start)
+        turns = _Root.begun(self.rotation, np.nan, MOST_TURN * self.rotation)
+        for _ in range(STEPS):
+            state = self._carried(forces, going)
+            lost = (np.abs(state.miss[:, :2]) > ROUGH).any(axis=-1)
+            going &= (np.abs(state.miss[:, 2]) > BALANCED) & ~lost & ~turns.closed()
+            if not going.any():
+                break
+            if np.isnan(turns.slope).all():
+                turns.slope = np.maximum(self._rates(state)[:, 2, 2], TINY)
+            turns.step(state.miss[:, 2], going)
+            self.rotation = turns.x
+        final = self._state(forces, open_)
+        self.balanced &= ~(open_ & (np.abs(final.miss).max(axis=-1) > ROUGH))
+
+    def _carried(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> _State:
+        """Balance the vertical loads of some positions at their speed of rotation, in place."""
+        depths, going = _Root.begun(np.log(self.penetration), 1.5, WIDEST_STEP), open_.copy()
+        self.scale = np.where(open_.repeat(2), 1.0, self.scale)
+        for _ in range(STEPS):
+            state = self._state(forces, going)
+            excess = state.miss[:, :2].reshape(-1)
+            deep = (self.penetration > MOST * self.whole).reshape(-1, 2).any(axis=-1)
+            going &= (np.abs(state.miss[:, :2]) > BALANCED).any(axis=-1) & ~deep
+            if not going.any():
+                break
+            wheels = going.repeat(2)
+            jump = wheels & depths.closed()
+            self.scale = np.where(jump, self.scale * np.exp(-excess), self.scale)
+            depths.step(excess, wheels & ~jump)
+            self.penetration = np.where(wheels, np.exp(depths.x), self.penetration)
+            if self.hertz:  # only creep forces jump, which a scale does not mend
+                going &= ~jump.reshape(-1, 2).any(axis=-1)
+            if not going.any():
+                break
+        return self._state(forces, open_)
+
+    def _state(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> _State:
+        """Return the loads of some positions as they are."""
+        rows = np.flatnonzero(open_[self.found.point])
+        part = self.found.part(rows)
+        shapes = self._ellipses(part) if self.hertz else self._strips(part)
+        if rows.size == self.found.point.size:
+            self.shapes = shapes
+        else:
+            for name, array in shapes.items():
+                self.shapes[name][rows] = array
+        problem, patch = self._posed(part, shapes)
+        force = None if forces is None else forces(problem)
+        load, torque, grip = self._sums(part, patch, problem, force)
+        miss = np.zeros((open_.size, 3))
+        miss[:, :2] = np.log(np.maximum(load / self.task.load.repeat(2), LEAST_SHARE)).reshape(-1, 2)
+        if force is not None and self.task.rotation is None:
+            miss[:, 2] = (torque - self.task.torque) / np.maximum(grip, TINY)
+        return _State(part, problem, patch, force, load, grip, miss)
+
+    def _sums(
+        self, part: Candidates, patch: Patches, problem: wl.Problem, force: wl.CreepForces | None
+    ) -> tuple[Array, Array, Array]:
+        """Return the vertical load of each wheel [N], the torque of each axle and that of full slip [N m]."""
+        count = self.task.load.size
+        vertical = patch.normal_force * np.cos(patch.place.angle)
+        torque = np.zeros(part.point.size)
+        if force is not None:
+            side = np.where(part.side == 1, 1.0, -1.0)
+            vertical = vertical + side * force.lateral * np.sin(patch.place.angle)
+            parts = zip((force.longitudinal, force.lateral, force.spin_moment), patch.creepages.turning, strict=True)
+            torque = problem.rolling_speed * sum(one * other for one, other in parts)
+        grip = problem.friction_coefficient * patch.normal_force * patch.place.radius
+        load = np.bincount(part.wheel, vertical, 2 * count)
+        load[np.bincount(part.wheel, minlength=2 * count) == 0] = 1.0
+        torques, grips = (np.asarray(np.bincount(part.point, one, count), np.float64) for one in (torque, grip))
+        return np.asarray(load, np.float64), torques, grips
+
+    def _rates(self, state: _State) -> Array:
+        """Return estimates of the rates of `_State.miss` with ln h of both wheels and Ω, (positions, 3, 3).
+
+        The normal force grows with the power 3/2 of the penetration. The creep forces start with Kalker's rates. As f,
+        their share of μN, grows, the rate along the force falls to (1 - f)^(2/3), and that across it to f/(3d) with
+        1 - f = (1 - d)³. This is FASTSIM on a strip, d being the creepage over that of full slip, which falls with the
+        third root of N.
+        """
+        part, problem, patch, force, load, grip, _ = state
+        count = load.size // 2
+        found = np.zeros((count, 3, 3))
+        own, side = patch.normal_force * np.cos(patch.place.angle), np.where(part.side == 1, 1.0, -1.0)
+        grip = np.maximum(grip, TINY)
+        depth = self.penetration[part.wheel]
+        growth = 1.5 / np.maximum(1.0 - part.gap / depth, LEAST)
+        if force is not None:
+            bound = problem.friction_coefficient * patch.normal_force
+            size = np.maximum(force.tangential, TINY)
+            x, y, up = force.longitudinal / size, force.lateral / size, side * np.sin(patch.place.angle)
+            share = np.minimum(size / bound, FULL)
+            stuck = np.cbrt(1.0 - share)
+            across, swelling = (1.0 + stuck + stuck**2) / 3.0, bound * (share - stuck**2 * (1.0 - stuck))
+            c = wl.kalker.coefficients(problem.a / problem.b, self.elastic.poisson_ratio)
+            stiffness, width = self.elastic.shear_modulus * problem.a * problem.b, np.sqrt(problem.a * problem.b)
+            xi, eta, phi = patch.creepages.turning
+            linear_x, linear_y = stiffness * c.c11 * xi, stiffness * (c.c22 * eta + c.c23 * width * phi)
+            along = (stuck**2 - across) * (x * linear_x + y * linear_y)
+            force_x, force_y = across * linear_x + along * x, across * linear_y + along * y
+            own = own + up * y * swelling
+            speed = problem.rolling_speed
+            found[:, :2, 2] = (np.bincount(part.wheel, up * force_y, 2 * count) / load).reshape(-1, 2)
+            found[:, 2, 2] = np.bincount(part.point, speed * (xi * force_x + eta * force_y), count) / grip
+            turned = np.bincount(part.wheel, growth * speed * (xi * x + eta * y) * swelling, 2 * count)
+            found[:, 2, :2] = turned.reshape(-1, 2) / grip[:, None]
+        if force is None or self.task.rotation is not None:
+            found[:, 2] = 0.0, 0.0, 1.0
+        vertical = np.bincount(part.wheel, growth * own, 2 * count) / load
+        found[:, (0, 1), (0, 1)] = vertical.reshape(-1, 2)
+        return found
+
+    def posed(self) -> tuple[wl.Problem, Patches]:
+        """Return the contact problem of all places, with one entry for each, and what else is read of the patches."""
+        return self._posed(self.found, self.shapes)
+
+    def _posed(self, part: Candidates, shapes: Mapping[str, Array]) -> tuple[wl.Problem, Patches]:
+        task, elastic = self.task, self.elastic
+        side = np.where(part.side == 1, 1.0, -1.0)
+        arc = part.arc + shapes["centre"]
+        place = placed(self.section, part.position, arc)
+        sliding = creepages(
+            part.position, place, task.speed[part.point], side * task.lateral_velocity[part.point],
+            side * task.turn_rate[part.point], side * task.roll_rate[part.point], side,
+        )  # fmt: skip
+        flange = (np.abs(place.angle) > task.flange_angle).astype(np.intp)
+        longitudinal, lateral, spin = sliding.at(self.rotation[part.point])
+        given = {name: shapes[name] for name in ("a", "b")}
+        made = {
+            "shear_modulus": np.full(side.shape, elastic.shear_modulus),
+            "poisson_ratio": np.full(side.shape, elastic.poisson_ratio),
+            "density": np.full(side.shape, elastic.density),
+            "friction_coefficient": task.friction[part.point, flange],
+            "longitudinal_creepage": longitudinal,
+            "lateral_creepage": lateral,
+            "spin": spin,
+            "rolling_speed": task.speed[part.point],
+            "contact_angle": side * place.angle,
+        }
+        if self.hertz:
+            problem = wl.Problem.ellipse_from_si(**given, **made, normal_force=shapes["normal_force"])
+        else:
+            strips = wl.Strips(**{name: shapes[name] for name in wl.Strips.__slots__})
+            problem = wl.Problem.of_strips(strips=strips, **given, **made)
+        touch = self.penetration[part.wheel] > part.gap
+        return problem, Patches(problem.normal_force, arc, place, sliding, touch)
+
+    def _depth(self, part: Candidates) -> Array:
+        """Return the penetrations normal to the surface [m]."""
+        depth = self.penetration[part.wheel]
+        normal: Array = np.maximum(depth - part.gap, LEAST * depth) * part.cosine
+        return normal
+
+    def _strips(self, part: Candidates) -> dict[str, Array]:
+        """Return the strips of patches, their semi-axes and their centres."""
+        found = _normal.penetrated(
+            part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
+            self._depth(part), self.strips,
+        )  # fmt: skip
+        right = (part.side == 1)[:, None]
+        across = np.where(right, 1.0, -1.0) * (found.y - found.centre[:, None])
+        arrays = {
+            "y": across,
+            "width": found.width,
+            "half_length": found.half_length,
+            "max_pressure": found.pressure * self.scale[part.wheel, None],
+        }  # y grows on the left too
+        strips = {name: np.where(right, array, array[:, ::-1]) for name, array in arrays.items()}
+        return strips | {"a": found.a, "b": found.b, "centre": found.centre}
+
+    def _ellipses(self, part: Candidates) -> dict[str, Array]:
+        """Return Hertz's ellipses of the curvatures at first touching."""
+        at = placed(self.section, part.position, part.arc)
+        across = 0.5 * (self.section.wheel.at(part.arc)[3] + self.section.rail.at(at.rail_arc)[3])
+        unit = _normal.hertz(part.curvature_x, across, self.elastic.modulus, np.ones(across.shape))
+        share = np.sqrt(self._depth(part) / unit.penetration)
+        return {"a": unit.a * share, "b": unit.b * share, "normal_force": share**3, "centre": np.zeros(across.shape)}
+
+
+@dataclass(frozen=True)
+class Patches:
+    """What the balance reads of patches: N, arc length of the wheel, place, creepages, and whether they touch."""
+
+    normal_force: Array
+    arc: Array
+    place: Place
+    creepages: Creepages
+    touch: NDArray[np.bool_]

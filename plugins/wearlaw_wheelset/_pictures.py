@@ -1,0 +1,137 @@
+"""Pictures of wheels on rails."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from wearlaw import Array
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.figure import Figure
+
+APART = 15.0
+"""Distance by which wheel and rail are drawn apart [mm]."""
+
+BELOW = 8.0
+"""Depth of the rail that is drawn below the lowest point of contact [mm]."""
+
+LINES = 60
+"""Most positions whose contact points are joined by lines."""
+
+STYLE: Any = {
+    "axes.grid": True,
+    "grid.alpha": 0.3,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlesize": "medium",
+    "legend.frameon": False,
+}
+
+WAYS = ("lateral_displacement", "yaw")
+"""Axes of a geometry besides the side and the patch."""
+
+
+class Profiles(NamedTuple):
+    """The right wheel and its rail in the middle of the track [m].
+
+    Attributes
+    ----------
+    wheel_y, wheel_z : ndarray
+        The wheel, with y in the track and z from the taping line.
+    wheel_offset : float
+        y of the profile's origin in the track.
+    wheel_arc : ndarray
+        Arc length of the wheel's profile.
+    rail_y, rail_z, rail_arc : ndarray
+        The rail in the track, and the arc length of its profile.
+    """
+
+    wheel_y: Array
+    wheel_z: Array
+    wheel_offset: float
+    wheel_arc: Array
+    rail_y: Array
+    rail_z: Array
+    rail_arc: Array
+
+    def at(self, body: str, arc: float) -> tuple[float, float]:
+        """Return y and z of a place on a profile by its arc length."""
+        s, y, z = self.rail if body == "rail" else self.wheel
+        return float(np.interp(arc, s, y)), float(np.interp(arc, s, z))
+
+    @property
+    def wheel(self) -> tuple[Array, Array, Array]:
+        """Arc length, y and z of the wheel."""
+        return self.wheel_arc, self.wheel_y, self.wheel_z
+
+    @property
+    def rail(self) -> tuple[Array, Array, Array]:
+        """Arc length, y and z of the rail."""
+        return self.rail_arc, self.rail_y, self.rail_z
+
+
+def geometry_figure(geometry: xarray.Dataset, profiles: Profiles) -> Figure:
+    """Return a figure of contact points on both profiles of the right side, Δr and contact angles."""
+    import matplotlib.figure
+
+    with matplotlib.rc_context(STYLE):
+        figure = matplotlib.figure.Figure(figsize=(7.4, 6.2), layout="constrained")
+        axes = figure.subplot_mosaic([["both", "both"], ["radius", "angle"]], height_ratios=(3.0, 4.0))
+        _contact_points(axes["both"], geometry, profiles, matplotlib.cm.ScalarMappable(cmap="viridis"))
+        radius, angle = geometry.rolling_radius_difference, geometry.contact_angle.sel(side="right")
+        _curves(axes["radius"], radius.expand_dims("patch", -1))
+        _curves(axes["angle"], angle)
+        axes["radius"].set_ylabel(f"rolling radius, right minus left [{radius.units}]")
+        axes["angle"].set_ylabel(f"contact angle of the right wheel [{angle.units}]")
+        if {*WAYS} <= {*geometry.dims}:
+            axes["radius"].legend(title=_label(geometry["yaw"]), markerscale=3.0)
+    return figure
+
+
+def _label(coordinate: xarray.DataArray) -> str:
+    return f"{coordinate.long_name} [{coordinate.units}]"
+
+
+def _curves(axes: Any, values: xarray.DataArray) -> None:
+    """Draw values over the first swept axis, in a colour for each value of the other one; later patches are pale."""
+    swept = [name for name in WAYS if name in values.dims]
+    if not swept:
+        axes.plot(np.arange(1, values.size + 1), values.values.ravel(), "o")
+        axes.set(xlabel="patch", xticks=[1, 2, 3])
+        return
+    along = values[swept[0]]
+    curves = values.transpose(*swept, "patch").values.reshape(along.size, -1, values.sizes["patch"])
+    for number in range(curves.shape[1]):
+        label = f"{float(values[swept[1]][number]):.4g}" if len(swept) > 1 else None
+        for patch in range(curves.shape[2]):  # points, because a line would hide jumps
+            look: Any = {"alpha": 0.3} if patch else {"label": label}
+            axes.plot(along, curves[:, number, patch], ".", ms=3.0, mew=0.0, color=f"C{number}", **look)
+    axes.set_xlabel(_label(along))
+
+
+def _contact_points(axes: Any, geometry: xarray.Dataset, profiles: Profiles, shades: ScalarMappable) -> None:
+    """Draw the right wheel above its rail, apart, with lines between points that touch."""
+    wheel_z = 1e3 * profiles.wheel_z - APART
+    axes.plot(1e3 * profiles.wheel_y, wheel_z, color="black")
+    axes.plot(1e3 * profiles.rail_y, 1e3 * profiles.rail_z, color="black")
+    along = next((name for name in WAYS if name in geometry.dims), None)
+    right = geometry.sel(side="right").expand_dims(() if along else "one")
+    rows = right.isel({along or "one": slice(None, None, -(-right.sizes[along or "one"] // LINES))})
+    if along is not None:
+        shades.set_clim(float(right[along].min()), float(right[along].max()))
+        bar = axes.figure.colorbar(shades, ax=axes, pad=0.01, shrink=0.9)
+        bar.set_label(_label(right[along]))
+    for number in range(rows.sizes[along or "one"]):
+        one = rows.isel({along or "one": number})
+        colour = tuple(shades.to_rgba(one[along].values)) if along else "C0"
+        ends = np.stack([one.wheel_y + 1e3 * profiles.wheel_offset, one.y]), np.stack([one.wheel_z - APART, one.z])
+        axes.plot(*(end.reshape(2, -1) for end in ends), color=colour, lw=0.8)
+    axes.text(1e3 * profiles.wheel_y[-1], wheel_z[-1] - 1.0, "wheel", ha="right", va="bottom")
+    axes.text(1e3 * profiles.rail_y.mean(), 5.0, "rail", ha="center", va="top")
+    axes.set(xlabel="y, to the right [mm]", ylabel="z, down [mm]", aspect="equal")
+    axes.set_ylim(float(right.z.max()) + BELOW, wheel_z.min() - 5.0)
+    axes.set_title(f"right wheel and rail, drawn {APART:.0f} mm apart; lines join points that touch")

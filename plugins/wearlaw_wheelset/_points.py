@@ -1,0 +1,178 @@
+"""Checks of the points of a profile; each error says where, and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+import wearlaw as wl
+from wearlaw import Array
+
+FEWEST, MOST = 10, 20_000
+"""Smallest and largest number of points."""
+LEAST_STEP = 1e-9
+"""Distance below which two points are the same [m]."""
+LONGEST_STEP, TIMES_MEDIAN = 5e-3, 10.0
+"""A step that is longer [m], and longer than so many times the median one, is a gap."""
+SHARPEST = 150.0
+"""Turn at a point beyond which the profile runs back on itself [deg]."""
+NARROWEST, WIDEST = 20e-3, 300e-3
+"""Bounds of the width of a profile [m]."""
+CLEAR = 5e-3
+"""Height by which a profile must stand out to show which way up it is, or on which side its flange is [m]."""
+TIP = 1e-3
+"""Height by which the top of a flange stands above both ends of the profile [m]."""
+BLOCK = 64
+"""Steps in a block whose bounding box is compared with those of others."""
+
+
+Name = Callable[[int], str]
+"""Returns the name of a point in messages from its index."""
+
+
+def check_points(y: Array, z: Array, name: Name) -> None:
+    """Raise an error if points cannot be joined to one profile.
+
+    Parameters
+    ----------
+    y, z : ndarray of float64, shape (n,)
+        The points [m], in their order along the profile.
+    name : callable
+        Returns the name of a point from its index.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than 10 points or more than 20 000, or if points are not finite, doubled, out of order, far
+        apart, or on lines that cross.
+    """
+    if y.size != z.size:
+        raise wl.InputError(f"y and z must have the same number of values, got {y.size} and {z.size}")
+    if not FEWEST <= y.size <= MOST:
+        raise wl.InputError(f"a profile needs {FEWEST} to {MOST} points, got {y.size}")
+    _refuse(~(np.isfinite(y) & np.isfinite(z)), y, z, name, "is not finite", "leave it out")
+    width = y.max() - y.min()
+    if not NARROWEST <= width <= WIDEST:
+        hint = "; were they in metres? Give their unit" if width < 1e-2 * NARROWEST else ""
+        hint = "; is their unit right?" if width > WIDEST else hint
+        raise wl.InputError(
+            f"the points are {_mm(width)} wide, but a profile has {1e3 * NARROWEST:g} to {1e3 * WIDEST:g} mm{hint}"
+        )
+    step_y, step_z = np.diff(y), np.diff(z)
+    step = np.hypot(step_y, step_z)
+    _refuse(np.append(False, step < LEAST_STEP), y, z, name, "is the same as the point before", "leave one of them out")
+    cross = step_y[:-1] * step_z[1:] - step_z[:-1] * step_y[1:]
+    turn = np.abs(np.arctan2(cross, step_y[:-1] * step_y[1:] + step_z[:-1] * step_z[1:]))
+    back = np.zeros(y.size, dtype=np.bool_)
+    back[1:-1] = turn > np.deg2rad(SHARPEST)
+    _refuse(back, y, z, name, "is where the profile runs back on itself", "put the points in their order")
+    longest = max(LONGEST_STEP, TIMES_MEDIAN * float(np.median(step)))
+    _refuse(
+        np.append(step > longest, False),
+        y,
+        z,
+        name,
+        f"has a gap behind it: the next point is {_mm(step.max())} away, the median distance is"
+        f" {_mm(float(np.median(step)))}",
+        f"add points, so that no two are further apart than {_mm(longest)}, or cut the profile there",
+    )
+    crossing = crossed_steps(y, z)
+    if crossing is not None:
+        first, second = crossing
+        raise wl.InputError(
+            f"the profile crosses itself: the line behind {_point(first, y, z, name)} meets that behind"
+            f" {_point(second, y, z, name)}; leave out the points of the loop, or put all points in their order"
+        )
+
+
+def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
+    """Raise an error if a profile is upside down, or if a wheel has its flange at y > 0.
+
+    Raises
+    ------
+    InputError
+        If the profile stands out from its median height by more than 5 mm to the wrong side.
+    """
+    order = np.argsort(y)
+    across = np.linspace(y.min(), y.max(), 201)
+    level = float(np.median(np.interp(across, y[order], z[order])))
+    up, down = level - float(z.min()), float(z.max()) - level
+    # The field side of a wheel may rise more than its flange falls, up to the end of the profile.
+    tip = kind == "rail" or z.min() + TIP < min(z[0], z[-1])
+    if up > max(down, CLEAR) and tip:
+        part = "flange" if kind == "wheel" else "side"
+        place = int(np.argmin(z))
+        raise wl.InputError(
+            f"the {kind} is upside down: z is positive down, but its {part} has {_point(place, y, z, name)}, above its"
+            f" median height of {_mm(level)}; change the sign of z, in a file by mirror_z=True"
+        )
+    place = int(np.argmax(z))
+    if kind != "wheel" or down <= CLEAR or y[place] < 0.0:
+        return
+    flange = _point(place, y, z, name)
+    if y[place] > 0.5 * (y.min() + y.max()):
+        raise wl.InputError(
+            f"the wheel is mirrored: its flange must be at y < 0, but has {flange}; change the sign of y, in a file by"
+            " mirror_y=True. A left wheel has the same profile as a right one"
+        )
+    raise wl.InputError(
+        f"the wheel must have its origin at the taping line, with the flange at y < 0, but its flange has {flange};"
+        ' shift it, in a file by shift_y, such as shift_y="-70 mm" if y = 0 is the back of the flange'
+    )
+
+
+def crossed_steps(y: Array, z: Array) -> tuple[int, int] | None:
+    """Return the first two steps between points that cross each other, by the indices of their first points."""
+    count = y.size - 1
+    starts = np.arange(0, count, BLOCK)
+    low, high = [], []
+    for value in (y, z):
+        least, most = np.minimum(value[:-1], value[1:]), np.maximum(value[:-1], value[1:])
+        low.append(np.minimum.reduceat(least, starts))
+        high.append(np.maximum.reduceat(most, starts))
+    near = np.ones((starts.size, starts.size), dtype=np.bool_)
+    for least, most in zip(low, high, strict=True):
+        near &= (least[:, None] <= most) & (least <= most[:, None])
+    for first, second in BLOCK * np.argwhere(np.triu(near)):
+        one = first + np.arange(min(BLOCK, count - first))[:, None]
+        other = second + np.arange(min(BLOCK, count - second))[None, :]
+        crosses = (other > one + 1) & _cross(y, z, one, other)
+        if crosses.any():
+            row, column = np.argwhere(crosses)[0]
+            return int(one[row, 0]), int(other[0, column])
+    return None
+
+
+def _cross(y: Array, z: Array, one: NDArray[np.intp], other: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Return whether steps cross or touch each other."""
+
+    def side(step: NDArray[np.intp], point: NDArray[np.intp]) -> Array:
+        """Return on which side of a step a point lies."""
+        return np.sign((y[step + 1] - y[step]) * (z[point] - z[step]) - (z[step + 1] - z[step]) * (y[point] - y[step]))
+
+    crosses: NDArray[np.bool_] = (side(one, other) * side(one, other + 1) <= 0.0) & (
+        side(other, one) * side(other, one + 1) <= 0.0
+    )
+    # Steps on one line fulfil both conditions wherever they are, so the boxes around them must meet too.
+    for value in (y, z):
+        least = np.minimum(value[one], value[one + 1]), np.minimum(value[other], value[other + 1])
+        most = np.maximum(value[one], value[one + 1]), np.maximum(value[other], value[other + 1])
+        crosses = crosses & (least[0] <= most[1]) & (least[1] <= most[0])
+    return crosses
+
+
+def _refuse(wrong: NDArray[np.bool_], y: Array, z: Array, name: Name, what: str, fix: str) -> None:
+    places = np.flatnonzero(wrong)
+    if places.size:
+        more = f" ({places.size} points in all)" if places.size > 1 else ""
+        raise wl.InputError(f"{_point(int(places[0]), y, z, name)} {what}{more}; {fix}")
+
+
+def _point(index: int, y: Array, z: Array, name: Name) -> str:
+    return f"{name(index)} (y = {_mm(y[index])}, z = {_mm(z[index])})"
+
+
+def _mm(value: float) -> str:
+    return f"{1e3 * value:.6g} mm"

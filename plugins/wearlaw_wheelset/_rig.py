@@ -1,0 +1,518 @@
+"""A wheelset on two rails as a rig: its conditions, and the contact problem that they pose."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, model_validator
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw_wheelset._conicity import equivalent_conicity
+from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
+from wearlaw_wheelset._loads import Balance, Elastic, Task
+from wearlaw_wheelset._motion import placed, roll_rate
+from wearlaw_wheelset._pictures import Profiles
+from wearlaw_wheelset._profile import Profile
+from wearlaw_wheelset._search import Section, Touching, both_sides, searched, section
+from wearlaw_wheelset._search_loops import PATCHES
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+DIMS: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch": (1, 2, 3)}
+"""The axes of patches."""
+
+UNITS = {
+    "lateral_displacement": wl.Unit("mm", positive=False),
+    "yaw": wl.Unit("mrad", positive=False),
+    "roll": wl.Unit("mrad", positive=False),
+    "vertical_load": wl.Unit("kN"),
+    "axle_torque": wl.Unit("N*m", positive=False),
+    "angular_speed": wl.Unit("rad/s"),
+    "lateral_velocity": wl.Unit("m/s", positive=False),
+    "yaw_velocity": wl.Unit("rad/s", positive=False),
+    "curve_radius": wl.Unit("m", positive=False, infinite=True),
+    "rolled_distance": wl.Unit("km", positive=False),
+}
+"""Units of the conditions."""
+
+MOST_YAW = 0.2
+"""Greatest yaw [rad]: a locomotive in the tightest curve has a tenth of it."""
+
+LEAST_FRICTION = 1e-12
+"""The smallest friction coefficient, which no contact comes near."""
+
+MARGIN = 1e-3
+"""Displacement beyond the amplitude at which the conicity needs radii [m]: waves need not be about the middle."""
+
+CONICITY_POINTS = 801
+"""Displacements at which the conicity takes radii."""
+
+RATIO = re.compile(r"\s*1\s*:\s*([0-9.]+)\s*")
+
+
+def _cant(value: object) -> object:
+    """Return the angle of a cant such as "1:40"; other values stay."""
+    if isinstance(value, str) and (found := RATIO.fullmatch(value)):
+        return wl.Q(float(np.arctan(1.0 / float(found[1]))), "rad")
+    if isinstance(value, int | float) and not isinstance(value, bool) and value == 0:
+        return wl.Q(0.0, "rad")
+    return value
+
+
+Cant = Annotated[wl.Quantity, wl.Unit("rad", positive=False, limit=0.2), BeforeValidator(_cant)]
+Place = Annotated[wl.Quantity, wl.Unit("mm", positive=False)]
+Angle = Annotated[wl.Quantity, wl.Unit("deg")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Posed(wl.Problem):
+    """A problem that knows the balance that it comes from."""
+
+    balance: Balance
+    shape: tuple[int, ...]
+
+
+class Wheelset(wl.Rig):
+    """Two wheels on an axle that roll on two rails, with the profiles of wheels and rails.
+
+    Each wheel touches its rail in one to three patches. The rig finds them, the roll at which both wheels touch, and
+    the creepages of each patch. The normal and lateral creep forces of its patches carry the vertical load of a wheel,
+    and the wheelset turns at the speed at which the creep forces balance the torque on the axle.
+
+    Prefer this rig to `WheelRail` where you have profiles, or where a wheel touches in several places. It has no
+    dynamics: lateral displacement, yaw and loads come from a program for vehicle dynamics. Both wheels have the same
+    profile and load, and so do both rails.
+
+    Axes are those of the track: x forwards, y to the right, z down. Results have the axes "side" and "patch". Patch 1
+    is the place where rigid bodies touch first; missing patches are NaN.
+
+    Materials of wheels and rails may differ. The rig then takes E* and Kalker's means of G and ν.
+    """
+
+    name: ClassVar[str] = "wheelset"
+    source: ClassVar[str] = (
+        "locus of contact: A. D. de Pater, Vehicle System Dynamics 17 (1988) 127-140; strips: J. Piotrowski and W. Kik,"
+        " Vehicle System Dynamics 46 (2008) 27-48"
+    )
+    creepage: ClassVar[str] = "lateral_displacement"
+    example: ClassVar[Mapping[str, Any]] = {
+        "lateral_displacement": "3 mm",
+        "yaw": "7.2 mrad",
+        "vertical_load": "50 kN",
+        "friction_coefficient": 0.3,
+    }
+    example_fields: ClassVar[Mapping[str, Any]] = {
+        "wheel": "s1002",
+        "rail": "uic60",
+        "nominal_radius": "460 mm",
+        "flange_back_distance": "1360 mm",
+        "gauge": "1435 mm",
+        "rail_cant": "1:40",
+        "material": "steel",
+        "rolling_speed": "20 m/s",
+    }
+
+    wheel: Profile
+    """Profile of the wheels; a file may give the name of a formula, such as "s1002", or the path of a profile."""
+    rail: Profile
+    """Profile of the rails, without cant; a file may give "uic60" or a path."""
+    nominal_radius: wl.Length
+    """Radius of the wheels at the origin of their profile, the taping line [m]."""
+    flange_back_distance: wl.Length
+    """Distance between the inner faces of the wheels [m]."""
+    flange_back_position: Place = Field(default="-70 mm", validate_default=True)
+    """Place of the inner face in the wheel's profile, y [m]."""
+    gauge: wl.Length
+    """Track gauge, the distance between the rails [m]."""
+    gauge_depth: wl.Length = Field(default="14 mm", validate_default=True)
+    """Depth below the rail's highest point at which the gauge is measured [m]."""
+    rail_cant: Cant = Field(default="0 rad", validate_default=True)
+    """Angle by which the rails lean inwards, such as "1:40" [rad]."""
+    flange_angle: Angle = Field(default="30 deg", validate_default=True)
+    """Contact angle beyond which a patch takes `flange_friction_coefficient` [rad]."""
+    pressure: Literal["kpec", "hertz"] = "kpec"
+    """Normal problem. "kpec": strips by the method of Kik and Piotrowski with elliptic correction, for any profile.
+    "hertz": ellipses with the curvatures where rigid bodies touch, for curvatures that hardly vary over the patch."""
+    strips: Annotated[int, Field(ge=5, le=500, strict=True)] = 20
+    """Number of strips of a patch with `pressure = "kpec"`."""
+    material: wl.MaterialField
+    """Material of wheels and rails; a file may also give the name of an installed material."""
+    rail_material: wl.MaterialField | None = None
+    """Material of the rails, if it differs from the wheels'."""
+    rolling_speed: wl.Speed
+    """Speed of the wheelset along the track, V [m/s]."""
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            wheel: Profile,
+            rail: Profile,
+            nominal_radius: wl.QuantityLike,
+            flange_back_distance: wl.QuantityLike,
+            flange_back_position: wl.QuantityLike = "-70 mm",
+            gauge: wl.QuantityLike,
+            gauge_depth: wl.QuantityLike = "14 mm",
+            rail_cant: wl.QuantityLike = "0 rad",
+            flange_angle: wl.QuantityLike = "30 deg",
+            pressure: Literal["kpec", "hertz"] = "kpec",
+            strips: int = 20,
+            material: wl.Material,
+            rail_material: wl.Material | None = None,
+            rolling_speed: wl.QuantityLike,
+        ) -> None: ...
+
+    @property
+    def patch_geometry(self) -> wl.Geometry:
+        """Strips, or ellipses by Hertz's theory."""
+        return "ellipse" if self.pressure == "hertz" else "strips"
+
+    @model_validator(mode="after")
+    def _fits(self) -> Wheelset:
+        if self.wheel.kind != "wheel" or self.rail.kind != "rail":
+            raise ValueError(
+                f"wheel is the profile of a {self.wheel.kind} and rail that of a {self.rail.kind}; give them the other"
+                " way round, or make the profile with the other kind"
+            )
+        lean = scalar(self.rail.apparent_cant)
+        if abs(lean) > 0.5 * scalar(self.rail_cant) > 0.0:
+            raise ValueError(
+                f"rail_cant: is {np.degrees(scalar(self.rail_cant)):.3g} deg, but the head of the rail's profile"
+                f" leans by {np.degrees(lean):.3g} deg already; leave rail_cant out, or give a profile without cant"
+            )
+        straight = np.zeros(1)
+        roll, found = searched(self._section, straight, straight)
+        if np.isnan(found.arc[0, :, 0]).any():
+            raise ValueError(
+                f"gauge: the wheels do not stand on the rails; wheels {self.flange_back_distance!r} apart between their"
+                f" inner faces do not fit rails {self.gauge!r} apart"
+            )
+        angle = patches(self._section, both_sides(straight, roll, straight), found).contact_angle[0, :, 0]
+        if np.abs(angle).max() > scalar(self.flange_angle):
+            raise ValueError(
+                f"gauge: in the middle of the track the wheels stand on their flanges, at a contact angle of"
+                f" {np.degrees(np.abs(angle).max()):.3g} deg; wheels {self.flange_back_distance!r} apart between their"
+                f" inner faces do not fit rails {self.gauge!r} apart"
+            )
+        return self
+
+    @property
+    def bodies(self) -> Mapping[str, wl.Body]:
+        """The "wheel" and the "rail"; the radius is the nominal one, and problems have those of their patches."""
+        return {
+            "wheel": wl.Body(self.material, scalar(self.nominal_radius)),
+            "rail": wl.Body(self.rail_material or self.material, np.inf),
+        }
+
+    def geometry(
+        self,
+        *,
+        lateral_displacement: wl.QuantityLike,
+        yaw: wl.QuantityLike = "0 mrad",
+        roll: wl.QuantityLike | None = None,
+        within: wl.QuantityLike = "0.1 mm",
+    ) -> Geometry:
+        """Return where rigid wheels touch their rails, at all combinations of lateral displacements and yaws.
+
+        Parameters
+        ----------
+        lateral_displacement : Quantity or str
+            Lateral displacement of the wheelset, positive to the right [m]: one value, or an array with one axis.
+        yaw : Quantity or str
+            Yaw, positive clockwise from above [rad]: one value, or an array with one axis.
+        roll : Quantity or str, optional
+            One roll, positive if it lowers the right wheel [rad]. By default both wheels touch.
+        within : Quantity or str
+            Greatest vertical gap of further places beside the first one [m]. Under load they may touch too.
+
+        Raises
+        ------
+        ConditionsError
+            If a wheel does not touch its rail.
+        """
+        given = {"lateral_displacement": lateral_displacement, "yaw": yaw}
+        axes = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
+        for name, array in axes.items():
+            if array.ndim > 1:
+                raise wl.InputError(f"{name}: must have at most one axis, got an array of shape {array.shape}")
+        displacement, turned = (array.ravel() for array in np.meshgrid(*axes.values(), indexing="ij"))
+        fixed = None if roll is None else np.full(displacement.shape, scalar(UNITS["roll"].si(roll, "roll")))
+        most = scalar(wl.Unit("mm", positive=False).si(within, "within"))
+        self._check_yaw(turned)
+        rolls, found = searched(self._section, displacement, turned, fixed)
+        self._check_contact(displacement, found)
+        position = both_sides(displacement, rolls, turned)
+        return geometry(self._section, axes, rolls, found, position, most, scalar(self.nominal_radius))
+
+    def on_rails(self, displacement: Array) -> NDArray[np.bool_]:
+        """Return whether both wheels touch their rails at lateral displacements [m], without yaw."""
+        _, found = searched(self._section, displacement, np.zeros_like(displacement))
+        return ~np.asarray(np.isnan(found.arc[..., 0]).any(axis=-1))
+
+    def profiles_in_track(self) -> Profiles:
+        """Return the right wheel and its rail in the middle of the track, as SI arrays."""
+        return profiles(self._section, scalar(self.nominal_radius))
+
+    def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
+        """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, by EN 15302."""
+        most = scalar(wl.Unit("mm").si(amplitude, "amplitude"))
+        displacement = np.linspace(-most - MARGIN, most + MARGIN, CONICITY_POINTS)
+        rolls, found = searched(self._section, displacement, np.zeros_like(displacement))
+        self._check_contact(displacement, found)
+        position = both_sides(displacement, rolls, np.zeros_like(displacement))
+        radius = patches(self._section, position, found).rolling_radius[..., 0]
+        return wl.Q(equivalent_conicity(displacement, radius[:, 1] - radius[:, 0], most), "")
+
+    def problem(
+        self,
+        *,
+        lateral_displacement: wl.QuantityLike,
+        vertical_load: wl.QuantityLike,
+        friction_coefficient: ArrayLike,
+        yaw: wl.QuantityLike = "0 mrad",
+        roll: wl.QuantityLike | None = None,
+        flange_friction_coefficient: ArrayLike | None = None,
+        axle_torque: wl.QuantityLike | None = None,
+        angular_speed: wl.QuantityLike | None = None,
+        lateral_velocity: wl.QuantityLike = "0 m/s",
+        yaw_velocity: wl.QuantityLike = "0 rad/s",
+        curve_radius: wl.QuantityLike = "inf m",
+        rolled_distance: wl.QuantityLike | None = None,
+    ) -> wl.Problem:
+        """Return the contact problem that the conditions pose; arrays broadcast against each other.
+
+        The loads do not balance the creep forces yet; `balanced` does that, and a pipeline calls it.
+
+        Parameters
+        ----------
+        lateral_displacement : Quantity or str
+            Lateral displacement of the wheelset in the track, positive to the right [m].
+        vertical_load : Quantity or str
+            Vertical load of each wheel, Q [N].
+        friction_coefficient : array_like of float
+            Friction coefficient, μ [-].
+        yaw : Quantity or str
+            Yaw, positive clockwise from above, ψ [rad].
+        roll : Quantity or str, optional
+            Roll, positive if it lowers the right wheel, ρ [rad]. By default both wheels touch.
+        flange_friction_coefficient : array_like of float, optional
+            Friction coefficient where the contact angle exceeds `flange_angle`, as on a lubricated flange [-].
+        axle_torque : Quantity or str, optional
+            Torque on the axle, positive if it drives, M [N m]. By default zero, a free axle.
+        angular_speed : Quantity or str, optional
+            Speed of rotation instead of a torque, Ω [rad/s].
+        lateral_velocity : Quantity or str
+            Velocity of the lateral displacement [m/s].
+        yaw_velocity : Quantity or str
+            Velocity of the yaw [rad/s]. Where no roll is given, the wheelset rolls with both velocities, so that both
+            wheels stay on their rails.
+        curve_radius : Quantity or str
+            Radius of the curve, positive to the right [m]. Infinite on straight track.
+        rolled_distance : Quantity or str, optional
+            Distance rolled since the bodies were new [m], for laws of running-in.
+
+        Raises
+        ------
+        ConditionsError
+            If conditions contradict each other or do not broadcast, a wheel does not touch its rail, or the torque is
+            greater than friction can transmit.
+        UnitError
+            If a condition lacks its unit or is out of bounds.
+        """
+        given = {name: value for name, value in locals().items() if name in UNITS and value is not None}
+        if axle_torque is not None and angular_speed is not None:
+            raise wl.ConditionsError("give axle_torque or angular_speed, not both")
+        arrays = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
+        arrays["friction_coefficient"] = _friction(friction_coefficient, "friction_coefficient")
+        name = "flange_friction_coefficient"
+        flange = friction_coefficient if flange_friction_coefficient is None else flange_friction_coefficient
+        arrays[name] = _friction(flange, name)
+        shape = _shape(arrays)
+        flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
+        balance = self._balance(flat)
+        return self._whole(balance, shape, flat.get("rolled_distance"))
+
+    def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
+        """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
+        assert isinstance(problem, _Posed)
+        distance = problem.rolled_distance
+        balance = problem.balance.solved(forces)
+        if not balance.balanced.all():
+            self._warn_of_jams(balance)
+        return self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
+
+    def _balance(self, given: Mapping[str, Array]) -> Balance:
+        """Return the loads at positions, SI arrays with one axis, without creep forces."""
+        displacement, yaw, roll = given["lateral_displacement"], given["yaw"], given.get("roll")
+        self._check_yaw(yaw)
+        places = np.stack([displacement, yaw] if roll is None else [displacement, yaw, roll])
+        single, which = np.unique(places, axis=1, return_inverse=True)
+        rolls, found = searched(self._section, single[0], single[1], None if roll is None else single[2])
+        self._check_contact(single[0], found)
+        self._warn_of_climbing(single[0], found)
+        which = which.reshape(-1)
+        rolls, found = rolls[which], Touching(*(array[which] for array in found))
+        speed = np.full(displacement.shape, scalar(self.rolling_speed))
+        turn_rate = given["yaw_velocity"] + speed / given["curve_radius"]
+        position = both_sides(displacement, rolls, yaw)
+        rolling = np.zeros(displacement.shape)
+        if roll is None:
+            place = placed(self._section, position, found.arc[..., 0])
+            rolling = roll_rate(place, given["lateral_velocity"], given["yaw_velocity"])
+        task = Task(
+            speed, given["lateral_velocity"], turn_rate, rolling, given["vertical_load"],
+            np.stack([given["friction_coefficient"], given["flange_friction_coefficient"]], axis=-1),
+            scalar(self.flange_angle), given.get("axle_torque", np.zeros(displacement.shape)),
+            given.get("angular_speed"),
+        )  # fmt: skip
+        hertz = self.pressure == "hertz"
+        balance = Balance.begun(self._section, self._elastic, task, position, found, hertz, self.strips)
+        balance.check_torque()
+        return balance
+
+    def _whole(self, balance: Balance, shape: tuple[int, ...], distance: Array | None) -> wl.Problem:
+        """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
+        found = balance.found
+        flat, patch = balance.posed()
+        size = balance.task.load.size
+        exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
+        place = found.point, found.side, found.number
+        exists[place] = patch.touch & balance.balanced[found.point]
+
+        def wide(array: Array) -> Array:
+            full = np.full(exists.shape, np.nan)
+            full[place] = array
+            return full.reshape(*shape, 2, PATCHES)
+
+        problem = flat.mapped(wide)
+        side = np.broadcast_to(np.array([-1.0, 1.0])[:, None], exists.shape).reshape(*shape, 2, PATCHES)
+        bodies = {
+            "wheel": wl.Body(
+                self.material, wide(patch.place.radius), profile_position=wide(patch.arc), profile_direction=side
+            ),
+            "rail": wl.Body(
+                self.rail_material or self.material,
+                np.inf,
+                profile_position=wide(patch.place.rail_arc),
+                profile_direction=side,
+            ),
+        }
+        fields = {name: getattr(problem, name) for name in wl.Problem.__dataclass_fields__}
+        if distance is not None:
+            fields["rolled_distance"] = np.broadcast_to(distance[:, None, None], exists.shape).reshape(
+                *shape, 2, PATCHES
+            )
+        fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES)}
+        return _Posed(**fields, balance=balance, shape=shape)
+
+    @staticmethod
+    def _check_yaw(yaw: Array) -> None:
+        """Raise an error for a yaw that no wheelset has."""
+        steep = np.abs(yaw) > MOST_YAW
+        if steep.any():
+            raise wl.ConditionsError(
+                f"yaw: must be at most {MOST_YAW:g} rad, got {yaw[steep][0]:.4g} rad; is it in mrad?"
+            )
+
+    def _check_contact(self, displacement: Array, found: Touching) -> None:
+        """Raise an error where a wheel does not stand on its rail."""
+        lost = np.isnan(found.arc[..., 0])
+        if lost.any():
+            point, side = (int(index[0]) for index in np.nonzero(lost))
+            raise wl.ConditionsError(
+                f"lateral_displacement: at {1e3 * displacement[point]:.4g} mm the {DIMS['side'][side]} wheel does not"
+                " touch its rail within the profiles; wider profiles are needed, or the wheel has left the rail"
+            )
+
+    def _warn_of_climbing(self, displacement: Array, found: Touching) -> None:
+        """Warn of a wheel that stands on the top of its flange."""
+        over = found.arc[..., 0] < self._steepest
+        if over.any():
+            point, side = (int(index[0]) for index in np.nonzero(over))
+            warnings.warn(
+                f"at a lateral displacement of {1e3 * displacement[point]:.4g} mm the {DIMS['side'][side]} wheel climbs"
+                " its rail: it stands on its flange beyond the steepest point",
+                wl.RangeWarning,
+                stacklevel=5,
+            )
+
+    @staticmethod
+    def _warn_of_jams(balance: Balance) -> None:
+        """Warn of positions without a balance of loads."""
+        point = int(np.argmin(balance.balanced))
+        here = balance.found.point == point
+        displacement = float(balance.found.position.displacement[here & (balance.found.side == 1)][0])
+        warnings.warn(
+            f"{np.count_nonzero(~balance.balanced)} of {balance.balanced.size} positions have no result, the first at a"
+            f" lateral displacement of {1e3 * displacement:.4g} mm: friction holds a flange, and no normal force"
+            " carries the vertical load",
+            wl.RangeWarning,
+            stacklevel=5,
+        )
+
+    @cached_property
+    def _steepest(self) -> float:
+        """Arc length of the steepest place of the flange; where it is straight, of its end towards the top [m]."""
+        curve, start = self._section.wheel, self._section.wheel_y.start
+        flange = (curve.s >= start) & (curve.y < 0.0)
+        if not flange.any():
+            return -np.inf
+        angle = curve.angle[flange]
+        steep = angle <= angle.min() + 1e-6
+        return float(curve.s[flange][steep][0])
+
+    @cached_property
+    def _section(self) -> Section:
+        return section(
+            self.wheel.curve,
+            self.rail.curve,
+            nominal_radius=scalar(self.nominal_radius),
+            wheel_offset=0.5 * scalar(self.flange_back_distance) - scalar(self.flange_back_position),
+            cant=scalar(self.rail_cant),
+            gauge=scalar(self.gauge),
+            depth=scalar(self.gauge_depth),
+        )
+
+    @cached_property
+    def _elastic(self) -> Elastic:
+        pair = [body.material for body in self.bodies.values()]
+        (e1, n1), (e2, n2) = ((scalar(one.youngs_modulus), one.poisson_ratio) for one in pair)
+        return Elastic(
+            wl.hertz.effective_modulus(e1, n1, e2, n2),
+            wl.hertz.mean_shear_modulus(0.5 * e1 / (1.0 + n1), 0.5 * e2 / (1.0 + n2)),
+            wl.hertz.mean_poisson_ratio(e1, n1, e2, n2),
+            scalar(self.material.density),
+        )
+
+
+def scalar(value: Any) -> float:
+    """Return a quantity with one value in SI."""
+    return float(value.to_base_units().magnitude if isinstance(value, wl.Quantity) else value)
+
+
+def _friction(value: object, name: str) -> Array:
+    """Return friction coefficients, or raise an error that names them."""
+    try:
+        array = np.asarray(value.magnitude if isinstance(value, wl.Quantity) else value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise wl.UnitError(f"{name}: must be a plain number or an array of them, such as 0.3; got {value!r}") from None
+    if not ((array >= LEAST_FRICTION) & (array < np.inf)).all():
+        raise wl.UnitError(f"{name}: must be positive and finite, got {value!r}")
+    return array
+
+
+def _shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items() if array.ndim)
+        raise wl.ConditionsError(f"the conditions do not broadcast against each other: {shapes}") from None

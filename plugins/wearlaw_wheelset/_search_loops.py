@@ -1,0 +1,315 @@
+"""The contact search of `_search` in loops that numba compiles, and the formulas that both share."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+import wearlaw as wl
+from wearlaw import Array
+
+PATCHES = 3
+"""Greatest number of contact patches of a wheel."""
+
+ROLLS = 30
+"""Greatest number of iterations for the roll; four or five are usual."""
+
+ROLL_ACCURACY = 1e-12
+"""Greatest difference between the least gaps of both sides [m]."""
+
+ROOTS = 40
+"""Greatest number of iterations for a contact point; eight to twelve are usual."""
+
+LEAST_LEVER = 0.05
+"""Smallest lever in a step of the roll [m]."""
+
+MOST_ROLL = 5e-3
+"""Greatest step of the roll [rad]."""
+
+WINDOW = 16
+"""Coarse points around a contact point among which it is looked for after a small roll: 8 mm."""
+
+WIDER = 0.1
+"""Share of the spacing of coarse points by which their interval is widened: slopes there are interpolated."""
+
+ROUNDING = 1e-12
+"""Difference between slopes at a contact point that is rounding."""
+
+VECTOR = "float64[::1]"
+TABLE = f"float64, float64, {VECTOR}, {VECTOR}"
+
+
+def locus(y: Any, radius: Any, slope: Any, displacement: Any, turn: tuple[Any, Any, Any, Any]) -> tuple[Any, ...]:
+    """Return x, y and z of points of the locus of contact, and the slope dz/dy of the locus there.
+
+    Parameters
+    ----------
+    y, radius, slope : float or ndarray
+        Distance from the middle of the wheelset [m], R [m] and R' of the profile.
+    displacement : float or ndarray
+        Lateral displacement of the wheelset [m].
+    turn : tuple
+        The sine and the cosine of the roll, and those of the yaw.
+    """
+    sin_roll, cos_roll, sin_yaw, cos_yaw = turn
+    tan_yaw = sin_yaw / cos_yaw
+    lean = tan_yaw * sin_roll
+    scale = 1.0 / np.sqrt(1.0 + lean * lean)
+    sine = -tan_yaw * cos_roll * scale * slope
+    cosine = np.sqrt(np.maximum(1.0 - sine * sine, 0.0))
+    sin_angle = scale * (sine - lean * cosine)
+    cos_angle = scale * (cosine + lean * sine)
+    upright, along = radius * cos_angle, radius * sin_angle
+    across = y * cos_roll - upright * sin_roll
+    normal_y = sin_angle * sin_yaw - cos_yaw * (slope * cos_roll + cos_angle * sin_roll)
+    normal_z = cos_angle * cos_roll - slope * sin_roll
+    return (
+        along * cos_yaw - across * sin_yaw,
+        across * cos_yaw + along * sin_yaw + displacement,
+        y * sin_roll + upright * cos_roll,
+        -normal_y / normal_z,
+    )
+
+
+def roll_step(excess: Any, lever: Any) -> Any:
+    """Return the change of roll that levels the gaps, by Newton's method [rad].
+
+    A roll by dρ changes the least gap of a side by -(y + z tan δ) dρ: it lowers the wheel by y and moves its bottom
+    across the rail by z. On a flange the two nearly cancel.
+
+    Parameters
+    ----------
+    excess : float or ndarray
+        Least gap of the right side minus that of the left one [m].
+    lever : float or ndarray
+        Sum of y + z tan δ of both sides [m].
+    """
+    return np.minimum(np.maximum(excess / np.maximum(np.abs(lever), LEAST_LEVER), -MOST_ROLL), MOST_ROLL)
+
+
+def cubic(t: Any, step: float, left: Any, right: Any, d_left: Any, d_right: Any) -> tuple[Any, Any]:
+    """Return the value and the slope at t from 0 to 1 of the cubic with these values and slopes at both ends."""
+    rise = right - left
+    first, second = step * d_left, step * d_right
+    square, cube = 3.0 * rise - 2.0 * first - second, first + second - 2.0 * rise
+    return left + t * (first + t * (square + t * cube)), (first + t * (2.0 * square + 3.0 * t * cube)) / step
+
+
+def normal_gap(rise: Any, slope: Any, own_slope: Any) -> tuple[Any, Any]:
+    """Return the gap normal to the surface around a contact point [m], and whether the rail turns by less than 60°.
+
+    Parameters
+    ----------
+    rise : float or ndarray
+        Vertical gap above that at the contact point [m].
+    slope, own_slope : float or ndarray
+        Slope of the rail, and that at the contact point [-].
+    """
+    own = np.sqrt(1.0 + own_slope * own_slope)
+    along, half = 1.0 + slope * own_slope, 0.5 * own * np.sqrt(1.0 + slope * slope)
+    return rise * own / np.maximum(along, half), along > half
+
+
+def at(x: float, start: float, step: float, value: Array, slope: Array) -> tuple[float, float]:
+    """Return the value and the slope of a table at x; beyond its ends those of the outermost cubic."""
+    share = (x - start) / step
+    index = min(max(int(share), 0), value.size - 2)
+    found: tuple[float, float] = cubic(
+        share - index, step, value[index], value[index + 1], slope[index], slope[index + 1]
+    )
+    return found
+
+
+def near(x: float, start: float, step: float, value: Array, slope: Array) -> tuple[float, float]:
+    """Return the value and the slope of a table on straight lines; the value is infinite beyond its ends."""
+    share = (x - start) / step
+    if not 0.0 <= share < value.size - 1:
+        return np.inf, 0.0
+    index = int(share)
+    t = share - index
+    return (
+        value[index] + t * (value[index + 1] - value[index]),
+        slope[index] + t * (slope[index + 1] - slope[index]),
+    )
+
+
+@wl.compiled_loop(
+    f"void({VECTOR}, {VECTOR}, boolean, {VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, {TABLE}, {TABLE}, {TABLE}, {VECTOR},"
+    " float64[:, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1])"
+)
+def compiled_search(
+    displacement: Array,
+    yaw: Array,
+    given: bool,
+    arc: Array,
+    y: Array,
+    radius: Array,
+    slope: Array,
+    y_start: float,
+    y_step: float,
+    y_value: Array,
+    y_slope: Array,
+    r_start: float,
+    r_step: float,
+    r_value: Array,
+    r_slope: Array,
+    z_start: float,
+    z_step: float,
+    z_value: Array,
+    z_slope: Array,
+    roll: Array,
+    found: Array,
+    above: Array,
+    saddle: Array,
+    least: Array,
+) -> None:
+    """Find the roll, unless it is given, and the contact points of both wheels at each position."""
+    gap, rise = np.empty(arc.size), np.empty(arc.size)
+    place, height, cell = np.empty(PATCHES), np.empty(PATCHES), np.empty(PATCHES, np.int64)
+    lever = np.empty(2)
+    spacing = arc[2] - arc[1]
+    for point in range(displacement.size):
+        whole = True
+        for _ in range(ROLLS):
+            for side in range(2):
+                begin, end = 0, arc.size
+                if not whole:
+                    middle = int((found[point, side, 0] - arc[0]) / spacing) + 1
+                    begin = min(max(middle - WINDOW // 2, 0), arc.size - WINDOW)
+                    end = begin + WINDOW
+                sign = -1.0 if side == 0 else 1.0
+                turn = (
+                    sign * math.sin(roll[point]), math.cos(roll[point]),
+                    sign * math.sin(yaw[point]), math.cos(yaw[point]),
+                )  # fmt: skip
+                shift = sign * displacement[point]
+                for patch in range(PATCHES):
+                    place[patch], height[patch], cell[patch] = np.nan, np.inf, -1
+                for k in range(begin, end):
+                    _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn)
+                    rail, rail_slope = near(across, z_start, z_step, z_value, z_slope)
+                    gap[k], rise[k] = rail - down, rail_slope - steep
+                    if k == begin:
+                        continue
+                    falls = rise[k - 1] < 0.0 or gap[k - 1] == np.inf
+                    low = falls and rise[k] >= 0.0 and gap[k] < np.inf
+                    if not low and not (rise[k - 1] < 0.0 and gap[k - 1] < np.inf and gap[k] == np.inf):
+                        continue
+                    size = min(gap[k - 1], gap[k])
+                    last = PATCHES - 1
+                    if size >= height[last]:
+                        continue
+                    while last > 0 and size < height[last - 1]:
+                        height[last], cell[last] = height[last - 1], cell[last - 1]
+                        last -= 1
+                    height[last], cell[last] = size, k - 1
+                for patch in range(PATCHES):
+                    k = cell[patch]
+                    if k < 0:
+                        continue
+                    left, right = arc[k], arc[k + 1]
+                    if gap[k] == np.inf:
+                        left = right
+                    if gap[k + 1] == np.inf:
+                        right = left
+                    if left < right:
+                        left = max(left - WIDER * spacing, arc[0])
+                        right = min(right + WIDER * spacing, arc[arc.size - 1])
+                    at_left = at_right = 0.0
+                    for iteration in range(ROOTS + 2):
+                        root = left if iteration == 0 else right  # the ends first
+                        if iteration > 1:
+                            share = at_right / (at_right - at_left) if at_right != at_left else 0.0
+                            root = right - share * (right - left)
+                        there, d_there = at(root, y_start, y_step, y_value, y_slope)
+                        size, d_size = at(root, r_start, r_step, r_value, r_slope)
+                        _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
+                        rail, rail_slope = at(across, z_start, z_step, z_value, z_slope)
+                        value = rail_slope - steep
+                        if iteration == 0:
+                            at_left = value
+                            continue
+                        height[patch] = rail - down
+                        if iteration == 1:
+                            at_right = value
+                            continue
+                        if value * at_right > 0.0:
+                            at_left *= 0.5
+                        else:
+                            left, at_left = right, at_right
+                        right, at_right = root, value
+                        if abs(value) < ROUNDING or right == left:
+                            break
+                    place[patch] = right
+                for first in range(PATCHES - 1):  # sort by the gap at the roots
+                    for patch in range(PATCHES - 1 - first):
+                        if height[patch + 1] < height[patch]:
+                            height[patch], height[patch + 1] = height[patch + 1], height[patch]
+                            place[patch], place[patch + 1] = place[patch + 1], place[patch]
+                            cell[patch], cell[patch + 1] = cell[patch + 1], cell[patch]
+                least[point, side] = height[0]
+                if cell[0] >= 0:
+                    there, d_there = at(place[0], y_start, y_step, y_value, y_slope)
+                    size, d_size = at(place[0], r_start, r_step, r_value, r_slope)
+                    _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
+                    _, rail_slope = at(across, z_start, z_step, z_value, z_slope)
+                    lever[side] = across + rail_slope * down
+                for patch in range(PATCHES):
+                    found[point, side, patch] = place[patch]
+                    above[point, side, patch] = height[patch] - height[0] if cell[patch] >= 0 else np.nan
+                    highest = -np.inf
+                    for k in range(min(cell[0], cell[patch]) + 1, max(cell[0], cell[patch]) + 1):
+                        highest = max(highest, gap[k])
+                    saddle[point, side, patch] = highest - height[0] if cell[patch] >= 0 else np.nan
+            excess = least[point, 1] - least[point, 0]
+            lost = math.isnan(found[point, 0, 0]) or math.isnan(found[point, 1, 0])
+            if given or (whole and not abs(excess) > ROLL_ACCURACY):
+                break
+            whole = lost or not abs(excess) > ROLL_ACCURACY
+            if not whole:
+                roll[point] += roll_step(excess, lever[0] + lever[1])
+
+
+@wl.compiled_loop(f"void({VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, float64, {TABLE}, {TABLE}, {TABLE}, float64[:, ::1])")
+def compiled_samples(
+    displacement: Array,
+    roll: Array,
+    yaw: Array,
+    arc: Array,
+    spacing: float,
+    y_start: float,
+    y_step: float,
+    y_value: Array,
+    y_slope: Array,
+    r_start: float,
+    r_step: float,
+    r_value: Array,
+    r_slope: Array,
+    z_start: float,
+    z_step: float,
+    z_value: Array,
+    z_slope: Array,
+    samples: Array,
+) -> None:
+    """Fill in the gaps around contact points, (points, samples), for wheels in outward coordinates."""
+    count = samples.shape[1]
+    end, rail_end = y_start + y_step * (y_value.size - 1), z_start + z_step * (z_value.size - 1)
+    for point in range(arc.size):
+        turn = math.sin(roll[point]), math.cos(roll[point]), math.sin(yaw[point]), math.cos(yaw[point])
+        own = own_slope = 0.0
+        for step in range(count + 1):
+            k = step - 1 if step else count // 2  # the contact point first
+            place = arc[point] + spacing * (k - count // 2)
+            there, d_there = at(place, y_start, y_step, y_value, y_slope)
+            size, d_size = at(place, r_start, r_step, r_value, r_slope)
+            _, across, down, _ = locus(there, size, d_size / d_there, displacement[point], turn)
+            rail, slope = at(across, z_start, z_step, z_value, z_slope)
+            if not step:
+                own, own_slope = rail - down, slope
+            elif place < y_start or place > end or across < z_start or across > rail_end:
+                samples[point, k] = np.inf
+            else:
+                normal, facing = normal_gap(rail - down - own, slope, own_slope)
+                samples[point, k] = normal if facing else np.inf

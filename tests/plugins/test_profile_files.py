@@ -1,0 +1,409 @@
+"""Files of profiles: what readers take, what they refuse and where, and what comes back from writing."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import wearlaw as wl
+import wearlaw_wheelset as ws
+from tests.plugins.published_profiles import S1002, UIC60
+from wearlaw import Array, Q
+from wearlaw_wheelset._files import LARGEST
+
+WHEEL, RAIL = ws.Profile.s1002(), ws.Profile.uic60()
+ENDINGS = {"wheel": (".prw", ".whl", ".csv", ".txt"), "rail": (".prr", ".ban", ".csv", ".txt")}
+
+BACK, SIDE = np.array([70.0, 0.0]), np.array([2.0, 0.0])
+
+HEAD = """
+! *** SIMPACK Rail-Wheel Profile ***
+  header.begin
+    version = 1 ! Version flag
+    type    = {kind} ! 0=rail profile, 1=wheel profile
+  header.end
+  spline.begin
+    approx.smooth  = +0.000000000000000e+00   ! Approximation smoothing value
+    file           = 'S1002_v3.whe.txt'       ! Original data file
+    file.mtime     =  0
+    comment        = 'a ! or a % in quotes'   ! Comment
+    type           =  0
+    {changes}
+!   units.len      = 'mm'
+    units.len.f    = +1.000000000000000e+03
+    units.ang.f    = +1.000000000000000e+00
+    point.begin
+    ! y value (lengths unit)  z value (lengths unit)    weight (default=1.0)
+"""
+TAIL = "    point.end\n  spline.end\n"
+
+
+def rows(points: Array, mark: str = "\t") -> str:
+    return "".join(mark.join(f"{value:.7E}" for value in row) + "\n" for row in points)
+
+
+def simpack(points: Array, changes: str = "", kind: int = 1) -> str:
+    return HEAD.format(kind=kind, changes="\n".join(changes.split(";"))) + rows(points) + TAIL
+
+
+def saved(folder: Path, name: str, text: str | bytes) -> Path:
+    path = folder / name
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    return path
+
+
+def table(spacing: float = 1.0, profile: ws.Profile = WHEEL) -> Array:
+    """Return points of a profile in mm, one row each."""
+    curve = profile.curve
+    s = np.linspace(curve.s[0], curve.s[-1], round((curve.s[-1] - curve.s[0]) / spacing / 1e-3))
+    y, z, *_ = curve.at(s)
+    return 1e3 * np.stack([y, z], axis=1)
+
+
+def values(profile: ws.Profile) -> Array:
+    return np.stack([value.magnitude for value in profile.points], axis=1)
+
+
+# Simpack -------------------------------------------------------------------------------------------------------------
+
+
+def test_the_wheel_of_the_benchmark_is_mirrored_as_its_file_says(tmp_path: Path) -> None:
+    text = simpack(S1002, "mirror.y = 1;mirror.z = 0;inversion = 1")
+    found = values(ws.read_profile(saved(tmp_path, "S1002.PRW", text)))
+    assert found == pytest.approx(S1002 * [-1.0, 1.0], abs=1e-12)
+    with pytest.raises(wl.DataError, match=r"S1002\.PRW': the wheel is mirrored: .* has line 2\d "):
+        ws.read_profile(saved(tmp_path, "S1002.PRW", text.replace("mirror.y = 1", "mirror.y = 0")))
+    found = values(ws.read_profile(tmp_path / "S1002.PRW", mirror_y=True))
+    assert found == pytest.approx(S1002 * [-1.0, 1.0], abs=1e-12)
+
+
+def test_the_rail_of_the_benchmark_shows_that_it_is_canted(tmp_path: Path) -> None:
+    rail = ws.read_profile(saved(tmp_path, "UIC60.prr", simpack(UIC60, kind=0)), smoothing="0 mm")
+    assert rail.kind == "rail"
+    # Points up to 4 mm apart: a spline through them is off by 5/384 h⁴/R³, 1.5e-3 mm, on 40 mm.
+    assert rail.apparent_cant.to("rad").magnitude == pytest.approx(1.0 / 40.0, abs=2e-4)
+
+
+def turned(points: Array, angle: float) -> Array:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    result: Array = points @ np.array([[cosine, sine], [-sine, cosine]])
+    return result
+
+
+@pytest.mark.parametrize(
+    ("changes", "change"),
+    [
+        ("shift.y = 2.0;shift.z = -1.5", lambda p: p + np.array([2.0, -1.5])),
+        ("rotate = 0.01", lambda p: turned(p, 0.01)),
+        ("shift.y = 2.0;rotate = 0.01", lambda p: turned(p + SIDE, 0.01)),
+        ("rotate = 0.5;units.ang.f = 57.29577951308232", lambda p: turned(p, np.deg2rad(0.5))),
+        ("shift.y = 2.0;bound.y.min = -60.0;bound.y.max = 50.0", lambda p: (p + SIDE)[np.abs(p[:, 0] + 7.0) <= 55.0]),
+        ("bound.y.min = 1.0;bound.y.max = 0.0", lambda p: p),
+        ("bound.z.min = -2.0;bound.z.max = 99.0", lambda p: p[p[:, 1] >= -2.0]),
+        ("inversion = 1", lambda p: p),
+        ("units.len.f = 1.0E+03", lambda p: p),
+        ("units.len.f = 1.0D+03", lambda p: p),
+        ("units.len.f = 500.0", lambda p: 2.0 * p),
+        ("point.dist.min = 1.5", lambda p: p[::2]),
+    ],
+)  # fmt: skip
+def test_a_header_changes_the_points_in_the_order_of_its_numbers(tmp_path: Path, changes: str, change: Any) -> None:
+    points = table()
+    text = simpack(points, changes)
+    text = text.replace("    units.len.f    = +1.000000000000000e+03\n", "", "units.len.f" in changes)
+    text = text.replace("    units.ang.f    = +1.000000000000000e+00\n", "", "units.ang.f" in changes)
+    found = values(ws.read_profile(saved(tmp_path, "a.prw", text)))
+    # Eight digits are printed of at most 70 mm, doubled by the unit: 0.5e-6 mm and its double.
+    assert found == pytest.approx(change(points), abs=1.1e-6)
+
+
+def test_mirrors_come_after_shifts_and_turns(tmp_path: Path) -> None:
+    points = table()
+    text = simpack(points * [-1.0, -1.0], "mirror.z = 1;mirror.y = 1;shift.y = 2.0;shift.z = 1.0;rotate = 0.01")
+    found = values(ws.read_profile(saved(tmp_path, "a.prw", text)))
+    expected = turned(points * [-1.0, -1.0] + np.array([2.0, 1.0]), 0.01) * [-1.0, -1.0]
+    assert found == pytest.approx(expected, abs=1.1e-6)
+
+
+def test_weights_are_read_and_a_weight_of_zero_leaves_a_point_out(tmp_path: Path) -> None:
+    points = table()
+    weights = np.where(np.arange(len(points)) % 2, 2.0, 1.0)
+    weights[5] = 0.0
+    text = simpack(np.column_stack([points, weights]))
+    profile = ws.read_profile(saved(tmp_path, "a.prw", text), smoothing="0.01 mm")
+    assert profile.weights == tuple(np.delete(weights, 5))
+    assert values(profile) == pytest.approx(np.delete(points, 5, axis=0), abs=1e-6)
+    some = simpack(points).splitlines()
+    some[21] += "\t3.0"
+    found = ws.read_profile(saved(tmp_path, "a.prw", "\n".join(some))).weights
+    assert found == (1.0, 1.0, 1.0, 3.0, *[1.0] * (len(points) - 4))
+    assert ws.read_profile(saved(tmp_path, "a.prw", simpack(points))).weights is None
+
+
+def test_a_file_without_units_takes_those_of_the_argument(tmp_path: Path) -> None:
+    text = simpack(table() / 25.4).replace("    units.len.f    = +1.000000000000000e+03\n", "")
+    found = values(ws.read_profile(saved(tmp_path, "a.prw", text), units="inch"))
+    assert found == pytest.approx(table(), abs=1.3e-5)
+    with pytest.raises(wl.DataError, match=r"a\.prw': units: "):
+        ws.read_profile(tmp_path / "a.prw", units="kg")
+
+
+def test_an_unknown_key_and_smoothing_of_the_file_are_said(tmp_path: Path) -> None:
+    with pytest.warns(wl.WearlawWarning, match=r"line 13 .* the key 'miror\.y' is not known"):
+        ws.read_profile(saved(tmp_path, "a.prw", simpack(table(), "miror.y = 1")))
+    text = simpack(table()).replace("approx.smooth  = +0.0", "approx.smooth  = +2.5")
+    with pytest.warns(wl.WearlawWarning, match=r"approx\.smooth = 2\.5, .* give smoothing as a length"):
+        ws.read_profile(saved(tmp_path, "a.prw", text))
+
+
+def test_smoothing_is_that_of_the_argument(tmp_path: Path) -> None:
+    path = saved(tmp_path, "a.prw", simpack(table()))
+    assert ws.read_profile(path, smoothing="0.02 mm").smoothing == Q(0.02, "mm")
+    assert ws.read_profile(path).smoothing == Q(0.0, "mm")
+
+
+# MiniProf ------------------------------------------------------------------------------------------------------------
+
+NEW = """ProgramName=MiniProf for Windows
+Side=%R
+Xoffset=0.0000
+Yoffset=0.0000
+"RefPoint1="
+ColumnDef={columns}
+XYPoints={count}
+{more}
+
+"""
+OLD = """MINIPROF 101 148 1994 3 24
+Stock.......:
+32.58 37.11 14.71  (Sd/Sh/qR)
+
+"""
+
+
+def test_a_wheel_of_miniprof_has_its_taping_line_behind_its_flange(tmp_path: Path) -> None:
+    """X counts from the back of the flange, and Y down to its tip; see the files of CONTACT's test bank."""
+    points = table()
+    count, measured = len(points), points + BACK
+    text = NEW.format(columns="X,Y", count=count, more="WheelDiameterTaperline=70.0000\nSd=32.5") + rows(measured, " ")
+    assert values(ws.read_profile(saved(tmp_path, "a.whl", text))) == pytest.approx(points, abs=1e-5)
+    text = text.replace("WheelDiameterTaperline=70.0000\n", "")
+    with pytest.raises(wl.DataError, match=r'a\.whl\': the wheel must have its origin at .* shift_y="-70 mm"'):
+        ws.read_profile(saved(tmp_path, "a.whl", text))
+    assert values(ws.read_profile(tmp_path / "a.whl", shift_y="-70 mm")) == pytest.approx(points, abs=1e-5)
+    old = OLD + rows(np.column_stack([measured, np.zeros(count)]), " ")
+    assert values(ws.read_profile(saved(tmp_path, "old.WHL", old), shift_y="-70 mm")) == pytest.approx(points, abs=1e-5)
+
+
+def test_a_rail_of_miniprof_has_its_gauge_side_at_positive_x(tmp_path: Path) -> None:
+    points = table(profile=RAIL.turned("-1 deg"))
+    measured = np.column_stack([points[:, 1] * 0.0, -points[:, 1], -points[:, 0]])
+    text = NEW.format(columns="A, Y ,X", count=len(points), more="Rail=R").replace("Xoffset=0.0", "XOffset=3.0")
+    found = values(ws.read_profile(saved(tmp_path, "a.ban", text + rows(measured - np.array([0.0, 0.0, 3.0]), "  "))))
+    assert found == pytest.approx(points, abs=1e-6)
+    profile = ws.read_profile(tmp_path / "a.ban", mirror_y=True)
+    assert values(profile) == pytest.approx((points * [-1.0, 1.0])[::-1], abs=1e-6)
+
+
+def test_points_of_miniprof_may_be_commented_out_and_named_otherwise(tmp_path: Path) -> None:
+    points = table()
+    lines = rows(points + BACK, " ").splitlines()
+    lines[5] = '" ' + lines[5] + " % too close"
+    lines[7] += " % end of an arc"
+    text = NEW.format(columns="X,Y", count=len(points), more="WheelDiameterTaperline=70") + "\n".join(lines)
+    found = values(ws.read_profile(saved(tmp_path, "a.dat", text), kind="wheel"))
+    assert found == pytest.approx(np.delete(points, 5, axis=0), abs=1e-5)
+
+
+# Two columns ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize(
+    ("mark", "head", "unit", "decimal"),
+    [
+        (" ", "", 1.0, "."),
+        ("\t", "# y z\n", 1.0, "."),
+        (",", "y,z\n", 1.0, "."),
+        (", ", '"y [m]","z [m]"\n', 1e-3, "."),
+        (";", "sep=;\ny (cm);z (cm)\n", 0.1, ","),
+        ("   ", "Y [m]   Z [mm]\n", (1e-3, 1.0), "."),
+        ("\t", "lateral\tdown\n", 1.0, ","),
+    ],
+)
+def test_two_columns_are_read_as_programs_write_them(
+    tmp_path: Path, mark: str, head: str, unit: Any, decimal: str, encoding: str
+) -> None:
+    points = table()
+    text = (head + rows(points * unit, mark).replace(".", decimal)).encode(encoding)
+    found = ws.read_profile(saved(tmp_path, "a.csv", text), kind="wheel")
+    assert values(found) == pytest.approx(points, abs=1e-5)
+
+
+def test_columns_are_found_by_their_names(tmp_path: Path) -> None:
+    points = table()
+    text = "n,z [mm],y [mm]\n" + rows(np.column_stack([np.arange(len(points)), points[:, ::-1]]), ",")
+    assert values(ws.read_profile(saved(tmp_path, "a.csv", text), kind="wheel")) == pytest.approx(points, abs=1e-6)
+    metres = "\n".join(f"{y * 1e-3},{z * 1e-3}" for y, z in points)
+    assert values(ws.read_profile(saved(tmp_path, "a.csv", metres), kind="wheel", units="m")) == pytest.approx(points)
+
+
+# Errors --------------------------------------------------------------------------------------------------------------
+
+GOOD = simpack(table())
+COLUMNS = "y,z\n" + rows(table(), ",")
+MEASURED = NEW.format(columns="X,Y", count=len(table()), more="WheelDiameterTaperline=70") + rows(table() + BACK, " ")
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("a.prw", GOOD.replace("type    = 1", "type    = 0"), "its ending says wheel, its header says rail"),
+        ("a.prw", GOOD.replace("type    = 1", "type    = 2"), "line 5: type must be 0 for a rail or 1 .*, got '2'"),
+        ("a.prw", GOOD.replace("+1.000000000000000e+03", "many"), r"line 15: units\.len\.f must be .* got 'many'"),
+        ("a.prw", GOOD.replace("+1.000000000000000e+03", "0.0"), r"units\.len\.f must be positive, got 0"),
+        ("a.prw", GOOD.replace("spline.end", ""), "it ends in the section 'spline'; is it whole"),
+        ("a.prw", GOOD.replace(TAIL, ""), "it ends in the section 'point'; is it whole"),
+        ("a.prw", "", r"it has no spline\.begin"),
+        ("a.prw", GOOD.replace("header.end", ""), r"line 7: 'spline\.begin' stands inside 'header'"),
+        ("a.prw", GOOD.replace("header.begin", "header.end", 1), r"line 3: 'header\.end' stands outside of any"),
+        ("a.prw", GOOD.replace("point.begin", "points"), "line 17: expected 'key = value' or .* found 'points'"),
+        ("a.prw", simpack(table()[:0]), "it has no points"),
+        ("a.prw", simpack(table(), "bound.y.min = 90.0;bound.y.max = 91.0"), "its header leaves out all of its points"),
+        ("a.prw", simpack(table()[:, :1]), "line 19: a point has 2 numbers, found 1"),
+        ("a.prw", GOOD.replace("\t", "\tnan", 1), "line 19: a coordinate must be a number, got 'nan"),
+        ("a.prw", GOOD.replace("\t", "\t1e999 ", 1), "line 19: a coordinate must be a number, got '1e999'"),
+        ("a.prw", simpack(table(20.0)), "a profile needs 10 to 20000 points, got 8"),
+        ("a.prw", simpack(np.repeat(table(), 2, axis=0)), r"line 20 \(y = .*\) is the same as .* \(15\d "),
+        ("a.prw", simpack(1e-3 * table()), "0.13 mm wide, .* were they in metres"),
+        ("a.prw", simpack(table() * [1.0, -1.0]), r"upside down: .* has line 45 \(y = -54.9832 mm.*mirror_z=True"),
+        ("a.whl", MEASURED.replace("X,Y", "X,Z"), "line 6: ColumnDef must name the columns X and Y, got 'X,Z'"),
+        ("a.whl", MEASURED.replace("\n\n", "\n"), "no empty line between its header and its points"),
+        ("a.whl", "\n".join(MEASURED.splitlines()[:-7]), r"XYPoints says 153 points, but it has 146; is it whole"),
+        ("a.whl", MEASURED.replace("=70", "=x"), "wheeldiametertaperline in the header must be a number, got 'x'"),
+        ("a.txt", MEASURED, "does not say whether it is a wheel or a rail; give kind="),
+        ("a.csv", COLUMNS, "does not say whether it is a wheel or a rail; give kind="),
+        ("a.csv", "y,z\n1.0,x\n", "line 2: a coordinate must be a number, got 'x'"),
+        ("a.csv", "y;z\n1.0;1.2.3\n", "line 2: a coordinate must be a number, got '1.2.3'"),
+        ("a.csv", "y,z\n1.0\n", "line 2: a point has two numbers, y and z, found 1"),
+        ("a.csv", "y [kg],z [mm]\n1.0,2.0\n", "line 1: .*kg"),
+        ("a.csv", "z\n1.0\n", "line 1: a header names y and z, found 1 columns"),
+        ("a.csv", "y,z\n1.0,2.0\nz,y\n", "line 3: a coordinate must be a number, got 'z'"),
+        ("a.csv", "# nothing\n", "it has no points"),
+        ("a.xlsx", COLUMNS, r"the ending '\.xlsx' is not known; give a file that ends in \.prw, "),
+        ("a.prw", b"\x89PNG\0\0", "it is not text"),
+        ("a.prw", b"\xff\xfe\x00", "it is not text in UTF-8"),
+        ("a.csv", b" " * (LARGEST + 1), "it has 4 MiB, but a profile may have 4 MiB; is it a profile"),
+    ],
+)  # fmt: skip
+def test_a_file_that_is_no_profile_says_where_and_why(tmp_path: Path, name: str, text: Any, message: str) -> None:
+    path = saved(tmp_path, name, text)
+    with pytest.raises(wl.DataError, match=message) as caught:
+        ws.read_profile(path)
+    assert str(caught.value).startswith(f"profile '{path}': ")
+
+
+def test_kinds_that_contradict_each_other_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(wl.DataError, match="the argument kind says rail, its ending says wheel, its header says wheel"):
+        ws.read_profile(saved(tmp_path, "a.prw", GOOD), kind="rail")
+
+
+def test_what_is_no_regular_file_is_not_read(tmp_path: Path) -> None:
+    with pytest.raises(wl.DataError, match="there is no such file in '"):
+        ws.read_profile(tmp_path / "a.prw")
+    with pytest.raises(wl.DataError, match="it is a folder"):
+        ws.read_profile(tmp_path)
+    with pytest.raises(wl.DataError, match="it cannot be read"):
+        ws.read_profile("a\0.prw")
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "pipe.prw")
+        with pytest.raises(wl.DataError, match="it is not a regular file"):
+            ws.read_profile(tmp_path / "pipe.prw")
+
+
+# Writing -------------------------------------------------------------------------------------------------------------
+
+
+@st.composite
+def profiles(draw: st.DrawFn) -> ws.Profile:
+    """Draw profiles by formula, moved, and profiles from uneven points of them."""
+    profile = draw(st.sampled_from([WHEEL, RAIL]))
+    small = st.floats(-3.0, 3.0)
+    profile = profile.turned(Q(draw(small), "deg")).shifted(y=Q(draw(small), "mm"), z=Q(draw(small), "mm"))
+    if draw(st.booleans()):
+        return profile
+    curve = profile.curve
+    steps = np.cumsum(draw(st.lists(st.floats(0.2, 2.0), min_size=20, max_size=60)))
+    y, z, *_ = curve.at(curve.s[0] + steps / steps[-1] * (curve.s[-1] - curve.s[0]))
+    way = draw(st.sampled_from([1, -1]))
+    return ws.Profile.from_points(y=Q(1e3 * y[::way], "mm"), z=Q(1e3 * z[::way], "mm"), kind=profile.kind)
+
+
+@settings(max_examples=30, deadline=None)
+@given(profile=profiles(), number=st.integers(0, 3))
+def test_a_written_profile_is_read_again(tmp_path_factory: pytest.TempPathFactory, profile: Any, number: int) -> None:
+    path = tmp_path_factory.mktemp("written") / f"a{ENDINGS[profile.kind][number]}"
+    ws.write_profile(path, profile)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        again = ws.read_profile(path, kind=profile.kind)
+    # Nine decimals of a mm, and rounding of 70 mm in the conversions between mm and m.
+    assert values(again) == pytest.approx(values(profile), rel=0.0, abs=0.5e-9 + 4.0 * np.spacing(70.0))
+    assert ws.read_profile(path, kind=profile.kind) == again
+
+
+def test_a_smoothed_profile_is_written_smooth(tmp_path: Path) -> None:
+    y, z = table(0.25).T
+    noise = np.random.default_rng(5).normal(0.0, 0.01, z.size)
+    profile = ws.Profile.from_points(y=Q(y, "mm"), z=Q(z + noise, "mm"), kind="wheel", smoothing="0.01 mm")
+    ws.write_profile(tmp_path / "a.prw", profile)
+    again = ws.read_profile(tmp_path / "a.prw").curve
+    assert values(ws.read_profile(tmp_path / "a.prw")) == pytest.approx(
+        1e3 * np.stack([profile.curve.y, profile.curve.z], axis=1), abs=1e-9
+    )
+    # Rounded by 0.5e-12 m, at steps of 0.05 mm, the second difference is off by 2e-12/2.5e-9 = 8e-4/m, and the cubic
+    # spline amplifies that threefold.
+    inside = slice(3, -3)
+    assert again.curvature[inside] == pytest.approx(
+        np.interp(again.s[inside], profile.curve.s, profile.curve.curvature), abs=0.1
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("a.prr", r"a\.prr': the profile is that of a wheel, so its ending must be \.prw"),
+        ("a.ban", r"its ending must be \.whl"),
+        ("a.xls", r"its ending must be one of \.prw, \.whl, \.prr, \.ban, \.csv, \.txt"),
+    ],
+)
+def test_a_wrong_ending_is_refused(tmp_path: Path, name: str, message: str) -> None:
+    with pytest.raises(wl.InputError, match=message):
+        ws.write_profile(tmp_path / name, WHEEL)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.prw"
+    path.write_text("before")
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "replace", full)
+        with pytest.raises(wl.OutputError, match=r"cannot write '.*a\.prw': No space left on device"):
+            ws.write_profile(path, WHEEL)
+    assert [one.name for one in tmp_path.iterdir()] == ["a.prw"]
+    assert path.read_text() == "before"
+    with pytest.raises(wl.OutputError, match="cannot write"):
+        ws.write_profile(tmp_path / "none" / "a.prw", WHEEL)
+    ws.write_profile(path, WHEEL)
+    assert ws.read_profile(path).kind == "wheel"

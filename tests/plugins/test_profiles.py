@@ -1,0 +1,712 @@
+"""Profiles of wheels and rails against published points, closed forms and an independent spline."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+import re
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import jsonschema  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+import scipy
+
+import wearlaw as wl
+import wearlaw_wheelset as ws
+from tests.plugins.published_profiles import S1002, UIC60
+from wearlaw import Array, Q
+from wearlaw_wheelset._curve import SPACING, Curve, smoothed
+from wearlaw_wheelset._formulas import FORMULAS
+from wearlaw_wheelset._points import crossed_steps
+
+MM = 1e-3
+WHEEL, RAIL = ws.Profile.s1002(), ws.Profile.uic60()
+PRINTED_STEPS = (-35.0 * MM, -26.0 * MM)
+"""Where the printed formulas of S1002 leave steps of 1.2e-4 and 3.7e-5 mm, from their rounded coefficients."""
+
+
+def distance(curve: Curve, y: Array, z: Array) -> Array:
+    """Return the signed distances of points from a curve [m], along the normals through them."""
+    nearest = np.argmin(np.hypot(curve.y - y[:, None], curve.z - z[:, None]), axis=1)
+    s = curve.s[nearest]
+    for _ in range(8):
+        at_y, at_z, angle, _ = curve.at(s)
+        along = (y - at_y) * np.cos(angle) + (z - at_z) * np.sin(angle)
+        s = np.clip(s + along, curve.s[0], curve.s[-1])
+    at_y, at_z, angle, _ = curve.at(s)
+    found: Array = (z - at_z) * np.cos(angle) - (y - at_y) * np.sin(angle)
+    return found
+
+
+def inner(curve: Curve, count: int, seed: int = 0) -> Array:
+    """Return random arc lengths on a curve."""
+    return np.random.default_rng(seed).uniform(curve.s[0], curve.s[-1], count)
+
+
+# Formulas ------------------------------------------------------------------------------------------------------------
+
+
+def test_s1002_is_that_of_the_benchmark() -> None:
+    y, z = (S1002 * MM).T
+    assert np.abs(distance(WHEEL.curve, -y, z)).max() < 1.6e-6 * MM
+
+
+def test_uic60_is_that_of_the_benchmark_with_its_sides() -> None:
+    """The origin of the file is fitted, since its highest point is not printed; shape and cant are not."""
+    curve = RAIL.turned(Q(-np.arctan(1.0 / 40.0), "rad")).curve
+    origin = np.array([7.5, -0.1]) * MM
+    for _ in range(5):
+        y, z = (UIC60 * MM + origin).T
+        nearest = np.argmin(np.hypot(curve.y - y[:, None], curve.z - z[:, None]), axis=1)
+        normal = np.stack([-np.sin(curve.angle[nearest]), np.cos(curve.angle[nearest])], axis=1)
+        apart = distance(curve, y, z)
+        origin -= np.linalg.lstsq(normal, apart)[0]
+    assert np.abs(apart).max() < 3.1e-5 * MM
+
+
+def test_the_length_of_uic60_is_that_of_its_arcs() -> None:
+    side, first = np.arctan(20.0), np.arcsin(10.5 / 300.0)
+    # The angle at the end of the arc of 80 mm follows from y = 36 mm at the end of that of 13 mm.
+    second = np.arcsin((36.0 - 220.0 * np.sin(first) - 13.0 * np.sin(side)) / 67.0)
+    depth = 300.0 - 220.0 * np.cos(first) - 67.0 * np.cos(second) - 13.0 * np.cos(side)
+    arcs = 300.0 * first + 80.0 * (second - first) + 13.0 * (side - second)
+    half = arcs + (37.0 - depth) * np.hypot(1.0, 1.0 / 20.0)
+    curve = RAIL.curve
+    assert [-curve.s[0], curve.s[-1]] == pytest.approx([half * MM, half * MM], rel=1e-13)
+    assert [curve.y[-1], curve.z[-1]] == pytest.approx([(36.0 + (37.0 - depth) / 20.0) * MM, 37.0 * MM], rel=1e-13)
+    assert curve.angle[[0, -1]] == pytest.approx([-side, side], rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("profile", "y", "radius"),
+    [
+        (WHEEL, -66.0, 20.5), (WHEEL, -55.0, 12.0), (WHEEL, -45.0, 20.0), (WHEEL, -39.0, np.inf),
+        (WHEEL, -37.0, -13.0), (WHEEL, 45.0, np.inf), (RAIL, 0.0, 300.0), (RAIL, -20.0, 80.0), (RAIL, 32.0, 13.0),
+        (RAIL, 36.5, np.inf),
+    ],
+)  # fmt: skip
+def test_the_curvature_of_arcs_is_theirs_up_to_the_joints(profile: ws.Profile, y: float, radius: float) -> None:
+    curve = profile.curve
+    s = float(np.interp(y * MM, curve.y, curve.s))
+    edges = np.array([curve.s[0], *curve.joints, curve.s[-1]])
+    low, high = edges[np.searchsorted(edges, s) - 1], edges[np.searchsorted(edges, s)]
+    along = np.linspace(low, high, 999)[1:-1]
+    assert curve.at(along)[3] == pytest.approx(1e3 / radius, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("profile", [WHEEL, RAIL])
+def test_a_curve_is_that_of_its_formula(profile: ws.Profile) -> None:
+    assert profile.formula is not None
+    pieces = FORMULAS[profile.formula][1]()
+    curve, ends = profile.curve, np.append(0.0, np.cumsum([piece.length for piece in pieces]))
+    s = inner(curve, 20_000)
+    which = np.searchsorted(ends, s - curve.s[0], side="right") - 1
+    for number, piece in enumerate(pieces):
+        here = s[which == number]
+        y, z, angle, rate = piece.at(here - curve.s[0] - ends[number])
+        found = curve.at(here)
+        smooth = np.min([np.abs(y - step) for step in PRINTED_STEPS if profile is WHEEL] or [y + 1.0], axis=0) > SPACING
+        far = np.min(np.abs(here[:, None] - curve.joints), axis=1) > SPACING
+        assert np.hypot(found[0] - y, found[1] - z)[smooth].max(initial=0.0) < 1e-9
+        assert np.hypot(found[0] - y, found[1] - z).max() < 1.2e-7
+        # Hermite's error of θ is h⁴/384 of its fourth derivative, and that of κ h²/8 of its second. The largest are
+        # those of the polynomials of S1002: κ' = 1.06e4/m², κ'' = 3.5e6/m³, and 5e9/m⁴.
+        assert np.abs(found[2] - angle)[far].max() < 1e-10
+        assert np.abs(found[3] - curve.sign * rate)[far].max() < 1.1e-3
+        # In a cell with a joint the curvature of each side is constant.
+        assert np.abs(found[2] - angle).max() < 0.5 * SPACING**2 * 1.06e4
+        assert np.abs(found[3] - curve.sign * rate).max() < SPACING * 1.06e4
+
+
+@pytest.mark.parametrize("profile", [WHEEL, RAIL])
+def test_angle_and_curvature_are_those_of_differences(profile: ws.Profile) -> None:
+    """Angle and curvature are derivatives by arc length, from central differences of the table."""
+    curve = profile.curve
+    step = curve.s[1] - curve.s[0]
+    edges = np.append(curve.joints, curve.s[[0, -1]])
+    far = np.min(np.abs(curve.s[1:-1, None] - edges), axis=1) > 2.0 * step
+    dy, dz = (value[2:] - value[:-2] for value in (curve.y, curve.z))
+    slope = np.arctan2(dz, dy)
+    # Second order: h²/6 of the third derivative of the position, κ² + κ' = 1.65e4/m², and of κ'' = 3.5e6/m³.
+    assert np.abs(slope - curve.angle[1:-1])[far].max() < 7e-6
+    rate = (curve.angle[2:] - curve.angle[:-2]) / (2.0 * step)
+    assert np.abs(curve.sign * rate - curve.curvature[1:-1])[far].max() < 1.5e-3
+    # A chord of 2h is shorter than its arc by (2hκ)²/24 of it.
+    assert np.hypot(dy, dz)[far] == pytest.approx(2.0 * step, rel=3e-6)
+
+
+@pytest.mark.parametrize("profile", [WHEEL, RAIL])
+def test_the_tangent_is_continuous_everywhere(profile: ws.Profile) -> None:
+    """One-sided differences over 1e-9 m of positions of 0.1 m have a rounding of 3e-8."""
+    curve, near = profile.curve, 1e-9
+    places = np.concatenate([curve.s[1:-1], curve.joints])
+    before, here, after = (np.stack(curve.at(places + side)[:2]) for side in (-near, 0.0, near))
+    turn = np.hypot(*((after - here) - (here - before))) / near
+    assert turn.max() < 4.0 * (near * 84.0 + 2.0 * np.spacing(0.1) / near)
+
+
+def test_arc_lengths_have_any_shape_and_end_with_the_profile() -> None:
+    curve = RAIL.curve
+    assert curve.at(0.0)[:2] == pytest.approx((0.0, 0.0), abs=1e-15)
+    found = curve.at(np.zeros((2, 3, 4)))
+    assert [value.shape for value in found] == [(2, 3, 4)] * 4
+    ends = curve.at(curve.s[[0, -1]])
+    assert ends[0].tolist() == curve.y[[0, -1]].tolist()
+    for wrong in (curve.s[-1] + 1e-9, curve.s[0] - 1e-9, np.nan):
+        with pytest.raises(wl.InputError, match=r"from -65\.694 to 65\.694 mm"):
+            curve.at([0.0, wrong])
+    with pytest.raises(ValueError, match="read-only"):
+        curve.y[0] = 1.0
+
+
+# Points --------------------------------------------------------------------------------------------------------------
+
+
+def sampled(profile: ws.Profile, spacing: float, **options: Any) -> ws.Profile:
+    """Return a profile through points of another one, at a spacing in mm."""
+    curve = profile.curve
+    y, z, *_ = curve.at(np.linspace(curve.s[0], curve.s[-1], round((curve.s[-1] - curve.s[0]) / spacing / MM)))
+    return ws.Profile.from_points(y=Q(y, "m"), z=Q(z, "m"), kind=profile.kind, **options)
+
+
+def circle(radius: float, kind: Any, width: float = 80.0, count: int = 400) -> ws.Profile:
+    """Return an arc of a circle with its top or bottom at the origin; a negative radius is a hollow."""
+    angle = np.linspace(-1.0, 1.0, count) * np.arcsin(0.5 * width / abs(radius))
+    up = 1.0 if kind == "rail" else -1.0
+    return ws.Profile.from_points(
+        y=Q(abs(radius) * np.sin(angle), "mm"), z=Q(up * radius * (1.0 - np.cos(angle)), "mm"), kind=kind
+    )
+
+
+@pytest.mark.parametrize("kind", ["wheel", "rail"])
+@pytest.mark.parametrize("radius", [50.0, 300.0, -500.0])
+def test_a_circle_through_points_has_its_curvature_and_length(kind: str, radius: float) -> None:
+    curve = circle(radius, kind).curve
+    half = np.arcsin(40.0 / abs(radius)) * abs(radius) * MM
+    # A cubic spline is off by 5/384 h⁴ of the fourth derivative 1/R³: 1e-13 m with h = 0.27 mm on R = 50 mm.
+    assert [-curve.s[0], curve.s[-1]] == pytest.approx([half, half], rel=1e-9)
+    # Its curvature is off by h²/12 of that derivative over 1/R, and several times that in the first cells.
+    assert curve.curvature == pytest.approx(1e3 / radius, rel=1e-4)
+    assert curve.angle == pytest.approx(curve.sign * curve.s / (radius * MM), abs=1e-7)
+
+
+def test_a_spline_through_points_follows_the_formula_with_fourth_order() -> None:
+    errors = []
+    for spacing in (0.4, 0.2, 0.1):
+        curve = sampled(WHEEL, spacing).curve
+        tread = (curve.y > -20.0 * MM) & (curve.y < 30.0 * MM)
+        errors.append(np.abs(distance(WHEEL.curve, curve.y[tread], curve.z[tread])).max())
+    # Beside joints of curvature the order is second; the polynomial of the tread has none.
+    assert errors[0] < 1e-10
+    assert errors[0] > 8.0 * errors[1]
+
+
+def test_points_may_come_from_either_end() -> None:
+    y, z = WHEEL.points
+    y, z, weights = y[::9], z[::9], np.linspace(1.0, 5.0, y[::9].size)
+    one = ws.Profile.from_points(y=y, z=z, kind="wheel", weights=weights, smoothing="0.01 mm")
+    other = ws.Profile.from_points(y=y[::-1], z=z[::-1], kind="wheel", weights=weights[::-1], smoothing="0.01 mm")
+    assert np.array_equal(one.curve.z, other.curve.z)
+    assert [value.magnitude.tolist() for value in other.points] == [value.magnitude.tolist() for value in one.points]
+
+
+def test_a_profile_with_an_undercut_is_one() -> None:
+    """The back of a flange may lean over: y need not grow everywhere."""
+    angle = np.linspace(1.2 * np.pi, 0.1 * np.pi, 200)
+    y = np.append(-50.0 + 12.0 * np.cos(angle), np.linspace(-38.0, 60.0, 300))
+    z = np.append(16.0 + 12.0 * np.sin(angle), np.linspace(18.9, 0.0, 300))
+    profile = ws.Profile.from_points(y=Q(y, "mm"), z=Q(z, "mm"), kind="wheel")
+    assert (np.diff(profile.curve.y[:50]) < 0.0).all()
+
+
+# Smoothing -----------------------------------------------------------------------------------------------------------
+
+
+def noisy(sigma: float, spacing: float = 0.25, seed: int = 7) -> tuple[Array, Array]:
+    """Return points of S1002 in m, with a noise along the normal of a standard deviation in mm."""
+    curve = WHEEL.curve
+    s = np.arange(curve.s[0], curve.s[-1], spacing * MM)
+    y, z, angle, _ = curve.at(s)
+    noise = np.random.default_rng(seed).normal(0.0, sigma * MM, s.size)
+    return y - noise * np.sin(angle), z + noise * np.cos(angle)
+
+
+@pytest.mark.parametrize("sigma", [0.001, 0.01, 0.05])
+def test_smoothing_is_the_rms_distance_of_the_points(sigma: float) -> None:
+    y, z = noisy(sigma)
+    profile = ws.Profile.from_points(y=Q(y, "m"), z=Q(z, "m"), kind="wheel", smoothing=Q(sigma, "mm"))
+    apart = float(np.sqrt((distance(profile.curve, y, z) ** 2).mean()))
+    # Points are at most as far from the curve as from their own values on it, and the smoothest curve uses it all up.
+    assert 0.9 * sigma * MM < apart <= sigma * MM * (1.0 + 1e-6)
+    assert profile.curve.curvature[[0, -1]] == pytest.approx(0.0, abs=1e-6)  # as a natural spline ends
+
+
+def test_a_smoothing_spline_is_that_of_scipy() -> None:
+    """The same minimum as `scipy.interpolate.make_smoothing_spline`, whose λ is found from the distance."""
+    y, z = noisy(0.01)
+    points = 1e3 * np.stack([y, z], axis=1)
+    u = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
+    weights = np.random.default_rng(3).uniform(0.5, 2.0, u.size)
+
+    def theirs(logarithm: float) -> Array:
+        columns = [scipy.interpolate.make_smoothing_spline(u, one, weights, np.exp(logarithm))(u) for one in points.T]
+        return np.stack(columns, axis=1)
+
+    def excess(logarithm: float) -> float:
+        left = points - theirs(logarithm)
+        return float(np.sqrt((weights[:, None] * left**2).sum() / weights.sum())) - 0.01
+
+    root = scipy.optimize.brentq(excess, -10.0, 10.0, xtol=1e-13)
+    # The distance fixes λ to 1e-11, and the condition of both systems is below 1e6.
+    assert smoothed(u, points, 0.01, weights) == pytest.approx(theirs(root), abs=1e-8)
+
+
+def test_the_smoothest_curve_of_all_is_a_straight_line() -> None:
+    y = np.linspace(-40.0, 40.0, 100)
+    z = 0.05 * y + np.random.default_rng(2).normal(0.0, 0.01, 100)
+    curve = ws.Profile.from_points(y=Q(y, "mm"), z=Q(z, "mm"), kind="rail", smoothing="1 mm").curve
+    assert np.abs(curve.curvature).max() < 1e-6
+    assert curve.angle == pytest.approx(np.arctan(np.polyfit(y, z, 1)[0]), abs=1e-4)
+
+
+def test_angle_and_curvature_survive_noise() -> None:
+    """Points 0.25 mm apart with a noise of 0.01 mm, smoothed by that; interpolated, they are of no use."""
+    y, z = noisy(0.01)
+    found = {}
+    for smoothing in ("0.01 mm", "0 mm"):
+        curve = ws.Profile.from_points(y=Q(y, "m"), z=Q(z, "m"), kind="wheel", smoothing=smoothing).curve
+        tread = (curve.y > -30.0 * MM) & (curve.y < 55.0 * MM)
+        exact = WHEEL.curve.at(np.interp(curve.y[tread], WHEEL.curve.y, WHEEL.curve.s))
+        found[smoothing] = [
+            float(np.sqrt(((value[tread] - true) ** 2).mean()))
+            for value, true in ((curve.angle, exact[2]), (curve.curvature, exact[3]))
+        ]
+    # Measured: 1.0 mrad and 0.9/m; without smoothing 58 mrad and 560/m. The noise of a difference quotient of points
+    # is √2 · 0.01/0.25 = 57 mrad, and of the second one √6 · 0.01 mm/(0.25 mm)² = 392/m.
+    assert found["0.01 mm"][0] < 2e-3
+    assert found["0.01 mm"][1] < 2.0
+    assert found["0 mm"][0] > 0.03
+    assert found["0 mm"][1] > 200.0
+
+
+def test_weights_draw_the_curve_to_their_points() -> None:
+    y, z = noisy(0.02)
+    bumped = z + np.where(np.abs(y - 10.0 * MM) < 1.0 * MM, 0.1 * MM, 0.0)
+    free = np.where(np.abs(y - 10.0 * MM) < 1.0 * MM, 1e-4, 1.0)
+    apart = []
+    for weights in (None, free):
+        profile = ws.Profile.from_points(
+            y=Q(y, "m"), z=Q(bumped, "m"), kind="wheel", smoothing="0.02 mm", weights=weights
+        )
+        at = profile.curve.at(np.interp(10.0 * MM, profile.curve.y, profile.curve.s))
+        apart.append(abs(float(at[1]) - float(np.interp(10.0 * MM, WHEEL.curve.y, WHEEL.curve.z))))
+    assert apart[1] < 0.02 * MM < 0.04 * MM < apart[0]
+
+
+# Wear ----------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", ["wheel", "rail"])
+@pytest.mark.parametrize("radius", [50.0, 300.0, -500.0])
+def test_a_worn_circle_is_a_circle(kind: str, radius: float) -> None:
+    """Depth d along the normal leaves a convex radius R - d, and a hollow of R + d."""
+    fresh = circle(radius, kind)
+    worn = fresh.worn(Q(1e3 * fresh.curve.s[[0, -1]], "mm"), Q([0.3, 0.3], "mm")).curve
+    up = 1.0 if kind == "rail" else -1.0
+    from_centre = np.hypot(worn.y, worn.z - up * radius * MM)
+    assert from_centre == pytest.approx((abs(radius) - np.sign(radius) * 0.3) * MM, rel=1e-10)
+    assert worn.curvature[50:-50] == pytest.approx(1e3 / (radius - 0.3), rel=1e-4)
+
+
+def test_wear_of_a_flange_is_as_deep_as_that_of_the_tread() -> None:
+    """Every point of the worn profile is a depth away from the new one, on slopes of 70 degrees too."""
+    curve = WHEEL.curve
+    worn = WHEEL.worn(Q(1e3 * curve.s[[0, -1]], "mm"), "0.1 mm").curve
+    inside = slice(20, -20)
+    apart = distance(curve, worn.y[inside], worn.z[inside])
+    # The wheel lies above its profile, so its worn surface has a smaller z. The spline through offset points rings
+    # beside joints of curvature, with 0.02 h² of the jump of 83/m, and the printed steps add 1.2e-7 m.
+    assert np.abs(apart + 0.1 * MM).max() < 1.3e-7
+
+
+def test_the_worn_area_is_that_of_the_depth() -> None:
+    """A depth d(s) removes ∫ d (1 - κ d/2) ds, for any d."""
+    curve = RAIL.curve
+    s = np.linspace(-30.0, 30.0, 601)
+    depth = 0.2 * np.cos(np.pi * s / 60.0) ** 2
+    worn = RAIL.worn(Q(s, "mm"), Q(depth, "mm")).curve
+    at = np.interp(curve.s, s * MM, depth * MM, left=0.0, right=0.0)
+    expected = scipy.integrate.simpson(at * (1.0 - 0.5 * curve.curvature * at), x=curve.s)
+
+    def under(one: Curve) -> float:
+        return float(scipy.integrate.trapezoid(one.z, one.y))
+
+    # The trapezoids of both are off by h²/12 of the change of slope, 1e-9 m², in the same way to a few percent.
+    assert under(worn) - under(curve) == pytest.approx(expected, abs=1e-10)
+
+
+def test_a_worn_profile_wears_again() -> None:
+    curve = RAIL.curve
+    ends = Q(1e3 * curve.s[[0, -1]], "mm")
+    once = RAIL.worn(ends, "0.2 mm")
+    twice = RAIL.worn(ends, "0.1 mm")
+    twice = twice.worn(Q(1e3 * twice.curve.s[[0, -1]], "mm"), "0.1 mm")
+    inside = slice(50, -50)
+    apart = distance(once.curve, twice.curve.y[inside], twice.curve.z[inside])
+    assert np.abs(apart).max() < 2.6e-8  # twice the ringing beside joints of 77/m
+    assert ws.Profile.model_validate_json(twice.model_dump_json()) == twice
+
+
+def test_no_wear_changes_no_more_than_a_spline_does() -> None:
+    worn = RAIL.worn(Q([-10.0, 10.0], "mm"), "0 mm").curve
+    assert np.abs(distance(RAIL.curve, worn.y, worn.z)).max() < 5e-9
+    middle = RAIL.worn(Q([-10.0, 0.0, 10.0], "mm"), Q([0.0, 0.1, 0.0], "mm")).curve
+    far = np.abs(middle.s) > 11.0 * MM
+    assert np.abs(distance(RAIL.curve, middle.y[far], middle.z[far])).max() < 5e-9
+    assert middle.at(0.0)[1] == pytest.approx(0.1 * MM, rel=1e-3)
+    step = RAIL.worn(Q([-10.0, 10.0], "mm"), "0.1 mm").curve  # no wear beyond the ends of s
+    far = np.abs(step.y) > 12.0 * MM
+    assert np.abs(distance(RAIL.curve, step.y[far], step.z[far])).max() < 5e-9
+
+
+@pytest.mark.parametrize(
+    ("s", "depth", "message"),
+    [
+        (Q([-10.0, 10.0], "mm"), Q([0.1, -0.1], "mm"), "depth must not be negative, got -0.1 mm"),
+        (Q([10.0, -10.0], "mm"), "0.1 mm", r"s must grow and lie on the profile, from -65\.694"),
+        (Q([-10.0, 100.0], "mm"), "0.1 mm", "got -10 to 100 mm"),
+        (Q([-10.0, 10.0], "mm"), Q([0.1, 0.1, 0.1], "mm"), r"got shapes \(2,\) and \(3,\)"),
+        (Q([-65.0, 65.0], "mm"), "14 mm", "reaches the centre of the curve, which has a radius of 13 mm there"),
+        ([-10.0, 10.0], "0.1 mm", "s: .* has no unit"),
+    ],
+)
+def test_wear_that_cannot_be_is_refused(s: Any, depth: Any, message: str) -> None:
+    with pytest.raises(wl.InputError, match=message):
+        RAIL.worn(s, depth)
+
+
+# Motions -------------------------------------------------------------------------------------------------------------
+
+
+def test_motions_are_exact_and_keep_the_curvature() -> None:
+    moved = RAIL.turned("-2 deg").shifted(y="3 mm", z="-1 mm")
+    turn = np.deg2rad(-2.0)
+    y, z, angle, curvature = RAIL.curve.at(RAIL.curve.s[::50])
+    at_y, at_z, at_angle, at_curvature = moved.curve.at(moved.curve.s[::50])
+    assert at_y == pytest.approx(np.cos(turn) * y - np.sin(turn) * z + 3.0 * MM, abs=1e-16)
+    assert at_z == pytest.approx(np.sin(turn) * y + np.cos(turn) * z - 1.0 * MM, abs=1e-16)
+    assert at_angle == pytest.approx(angle + turn, abs=1e-14)
+    assert at_curvature.tolist() == curvature.tolist()
+    assert moved.curve.at(0.0)[0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_motions_follow_each_other_in_their_order() -> None:
+    one = RAIL.shifted(y="3 mm").turned("2 deg").mirrored().shifted(z="1 mm").turned("-1 deg")
+    points = np.stack([RAIL.curve.y, RAIL.curve.z])
+
+    def turn(degrees: float) -> Array:
+        angle = np.deg2rad(degrees)
+        return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+    points = turn(2.0) @ (points + np.array([[3.0 * MM], [0.0]]))
+    points = turn(-1.0) @ (points * np.array([[-1.0], [1.0]]) + np.array([[0.0], [1.0 * MM]]))
+    assert one.curve.y == pytest.approx(points[0, ::-1], abs=1e-16)
+    assert one.curve.z == pytest.approx(points[1, ::-1], abs=1e-16)
+    assert [value.magnitude for value in one.points] == [pytest.approx(1e3 * row[::-1], abs=1e-13) for row in points]
+
+
+def test_a_mirror_image_has_its_angles_and_curvatures() -> None:
+    lopsided = RAIL.shifted(y="5 mm").turned("-1 deg")
+    mirrored = lopsided.mirrored()
+    assert mirrored.mirrored() == lopsided
+    assert mirrored.curve.joints == pytest.approx(-lopsided.curve.joints[::-1], abs=1e-12)
+    s = np.linspace(-40.0, 40.0, 1001) * MM
+    # s = 0 is at y = 0 on both.
+    y, z, angle, curvature = lopsided.curve.at(s)
+    found = mirrored.curve.at(-s)
+    for value, expected in zip(found, (-y, z, -angle, curvature), strict=True):
+        assert value == pytest.approx(expected, abs=1e-12)
+    with pytest.raises(wl.InputError, match="the wheel is mirrored"):
+        WHEEL.mirrored()
+
+
+@pytest.mark.parametrize("cant", [0.0, 1.0 / 40.0, 1.0 / 20.0, -1.0 / 40.0, 0.2])
+def test_a_canted_rail_shows_its_cant(cant: float) -> None:
+    canted = RAIL.turned(Q(-cant, "rad")).shifted(y="4 mm", z="2 mm")
+    # Points 0.05 mm apart on the sides give the middle to 1e-9 m, over 20 mm.
+    assert canted.apparent_cant.to("rad").magnitude == pytest.approx(cant, abs=1e-7)
+
+
+def test_wear_of_one_side_looks_like_a_small_cant_and_a_wheel_has_none() -> None:
+    curve = RAIL.curve
+    side = RAIL.worn(Q([-65.0, -45.0, -30.0], "mm"), Q([5.0, 5.0, 0.0], "mm"))
+    assert 0.0 < abs(side.apparent_cant.to("rad").magnitude) < 1.0 / 100.0
+    assert np.isnan(WHEEL.apparent_cant.magnitude)
+    crown = np.abs(curve.y) < 25.0 * MM
+    top = ws.Profile.from_points(y=Q(curve.y[crown], "m"), z=Q(curve.z[crown], "m"), kind="rail")
+    assert np.isnan(top.apparent_cant.magnitude)
+
+
+# Checks --------------------------------------------------------------------------------------------------------------
+
+
+def changed(index: int, y: float | None = None, z: float | None = None) -> tuple[Array, Array]:
+    """Return points of S1002 every 0.4 mm, in mm, one of them changed."""
+    points = sampled(WHEEL, 0.4).points
+    ys, zs = (value.magnitude.copy() for value in points)
+    ys[index] = ys[index] if y is None else y
+    zs[index] = zs[index] if z is None else z
+    return ys, zs
+
+
+Y, Z = changed(0)
+COUNT = Y.size
+
+
+def looped() -> tuple[Array, Array]:
+    """Return the points with a loop that no single corner shows."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 40)
+    loop = np.stack([1.5 * np.sin(angle), 1.5 * (1.0 - np.cos(angle))]) + np.array([[Y[300]], [Z[300]]])
+    return np.concatenate([Y[:300], loop[0], Y[301:]]), np.concatenate([Z[:300], loop[1], Z[301:]])
+
+
+@pytest.mark.parametrize(
+    ("y", "z", "message"),
+    [
+        (Y[:9], Z[:9], "a profile needs 10 to 20000 points, got 9"),
+        (np.linspace(0.0, 100.0, 20_001), np.zeros(20_001), "got 20001"),
+        (Y, Z[1:], rf"the same number of values, got {COUNT} and {COUNT - 1}"),
+        (*changed(7, z=np.nan), r"point 7 \(y = -69.\d+ mm, z = nan mm\) is not finite; leave it out"),
+        (*changed(9, y=np.inf), r"point 9 \(y = inf mm"),
+        (*changed(200, Y[199], Z[199]), r"point 200 \(y = .* mm, z = .* mm\) is the same as the point before; leave"),
+        (
+            *changed(200, Y[195], Z[195]),
+            r"point 199 \(.*\) is where the profile runs back on itself \(2 points in all\); put the points",
+        ),
+        (np.delete(Y, np.s_[200:240]), np.delete(Z, np.s_[200:240]), r"point 199 .* the next point is 16\.\d+ mm away"),
+        (*looped(), r"the profile crosses itself: the line behind point 29\d .* meets that behind point 3\d\d"),
+        (Y * 1e-3, Z * 1e-3, "0.13 mm wide, but a profile has 20 to 300 mm; were they in metres"),
+        (Y * 1e3, Z * 1e3, "130000 mm wide, but a profile has 20 to 300 mm; is their unit right"),
+        (Y * 0.1, Z * 0.1, "13 mm wide, but a profile has 20 to 300 mm$"),
+        (-Y, Z, r"the wheel is mirrored: its flange must be at y < 0, but has point \d+ \(y = 5\d.* mirror_y=True"),
+        (Y, -Z, r"the wheel is upside down: z is positive down, but its flange has point .* mirror_z=True"),
+        (-Y, -Z, "the wheel is upside down"),
+        (Y + 70.0, Z, 'origin at the taping line, with the flange at y < 0, .* such as shift_y="-70 mm"'),
+    ],
+)
+def test_points_that_are_no_profile_are_refused_with_their_place(y: Array, z: Array, message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=message):
+        ws.Profile.from_points(y=Q(y, "mm"), z=Q(z, "mm"), kind="wheel")
+
+
+def test_a_rail_upside_down_is_refused_and_hollows_are_not() -> None:
+    y, z = RAIL.points
+    with pytest.raises(wl.InputError, match="the rail is upside down: z is positive down, but its side has point"):
+        ws.Profile.from_points(y=y, z=Q(-z.magnitude, "mm"), kind="rail")
+    assert circle(-500.0, "rail").curve.curvature.max() < 0.0
+
+
+def test_a_disc_and_a_cone_are_not_upside_down() -> None:
+    """A profile may rise to its ends by more than its flange falls."""
+    assert circle(50.0, "wheel").curve.z.min() < -19.0 * MM
+    y = np.linspace(-60.0, 60.0, 100)
+    assert ws.Profile.from_points(y=Q(y, "mm"), z=Q(-0.4 * y, "mm"), kind="wheel").curve.z.max() > 20.0 * MM
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"kind": "wheel"}, "needs the name of a formula, or points with y and z"),
+        ({"kind": "wheel", "y": Q(Y, "mm")}, "needs the name of a formula, or points"),
+        ({"kind": "wheel", "formula": "s1003"}, "no profile is called 's1003'; there are s1002, uic60"),
+        ({"kind": "rail", "formula": "s1002"}, "kind: 's1002' is a wheel, not a rail"),
+        ({"kind": "wheel", "formula": "s1002", "y": Q(Y, "mm")}, "takes a formula or points, not both"),
+        ({"kind": "tram", "formula": "s1002"}, "kind: input should be 'wheel' or 'rail'"),
+        (
+            {"kind": "wheel", "y": Y, "z": Q(Z, "mm")},
+            r"y: has no unit; give a quantity, such as Q\(.*\), not a ndarray",
+        ),
+        ({"kind": "wheel", "y": Q(Y, "kg"), "z": Q(Z, "mm")}, "y: .*kg"),
+        ({"kind": "wheel", "y": Q(Y[:, None], "mm"), "z": Q(Z, "mm")}, "y: must have one axis"),
+        ({"kind": "wheel", "y": {"values": [1]}, "z": Q(Z, "mm")}, r"y: give \{values = \[...\], unit = .mm.\}"),
+        ({"kind": "wheel", "y": Q(Y, "mm"), "z": Q(Z, "mm"), "smoothing": "-1 mm"}, "smoothing: must not be negative"),
+        ({"kind": "wheel", "y": Q(Y, "mm"), "z": Q(Z, "mm"), "weights": (1.0,)}, "weights: must be one for each of"),
+        (
+            {"kind": "wheel", "y": Q(Y, "mm"), "z": Q(Z, "mm"), "weights": (*np.ones(COUNT - 1), 0.0)},
+            f"weights: must be positive, got 0 at index {COUNT - 1}; leave that point out",
+        ),
+    ],
+)
+def test_fields_that_make_no_profile_are_refused(fields: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=message):
+        ws.Profile(**fields)
+
+
+@pytest.mark.parametrize("count", [70, 200])
+def test_crossings_are_found_wherever_they_are(count: int) -> None:
+    """Against all pairs of steps, for lines of random steps that wander off."""
+    rng = np.random.default_rng(count)
+    crossed = 0
+    for _ in range(40):
+        drift = rng.choice([0.1, 0.3, 1.0, 3.0])
+        y, z = np.cumsum(rng.normal(drift, 1.0, count)), np.cumsum(rng.normal(0.0, 1.0, count))
+        points = np.stack([y, z], axis=1)
+        step = np.diff(points, axis=0)
+        first = set()
+        for one in range(count - 1):
+            # t and u of p + t r = q + u s
+            q, s = points[one + 2 : -1], step[one + 2 :]
+            across = step[one, 0] * s[:, 1] - step[one, 1] * s[:, 0]
+            apart = q - points[one]
+            t = (apart[:, 0] * s[:, 1] - apart[:, 1] * s[:, 0]) / across
+            u = (apart[:, 0] * step[one, 1] - apart[:, 1] * step[one, 0]) / across
+            hit = np.flatnonzero((t >= 0.0) & (t <= 1.0) & (u >= 0.0) & (u <= 1.0))
+            first |= {(one, one + 2 + int(other)) for other in hit}
+        found = crossed_steps(y, z)
+        assert found is None if not first else found in first
+        crossed += bool(first)
+    assert crossed > 5
+
+
+# Records -------------------------------------------------------------------------------------------------------------
+
+PROFILES = [
+    WHEEL,
+    RAIL,
+    RAIL.turned(Q(-1.0 / 40.0, "rad")).shifted(y="1 mm"),
+    RAIL.mirrored(),
+    ws.Profile.from_points(y=Q(Y, "mm"), z=Q(Z, "mm"), kind="wheel"),
+    ws.Profile.from_points(
+        y=Q(Y, "mm"), z=Q(Z, "mm"), kind="wheel", smoothing="10 um", weights=np.linspace(1, 2, COUNT)
+    ),
+]
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=repr)
+def test_a_profile_comes_back_from_json_pickle_and_copies(profile: ws.Profile) -> None:
+    for again in (
+        ws.Profile.model_validate_json(profile.model_dump_json()),
+        ws.Profile.model_validate(json.loads(profile.model_dump_json())),
+        pickle.loads(pickle.dumps(profile)),
+        copy.deepcopy(profile),
+        profile.model_copy(),
+    ):
+        assert again == profile
+        assert hash(again) == hash(profile)
+        assert np.array_equal(again.curve.z, profile.curve.z)
+
+
+def test_different_profiles_differ() -> None:
+    assert len({*PROFILES, *PROFILES}) == len(PROFILES)
+    for one, other in combinations([*PROFILES, PROFILES[4].turned("1 deg"), sampled(WHEEL, 0.8)], 2):
+        assert one != other
+    assert WHEEL != "s1002"
+    assert ws.Profile.from_points(y=Q(Y, "mm"), z=Q(Z, "mm"), kind="wheel") == PROFILES[4]
+
+
+def test_points_do_not_change_with_the_arrays_they_were_made_from() -> None:
+    z = Z.copy()
+    profile = ws.Profile.from_points(y=Q(Y, "mm"), z=Q(z, "mm"), kind="wheel")
+    z[5] += 1.0
+    assert profile == PROFILES[4]
+    assert profile.z is not None
+    with pytest.raises(ValueError, match="read-only"):
+        profile.z.magnitude[5] = 0.0
+
+
+def test_a_profile_is_short_where_it_can_be() -> None:
+    assert WHEEL.model_dump_json() == '"s1002"'
+    assert json.loads(PROFILES[2].model_dump_json()) == {"formula": "uic60", "turn": "-0.025 rad", "shift_y": "1.0 mm"}
+    assert json.loads(PROFILES[4].model_dump_json()).keys() == {"kind", "y", "z"}
+    assert [repr(one) for one in PROFILES] == [
+        "Profile.s1002()",
+        "Profile.uic60()",
+        "Profile.uic60().turned('-1.43239 deg').shifted(y='1 mm', z='0 mm')",
+        "Profile.uic60().mirrored()",
+        f"Profile(wheel, {COUNT} points from y = -70 to 60 mm)",
+        f"Profile(wheel, {COUNT} points from y = -70 to 60 mm, smoothing=10.0 µm)",
+    ]
+    assert str(WHEEL) == "Profile.s1002()"
+
+
+class Vehicle(wl.Configuration):
+    """A record with profiles."""
+
+    wheel: ws.Profile
+    rail: ws.Profile = ws.Profile.uic60()
+
+
+def test_a_field_takes_a_name_a_path_or_a_table(tmp_path: Path) -> None:
+    path = tmp_path / "worn.prw"
+    ws.write_profile(path, PROFILES[4])
+    for given, expected in (
+        ("s1002", WHEEL),
+        (WHEEL, WHEEL),
+        ({"formula": "s1002"}, WHEEL),
+        (str(path), ws.read_profile(path)),
+        (path, ws.read_profile(path)),
+        ({"file": str(path), "smoothing": "0.01 mm"}, ws.read_profile(path, smoothing="0.01 mm")),
+    ):
+        vehicle = Vehicle.model_validate({"wheel": given})
+        assert vehicle.wheel == expected
+        assert Vehicle.model_validate_json(vehicle.model_dump_json()) == vehicle
+    assert json.loads(Vehicle(wheel=WHEEL).model_dump_json()) == {"wheel": "s1002", "rail": "uic60"}
+    assert repr(Vehicle(wheel=WHEEL)) == "Vehicle(wheel=Profile.s1002(), rail=Profile.uic60())"
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("S1002.", "wheel: 'S1002.' is neither a profile by formula nor a file in '.*'; did you mean 's1002'"),
+        (
+            "worn.prw",
+            "wheel: 'worn.prw' is neither a profile by formula nor a file in '.*'. The formulas are: s1002, uic60",
+        ),
+        ({"file": "worn.prw"}, "wheel: profile 'worn.prw': there is no such file in '"),
+        (
+            {"file": "worn.prw", "shift": "1 mm"},
+            "wheel: unknown field 'shift'; did you mean 'shift_[yz]'.* they are: file,",
+        ),
+        ({"file": "worn.prw", "mirror_y": "no"}, "mirror_y: must be true or false, got 'no'"),
+        ({"kind": "wheel", "radius": 1}, "wheel.radius: unknown field"),
+        (7, "wheel: "),
+    ],
+)
+def test_a_field_that_is_no_profile_says_so(given: Any, message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=message):
+        Vehicle.model_validate({"wheel": given})
+
+
+def test_the_schema_knows_names_and_tables() -> None:
+    schema = Vehicle.model_json_schema()
+    for wheel in (
+        "s1002",
+        {"formula": "s1002"},
+        {"file": "a.csv", "kind": "wheel"},
+        json.loads(PROFILES[4].model_dump_json()),
+    ):
+        jsonschema.validate({"wheel": wheel}, schema)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({"wheel": {"radius": 1}}, schema)
+
+
+# Pictures ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_picture_shows_the_profile_as_it_lies() -> None:
+    axes = PROFILES[5].plot()
+    assert axes.yaxis_inverted()
+    assert axes.get_aspect() == 1.0
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("y [mm], outwards", "z [mm], down")
+    assert axes.get_title() == repr(PROFILES[5])
+    line, points = axes.get_lines()
+    assert np.asarray(line.get_xdata()) == pytest.approx(1e3 * PROFILES[5].curve.y)
+    assert np.asarray(points.get_ydata()) == pytest.approx(Z)
+    assert WHEEL.plot(axes) is axes
+    assert axes.yaxis_inverted()
+    assert len(axes.get_lines()) == 3
+    assert re.match(r"Profile\.s1002", axes.get_title())

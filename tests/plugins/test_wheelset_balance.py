@@ -1,0 +1,93 @@
+"""Loads of wheelsets balance the creep forces, at positions from tread to flange."""
+
+from __future__ import annotations
+
+from functools import partial
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.plugins.wheelsets import wheelset
+from wearlaw import Q
+from wearlaw.numerics.integrate import integrate_forces
+from wearlaw_wheelset._candidates import SPACING, candidates, sample
+from wearlaw_wheelset._loads import BALANCED, ROUGH
+from wearlaw_wheelset._search import both_sides, searched
+
+MODEL = wl.contact_model("fastsim")
+
+
+def conditions(count: int, seed: int = 0) -> dict[str, Any]:
+    draw = np.random.default_rng(seed)
+    return {
+        "lateral_displacement": Q(draw.uniform(-6.2, 6.2, count), "mm"),
+        "vertical_load": Q(draw.uniform(30.0, 100.0, count), "kN"),
+        "friction_coefficient": draw.uniform(0.15, 0.5, count),
+    }
+
+
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+@pytest.mark.parametrize("torque", [0.0, 800.0])
+def test_loads_and_torque_are_balanced(pressure: str, torque: float) -> None:
+    rig, given = wheelset(pressure=pressure), conditions(300)
+    problem = (rig | MODEL).posed(given | {"axle_torque": Q(torque, "N*m")})
+    found = integrate_forces(MODEL, problem)
+    angle, force = problem.contact_angle, problem.normal_force
+    assert angle is not None
+    vertical = np.nansum(force * np.cos(angle) + found.lateral * np.sin(angle), axis=-1)
+    load = given["vertical_load"].to("N").magnitude
+    radius = np.asarray(problem.bodies["wheel"].rolling_radius)
+    place = rig.geometry(lateral_displacement=given["lateral_displacement"]).dataset
+    roll = 1e-3 * place["roll"].to_numpy()[:, None, None]
+    # Without yaw the creepages change with the speed of rotation by -r/V, 0 and sin(δ - ρ)/V.
+    turning = found.spin_moment * np.sin(angle - roll) - found.longitudinal * radius
+    grip = np.nansum(problem.friction_coefficient * force * radius, axis=(-2, -1))
+    miss = np.abs(np.nansum(turning, axis=(-2, -1)) - torque) / grip
+    assert np.abs(vertical / load[:, None] - 1.0).max() < 2.0 * ROUGH
+    assert miss.max() < ROUGH
+    balanced = (miss < 1.01 * BALANCED) & (np.abs(vertical / load[:, None] - 1.0) < 1.01 * BALANCED).all(axis=-1)
+    assert balanced.mean() > 0.99  # the others lie at jumps of FASTSIM's forces
+
+
+def test_a_balance_does_not_depend_on_those_before_or_beside_it() -> None:
+    pipeline, given = wheelset() | MODEL, conditions(20)
+    problem = pipeline.rig.checked_problem(given)
+    forces = partial(integrate_forces, MODEL)
+    first, second = (pipeline.rig.balanced(problem, forces) for _ in range(2))
+    np.testing.assert_array_equal(first.normal_force, second.normal_force)
+    alone = pipeline.posed({name: value[7] for name, value in given.items()})
+    # The steps are the same but for rounding, which FASTSIM and the normal problem may sum in another order.
+    np.testing.assert_allclose(alone.normal_force, first.normal_force[7], rtol=1e-9)
+
+
+@pytest.mark.skipif(not find_spec("numba"), reason="needs numba")
+@pytest.mark.parametrize("spacing", [SPACING, 4.0 * SPACING])
+def test_compiled_gaps_around_contact_points_are_those_of_numpy(spacing: float) -> None:
+    section, draw = wheelset()._section, np.random.default_rng(1)
+    displacement, yaw = draw.uniform(-7e-3, 7e-3, 300), draw.uniform(-0.02, 0.02, 300)
+    roll, touching = searched(section, displacement, yaw)
+    found = candidates(section, both_sides(displacement, roll, yaw), touching)
+    samples = []
+    try:
+        for on in (True, False):
+            wl.accelerate(on)
+            sample(section, found, np.arange(found.arc.size), spacing)
+            samples.append(found.samples.copy())
+    finally:
+        wl.accelerate(None)
+    assert np.isinf(samples[0]).any()
+    # Gaps are differences of heights near 0.46 m, with a few roundings of 5e-17 m each; cosines enlarge them tenfold.
+    np.testing.assert_allclose(samples[0], samples[1], rtol=1e-12, atol=5e-15)
+
+
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+@pytest.mark.parametrize("march", ["adaptive", "uniform"])
+def test_forces_of_fastsim_are_those_of_its_fields(pressure: str, march: str) -> None:
+    model = wl.contact_model("fastsim", march=march)
+    problem = (wheelset(pressure=pressure) | MODEL).posed(conditions(10))
+    forces, fields = model.creep_forces(problem), model.solve(problem).forces
+    for name in ("longitudinal", "lateral", "spin_moment"):
+        np.testing.assert_array_equal(getattr(forces, name), getattr(fields, name))

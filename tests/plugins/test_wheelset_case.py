@@ -1,0 +1,121 @@
+"""The case that ships with wheelsets, and cases with profiles from files."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+import wearlaw_wheelset as ws
+from wearlaw import Q
+
+RIG = """
+title = "A worn wheel"
+contact_models = ["fastsim"]
+wear_laws = ["usfd"]
+sections = ["wheelset"]
+
+[rig]
+type = "wheelset"
+wheel = "profiles/worn.prw"
+rail = { file = "profiles/rail.prr", smoothing = "0 mm" }
+nominal_radius = "460 mm"
+flange_back_distance = "1360 mm"
+gauge = "1435 mm"
+rail_cant = "1:40"
+material = "steel"
+rolling_speed = "20 m/s"
+
+[sweeps.displacement]
+lateral_displacement = { from = "0 mm", to = "3 mm", points = 4 }
+vertical_load = "50 kN"
+friction_coefficient = 0.3
+
+[profiles.straight]
+lateral_displacement = "1 mm"
+vertical_load = "50 kN"
+friction_coefficient = 0.3
+"""
+
+
+@pytest.fixture
+def worn(tmp_path: Path) -> Path:
+    """Return the path of a case beside a folder with the profiles that it names."""
+    folder = tmp_path / "study" / "profiles"
+    folder.mkdir(parents=True)
+    ws.write_profile(folder / "worn.prw", ws.Profile.s1002())
+    ws.write_profile(folder / "rail.prr", ws.Profile.uic60())
+    case = folder.parent / "worn.toml"
+    case.write_text(RIG, encoding="utf-8")
+    return case
+
+
+def test_paths_of_profiles_are_relative_to_the_case_file(worn: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(worn.parent.parent)
+    rig = wl.load_case("study/worn.toml").rig
+    assert isinstance(rig, ws.Wheelset)
+    formula = rig.model_copy(update={"wheel": ws.Profile.s1002(), "rail": ws.Profile.uic60()})
+    at = Q(np.linspace(0.0, 5.0, 6), "mm")
+    found, expected = (
+        one.geometry(lateral_displacement=at).dataset["rolling_radius_difference"].values for one in (rig, formula)
+    )
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-2)  # splines through points smear joints of arcs
+    monkeypatch.chdir(worn.parent)
+    assert wl.load_case("worn.toml").rig == rig
+
+
+def test_a_missing_profile_is_looked_for_beside_the_case_file(worn: Path) -> None:
+    (worn.parent / "profiles" / "worn.prw").unlink()
+    with pytest.raises(wl.CaseError, match=r"rig\.wheel: 'profiles/worn\.prw' is neither .* nor a file in '.*study'"):
+        wl.load_case(str(worn))
+
+
+def test_a_study_of_a_wheelset_reports_contact_points_forces_and_wear(worn: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        study = wl.run(wl.load_case(str(worn)))
+    (section,) = study.sections
+    assert [figure.name for figure in section.figures] == [
+        "rolling_radius_difference", "contact_straight", "wear_straight",
+    ]  # fmt: skip
+    table = section.tables["patches_straight"]
+    assert [*table["side"]] == ["left", "right"]
+    load = table["normal force [kN]"] * np.cos(np.radians(table["contact angle [deg]"]))
+    load += table["lateral force [kN]"] * np.sin(np.radians(table["contact angle [deg]"]))
+    np.testing.assert_allclose(load, 50.0, rtol=1e-7)
+
+
+def test_wear_in_the_report_is_that_of_the_prediction(worn: Path) -> None:
+    """The area below the curve of a wheel, times its circumference and the density, is the mass that it loses."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        study = wl.run(wl.load_case(str(worn)))
+        (pair,) = study.pairs
+        found = pair.pipeline(lateral_displacement="1 mm", vertical_load="50 kN", friction_coefficient=0.3)
+    panels = {panel.title: panel for panel in study.sections[0].figures[-1].panels}
+    for side in ("left", "right"):
+        (curve,) = panels[f"{side} wheel"].curves
+        area = np.trapezoid(curve.y, curve.x)  # µm/km mm
+        one = found.sel(side=side, patch=1)
+        radius = float(np.asarray(one.problem.body("wheel").rolling_radius))
+        mass = Q(area, "um*mm/km") * Q(2.0 * np.pi * radius, "m") * wl.steel().density
+        assert (mass / one.mass_per_distance).to("").magnitude == pytest.approx(1.0, rel=1e-12)  # rounding
+
+
+def test_the_shipped_case_is_valid() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        case = wl.load_case("wheelset")
+    assert isinstance(case.rig, ws.Wheelset)
+
+
+def test_the_section_needs_a_wheelset() -> None:
+    text = wl.load_case("wheel_on_rail")
+    case = text.model_copy(update={"sections": ("wheelset",), "figures": {}})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        with pytest.raises(wl.InputError, match="the rig of the case is 'wheel_rail'"):
+            wl.run(case)

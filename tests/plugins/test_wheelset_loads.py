@@ -1,0 +1,329 @@
+"""Loads of a wheelset: the balance of normal and creep forces, torque, friction by patch, and several patches."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import wearlaw as wl
+import wearlaw_wheelset as ws
+from tests.plugins.wheelsets import cone, middle_of_head, on_round_heads, wheelset
+from wearlaw import Array, Q
+from wearlaw_wheelset import _normal
+from wearlaw_wheelset._loads import BALANCED
+
+FASTSIM = wl.contact_model("fastsim")
+Pressure = Literal["kpec", "hertz"]
+PAIRS: dict[Any, ws.Wheelset] = {name: wheelset(pressure=name, rolling_speed="20 m/s") for name in ("kpec", "hertz")}
+SIDE = np.array([-1.0, 1.0])[:, None]
+
+
+def predicted(pair: ws.Wheelset, **conditions: Any) -> wl.Prediction:
+    """Return the prediction of FASTSIM, without warnings of climbing."""
+    given_: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
+    predict: Any = pair | FASTSIM
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.RangeWarning)
+        result: wl.Prediction = predict(**given_ | conditions)
+    return result
+
+
+def newtons(quantity: Any, unit: str = "N") -> Array:
+    """Return forces, zero where there is no patch."""
+    return np.asarray(np.nan_to_num(np.asarray(quantity.to(unit).magnitude)))
+
+
+def carried(result: wl.Prediction) -> Array:
+    """Return the vertical load of each wheel [N]."""
+    angle = np.nan_to_num(np.asarray(result.problem.contact_angle))
+    load = newtons(result.normal_force) * np.cos(angle) + newtons(result.lateral_force) * np.sin(angle)
+    return np.asarray(load.sum(axis=-1))
+
+
+def powers(result: wl.Prediction, speed: float) -> tuple[Array, Array]:
+    """Return the dissipated power, and the work of the track on the wheelset at V with its sign reversed [W]."""
+    dissipated = speed * newtons(result.wear_index).sum(axis=(-2, -1))
+    return dissipated, speed * newtons(result.longitudinal_force).sum(axis=(-2, -1))
+
+
+def rotation(result: wl.Prediction, speed: float = 20.0) -> Array:
+    """Return Ω from the longitudinal creepage of the first patches, without yaw and roll of note [rad/s]."""
+    radius = np.asarray(result.problem.bodies["wheel"].rolling_radius)[..., 0]
+    return np.asarray(speed * (1.0 - result.problem.longitudinal_creepage[..., 0]) / radius)
+
+
+conditions = st.fixed_dictionaries(
+    {
+        "displacement": st.floats(-6.2e-3, 6.2e-3),
+        "yaw": st.floats(-20e-3, 20e-3),
+        "load": st.floats(5e3, 120e3),
+        "friction": st.floats(0.05, 0.6),
+        "share": st.floats(-0.6, 0.6),
+        "curvature": st.floats(-1.0 / 150.0, 1.0 / 150.0),
+    }
+)
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Each wheel carries its load with the normal and the lateral forces of all its patches",
+    source="equilibrium, at random conditions",
+    held_to="{share:g} of the load",
+    share=1e-6,
+)
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+@given(drawn=conditions)
+def test_each_wheel_carries_its_load(pressure: Pressure, drawn: dict[str, float], share: float) -> None:
+    load, friction, turn = drawn["load"], drawn["friction"], drawn["curvature"]
+    pair = PAIRS[pressure]
+    torque = drawn["share"] * friction * 2.0 * load * 0.46
+    result = predicted(
+        pair,
+        lateral_displacement=Q(drawn["displacement"], "m"),
+        yaw=Q(drawn["yaw"], "rad"),
+        vertical_load=Q(load, "N"),
+        friction_coefficient=friction,
+        axle_torque=Q(torque, "N*m"),
+        curve_radius=Q(1.0 / turn if turn else np.inf, "m"),
+    )
+    assert carried(result) == pytest.approx(np.full(2, load), rel=share)
+    # M Ω + V ∑ Fx = V ∑ (ξ Fx + η Fy + φ Mz), but for the curve: there V (ξ - 1) and the like have parts in V/R.
+    problem, place = result.problem, np.asarray(result.problem.bodies["wheel"].rolling_radius)
+    assert (np.asarray(problem.exists).sum(axis=-1) >= 1).all()
+    assert np.isfinite(place[np.asarray(problem.exists)]).all()
+    if not turn:
+        dissipated, pulled = powers(result, 20.0)
+        bound = 2.0 * BALANCED * friction * 2.0 * load * 20.0
+        assert torque * rotation(result).mean() + pulled == pytest.approx(dissipated, rel=0.01, abs=bound)
+    force = np.hypot(newtons(result.longitudinal_force), newtons(result.lateral_force))
+    assert (force <= (1.0 + 1e-9) * friction * newtons(result.normal_force)).all()
+
+
+CONES = on_round_heads(cone(0.05), 0.3, pressure="hertz", rolling_speed="20 m/s")
+
+
+def test_free_cones_in_the_middle_roll_without_longitudinal_creepage() -> None:
+    result = predicted(CONES, lateral_displacement="0 mm")
+    problem = result.problem
+    # The spin moment of both patches, 1 N m and less, turns the axle; no longitudinal force does.
+    moment = newtons(result.spin_moment, "N*m") * np.sin(np.nan_to_num(np.asarray(problem.contact_angle)))
+    assert problem.longitudinal_creepage[0, 0] == pytest.approx(problem.longitudinal_creepage[1, 0], rel=1e-9)
+    torque = newtons(result.longitudinal_force).sum() * 0.46
+    assert abs(torque) < 3.0 * np.abs(moment).sum() + 2.0 * BALANCED * 0.3 * 120e3 * 0.46
+    assert abs(problem.longitudinal_creepage[0, 0]) < 1e-6
+
+
+def test_driving_and_braking_have_opposite_creepages() -> None:
+    result = predicted(CONES, lateral_displacement="0 mm", axle_torque=Q([5.0, 0.0, -5.0], "kN*m"))
+    driving, _, braking = result.problem.longitudinal_creepage[..., 0]
+    assert (driving < 0.0).all()
+    assert (braking > 0.0).all()
+    # Small creepages are linear; the spin is the same in both, and what is left of second order is 1 % of 0.1 %.
+    assert driving == pytest.approx(-braking, rel=1e-2)
+    # The torque is that of the longitudinal forces on the radius of the cones at the contact point.
+    radius = np.asarray(result.problem.bodies["wheel"].rolling_radius)[0, :, 0]
+    forces = newtons(result.longitudinal_force)[..., 0]
+    assert -(forces[0] * radius).sum() == pytest.approx(5e3, rel=1e-3)
+
+
+def test_a_given_speed_of_rotation_is_kept() -> None:
+    radius = 1e-3 * CONES.geometry(lateral_displacement="1 mm").dataset.rolling_radius.sel(patch=1).values
+    speed = 20.0 / radius.mean()
+    result = predicted(CONES, lateral_displacement="1 mm", angular_speed=Q([1.001 * speed, 0.999 * speed], "rad/s"))
+    assert rotation(result)[:, 0] == pytest.approx([1.001 * speed, 0.999 * speed], rel=2.0 * BALANCED)
+    torque = -newtons(result.longitudinal_force).sum(axis=(-2, -1))
+    assert torque[0] > 0.0 > torque[1]
+    # The torque that such a speed takes gives that speed back.
+    again = predicted(CONES, lateral_displacement="1 mm", axle_torque=Q(moment_about_axle(result)[0], "N*m"))
+    assert rotation(again).mean() == pytest.approx(1.001 * speed, rel=2.0 * BALANCED)
+
+
+def moment_about_axle(result: wl.Prediction) -> Array:
+    """Return the torque that the creep forces ask of an axle, by power: M Ω + V ∑ Fx is dissipated [N m]."""
+    dissipated, pulled = powers(result, 20.0)
+    return np.asarray((dissipated - pulled) / rotation(result)[..., 0])
+
+
+def test_a_torque_beyond_friction_is_an_error() -> None:
+    # 0.3 of 120 kN on 0.46 m.
+    with pytest.raises(wl.ConditionsError, match=r"axle_torque: 1\.7e\+04 N\*m is more than friction can transmit"):
+        predicted(CONES, lateral_displacement="0 mm", axle_torque="17 kN*m")
+    predicted(CONES, lateral_displacement="0 mm", axle_torque="16 kN*m")
+
+
+def test_torque_and_speed_of_rotation_exclude_each_other() -> None:
+    with pytest.raises(wl.ConditionsError, match="give axle_torque or angular_speed, not both"):
+        predicted(CONES, lateral_displacement="0 mm", axle_torque="0 N*m", angular_speed="43 rad/s")
+
+
+# ---------------------------------------------------------------------------------------------------- several patches
+
+
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+def test_flanges_have_their_own_friction(pressure: Pressure) -> None:
+    pair = PAIRS[pressure]
+    # At 6.2 mm and without yaw the right wheel has a patch in the root, at 25 deg and more, and one on the flange.
+    result = predicted(
+        pair, lateral_displacement=Q([3.0, 6.25], "mm"), yaw=Q([7.0, 0.0], "mrad"), friction_coefficient=0.3,
+        flange_friction_coefficient=0.1,
+    )  # fmt: skip
+    problem = result.problem
+    exists, angle = np.asarray(problem.exists), np.abs(np.asarray(problem.contact_angle))
+    expected = np.where(angle > np.radians(30.0), 0.1, 0.3)
+    assert (np.asarray(problem.friction_coefficient)[exists] == expected[exists]).all()
+    assert (expected[exists] == 0.1).any()
+    bound = np.nan_to_num(expected * newtons(result.normal_force))
+    force = np.hypot(newtons(result.longitudinal_force), newtons(result.lateral_force))
+    assert (force <= (1.0 + 1e-9) * bound).all()
+    assert carried(result) == pytest.approx(np.full((2, 2), 60e3), rel=2.0 * BALANCED)
+
+
+@pytest.mark.parametrize("displacement", [0.0, 4.8, 4.9, 4.95])
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+def test_patches_share_the_load_by_their_penetration(pressure: Pressure, displacement: float) -> None:
+    pair = PAIRS[pressure]
+    where: dict[str, Any] = {"lateral_displacement": Q(displacement, "mm")}
+    result = predicted(pair, **where, vertical_load="10 kN")
+    problem: Any = result.problem
+    data = pair.geometry(**where, within="1 mm").dataset
+    wheel = ("left", "right")[1]
+    one = data.sel(side=wheel)
+    exists = problem.exists[1]
+    assert exists[:2].all()
+    gap, cosine = 1e-3 * one.gap.values[exists], np.cos(np.radians(one.contact_angle.values[exists]))
+    force = problem.normal_force[1][exists]
+    # The approach of each patch alone under its own force, by the other direction of the normal problem.
+    approach = alone(pair, problem, force)
+    assert approach / cosine + gap == pytest.approx(np.full(gap.size, approach[0] / cosine[0]), rel=2.0 * BALANCED)
+
+
+def alone(pair: ws.Wheelset, problem: Any, force: Array) -> Array:
+    """Return the approach of the patches of the right wheel, each under its force [m]."""
+    found = problem.balance.found
+    rows = np.flatnonzero(found.side == 1)[: force.size]
+    rows = rows[np.argsort(found.number[rows])]
+    if pair.pressure == "hertz":
+        a, b = problem.a[1, : force.size], problem.b[1, : force.size]
+        return np.asarray(wl.hertz_ellipse.approach(force, a, b, pair._elastic.modulus))
+    part = found.part(rows)
+    samples = np.maximum(part.samples, 0.0)
+    loaded = _normal.loaded(part.start, part.step, samples, part.curvature_x, pair._elastic.modulus, force, 20)
+    return np.asarray(loaded.penetration)
+
+
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+def test_patches_that_lift_off_do_not_exist(pressure: Pressure) -> None:
+    # At 4.8 mm the gap of the second place of the right wheel is 9 µm: more than the penetration of 0.5 kN.
+    light, heavy = (
+        predicted(PAIRS[pressure], lateral_displacement="4.8 mm", vertical_load=load) for load in ("0.5 kN", "15 kN")
+    )
+    assert np.asarray(light.problem.exists)[1].tolist() == [True, False, False]
+    assert np.asarray(heavy.problem.exists)[1, :2].tolist() == [True, True]
+    for field in ("normal_force", "contact_angle", "longitudinal_creepage", "spin"):
+        values = np.asarray(getattr(light.problem, field))
+        assert np.isnan(values[1, 1:]).all()
+        assert np.isfinite(values[1, 0])
+    for result, load in ((light, 0.5e3), (heavy, 15e3)):
+        assert carried(result) == pytest.approx(np.full(2, load), rel=2.0 * BALANCED)
+
+
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+def test_loads_are_continuous_as_a_patch_touches(pressure: Pressure) -> None:
+    load = np.linspace(0.5e3, 15e3, 30)
+    result = predicted(PAIRS[pressure], lateral_displacement="4.8 mm", vertical_load=Q(load, "N"))
+    exists = np.asarray(result.problem.exists)[:, 1, 1]
+    assert not exists[0]
+    assert exists[-1]
+    first = int(np.argmax(exists))
+    second = newtons(result.normal_force)[:, 1, 1]
+    # It begins at zero and grows less than the step of 0.5 kN puts on the wheel.
+    assert second[first] < 0.5e3
+    assert (np.diff(second) >= 0.0).all()
+    assert carried(result) == pytest.approx(np.stack([load, load], axis=-1), rel=2.0 * BALANCED)
+
+
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+def test_patches_at_a_tie_carry_the_same_on_both_sides_of_it(pressure: Pressure) -> None:
+    # Where two places touch at once, rounding says which one is patch 1; the loads of both places do not depend on it.
+    displacement = Q(4.8555e-3 + np.array([-1e-6, 1e-6]), "m")
+    result = predicted(PAIRS[pressure], lateral_displacement=displacement, vertical_load="10 kN")
+    force, angle = newtons(result.normal_force)[:, 1, :2], np.asarray(result.problem.contact_angle)[:, 1, :2]
+    force = np.take_along_axis(force, np.argsort(angle, axis=-1), axis=-1)
+    # A gap of 0.17 µm against a penetration of 10 µm.
+    assert force[0] == pytest.approx(force[1], rel=0.05)
+
+
+def test_loads_are_balanced_as_humps_join_patches() -> None:
+    displacement = Q(np.arange(-10.0, 10.1, 0.25), "mm")
+    result = predicted(PAIRS["kpec"], lateral_displacement=displacement, vertical_load="10 kN")
+    assert carried(result) == pytest.approx(np.full((81, 2), 10e3), rel=2.0 * BALANCED)
+
+
+# ---------------------------------------------------------------------------------------------------------- end to end
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Wear of cones on round rail heads: that of `WheelRail` with the same radii, creepages and load",
+    source="the rig of a single contact",
+    held_to="{share:g}",
+    share=1e-8,
+)
+@pytest.mark.filterwarnings("ignore::wearlaw.CalibrationWarning")
+def test_cones_wear_like_single_wheels(share: float) -> None:
+    law = wl.wear_law("usfd")
+    result = (CONES | FASTSIM | law)(
+        lateral_displacement="2 mm", yaw="3 mrad", vertical_load="60 kN", friction_coefficient=0.3,
+        axle_torque="3 kN*m",
+    )  # fmt: skip
+    # The curvature of the spline through the rail's points is off by (56 µm/300 mm)²/12 = 3e-9.
+    problem: Any = result.problem
+    one = CONES.geometry(lateral_displacement="2 mm", yaw="3 mrad").dataset.sel(patch=1)
+    for number, side in enumerate(("left", "right")):
+        radius = one.rolling_radius.sel(side=side).item() / np.cos(np.radians(one.contact_angle.sel(side=side).item()))
+        single = wl.WheelRail(
+            wheel_radius=Q(radius, "mm"), rail_head_radius="300 mm", material=wl.steel(), rolling_speed="20 m/s"
+        )
+        expected = (single | FASTSIM | law)(
+            normal_force=Q(problem.normal_force[number, 0], "N"),
+            longitudinal_creepage=Q(problem.longitudinal_creepage[number, 0], ""),
+            lateral_creepage=Q(problem.lateral_creepage[number, 0], ""),
+            spin=Q(problem.spin[number, 0], "1/m"),
+            friction_coefficient=0.3,
+        )
+        for name in ("wear_rate", "wear_index", "semi_axis_a", "semi_axis_b", "max_pressure", "lateral_force"):
+            found = getattr(result, name).to_base_units().magnitude[number, 0]
+            assert found == pytest.approx(getattr(expected, name).to_base_units().magnitude, rel=share), name
+
+
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+@given(displacement=st.floats(1e-3, 4.5e-3) | st.floats(5.2e-3, 6e-3), yaw=st.floats(-20e-3, 20e-3))
+@settings(max_examples=8)
+def test_mirrored_wheelsets_wear_alike(pressure: Pressure, displacement: float, yaw: float) -> None:
+    one, other = (
+        predicted(
+            PAIRS[pressure],
+            lateral_displacement=Q(sign * displacement, "m"),
+            yaw=Q(sign * yaw, "rad"),
+            curve_radius=Q(sign * 500.0, "m"),
+            lateral_velocity=Q(sign * 0.02, "m/s"),
+        )
+        for sign in (1.0, -1.0)
+    )
+    # Positions agree to 2e-9 m of 1e-3, the loads to BALANCED; the slip begins at other places of the strips.
+    for name, sign in (
+        ("normal_force", 1.0), ("longitudinal_force", 1.0), ("lateral_force", -1.0), ("wear_index", 1.0),
+    ):  # fmt: skip
+        found, expected = newtons(getattr(other, name)), newtons(getattr(one, name))
+        assert sign * found[::-1] == pytest.approx(expected, rel=1e-5, abs=1e-5 * 60e3), name
+
+
+def test_the_middle_of_a_head_is_where_the_closed_form_has_it() -> None:
+    # y of the cones' contact, by which the loads are found: Y - R sin γ.
+    found = CONES.geometry(lateral_displacement="0 mm").dataset.sel(side="right", patch=1).y.item()
+    assert 1e-3 * found == pytest.approx(middle_of_head(0.3) - 0.3 * np.sin(np.arctan(0.05)), rel=0.0, abs=1e-9)

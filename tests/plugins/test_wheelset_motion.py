@@ -1,0 +1,311 @@
+"""Creepages, spin and torque against the motion of material points of wheelsets and against equilibrium in space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import wearlaw as wl
+import wearlaw_wheelset as ws
+from tests.plugins.wheelsets import R0, cone, on_round_heads, wheelset
+from wearlaw import Array, Q
+
+STENCIL = {1: 4.0 / 5.0, 2: -1.0 / 5.0, 3: 4.0 / 105.0, 4: -1.0 / 280.0}
+"""Weights of differences between values in steps ahead and back, for a derivative of eighth order."""
+
+SPEED = 20.0
+"""V [m/s]."""
+
+STANDARD = wheelset(pressure="hertz", rolling_speed=Q(SPEED, "m/s"))
+CONES = on_round_heads(cone(0.1), 0.2, pressure="hertz", rolling_speed=Q(SPEED, "m/s"))
+
+
+class State(NamedTuple):
+    """A wheelset at the time zero, in SI; the velocities are those of the displacement and the yaw."""
+
+    displacement: float
+    yaw: float
+    rotation: float
+    lateral_velocity: float = 0.0
+    yaw_velocity: float = 0.0
+    curve_radius: float = np.inf
+
+
+def derivative(of: Callable[[float], Array], step: float = 1e-4) -> Array:
+    """Return the derivative at time zero."""
+    parts = [weight * (of(k * step) - of(-k * step)) / step for k, weight in STENCIL.items()]
+    return np.asarray(np.sum(parts, axis=0))
+
+
+def moved(pair: ws.Wheelset, state: State) -> Callable[[float], tuple[Rotation, Array]]:
+    """Return the orientation and the place of the wheelset in space over time; at time zero they are in the track.
+
+    The middle of the wheelset runs along a circle, and it rolls and moves vertically so that both wheels touch.
+    """
+    u, psi = state.displacement, state.yaw
+    sideways, turning = state.lateral_velocity, state.yaw_velocity
+
+    def stands(time: float) -> tuple[float, float]:
+        found = pair.geometry(
+            lateral_displacement=Q(u + sideways * time, "m"), yaw=Q(psi + turning * time, "rad")
+        ).dataset
+        return 1e-3 * found["roll"].item(), 1e-3 * found["vertical_displacement"].item() - R0
+
+    at_rest = stands(0.0)
+
+    def position(time: float) -> tuple[Rotation, Array]:
+        roll, height = stands(time) if sideways or turning else at_rest
+        turn = 0.5 * SPEED * time / state.curve_radius
+        chord = SPEED * time * np.sinc(turn / np.pi)
+        own = Rotation.from_euler("yxz", [-state.rotation * time, roll, psi + turning * time])
+        along = np.array([chord * np.cos(turn), u + sideways * time + chord * np.sin(turn), height])
+        return Rotation.from_euler("z", 2.0 * turn) * own, along
+
+    return position
+
+
+def slips(
+    pair: ws.Wheelset, state: State, side: str, ahead: float = 0.0, across: float = 0.0
+) -> tuple[float, float, float, float]:
+    """Return ξ, η, φ and the velocity of the wheel into the rail over V.
+
+    They are those of the material point of the wheel at the contact point, or beside it on the plane of contact [m].
+    """
+    found = pair.geometry(lateral_displacement=Q(state.displacement, "m"), yaw=Q(state.yaw, "rad")).dataset
+    found = found.sel(side=side, patch=1)
+    point = 1e-3 * np.array([found[name].item() for name in "xyz"])
+    angle = np.radians(found.contact_angle.item())
+    tangent, normal = np.array([0.0, np.cos(angle), np.sin(angle)]), np.array([0.0, -np.sin(angle), np.cos(angle)])
+    point = point + ahead * np.array([1.0, 0.0, 0.0]) + across * tangent
+    position = moved(pair, state)
+    turned, origin = position(0.0)
+    material = turned.inv().apply(point - origin)
+
+    def place(time: float) -> Array:
+        now, middle = position(time)
+        return np.asarray(now.apply(material) + middle)
+
+    velocity = derivative(place)
+    rate = derivative(lambda time: position(time)[0].as_matrix()) @ turned.as_matrix().T
+    spin = np.array([rate[2, 1], rate[0, 2], rate[1, 0]])
+    return (
+        float(velocity[0] / SPEED), float(velocity @ tangent / SPEED), float(spin @ normal / SPEED),
+        float(velocity @ normal / SPEED),
+    )  # fmt: skip
+
+
+def creepages(pair: ws.Wheelset, state: State) -> wl.Problem:
+    """Return the problem, with creepages of the axes side and patch."""
+    return pair.problem(
+        lateral_displacement=Q(state.displacement, "m"), yaw=Q(state.yaw, "rad"), vertical_load="1 kN",
+        friction_coefficient=0.3, angular_speed=Q(state.rotation, "rad/s"),
+        lateral_velocity=Q(state.lateral_velocity, "m/s"), yaw_velocity=Q(state.yaw_velocity, "rad/s"),
+        curve_radius=Q(state.curve_radius, "m"),
+    )  # fmt: skip
+
+
+STATES = [
+    State(0.0, 0.0, 43.5),
+    State(3e-3, 0.0, 43.6),
+    State(-3e-3, 7.2e-3, 43.4),
+    State(5.7e-3, 14e-3, 43.0),
+    State(-5.7e-3, 14e-3, 43.0),
+    State(5.7e-3, -25e-3, 44.0),
+]
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Creepages and spin of a wheelset with roll and yaw",
+    source="numerical differentiation of the motion of its material points in space (scipy)",
+    held_to="{relative:g} of V, and per metre",
+    relative=1e-9,
+)
+@pytest.mark.parametrize("pair", [STANDARD, CONES], ids=["s1002", "cones"])
+@pytest.mark.parametrize("state", STATES, ids=str)
+def test_creepages_are_the_velocities_of_material_points(pair: Any, state: State, relative: float) -> None:
+    # Rounding of places of some cm over a step of 0.1 ms is 1e-13 m/s; the eighth order leaves (Ω 0.1 ms)^8.
+    problem = creepages(pair, state)
+    for number, side in enumerate(("left", "right")):
+        xi, eta, phi, into = slips(pair, state, side)
+        found = (problem.longitudinal_creepage, problem.lateral_creepage, problem.spin)
+        assert [one[number, 0] for one in found] == pytest.approx([xi, eta, phi], rel=0.0, abs=relative)
+        assert into == pytest.approx(0.0, abs=relative)
+
+
+MOVING = [
+    State(1.5e-3, 2e-3, 43.5, lateral_velocity=0.05),
+    State(-3e-3, 7.2e-3, 43.5, lateral_velocity=0.1),
+    State(5.7e-3, 14e-3, 43.5, lateral_velocity=-0.1),
+    State(5.7e-3, 14e-3, 43.5, yaw_velocity=0.1),
+    State(-3e-3, -5e-3, 43.5, lateral_velocity=0.05, yaw_velocity=-0.05),
+]
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Creepages of a wheelset that moves sideways, yaws and rolls with it",
+    source="numerical differentiation of the motion of its material points in space (scipy)",
+    held_to="{relative:g} of V, and per metre",
+    relative=1e-7,
+)
+@pytest.mark.parametrize("pair", [STANDARD, CONES], ids=["s1002", "cones"])
+@pytest.mark.parametrize("state", MOVING, ids=str)
+def test_wheelsets_roll_as_they_move_sideways(pair: Any, state: State, relative: float) -> None:
+    # The roll is known to 2e-12, which is 2e-8 rad/s over the steps of time.
+    problem = creepages(pair, state)
+    for number, side in enumerate(("left", "right")):
+        xi, eta, phi, into = slips(pair, state, side)
+        found = (problem.longitudinal_creepage, problem.lateral_creepage, problem.spin)
+        assert [one[number, 0] for one in found] == pytest.approx([xi, eta, phi], rel=0.0, abs=relative)
+        assert into == pytest.approx(0.0, abs=relative)
+
+
+CURVES = [
+    State(0.0, 0.0, 43.5, curve_radius=300.0),
+    State(-3e-3, 7.2e-3, 43.5, curve_radius=-500.0),
+    State(5.7e-3, 14e-3, 43.0, curve_radius=200.0),
+]
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Creepages of a wheelset in a curve",
+    source="numerical differentiation of the motion of its material points along a circle (scipy)",
+    held_to="{relative:g} of V, and per metre",
+    relative=1e-9,
+)
+@pytest.mark.parametrize("state", CURVES, ids=str)
+def test_wheelsets_turn_with_a_curve(state: State, relative: float) -> None:
+    # The rails of the contact search are straight, so that the point at x enters a curved rail at V x sin δ/R. The
+    # vertical motion that takes this away also moves along the tangent, by tan δ of it.
+    problem = creepages(STANDARD, state)
+    angle = np.asarray(problem.contact_angle)
+    for number, side in enumerate(("left", "right")):
+        xi, eta, phi, into = slips(STANDARD, state, side)
+        found = (problem.longitudinal_creepage, problem.lateral_creepage, problem.spin)
+        eta -= into * np.tan(angle[number, 0])
+        assert [one[number, 0] for one in found] == pytest.approx([xi, eta, phi], rel=0.0, abs=relative)
+
+
+def test_the_outer_wheel_of_a_curve_slides_forwards() -> None:
+    # In the middle of the track in a curve to the right, the left wheel has further to go than it rolls.
+    problem = creepages(STANDARD, State(0.0, 0.0, SPEED / R0, curve_radius=300.0))
+    left, right = problem.longitudinal_creepage[:, 0]
+    assert left - right == pytest.approx(2.0 * 0.7533 / 300.0, rel=1e-4)  # y of the contact point
+    assert left > 0.0 > right
+
+
+@pytest.mark.parametrize("state", [STATES[2], STATES[4], CURVES[2]], ids=str)
+def test_spin_is_the_change_of_slip_across_and_along_the_patch(state: State) -> None:
+    # w = (ξ - φ y, η - φ x) with x backwards. Places 1 mm away add a thousandth of a relative error of 1e-9.
+    step = 1e-3
+    problem = creepages(STANDARD, state)
+    for number, side in enumerate(("left", "right")):
+        spin = problem.spin[number, 0]
+        for ahead, across, expected in ((0.0, step, (-spin, 0.0)), (step, 0.0, (0.0, spin))):
+            far, near = (slips(STANDARD, state, side, sign * ahead, sign * across) for sign in (1.0, -1.0))
+            found = [(far[axis] - near[axis]) / (2.0 * step) for axis in (0, 1)]
+            assert found == pytest.approx(expected, rel=0.0, abs=2e-6)
+
+
+def test_signs_are_those_of_the_conventions() -> None:
+    # Yaw turns the wheels to the right, so that they slide to the left of where they roll.
+    problem = creepages(STANDARD, State(0.0, 5e-3, SPEED / R0))
+    angle, spin, lateral = (
+        np.asarray(one)[:, 0] for one in (problem.contact_angle, problem.spin, problem.lateral_creepage)
+    )
+    assert angle[1] < 0.0 < angle[0]
+    assert spin[1] < 0.0 < spin[0]
+    assert (lateral < 0.0).all()
+    # φ = sin δ/r at a small creepage and no roll, but for the yaw: cos ψ.
+    assert spin == pytest.approx(np.sin(angle) / R0, rel=1e-2)
+    # The wheel that turns faster than it rolls drives. The radius is within 0.1 mm of the nominal one.
+    driving = creepages(STANDARD, State(0.0, 0.0, 1.01 * SPEED / R0))
+    assert driving.longitudinal_creepage[:, 0] == pytest.approx(-0.01, rel=0.0, abs=1.01e-4 / R0)
+
+
+# ---------------------------------------------------------------------------------------------------- torque and power
+
+
+class Balanced(NamedTuple):
+    """Patches under load: places from the axle, tangents and normals (n, 3); N, Fx, Fy, Mz and ξ, η, φ; Ω and e."""
+
+    arm: Array
+    tangent: Array
+    normal: Array
+    force: Array
+    creepage: Array
+    rotation: float
+    axle: Array
+
+
+def balanced(pair: ws.Wheelset, displacement: float, yaw: float, **conditions: Any) -> Balanced:
+    """Return all patches of a wheelset under load, at places found by its geometry."""
+    where = {"lateral_displacement": Q(displacement, "m"), "yaw": Q(yaw, "rad")}
+    result = (pair | wl.contact_model("fastsim"))(
+        **where, vertical_load="60 kN", friction_coefficient=0.35, **conditions
+    )
+    data = pair.geometry(**where, within="1 mm").dataset
+    exists = result.problem.exists
+    assert exists is not None
+    angle = np.radians(data.contact_angle.values)[exists]
+    roll, height = 1e-3 * data["roll"].item(), 1e-3 * data["vertical_displacement"].item() - R0
+    point = 1e-3 * np.stack([data[name].values[exists] for name in "xyz"], axis=-1)
+    nothing = np.zeros_like(angle)
+    quantities = (result.normal_force, result.longitudinal_force, result.lateral_force, result.spin_moment)
+    problem = result.problem
+    creepage = (problem.longitudinal_creepage, problem.lateral_creepage, problem.spin)
+    first = problem.longitudinal_creepage[0, 0], data.rolling_radius.values[0, 0] * 1e-3
+    axle = Rotation.from_euler("xz", [roll, yaw]).apply([0.0, 1.0, 0.0])
+    arm = point - np.array([0.0, displacement, height])
+    # ξ = 1 + (-Ω e × r)_x/V gives Ω.
+    rotation = SPEED * (1.0 - first[0]) / float(np.cross(axle, arm[0])[0])
+    return Balanced(
+        arm,
+        np.stack([nothing, np.cos(angle), np.sin(angle)], axis=-1),
+        np.stack([nothing, -np.sin(angle), np.cos(angle)], axis=-1),
+        np.stack([one.to_base_units().magnitude[exists] for one in quantities]),
+        np.stack([one[exists] for one in creepage]),
+        rotation,
+        axle,
+    )
+
+
+TORQUES = [0.0, 3e3, -8e3, 12e3]
+"""Torques on the axle [N m]."""
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Torque on the axle: moments of all forces on the wheels about it",
+    source="static equilibrium in space",
+    held_to="{share:g} of the torque that friction transmits",
+    share=1e-7,
+)
+@pytest.mark.parametrize("torque", TORQUES)
+@pytest.mark.parametrize(("displacement", "yaw"), [(0.0, 0.0), (-3e-3, 7.2e-3), (5.7e-3, 14e-3)])
+def test_forces_balance_the_torque_on_the_axle(displacement: float, yaw: float, torque: float, share: float) -> None:
+    found = balanced(STANDARD, displacement, yaw, axle_torque=Q(torque, "N*m"))
+    normal, along, across, moment = found.force
+    on_wheel = (
+        -along[:, None] * np.array([1.0, 0.0, 0.0]) - across[:, None] * found.tangent - normal[:, None] * found.normal
+    )
+    about = (np.cross(found.arm, on_wheel) - moment[:, None] * found.normal) @ found.axle
+    # A torque that drives turns about -e.
+    grip = 0.35 * 120e3 * R0
+    assert about.sum() == pytest.approx(torque, rel=0.0, abs=share * grip)
+
+
+@pytest.mark.parametrize("torque", TORQUES)
+def test_torque_and_traction_do_the_work_that_friction_dissipates(torque: float) -> None:
+    # The track holds the wheelset back by the sum of Fx, against which it is pulled at V.
+    found = balanced(STANDARD, -3e-3, 7.2e-3, axle_torque=Q(torque, "N*m"))
+    dissipated = SPEED * (found.creepage * found.force[1:]).sum()
+    work = torque * found.rotation + SPEED * found.force[1].sum()
+    assert dissipated > 0.0
+    assert work == pytest.approx(dissipated, rel=0.0, abs=1e-7 * 0.35 * 120e3 * SPEED)

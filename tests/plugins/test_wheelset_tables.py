@@ -1,0 +1,84 @@
+"""The tables and the picture of wheelsets beside CONTACT, as documented."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from docs import wheelset_benchmark
+from docs.wheelset_benchmark import JUMPS, SIDES, STEPS, benchmark, blended, differences, reference, two_patches
+from tests.environments import ROOT
+
+
+def words(page: str) -> str:
+    return " ".join((ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8").split())
+
+
+def at_jumps() -> np.ndarray:
+    return np.array([[(side, displacement) in JUMPS for side in SIDES] for displacement in STEPS])
+
+
+def test_the_tables_beside_contact_are_what_is_computed() -> None:
+    committed = {path.stem: path.read_text(encoding="utf-8") for path in wheelset_benchmark.FOLDER.iterdir()}
+    assert committed == wheelset_benchmark.tables(), "renew them with: python -m docs.wheelset_benchmark"
+
+
+def test_there_are_two_patches_only_at_the_jumps_that_the_page_names() -> None:
+    for pressure in wheelset_benchmark.PRESSURES:
+        patches = blended(benchmark(pressure))["patches"]
+        assert {(side, at) for at, row in zip(STEPS, patches, strict=True)
+                for side, count in zip(SIDES, row, strict=True) if count == 2} == JUMPS - {("right", 0.5)}  # fmt: skip
+        assert set(np.unique(patches)) == {1, 2}
+
+
+def test_the_patches_at_the_jumps_are_as_far_apart_as_the_page_says() -> None:
+    place = benchmark("kpec")["y"]
+    for case, side, distance in ((0, 0, 9), (0, 1, 9), (10, 1, 10)):
+        assert round(abs(place[case, side, 1] - place[case, side, 0])) == distance
+        assert f"two patches, {distance} mm apart" in words("wheelset-benchmark")
+
+
+def test_the_furthest_points_are_where_the_page_says() -> None:
+    kpec, hertz = differences("kpec"), differences("hertz")
+    flange = np.abs(reference()["delta"]) > wheelset_benchmark.FLANGE
+    for place, head, where in ((flange, "N [%]", 6.5), (flange, "ξ [10⁻⁵]", 6.5), (~flange, "p_max [%]", 1.0)):
+        off = np.where(place & ~at_jumps(), np.abs(kpec[head]), 0.0)
+        assert STEPS[np.unravel_index(off.argmax(), off.shape)[0]] == where
+    moved = np.where(at_jumps(), 0.0, np.abs(hertz["y [mm]"])).max()
+    assert f"up to {moved:.2f} mm from the middle of the pressure" in words("wheelset-benchmark")
+    contact = reference()
+    share = contact["fs"] * np.sin(contact["delta"]) / 10e3
+    assert share[13, 1] > 1 / 3  # at 6.5 mm, of the right wheel
+    power = -contact["power"][:, 1]
+    assert round(power[0], 2) == 0.47
+    assert power[0] < 0.01 * power[10]
+
+
+def test_two_patches_dissipate_what_those_of_contact_do_within_what_the_page_says() -> None:
+    rows = [line.split(",") for line in (ROOT / "tests/data/contact_two_patches.csv").read_text().splitlines()[3:]]
+    assert len(rows) == 4
+    found = two_patches("kpec")
+    for row in rows:
+        case = 0 if row[0] == "5.1" else 1
+        patch = np.nanargmin(np.abs(found["y"][case, 1] - float(row[3])))
+        assert found["power"][case, 1, patch] == pytest.approx(float(row[-2]), rel=0.05)
+
+
+def test_the_picture_shows_all_of_contacts_points() -> None:
+    figure = wheelset_benchmark.picture()
+    where, power, humps = figure.axes
+    contact = reference()
+    for axes, name, sign in ((where, "y", [-1.0, 1.0]), (power, "power", [-1.0, -1.0])):
+        drawn = [line.get_ydata() for line in axes.get_lines() if line.get_marker() == "o"]
+        assert np.stack(drawn, axis=-1) == pytest.approx(contact[name] * np.array(sign))
+        assert axes.get_ylabel().endswith("]")
+    assert len(humps.get_lines()) == 3
+    assert humps.get_ylabel().endswith("]")
+
+
+def test_the_humps_of_contact_add_up_to_its_patch() -> None:
+    rows = np.loadtxt(ROOT / "tests/data/contact_two_humps.csv", delimiter=",", skiprows=4)
+    contact = reference()
+    assert rows[:, 2].sum() == pytest.approx(contact["fn"][0, 1], rel=1e-3)  # four digits are printed
+    assert rows[:, 3].max() == pytest.approx(contact["pmax"][0, 1], rel=1e-3)
+    assert rows[:, 4].sum() == pytest.approx(contact["power"][0, 1], rel=1e-3)
