@@ -466,8 +466,8 @@ class Wheelset(wl.Rig):
         displacement = float(balance.found.position.displacement[here & (balance.found.side == 1)][0])
         warnings.warn(
             f"{np.count_nonzero(~balance.balanced)} of {balance.balanced.size} positions have no result, the first at a"
-            f" lateral displacement of {1e3 * displacement:.4g} mm: friction holds a flange, and no normal force"
-            " carries the vertical load",
+            f" lateral displacement of {1e3 * displacement:.4g} mm: no normal forces were found that carry the vertical"
+            " load together with the creep forces, as where friction holds a flange",
             wl.RangeWarning,
             stacklevel=5,
         )
