@@ -281,6 +281,7 @@ class Balance:
         count = self.task.load.size
         open_, unit = np.ones(count, dtype=np.bool_), np.ones((count, 1, 3))
         step, before = np.zeros((2, count, 3))
+        worst = np.zeros(count)
         for iteration in range(NEWTON_STEPS):
             state = self._state(forces, open_)
             worst = np.abs(state.miss).max(axis=-1)

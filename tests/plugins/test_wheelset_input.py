@@ -1,4 +1,4 @@
-"""Wrong input of wheelsets, and the conformance kit."""
+"""Wrong input of wheelsets."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import pytest
 import wearlaw as wl
 import wearlaw_wheelset as ws
 from wearlaw import Q
-from wearlaw.testing import checks
 from wearlaw_wheelset import _loads
 
 FIELDS: dict[str, Any] = {
@@ -108,11 +107,3 @@ def test_positions_without_a_balance_have_no_result_and_a_warning(monkeypatch: p
     assert said.startswith("1 of 2 positions have no result, the first at a lateral displacement of 6.9 mm: no normal")
     assert np.isfinite(found.normal_force.magnitude).any(axis=(1, 2)).tolist() == [True, False]
     assert found.normal_force.magnitude[0, :, 0] == pytest.approx(balanced.normal_force.magnitude[0, :, 0], rel=2e-3)
-
-
-@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
-def test_the_conformance_kit_passes(pressure: Any) -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)
-        for check in checks(pair(pressure=pressure)):
-            check()
