@@ -22,6 +22,7 @@ from wearlaw.models.contact_model import Model
 from wearlaw.testing import Check, checks
 from wearlaw.testing.roundtrip import RoundTrip
 from wearlaw_kth import PUBLISHED
+from wearlaw_wheelset import Wheelset
 
 OWN = {"high_pressure": 0.02, "low_speed": 2e-4, "mid_speed": 3e-3, "high_speed": 4e-4}
 """Coefficients of one's own for the KTH map, in an order that no published set has."""
@@ -75,6 +76,8 @@ RIGS: dict[str, wl.Rig] = {
     "mean_speed": wl.TwinDisc.suros(speed_of="mean"),
     "conical_wheel": wl.rig("wheel_rail", **wl.WheelRail.example_fields),
     "hollow_wheel": wl.rig("wheel_rail", **wl.WheelRail.example_fields, wheel_profile_radius="-400 mm"),
+    "wheelset": wl.rig("wheelset", **Wheelset.example_fields),
+    "wheelset_of_ellipses": wl.rig("wheelset", **Wheelset.example_fields, pressure="hertz"),
 }
 
 

@@ -41,6 +41,10 @@ and those of FASTSIM jump by up to 1e-3 where a strip begins to stick once more.
 ROUGH = 2e-3
 """Imbalance that stays where creep forces jump."""
 
+FOLD = 2e-2
+"""Imbalance of the torque that stays where two penetrations carry a load, and the creep forces jump from one to the
+other as the speed of rotation changes."""
+
 MOST = 100.0
 """Greatest penetration that is tried, over that of the load without creep forces."""
 
@@ -277,6 +281,7 @@ class Balance:
         count = self.task.load.size
         open_, unit = np.ones(count, dtype=np.bool_), np.ones((count, 1, 3))
         step, before = np.zeros((2, count, 3))
+        worst = np.zeros(count)
         for iteration in range(NEWTON_STEPS):
             state = self._state(forces, open_)
             worst = np.abs(state.miss).max(axis=-1)
@@ -305,7 +310,7 @@ class Balance:
     def _bracketed(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> None:
         """Balance some positions in place, the torque within bounds, and at each speed of rotation the loads.
 
-        Positions that stay unbalanced are marked: friction holds a flange, so that no penetration carries the load.
+        Positions that stay unbalanced are marked.
         """
         start, going = self.penetration.copy(), open_.copy()
         self.penetration = np.where(open_.repeat(2), self.whole, start)
@@ -320,8 +325,8 @@ class Balance:
                 turns.slope = np.maximum(self._rates(state)[:, 2, 2], TINY)
             turns.step(state.miss[:, 2], going)
             self.rotation = turns.x
-        final = self._state(forces, open_)
-        self.balanced &= ~(open_ & (np.abs(final.miss).max(axis=-1) > ROUGH))
+        final = np.abs(self._state(forces, open_).miss) > (ROUGH, ROUGH, FOLD)
+        self.balanced &= ~(open_ & final.any(axis=-1))
 
     def _carried(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> _State:
         """Balance the vertical loads of some positions at their speed of rotation, in place."""

@@ -406,6 +406,8 @@ def _solve(
     logarithm, before_log, before = math.log(approach), 0.0, 0.0
     low, high, warning = -math.inf, math.inf, 0.0
     mode, found, iteration = SOLVES, logarithm, 0
+    top = bend = middle = start = end = slope = force = 0.0
+    cut = False
     for _ in range(ITERATIONS):
         approach = math.exp(logarithm)
         top, bend, middle, start, end, cut = _region(

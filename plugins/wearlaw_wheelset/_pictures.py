@@ -81,7 +81,8 @@ def geometry_figure(geometry: xarray.Dataset, profiles: Profiles) -> Figure:
     with matplotlib.rc_context(STYLE):
         figure = matplotlib.figure.Figure(figsize=(7.4, 6.2), layout="constrained")
         axes = figure.subplot_mosaic([["both", "both"], ["radius", "angle"]], height_ratios=(3.0, 4.0))
-        _contact_points(axes["both"], geometry, profiles, matplotlib.cm.ScalarMappable(cmap="viridis"))
+        colours = matplotlib.cm.ScalarMappable(cmap="viridis")  # pyright: ignore[reportAttributeAccessIssue]
+        _contact_points(axes["both"], geometry, profiles, colours)
         radius, angle = geometry.rolling_radius_difference, geometry.contact_angle.sel(side="right")
         _curves(axes["radius"], radius.expand_dims("patch", -1))
         _curves(axes["angle"], angle)

@@ -43,6 +43,12 @@ UNITS = {
 }
 """Units of the conditions."""
 
+FLANGE_DEPTH = 10e-3
+"""Depth below the taping line at which the thickness of a flange is measured (EN 15313) [m]."""
+
+MOST_PLAY = 40e-3
+"""Greatest distance between flange and rail in the middle of the track [m]: a worn flange in a widened curve has 30."""
+
 MOST_YAW = 0.2
 """Greatest yaw [rad]: a locomotive in the tightest curve has a tenth of it."""
 
@@ -188,6 +194,13 @@ class Wheelset(wl.Rig):
             raise ValueError(
                 f"rail_cant: is {np.degrees(scalar(self.rail_cant)):.3g} deg, but the head of the rail's profile"
                 f" leans by {np.degrees(lean):.3g} deg already; leave rail_cant out, or give a profile without cant"
+            )
+        play = self._flange_play
+        if play is not None and not 0.0 < play < MOST_PLAY:
+            raise ValueError(
+                f"gauge: rails {self.gauge!r} apart leave the flanges {1e3 * play:.4g} mm on either side, of wheels"
+                f" {self.flange_back_distance!r} apart between their inner faces; they must leave 0 to"
+                f" {1e3 * MOST_PLAY:g} mm"
             )
         straight = np.zeros(1)
         roll, found = searched(self._section, straight, straight)
@@ -453,11 +466,18 @@ class Wheelset(wl.Rig):
         displacement = float(balance.found.position.displacement[here & (balance.found.side == 1)][0])
         warnings.warn(
             f"{np.count_nonzero(~balance.balanced)} of {balance.balanced.size} positions have no result, the first at a"
-            f" lateral displacement of {1e3 * displacement:.4g} mm: friction holds a flange, and no normal force"
-            " carries the vertical load",
+            f" lateral displacement of {1e3 * displacement:.4g} mm: no normal forces were found that carry the vertical"
+            " load together with the creep forces, as where friction holds a flange",
             wl.RangeWarning,
             stacklevel=5,
         )
+
+    @property
+    def _flange_play(self) -> float | None:
+        """Distance from the flange, below the taping line, to the rail in the middle of the track [m]; None without."""
+        across, radius = self._section.wheel_y.value, self._section.wheel_radius.value
+        deep = np.flatnonzero(radius > scalar(self.nominal_radius) + FLANGE_DEPTH)
+        return None if not deep.size else 0.5 * scalar(self.gauge) - float(across[deep[-1]])
 
     @cached_property
     def _steepest(self) -> float:

@@ -388,10 +388,13 @@ def _root(section: Section, position: Position, left: Array, right: Array) -> Ar
         share = np.divide(at_right, span, out=np.zeros_like(span), where=span != 0.0)
         root = right - share * (right - left)
         value = gaps(section, position, root).rise
+        going = np.abs(at_right) >= ROUNDING  # a place that is found stays, whatever others do
         same = value * at_right > 0.0
-        left, at_left = np.where(same, left, right), np.where(same, 0.5 * at_left, at_right)
-        right, at_right = root, value
-        if (np.abs(value) < ROUNDING).all():
+        found = np.where(same, left, right), np.where(same, 0.5 * at_left, at_right), root, value
+        left, at_left, right, at_right = (
+            np.where(going, new, old) for new, old in zip(found, (left, at_left, right, at_right), strict=True)
+        )
+        if not going.any():
             break
     return right
 

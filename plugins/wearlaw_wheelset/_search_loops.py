@@ -209,7 +209,7 @@ def compiled_search(
                     k = cell[patch]
                     if k < 0:
                         continue
-                    left, right = arc[k], arc[k + 1]
+                    left, right = float(arc[k]), float(arc[k + 1])
                     if gap[k] == np.inf:
                         left = right
                     if gap[k + 1] == np.inf:

@@ -214,7 +214,7 @@ def test_a_rig_of_a_plugin_is_found_by_name(install: Install) -> None:
 
 
 def test_the_shipped_rigs_come_from_a_plugin_like_any_other() -> None:
-    assert list(wl.rigs()) == ["twin_disc", "wheel_rail"]
+    assert list(wl.rigs()) == ["twin_disc", "wheel_rail", "wheelset"]
     assert wl.rig("twin_disc", **SUROS.model_dump(mode="json")) == SUROS
     with pytest.raises(wl.UnknownModelError, match="no rig is called 'twin_discs'; did you mean 'twin_disc'"):
         wl.rig("twin_discs")

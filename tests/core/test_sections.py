@@ -80,7 +80,7 @@ UNKIND = """
         return {"exits": exits, "mute": mute, "refuses": refuses, "unshown": unshown}
 """
 
-OURS = ["tassini2010_claims", "tassini2010_table_4", "tassini2010_tables"]
+OURS = ["tassini2010_claims", "tassini2010_table_4", "tassini2010_tables", "wheelset"]
 
 
 def test_the_sections_of_the_study_come_from_a_plugin_like_any_other() -> None:

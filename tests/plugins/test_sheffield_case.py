@@ -18,7 +18,7 @@ from wearlaw.wear_tests.reader import text_of_tests
 
 
 def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:
-    assert list(loader.installed().cases.items()) == ["tassini2010", "wheel_on_rail"]
+    assert list(loader.installed().cases.items()) == ["tassini2010", "wheel_on_rail", "wheelset"]
     package = Path(wearlaw_sheffield.__file__).parent
     assert case_text("tassini2010") == (package / "tassini2010.toml").read_text(encoding="utf-8")
 

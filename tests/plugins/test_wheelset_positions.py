@@ -268,7 +268,7 @@ def test_a_wheel_beside_its_rail_is_an_error(displacement: str, compiled: bool) 
 
 @pytest.mark.parametrize("gauge", ["1300 mm", "1400 mm", "1600 mm", "1 m"])
 def test_a_gauge_that_cannot_be_is_an_error(gauge: str) -> None:
-    with pytest.raises(wl.ConfigurationError, match=r"gauge: .* do not fit rails"):
+    with pytest.raises(wl.ConfigurationError, match=r"gauge: rails .* must leave 0 to 40 mm"):
         wheelset(gauge=gauge)
 
 

@@ -1,0 +1,109 @@
+"""Wrong input of wheelsets."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+import wearlaw_wheelset as ws
+from wearlaw import Q
+from wearlaw_wheelset import _loads
+
+FIELDS: dict[str, Any] = {
+    "wheel": ws.Profile.s1002(),
+    "rail": ws.Profile.uic60(),
+    "nominal_radius": "460 mm",
+    "flange_back_distance": "1360 mm",
+    "gauge": "1435 mm",
+    "rail_cant": "1:40",
+    "material": wl.steel(),
+    "rolling_speed": "20 m/s",
+}
+GIVEN: dict[str, Any] = {"lateral_displacement": "3 mm", "vertical_load": "50 kN", "friction_coefficient": 0.3}
+
+
+def pair(**changed: Any) -> ws.Wheelset:
+    return ws.Wheelset(**{**FIELDS, **changed})
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"wheel": ws.Profile.uic60()}, "wheel is the profile of a rail and rail that of a rail"),
+        (
+            {"rail": ws.Profile.uic60().turned("-0.025 rad")},
+            r"rail_cant: is 1\.43 deg, but .* leans by 1\.43 deg already",
+        ),
+        ({"rail": ws.Profile.uic60().turned("0.025 rad")}, r"leans by -1\.43 deg already"),
+        ({"gauge": "1380 mm"}, r"gauge: rails 1380 mm apart leave the flanges -\d+.* mm on either side"),
+        ({"gauge": "1560 mm"}, r"gauge: .* must leave 0 to 40 mm"),
+        ({"gauge": "1.435 mm"}, "gauge"),
+        ({"gauge_depth": "80 mm"}, "gauge_depth: 80 mm is below the gauge side of the rail"),
+        ({"rail_cant": "1:4"}, "rail_cant"),
+        ({"rail_cant": "steep"}, "rail_cant"),
+        ({"pressure": "carter"}, "pressure"),
+        ({"strips": 2}, "strips"),
+        ({"wheel": "s1200"}, "s1200.*did you mean 's1002'"),
+    ],
+)
+def test_a_wheelset_that_cannot_be_is_refused(changed: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.WearlawError, match=message):
+        pair(**changed)
+
+
+@pytest.mark.parametrize(
+    ("changed", "error", "message"),
+    [
+        ({"lateral_displacement": 3}, wl.UnitError, "lateral_displacement: got the bare number 3"),
+        ({"lateral_displacement": "3 kN"}, wl.UnitError, "lateral_displacement"),
+        ({"lateral_displacement": "60 mm"}, wl.ConditionsError, "at 60 mm the left wheel does not touch its rail"),
+        ({"yaw": "7 rad"}, wl.ConditionsError, r"yaw: must be at most 0\.2 rad, got 7 rad; is it in mrad"),
+        ({"vertical_load": "-5 kN"}, wl.UnitError, "vertical_load"),
+        ({"friction_coefficient": 0.0}, wl.UnitError, "friction_coefficient: must be positive and finite"),
+        ({"friction_coefficient": "rough"}, wl.UnitError, "friction_coefficient: must be a plain number"),
+        ({"flange_friction_coefficient": np.nan}, wl.UnitError, "flange_friction_coefficient"),
+        (
+            {"lateral_displacement": Q([1.0, 2.0, 3.0], "mm"), "friction_coefficient": [0.2, 0.3]},
+            wl.ConditionsError,
+            r"do not broadcast .*lateral_displacement \(3,\), friction_coefficient \(2,\)",
+        ),
+        ({"axle_torque": "20 kN*m"}, wl.ConditionsError, "axle_torque: .* is more than friction can transmit"),
+        ({"axle_torque": "1 N*m", "angular_speed": "43 rad/s"}, wl.ConditionsError, "not both"),
+        ({"displacement": "1 mm"}, wl.ConditionsError, "displacement: unknown condition"),
+        ({"vertical_load": None}, wl.WearlawError, "vertical_load"),
+    ],
+)
+def test_wrong_conditions_are_named(changed: dict[str, Any], error: type[Exception], message: str) -> None:
+    predict: Any = pair() | wl.contact_model("fastsim")
+    with pytest.raises(error, match=message):
+        predict(**{**GIVEN, **changed})
+
+
+def test_contact_models_that_do_not_solve_strips_are_refused_at_once() -> None:
+    with pytest.raises(
+        wl.CompositionError, match="'polach' solves elliptic contacts only, but a Wheelset makes patches"
+    ):
+        pair() | wl.contact_model("polach")
+    predict: Any = pair(pressure="hertz") | wl.contact_model("polach")
+    assert np.isfinite(predict(**GIVEN).lateral_force.magnitude[:, 0]).all()
+
+
+def test_positions_without_a_balance_have_no_result_and_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
+    predict: Any = pair() | wl.contact_model("fastsim")
+    given = {**GIVEN, "lateral_displacement": Q([0.0, 6.9], "mm"), "yaw": Q([0.0, 20.0], "mrad")}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        balanced = predict(**given)
+    monkeypatch.setattr(_loads, "NEWTON_STEPS", 2)  # enough for the first position alone
+    monkeypatch.setattr(_loads, "STEPS", 1)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = predict(**given)
+    (said,) = (text for text in (str(one.message) for one in caught) if "no result" in text)
+    assert said.startswith("1 of 2 positions have no result, the first at a lateral displacement of 6.9 mm: no normal")
+    assert np.isfinite(found.normal_force.magnitude).any(axis=(1, 2)).tolist() == [True, False]
+    assert found.normal_force.magnitude[0, :, 0] == pytest.approx(balanced.normal_force.magnitude[0, :, 0], rel=2e-3)
