@@ -46,6 +46,9 @@ UNITS = {
 FLANGE_DEPTH = 10e-3
 """Depth below the taping line at which the thickness of a flange is measured (EN 15313) [m]."""
 
+FLANGE_SLOPE = np.radians(50.0)
+"""A wheel has a flange if its profile is steeper than this; those in use have 60 to 75 degrees [rad]."""
+
 MOST_PLAY = 40e-3
 """Greatest distance between flange and rail in the middle of the track [m]: a worn flange in a widened curve has 30."""
 
@@ -477,7 +480,9 @@ class Wheelset(wl.Rig):
         """Distance from the flange, below the taping line, to the rail in the middle of the track [m]; None without."""
         across, radius = self._section.wheel_y.value, self._section.wheel_radius.value
         deep = np.flatnonzero(radius > scalar(self.nominal_radius) + FLANGE_DEPTH)
-        return None if not deep.size else 0.5 * scalar(self.gauge) - float(across[deep[-1]])
+        if not deep.size or self.wheel.curve.angle.min() > -FLANGE_SLOPE:
+            return None
+        return 0.5 * scalar(self.gauge) - float(across[deep[-1]])
 
     @cached_property
     def _steepest(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
@@ -145,3 +146,15 @@ LOADS = Q(np.array([[[80.0, np.nan]] * 2] * 2 + [[[80.0, np.nan], [60.0, 20.0]]]
 def of(prediction: wl.Prediction, name: str) -> Array:
     """Return a property as an array in SI."""
     return np.asarray(getattr(prediction, name).to_base_units().magnitude)
+
+
+class Warns(Axle):
+    """Warns of large displacements."""
+
+    name: ClassVar[str] = "warns"
+
+    def problem(self, *, displacement: wl.QuantityLike, **conditions: Any) -> wl.Problem:
+        most = float(wl.Unit("mm", positive=False).si(displacement, "displacement").max())
+        if most > 6e-3:
+            warnings.warn(f"the wheel climbs at {1e3 * most:g} mm", wl.RangeWarning, stacklevel=2)
+        return super().problem(displacement=displacement, **conditions)

@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.core.axles import CREEP, GIVEN, KTH, PATCHES, Axle, Cut, Worn, lifted, of
+from tests.core.axles import CREEP, GIVEN, KTH, PATCHES, Axle, Cut, Warns, Worn, lifted, of
 from tests.core.sweeps import contents, interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q
@@ -287,18 +287,6 @@ def test_outputs_of_an_evaluator_have_the_axes_of_the_patches() -> None:
     )
     found = evaluate("map", pipeline(), points, ["wear_rate"], PATCHES)
     assert found["wear_rate"].shape == (5, 5, 2, 2)
-
-
-class Warns(Axle):
-    """Warns of large displacements."""
-
-    name: ClassVar[str] = "warns"
-
-    def problem(self, *, displacement: wl.QuantityLike, **conditions: Any) -> wl.Problem:
-        most = float(wl.Unit("mm", positive=False).si(displacement, "displacement").max())
-        if most > 6e-3:
-            warnings.warn(f"the wheel climbs at {1e3 * most:g} mm", wl.RangeWarning, stacklevel=2)
-        return super().problem(displacement=displacement, **conditions)
 
 
 @pytest.mark.parametrize("workers", [1, 2])
