@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pandas as pd
 
@@ -43,10 +45,14 @@ def section(study: wl.Study) -> wl.Section:
     if not isinstance(rig, Wheelset):
         raise wl.InputError(f"the section 'wheelset' is about wheelsets; the rig of the case is '{rig.name}'")
     figures, tables = [_geometry(rig)], {}
-    for name, grid in study.case.profiles.items():
-        found = {
-            pair.label: pair.pipeline(**grid.conditions()) for pair in study.pairs if pair.pipeline.scale == "cells"
-        }
+    for name in study.case.profiles:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wl.WearlawWarning)  # the profiles of the study have said them
+            found = {
+                pair.label: pair.pipeline(**study.conditions(profile=name))
+                for pair in study.pairs
+                if pair.pipeline.scale == "cells"
+            }
         if not found:
             continue
         first = next(iter(found.values()))
