@@ -64,15 +64,21 @@ MARGIN = 1e-3
 CONICITY_POINTS = 801
 """Displacements at which the conicity takes radii."""
 
-RATIO = re.compile(r"\s*1\s*:\s*([0-9.]+)\s*")
+RATIO = re.compile(r"\s*1\s*:\s*([0-9]+\.?[0-9]*)\s*")
+
+NUMBER = re.compile(r"\s*[0-9]+\.?[0-9]*\s*")
 
 
 def _cant(value: object) -> object:
     """Return the angle of a cant such as "1:40"; other values stay."""
-    if isinstance(value, str) and (found := RATIO.fullmatch(value)):
-        return wl.Q(float(np.arctan(1.0 / float(found[1]))), "rad")
+    if isinstance(value, str) and (ratio := RATIO.fullmatch(value)):
+        if float(ratio[1]) == 0.0:
+            raise wl.UnitError(f"got {value!r}, a rail on its side; give a ratio such as '1:40'")
+        return wl.Q(float(np.arctan(1.0 / float(ratio[1]))), "rad")
     if isinstance(value, int | float) and not isinstance(value, bool) and value == 0:
         return wl.Q(0.0, "rad")
+    if isinstance(value, int | float | str) and not isinstance(value, bool) and NUMBER.fullmatch(str(value)):
+        raise wl.UnitError(f"got {value!r}, which has no unit; give a ratio or an angle, as '1:{value}' or '1.4 deg'")
     return value
 
 
@@ -348,6 +354,7 @@ class Wheelset(wl.Rig):
         if axle_torque is not None and angular_speed is not None:
             raise wl.ConditionsError("give axle_torque or angular_speed, not both")
         arrays = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
+        _check_given(arrays)
         arrays["friction_coefficient"] = _friction(friction_coefficient, "friction_coefficient")
         name = "flange_friction_coefficient"
         flange = friction_coefficient if flange_friction_coefficient is None else flange_friction_coefficient
@@ -522,6 +529,15 @@ class Wheelset(wl.Rig):
 def scalar(value: Any) -> float:
     """Return a quantity with one value in SI."""
     return float(value.to_base_units().magnitude if isinstance(value, wl.Quantity) else value)
+
+
+def _check_given(arrays: Mapping[str, Array]) -> None:
+    """Raise an error for a distance below zero, or a curve without a radius."""
+    distance, radius = arrays.get("rolled_distance"), arrays["curve_radius"]
+    if distance is not None and (distance < 0.0).any():
+        raise wl.UnitError(f"rolled_distance: must not be negative, got {1e-3 * distance.min():.4g} km")
+    if (radius == 0.0).any():
+        raise wl.ConditionsError("curve_radius: must not be zero; straight track has an infinite radius, 'inf m'")
 
 
 def _friction(value: object, name: str) -> Array:
