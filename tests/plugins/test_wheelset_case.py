@@ -81,6 +81,12 @@ def test_a_study_of_a_wheelset_reports_contact_points_forces_and_wear(worn: Path
     assert [figure.name for figure in section.figures] == [
         "rolling_radius_difference", "contact_straight", "wear_straight",
     ]  # fmt: skip
+    for panel in section.figures[1].panels:  # in track axes, flanges are between the rails: near y = 0
+        wheel = next(curve for curve in panel.curves if curve.label == "wheel")
+        deepest = np.asarray(wheel.x)[np.nanargmax(wheel.y)]
+        outwards = np.asarray(wheel.x)[np.nanargmax(np.abs(wheel.x))]
+        assert np.sign(outwards) == {"left wheel": -1.0, "right wheel": 1.0}[panel.title]
+        assert abs(deepest) < 717.5 < abs(outwards)
     table = section.tables["patches_straight"]
     assert [*table["side"]] == ["left", "right"]
     load = table["normal force [kN]"] * np.cos(np.radians(table["contact angle [deg]"]))

@@ -321,6 +321,10 @@ def test_mirrored_wheelsets_wear_alike(pressure: Pressure, displacement: float, 
     ):  # fmt: skip
         found, expected = newtons(getattr(other, name)), newtons(getattr(one, name))
         assert sign * found[::-1] == pytest.approx(expected, rel=1e-5, abs=1e-5 * 60e3), name
+    if pressure == "kpec":
+        strips = one.problem.strips
+        assert strips is not None
+        assert (np.diff(strips.y[one.problem.exists]) > 0.0).all()  # on both sides
 
 
 def test_the_middle_of_a_head_is_where_the_closed_form_has_it() -> None:

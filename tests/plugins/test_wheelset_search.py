@@ -144,6 +144,12 @@ def test_hollow_treads_on_round_heads_are_a_linkage(conicity: float, tread: floa
     assert si(found, "roll") == pytest.approx(np.array([roll for roll, _, _ in expected]), rel=0.0, abs=lever * LEVEL)
     assert SIDE * si(found, "y") == pytest.approx(np.array([y for _, y, _ in expected]), rel=0.0, abs=metres)
     assert si(found, "z") == pytest.approx(np.array([z for _, _, z in expected]), rel=0.0, abs=metres)
+    # Splines through points of arcs, h apart, know the curvature to h²/R³, and to 12 times the rounding of y over h².
+    radius, angle = si(found, "rolling_radius"), si(found, "contact_angle")
+    for name, arc, apart in (("wheel_curvature", -tread, 120e-3 / 2400), ("rail_curvature", head, 90e-3 / 1600)):
+        spline = (apart / arc) ** 2 + 12.0 * np.finfo(float).eps * 60e-3 * abs(arc) / apart**2
+        assert si(found, name) == pytest.approx(1.0 / arc, rel=spline)
+    assert si(found, "rolling_curvature") == pytest.approx(np.cos(angle) / radius, rel=1e-12)
 
 
 def test_hollow_treads_have_the_conicity_of_wickens() -> None:
