@@ -105,7 +105,7 @@ def test_a_wheel_that_pulls_drives() -> None:
     middle: dict[str, Any] = {"lateral_displacement": "0 mm", "vertical_load": "160 kN", "friction_coefficient": 0.3}
     counted = {}
     for traction in ("driving", "braking"):
-        of = law(traction=traction, threshold=Q(0.01, "N"))  # type: ignore[arg-type]
+        of = law(traction=traction, threshold=Q(0.01, "N"))
         predict = wheelset | wl.contact_model("fastsim") | of
         found = predict(**middle, axle_torque=Q([5, -5], "kN*m"))
         damage_of = np.atleast_2d(found["rcf_damage"].magnitude).reshape(2, -1)
@@ -116,7 +116,7 @@ def test_a_wheel_that_pulls_drives() -> None:
 def test_disc_1_drives_where_it_is_the_faster_one() -> None:
     creepage = Q([-0.5, 0.5], "%")
     for traction, counts in (("driving", [False, True]), ("braking", [True, False]), ("either", [True, True])):
-        of = law(traction=traction, threshold=Q(1, "N"))  # type: ignore[arg-type]
+        of = law(traction=traction, threshold=Q(1, "N"))
         found = (SUROS | wl.contact_model("exact") | of)(**DISCS, creepage=creepage)["rcf_damage"].magnitude
         assert (found > 0.0).tolist() == counts
 
