@@ -197,8 +197,9 @@ def _draw(axes: Axes, case: Case) -> None:
         same = [one for one in drawn if one.law == curve.law]
         light = 0.6 * next(i for i, one in enumerate(same) if one is curve) / len(same)
         colour = [light + (1.0 - light) * part for part in to_rgb(PALETTE[laws.index(curve.law) % len(PALETTE)])]
-        axes.plot(DENSITIES, curve.rate, "--", lw=0.9, color=colour, label=f"_{curve.label}, outside")
-        axes.plot(DENSITIES, np.where(curve.inside, curve.rate, np.nan), lw=2.2, color=colour, label=curve.label)
+        labels = (f"_{curve.label}", curve.label) if curve.inside.any() else (curve.label, f"_{curve.label}")
+        axes.plot(DENSITIES, curve.rate, "--", lw=0.9, color=colour, label=labels[0])
+        axes.plot(DENSITIES, np.where(curve.inside, curve.rate, np.nan), lw=2.2, color=colour, label=labels[1])
 
     def to_power(density: Any) -> Any:
         return density * speed
@@ -219,7 +220,10 @@ def _title(case: Case) -> str:
 
 
 def table() -> str:
-    """Return the table of the mass per energy [µg/J] as CSV; values outside the stated range are in brackets."""
+    """Return the table of the mass per energy [µg/J] as CSV; values outside the stated range are in brackets.
+
+    Laws without values of their own have dashes.
+    """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     heads = [f"{case.title.lower()}, {density:g} N/mm²" for case in CASES for density in SHOWN]
@@ -232,6 +236,7 @@ def table() -> str:
             for rate, inside in zip(one.rate.tolist(), one.inside.tolist(), strict=True)
         ]
         writer.writerow([row[0].label, *cells])
+    writer.writerows([name, *["-"] * len(heads)] for name in sorted(left_out()))
     return text.getvalue()
 
 

@@ -96,11 +96,15 @@ def test_every_shipped_law_is_drawn_or_has_no_values_of_its_own() -> None:
             wl.wear_law(name)
     axes = laws_compared.picture().axes[:2]
     for panel, case in zip(axes, CASES, strict=True):
-        lines = {str(line.get_label()): np.asarray(line.get_ydata()) for line in panel.get_lines()}
-        assert {label.split(",")[0] for label in lines if not label.startswith("_")} == names
-        for one in curves(case):
-            assert np.array_equal(lines[one.label], np.where(one.inside, one.rate, np.nan), equal_nan=True)
-            assert np.array_equal(lines[f"_{one.label}, outside"], one.rate)
+        _, labels = panel.get_legend_handles_labels()
+        found = curves(case)
+        assert labels == [one.label for one in found]
+        assert {one.law for one in found} == names
+        for one, dashed, thick in zip(found, panel.get_lines()[::2], panel.get_lines()[1::2], strict=True):
+            assert (dashed.get_linestyle(), thick.get_linestyle()) == ("--", "-")
+            assert np.array_equal(np.asarray(dashed.get_ydata()), one.rate)
+            inside = np.where(one.inside, one.rate, np.nan)
+            assert np.array_equal(np.asarray(thick.get_ydata()), inside, equal_nan=True)
         for axis in (panel.get_ylabel(), panel.child_axes[0].get_xlabel(), axes[-1].get_xlabel()):
             assert axis.endswith("]")
 
