@@ -150,6 +150,17 @@ def test_each_of_its_numbers_can_be_uncertain() -> None:
     assert found == pytest.approx(due, rel=64 * EPS)
 
 
+def test_its_points_can_be_fitted() -> None:
+    given: dict[str, Any] = {**DISCS, "creepage": Q([1.0, 1.5, 2.0, 3.0, 4.0], "%")}
+    contacts = SUROS | wl.contact_model("exact")
+    measured = (contacts | law(threshold=Q(15, "N"), peak_damage=2e-5))(**given)["rcf_damage"]
+    tests = wl.WearTests.from_arrays(**given, outcomes={"rcf_damage": measured})
+    fit = wl.fit(contacts | law(), tests, free=["threshold", "peak_damage"], bootstrap=0)
+    # The search stops at a relative step of 1e-8.
+    assert fit.parameters["threshold"].m_as("N") == pytest.approx(15.0, rel=1e-6)
+    assert fit.parameters["peak_damage"].magnitude == pytest.approx(2e-5, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
