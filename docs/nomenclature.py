@@ -59,7 +59,7 @@ def documented() -> Iterator[Documented]:
     for record in (wl.TwinDisc.suros(), wheel_rail(), wheelset(), falling_friction()):
         for holder, name in fields(record):
             yield read(name, type(holder).__name__, field_docstrings(type(holder))[name])
-    for model in (*shipped_models(), *shipped_stages()):
+    for model in (*shipped_models(), *shipped_laws(), *shipped_stages()):
         for holder, name in fields(model):
             yield read(name, model.name, field_docstrings(type(holder))[name])
 
@@ -88,6 +88,12 @@ def shipped_models() -> Iterator[wl.Law | wl.ContactModel]:
     for name, law in found.wear_laws.items().items():
         if found.wear_laws.origin(name).distribution == "wearlaw":
             yield law().explicit()
+
+
+def shipped_laws() -> tuple[wl.Law, ...]:
+    """Return the shipped laws of other outcomes than wear, all of their numbers given."""
+    points = {"threshold": "20 N", "peak": "65 N", "balance": "175 N", "peak_damage": 1e-5}
+    return (wl.law("wlrm", **points, beyond="zero"),)
 
 
 def shipped_stages() -> tuple[wl.Stage, ...]:

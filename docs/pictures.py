@@ -19,6 +19,8 @@ from matplotlib.figure import Figure
 
 import wearlaw as wl
 from docs.conventions import conventions
+from docs.laws_compared import DPI
+from docs.laws_compared import picture as laws_compared
 from docs.wheelset_benchmark import picture as wheelsets_beside_contact
 from docs.wheelset_benchmark import wheelset
 from wearlaw import Q
@@ -45,6 +47,7 @@ def draw() -> None:
             save(drawing_of(figure), FOLDER / f"{figure.name}.png")
     save(cost_against_error(), FOLDER / "accuracy_cost_against_error.png")
     save(conventions(), FOLDER / "conventions.png")
+    save(laws_compared(), FOLDER / "laws_compared.png")
     save(wheelsets_beside_contact(), FOLDER / "wheelset_benchmark.png")
     geometry = wheelset().geometry(lateral_displacement=Q(np.linspace(-8.0, 8.0, 161), "mm"))
     save(geometry.plot(), FOLDER / "wheelset_geometry.png")
@@ -63,7 +66,7 @@ def draw() -> None:
 
 def save(figure: Figure, path: Path) -> None:
     """Write a picture with matplotlib's version in it, because pixels compare only within one version."""
-    figure.savefig(path, dpi=110)
+    figure.savefig(path, dpi=DPI)
 
 
 def photograph(page: Path) -> None:

@@ -49,6 +49,7 @@ TESTS = {
     "wearlaw_thermal": "plugins/test_thermal.py",
     "wearlaw_third_body": "plugins/test_third_body.py",
     "wearlaw_usfd": "plugins/test_usfd.py",
+    "wearlaw_wlrm": "plugins/test_wlrm.py",
     "wearlaw.pipeline.composition": "core/test_composition.py core/test_pipeline.py core/test_wheel_rail.py"
     " core/test_wheel_rail_result.py core/test_unlike_materials.py core/test_several_patches.py",
     "wearlaw.contact.hertz": "core/test_hertz.py core/test_unlike_materials.py",

@@ -61,6 +61,10 @@ WEAR_LAWS: list[wl.WearLaw] = [
     *(wl.wear_law("kth", coefficient=coefficient) for coefficient in ("low", "mid", "high", OWN)),
     wl.wear_law("brr"),
 ]
+LAWS: list[wl.Law] = [
+    wl.law("wlrm", threshold="20 N", peak="65 N", balance="175 N", peak_damage=1e-5, beyond=beyond, traction=traction)
+    for beyond, traction in itertools.product(("falls", "zero"), ("either", "driving", "braking"))
+]
 
 STAGES: list[wl.Stage] = [
     wl.patch_mean(),
@@ -97,7 +101,7 @@ RIGHT: list[Model] = [
     *(Cells(), Strips(), StripsOnStrips(), Grid(), Means(), Wrapped(), Brush(), BrushOnCells()),
     *(Linear(), Smooth(), Ramps(), Severe(), Memory(), HottestNode(), Weight(), Delegating()),
 ]
-MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *STAGES, *RIGS.values(), *RIGHT]
+MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *LAWS, *STAGES, *RIGS.values(), *RIGHT]
 
 CASES = [
     pytest.param(check, id=f"{named(model)}-{check.name}")
@@ -110,7 +114,7 @@ CASES = [
 @pytest.mark.validates(
     "invariants",
     (
-        "Every rig, contact model, stage and wear law, in all its options, passes the conformance kit: signs, units, "
+        "Every rig, contact model, stage and law, in all its options, passes the conformance kit: signs, units, "
         "limits, energy, jumps, slopes, full slip, batches"
     ),
     source="what must hold of any model (see the page on the kit)",
@@ -135,7 +139,7 @@ def test_all_models_make_the_round_trip(way: Callable[[RoundTrip], None], trip: 
 
 def test_every_model_that_comes_with_wearlaw_is_checked() -> None:
     own = {entry_point.value for entry_point in distribution("wearlaw").entry_points if entry_point.group == "wearlaw"}
-    installed = {**wl.contact_models(), **wl.stages(), **wl.wear_laws(), **wl.rigs()}
-    assert {model.name for model in [*CONTACT_MODELS, *WEAR_LAWS, *STAGES, *RIGS.values()]} == {
+    installed = {**wl.contact_models(), **wl.stages(), **wl.wear_laws(), **wl.laws(), **wl.rigs()}
+    assert {model.name for model in [*CONTACT_MODELS, *WEAR_LAWS, *LAWS, *STAGES, *RIGS.values()]} == {
         name for name, cls in installed.items() if cls.__module__ in own or cls.__module__.rpartition(".")[0] in own
     }

@@ -116,6 +116,21 @@ def test_the_three_laws_end_where_their_formulas_put_them() -> None:
         assert drawn[name][:, -1] == pytest.approx([wear_index, rate], rel=1e-12)
 
 
+def test_wear_and_fatigue_have_their_closed_forms_in_full_slip() -> None:
+    names = run("wear_and_fatigue")
+    accuracy = wl.contact_model("fastsim").elliptic_accuracy  # of sums over the nodes, as a share of full slip
+    axes = (names[one].get_lines() for one in ("above", "below"))
+    wear, damage = ([line.get_xydata() for line in lines[:2]] for lines in axes)
+    problem = names["rig"].problem(normal_force="80 kN", longitudinal_creepage="1 %", friction_coefficient=0.3)
+    area = 1e6 * math.pi * float(problem.a * problem.b)
+    for friction, worn, damaged in zip((0.35, 0.15), wear, damage, strict=True):
+        creepage, rate = worn[-1]
+        energy = friction * 80e3 * creepage / 100.0  # 3/2 of its mean, 5.9 N/mm², is mild everywhere
+        assert rate == pytest.approx(5.3 * energy / area, rel=accuracy)
+        assert damaged[-1] == pytest.approx([creepage, 10.0 * (175.0 - energy) / 110.0], abs=accuracy * energy / 11.0)
+        assert 0.0 < damaged[:, 1].max() <= 10.0
+
+
 def test_the_borders_of_the_map_lie_where_the_mild_regime_has_their_values() -> None:
     names = run("wear_map")
     assert names["levels"][2:4] == [2, 5]

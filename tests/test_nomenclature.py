@@ -119,6 +119,7 @@ def test_all_numbers_of_rig_and_models_are_in_the_table_with_a_unit_of_their_dim
     holders |= {"WheelRail": nomenclature.wheel_rail(), "FallingFriction": nomenclature.falling_friction()}
     holders |= {name: wl.wear_law(name) for name in ("brr", "kth", "usfd")}
     holders |= {name: wl.contact_model(name) for name in ("exact", "fastsim", "global", "polach")}
+    holders |= {law.name: law for law in nomenclature.shipped_laws()}
     holders |= {stage.name: stage for stage in nomenclature.shipped_stages()}
     values = {
         (where, name): value
@@ -131,6 +132,7 @@ def test_all_numbers_of_rig_and_models_are_in_the_table_with_a_unit_of_their_dim
     values |= {("thermal", name): value for name, value in holders["thermal"].body_1}  # type: ignore[attr-defined]
     values |= {("thermal", "hot_ratio"): wl.Q(1.0, "")}
     values |= {("third_body", field): wl.Q(1.0, "") for field in ("reduction", "limit_reduction", "reduction_decay")}
+    values |= {("wlrm", "peak_damage"): wl.Q(1.0, "")}
     values |= {("polach", field): wl.Q(1.0, "") for field in ("adhesion_reduction", "slip_reduction")}
     values |= {("kth", field): wl.Q(1.0, "") for field in ("high_pressure", "low_speed", "mid_speed", "high_speed")}
     units = {(one.where, one.name): one.unit for one in documented if one.where in holders}

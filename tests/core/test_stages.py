@@ -301,7 +301,10 @@ def wearlaw_laws():
 
 def test_stages_and_laws_come_from_plugins(install: Install) -> None:
     install("own", PLUGIN)
-    assert (list(wl.stages()), list(wl.laws())) == (["patch_mean", "rubbed", "thermal", "third_body"], ["tired"])
+    assert (list(wl.stages()), list(wl.laws())) == (
+        ["patch_mean", "rubbed", "thermal", "third_body"],
+        ["tired", "wlrm"],
+    )
     predict = RIG | GLOBAL | wl.stage("rubbed", factor=1.25) | wl.law("tired") | wl.law("brr")
     assert wl.Pipeline.model_validate_json(predict.model_dump_json()) == predict
     found = predict(**{**CONDITIONS, "friction_coefficient": 0.2})

@@ -188,7 +188,7 @@ MODELS_OF_THE_DOCUMENTATION = {
 """Classes of models by their modules."""
 FIELDS_OF_THE_DOCUMENTATION = {
     "PvLimit": {"slope": "5 ug/m/N", "limit": "12 W/mm^2"},
-    "Fatigue": {"slope": "2e-7 1/N", "threshold": "10 N", "balance": "150 N"},
+    "Fatigue": {"slope": "2e-7 1/N", "threshold": "10 N"},
 }
 """Fields of classes without defaults."""
 PAGES = ("plugins", "law-plugin", "contact-model-plugin", "stage-plugin", "rig-plugin", "kernels")

@@ -1,0 +1,185 @@
+"""The damage by fatigue of the whole life rail model, against interpolation and the lines of a public program."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import stats
+
+import wearlaw as wl
+from tests.plugins.ellipses import EPS
+from wearlaw import Array, Q
+from wearlaw_wlrm import WLRM
+
+POINTS: dict[str, Any] = {"threshold": Q(20, "N"), "peak": Q(65, "N"), "balance": Q(175, "N"), "peak_damage": 1e-5}
+"""Of a public program, `railway_project` by A. M. Saleh, crack_initiation/create_di_df.py at commit 605c5c7."""
+
+RIG = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
+SUROS = wl.TwinDisc.suros()
+WHEEL: dict[str, Any] = {"normal_force": Q(80, "kN"), "friction_coefficient": 0.35}
+DISCS: dict[str, Any] = {"normal_force": Q(7.4, "kN"), "friction_coefficient": 0.4}
+
+
+def law(beyond: Literal["falls", "zero"] = "falls", **changes: Any) -> WLRM:
+    return WLRM(**{**POINTS, "beyond": beyond, **changes})
+
+
+def contact(wear_index: Any, force_x: Any = 1.0) -> wl.Contact:
+    """Return the mean contact of a wheel on its rail with these Tγ and Fx [N]."""
+    index, force = np.broadcast_arrays(np.asarray(wear_index, dtype=float), np.asarray(force_x, dtype=float))
+    creepage = Q(np.full(index.shape, 0.1), "%")
+    solved = (RIG | wl.contact_model("fastsim"))(**WHEEL, longitudinal_creepage=creepage)
+    return dataclasses.replace(solved.contact.patch_mean(), wear_index=index, force_x=force)
+
+
+def damage(of: wl.Law, where: wl.Contact) -> Array:
+    return of.checked_rate(where)
+
+
+@given(
+    points=st.lists(st.floats(1.0, 1000.0), min_size=3, max_size=3, unique_by=lambda one: round(one, 1)).map(sorted),
+    peak_damage=st.floats(1e-8, 1e-2),
+    indices=st.lists(st.floats(0.0, 2000.0), min_size=1, max_size=8),
+)
+def test_the_damage_is_linear_between_the_points_and_zero_below_the_first(
+    points: list[float], peak_damage: float, indices: list[float]
+) -> None:
+    threshold, peak, balance = points
+    fields = {"threshold": Q(threshold, "N"), "peak": Q(peak, "N"), "balance": Q(balance, "N")}
+    index = np.array(indices)
+    # Each operation rounds its result by EPS/2 at most, and none takes the difference of rounded numbers.
+    due = np.interp(index, points, [0.0, peak_damage, 0.0])
+    zero = damage(law("zero", **fields, peak_damage=peak_damage), contact(index))
+    assert zero == pytest.approx(due, rel=8 * EPS, abs=8 * EPS * peak_damage)
+    beyond = np.maximum(index - balance, 0.0) / (balance - peak)
+    falling = damage(law("falls", **fields, peak_damage=peak_damage), contact(index))
+    assert falling == pytest.approx(due - peak_damage * beyond, rel=8 * EPS, abs=8 * EPS * peak_damage)
+
+
+@pytest.mark.validates(
+    "wear-laws",
+    "The damage of WLRM from 0 to 400 N with the points of a public program",
+    source="the lines that railway_project (A. M. Saleh) prints, crack_initiation/create_di_df.py at 605c5c7",
+    held_to="the digits of their slopes and offsets",
+)
+def test_the_lines_are_those_of_a_public_program() -> None:
+    index = np.linspace(0.0, 400.0, 4001)
+    rise, fall = 2.22e-7 * index - 4.44e-6, -9.09e-8 * index + 1.59e-5
+    lines = np.select([index < 20.0, index < 65.0, index < 175.0], [0.0 * index, rise, fall], 0.0)
+    # Slope and offset are printed with three digits; half a unit of the last one each.
+    printed = np.where(index < 65.0, 0.005e-7 * index + 0.005e-6, 0.005e-8 * index + 0.005e-5)
+    assert (np.abs(damage(law("zero"), contact(index)) - lines) <= printed).all()
+
+
+def test_the_damage_is_of_a_passage_and_not_of_an_area() -> None:
+    together = RIG | wl.contact_model("fastsim") | law()
+    found = together(**WHEEL, longitudinal_creepage=Q([0.1, 0.2, 0.6], "%"))
+    index = found.wear_index.m_as("N")
+    assert found["rcf_damage"].magnitude == pytest.approx(
+        np.interp(index, [20.0, 65.0, 175.0], [0.0, 1e-5, 0.0]) - 1e-5 * np.maximum(index - 175.0, 0.0) / 110.0,
+        rel=16 * EPS,
+        abs=16 * EPS * 1e-5,
+    )
+    assert found["rcf_damage"].dimensionless
+
+
+@pytest.mark.parametrize("traction", ["driving", "braking"])
+def test_only_the_named_traction_damages_and_wear_removes_under_either(
+    traction: Literal["driving", "braking"],
+) -> None:
+    index = np.array([10.0, 65.0, 100.0, 285.0])
+    counted, other = (-1.0, 1.0) if traction == "driving" else (1.0, -1.0)
+    of = law(traction=traction)
+    assert damage(of, contact(index, counted)).tolist() == damage(law(), contact(index)).tolist()
+    for force in (other, 0.0):
+        assert damage(of, contact(index, force)) == pytest.approx([0.0, 0.0, 0.0, -1e-5], rel=16 * EPS)
+
+
+def test_a_wheel_that_pulls_drives() -> None:
+    wheelset = wl.rig("wheelset", **wl.rigs()["wheelset"].example_fields)
+    middle: dict[str, Any] = {"lateral_displacement": "0 mm", "vertical_load": "160 kN", "friction_coefficient": 0.3}
+    counted = {}
+    for traction in ("driving", "braking"):
+        of = law(traction=traction, threshold=Q(0.01, "N"))
+        predict = wheelset | wl.contact_model("fastsim") | of
+        found = predict(**middle, axle_torque=Q([5, -5], "kN*m"))
+        damage_of = np.atleast_2d(found["rcf_damage"].magnitude).reshape(2, -1)
+        counted[traction] = [bool((row[~np.isnan(row)] > 0.0).any()) for row in damage_of]
+    assert counted == {"driving": [True, False], "braking": [False, True]}
+
+
+def test_disc_1_drives_where_it_is_the_faster_one() -> None:
+    creepage = Q([-0.5, 0.5], "%")
+    for traction, counts in (("driving", [False, True]), ("braking", [True, False]), ("either", [True, True])):
+        of = law(traction=traction, threshold=Q(1, "N"))
+        found = (SUROS | wl.contact_model("exact") | of)(**DISCS, creepage=creepage)["rcf_damage"].magnitude
+        assert (found > 0.0).tolist() == counts
+
+
+def test_a_wheel_and_its_rail_have_laws_of_their_own() -> None:
+    pair = (
+        RIG
+        | wl.contact_model("fastsim")
+        | law(body="wheel", traction="braking")
+        | law(body="rail", traction="driving", peak_damage=2e-5)
+    )
+    found = pair(**WHEEL, longitudinal_creepage=Q([-0.2, 0.2], "%"))
+    alone = law()
+    one = (RIG | wl.contact_model("fastsim") | alone)(**WHEEL, longitudinal_creepage=Q(0.2, "%"))["rcf_damage"]
+    assert one.magnitude > 0.0
+    assert found.outcome("rcf_damage", "wheel").magnitude == pytest.approx([0.0, one.magnitude], rel=16 * EPS)
+    assert found.outcome("rcf_damage", "rail").magnitude == pytest.approx([2.0 * one.magnitude, 0.0], rel=16 * EPS)
+
+
+def test_each_of_its_numbers_can_be_uncertain() -> None:
+    predict = RIG | wl.contact_model("fastsim") | law()
+    conditions: dict[str, Any] = {**WHEEL, "longitudinal_creepage": Q(0.2, "%")}
+    spread = {"threshold": wl.uniform("10 N", "30 N"), "peak_damage": wl.uniform(0.5e-5, 1.5e-5)}
+    found = wl.uncertainty(predict, **conditions, law=spread, samples=64)["rcf_damage"].magnitude
+    index = predict(**conditions).wear_index.m_as("N")
+    assert 30.0 < index < 65.0
+    share = stats.qmc.Sobol(2, rng=np.random.default_rng(0)).random(64).T
+    threshold = 10.0 + 20.0 * share[0]
+    due = (0.5 + share[1]) * 1e-5 * (index - threshold) / (65.0 - threshold)
+    # The threshold is rounded by 2 EPS of 30 N, and the difference that is taken of it is at least 6 N.
+    assert found == pytest.approx(due, rel=64 * EPS)
+
+
+def test_its_points_can_be_fitted() -> None:
+    given: dict[str, Any] = {**DISCS, "creepage": Q([1.0, 1.5, 2.0, 3.0, 4.0], "%")}
+    contacts = SUROS | wl.contact_model("exact")
+    measured = (contacts | law(threshold=Q(15, "N"), peak_damage=2e-5))(**given)["rcf_damage"]
+    tests = wl.WearTests.from_arrays(**given, outcomes={"rcf_damage": measured})
+    fit = wl.fit(contacts | law(), tests, free=["threshold", "peak_damage"], bootstrap=0)
+    # The search stops at a relative step of 1e-8.
+    assert fit.parameters["threshold"].m_as("N") == pytest.approx(15.0, rel=1e-6)
+    assert fit.parameters["peak_damage"].magnitude == pytest.approx(2e-5, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"peak": Q(10, "N")}, "threshold, peak and balance must rise; got 20.00 N, 10.00 N and 175.0 N"),
+        ({"balance": Q(65, "N")}, "threshold, peak and balance must rise; got 20.00 N, 65.00 N and 65.00 N"),
+        ({"threshold": Q(-1, "N")}, "threshold"),
+        ({"peak_damage": 0.0}, "peak_damage"),
+        ({"beyond": "wear"}, "beyond: input should be 'falls' or 'zero', got 'wear'"),
+        ({"traction": "pulling"}, "traction: input should be 'either', 'driving' or 'braking', got 'pulling'"),
+    ],
+)
+def test_wrong_fields_are_named(fields: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.ConfigurationError) as error:
+        WLRM(**{**POINTS, "beyond": "zero", **fields})
+    assert message in str(error.value)
+
+
+def test_no_value_is_assumed() -> None:
+    with pytest.raises(wl.ConfigurationError) as error:
+        wl.law("wlrm")
+    for name in (*POINTS, "beyond"):
+        assert f"{name}: is missing" in str(error.value)
