@@ -52,7 +52,7 @@ class Archard(wl.WearLaw):
     """
 
     name: ClassVar[str] = "archard"
-    source: ClassVar[str] = "J. F. Archard, J. Appl. Phys. 24 (1953) 981-988, with H for the flow pressure"
+    source: ClassVar[str] = "J. F. Archard, J. Appl. Phys. 24 (1953) 981-988"
     monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("pressure", "slip")
     example_material: ClassVar[wl.Material | None] = SteelWithHardness(hardness="2.625 GPa")
 
@@ -86,10 +86,10 @@ class Archard(wl.WearLaw):
 
 def _hardness_of_material(contact: wl.Contact) -> float:
     """Return the hardness of the material of the body that wears [Pa]."""
-    remedy = "give the law its hardness, as in wl.wear_law(\"archard\", coefficient=..., hardness=\"2.6 GPa\")"
+    remedy = 'give the law its hardness, as in wl.wear_law("archard", coefficient=..., hardness="2.6 GPa")'
     if contact.problem is None:
         raise wl.InputError(
-            f"hardness: this contact was solved elsewhere, so the material of the body that wears is not known; {remedy}"
+            f"hardness: this contact was solved elsewhere, so the material of its bodies is not known; {remedy}"
         )
     material = contact.body().material
     hardness = getattr(material, "hardness", None)
@@ -97,7 +97,7 @@ def _hardness_of_material(contact: wl.Contact) -> float:
         raise wl.InputError(
             f"hardness: wear law 'archard' needs it, but the material of the body that wears, a"
             f" {type(material).__name__}, has none; give the body a material with a hardness, as in"
-            f" wl.material(\"SteelWithHardness\", hardness=\"2.6 GPa\"), or {remedy}"
+            f' wl.material("SteelWithHardness", hardness="2.6 GPa"), or {remedy}'
         )
     return float(PASCAL.si(hardness, f"{type(material).__name__}.hardness"))
 

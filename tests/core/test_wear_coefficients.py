@@ -9,14 +9,13 @@ from typing import Any, get_args
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
 import wearlaw as wl
 from tests.strategies import EPS, log_uniform
 from wearlaw import Q
 from wearlaw.units.wear_coefficients import FORMS, FormWithUnit, PlainForm
 
-FULL = {"hardness": "2.625 GPa", "density": "7850 kg/m^3", "friction_coefficient": 0.45}
+FULL: dict[str, Any] = {"hardness": "2.625 GPa", "density": "7850 kg/m^3", "friction_coefficient": 0.45}
 
 
 def published(volume: float, force: float, distance: float, hardness: float, density: float, friction: float) -> Any:
@@ -78,8 +77,8 @@ def test_all_forms_convert_into_all_forms(
 )
 def test_only_what_the_conversion_needs_must_be_given(form: Any, to: Any, needed: set[str]) -> None:
     value: Any = published(1e-9, 100.0, 1e3, 2e9, 7850.0, 0.5)[form]
-    found = wl.wear_coefficient(value, form, to=to, **{name: FULL[name] for name in needed})  # type: ignore[arg-type]
-    assert found == wl.wear_coefficient(value, form, to=to, **FULL)  # type: ignore[arg-type]
+    found = wl.wear_coefficient(value, form, to=to, **{name: FULL[name] for name in needed})
+    assert found == wl.wear_coefficient(value, form, to=to, **FULL)
     for name in needed:
         less: Any = {other: FULL[other] for other in needed - {name}}
         with pytest.raises(wl.InputError, match=f"^{to}, .*from {form}, .*needs {name}; .*as in {name}="):
@@ -103,7 +102,7 @@ def test_the_mild_steel_of_an_encyclopedia() -> None:
 def test_a_coefficient_of_kth_per_energy_is_its_mass_over_the_energy(within: float) -> None:
     predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("kth", coefficient="low")
     found = predict(max_pressure="1200 MPa", creepage="5 %", friction_coefficient=0.45)
-    per_energy = wl.wear_coefficient(1e-4, "k", to="mass_per_energy", **FULL)  # type: ignore[call-overload]
+    per_energy = wl.wear_coefficient(1e-4, "k", to="mass_per_energy", **FULL)
     assert (found.mass_per_distance / found.wear_index / per_energy).m_as("") == pytest.approx(1.0, rel=within)
 
 
@@ -125,7 +124,7 @@ def test_a_coefficient_of_kth_per_energy_is_its_mass_over_the_energy(within: flo
 )
 def test_a_wrong_value_or_form_is_one_clear_error(value: Any, form: Any, to: Any, says: str) -> None:
     with pytest.raises(wl.InputError, match=re.escape(says)):
-        wl.wear_coefficient(value, form, to=to, **FULL)  # type: ignore[arg-type]
+        wl.wear_coefficient(value, form, to=to, **FULL)
 
 
 @pytest.mark.parametrize(

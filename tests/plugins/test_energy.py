@@ -21,7 +21,7 @@ from wearlaw_energy import Energy
 MILD, SEVERE = 5e-9, 15e-9
 """Coefficients in kg/J, made up."""
 
-TWO = {"coefficient": "5 ug/J", "severe_coefficient": "15 ug/J"}
+TWO = {"mass_per_energy": "5 ug/J", "severe_mass_per_energy": "15 ug/J"}
 UNITS = {"energy_limit": "N/mm^2", "power_limit": "W/mm^2"}
 IN_SI = {"energy_limit": "N/m^2", "power_limit": "W/m^2"}
 FRICTION = 0.4
@@ -35,8 +35,8 @@ ON_RAIL: dict[str, Any] = {
 }
 
 
-def energy(coefficient: str = "5 ug/J", **fields: Any) -> Any:
-    return wl.wear_law("energy", coefficient=coefficient, **fields)
+def energy(mass_per_energy: Any = "5 ug/J", **fields: Any) -> Any:
+    return wl.wear_law("energy", mass_per_energy=mass_per_energy, **fields)
 
 
 def discs(**fields: Any) -> Any:
@@ -58,7 +58,9 @@ def test_the_rate_at_a_point_is_a_coefficient_times_the_energy(
     contact = contact_of(traction=traction, slip=slip)
     found = float(law.checked_rate(contact.replaced(rolling_speed=np.array(4.0)))[0])
     at_node = traction * slip * (4.0 if limit == "power_limit" else 1.0)
-    allowed = [(MILD if at_node < side else SEVERE) * traction * slip for side in (border * (1 - EPS), border * (1 + EPS))]
+    allowed = [
+        (MILD if at_node < side else SEVERE) * traction * slip for side in (border * (1 - EPS), border * (1 + EPS))
+    ]
     assert any(found == pytest.approx(expected, rel=8 * EPS, abs=1e-290) for expected in allowed)
 
 
@@ -194,11 +196,11 @@ def test_each_body_has_a_law_of_its_own() -> None:
 @pytest.mark.parametrize("contact_model", ["global", "exact"])
 def test_both_coefficients_and_the_limit_are_found_by_a_fit(contact_model: str, limit: str) -> None:
     predict = discs() | wl.contact_model(contact_model) | energy(**TWO, **{limit: Q(10, UNITS[limit])})
-    start = energy("8 ug/J", severe_coefficient="9 ug/J", **{limit: Q(10, UNITS[limit])})
+    start = energy("8 ug/J", severe_mass_per_energy="9 ug/J", **{limit: Q(10, UNITS[limit])})
     fit = wl.fit(
-        predict.with_law(start), made_up(predict), free=["coefficient", "severe_coefficient"], bootstrap=0
+        predict.with_law(start), made_up(predict), free=["mass_per_energy", "severe_mass_per_energy"], bootstrap=0
     )
-    found = [fit.parameters[name].m_as("ug/J") for name in ("coefficient", "severe_coefficient")]
+    found = [fit.parameters[name].m_as("ug/J") for name in ("mass_per_energy", "severe_mass_per_energy")]
     assert found == pytest.approx([5.0, 15.0], rel=1e-7)  # as for usfd: far below the tolerance of the fit, 1e-8
     assert isinstance(fit.law, Energy)
     assert fit.law.calibration is not None
@@ -217,13 +219,13 @@ def test_the_limit_belongs_to_severe_wear_and_is_the_only_jump() -> None:
 
 
 def test_equal_coefficients_make_no_jump_and_no_limit_no_branch() -> None:
-    law = energy(severe_coefficient="5 ug/J", power_limit="4 W/mm^2")
+    law = energy(severe_mass_per_energy="5 ug/J", power_limit="4 W/mm^2")
     assert law.jumps(law.numbers) == {}
     assert law.ramps(law.numbers) is None
     law = energy()
     assert law.breakpoints(law.numbers) == law.jumps(law.numbers) == {}
     assert law.ramps(law.numbers) == ((0.0, pytest.approx(5e-9)),)
-    assert law.numbers == {"coefficient": pytest.approx(5e-9)}
+    assert law.numbers == {"mass_per_energy": pytest.approx(5e-9)}
 
 
 def test_units_of_print_are_taken_as_they_stand() -> None:
@@ -251,15 +253,18 @@ def test_a_record_of_the_tests_survives_a_round_trip() -> None:
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
-        ({}, r"energy: coefficient: is missing"),
-        ({"coefficient": 5e-9}, r"coefficient: got the bare number 5e-09, which has no unit"),
-        ({"coefficient": "1e-13 m^3/J"}, r"coefficient: .*does not have the dimension of 'ug/J'"),
-        (TWO, r"severe_coefficient needs the limit at which it begins: power_limit or energy_limit"),
-        ({"coefficient": "5 ug/J", "power_limit": "4 W/mm^2"}, r"power_limit needs a severe_coefficient"),
-        ({"coefficient": "5 ug/J", "energy_limit": "4 N/mm^2"}, r"energy_limit needs a severe_coefficient"),
+        ({}, r"energy: mass_per_energy: is missing"),
+        ({"mass_per_energy": 5e-9}, r"mass_per_energy: got the bare number 5e-09, which has no unit"),
+        ({"mass_per_energy": "1e-13 m^3/J"}, r"mass_per_energy: .*does not have the dimension of 'ug/J'"),
+        (TWO, r"severe_mass_per_energy needs the limit at which it begins: power_limit or energy_limit"),
+        ({"mass_per_energy": "5 ug/J", "power_limit": "4 W/mm^2"}, r"power_limit needs severe_mass_per_energy"),
+        ({"mass_per_energy": "5 ug/J", "energy_limit": "4 N/mm^2"}, r"energy_limit needs severe_mass_per_energy"),
         ({**TWO, "power_limit": "4 W/mm^2", "energy_limit": "4 N/mm^2"}, r"give one limit, .* not both"),
         ({**TWO, "power_limit": "4 N/mm^2"}, r"power_limit: .*does not have the dimension of 'W/mm\^2'"),
-        ({**TWO, "severe_coefficient": "4 ug/J", "power_limit": "4 W/mm^2"}, r"must not be below coefficient = 5\.000"),
+        (
+            {**TWO, "severe_mass_per_energy": "4 ug/J", "power_limit": "4 W/mm^2"},
+            r"must not be below mass_per_energy = 5\.000",
+        ),
         ({**TWO, "power_limt": "4 W/mm^2"}, r"unknown field; did you mean 'power_limit'"),
     ],
 )
