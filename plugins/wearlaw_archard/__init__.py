@@ -54,7 +54,6 @@ class Archard(wl.WearLaw):
     name: ClassVar[str] = "archard"
     source: ClassVar[str] = "J. F. Archard, J. Appl. Phys. 24 (1953) 981-988"
     monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("pressure", "slip")
-    example_material: ClassVar[wl.Material | None] = SteelWithHardness(hardness="2.625 GPa")
 
     coefficient: Annotated[float, Field(gt=0.0, strict=True)]
     """Wear coefficient of V = k N s / H, k [-]."""
@@ -75,6 +74,11 @@ class Archard(wl.WearLaw):
         return {}
 
     @property
+    def example_material(self) -> wl.Material:
+        """A steel with a hardness, for the checks."""
+        return SteelWithHardness(hardness="2.6 GPa")
+
+    @property
     def calibration(self) -> wl.Calibration | None:
         """The record of the tests that the coefficient is from."""
         return self.fitted_for
@@ -86,20 +90,20 @@ class Archard(wl.WearLaw):
 
 def _hardness_of_material(contact: wl.Contact) -> float:
     """Return the hardness of the material of the body that wears [Pa]."""
-    remedy = 'give the law its hardness, as in wl.wear_law("archard", coefficient=..., hardness="2.6 GPa")'
+    remedy = 'give the law its field hardness, such as hardness="2.6 GPa"'
     if contact.problem is None:
         raise wl.InputError(
-            f"hardness: this contact was solved elsewhere, so the material of its bodies is not known; {remedy}"
+            "hardness: wear law 'archard' needs it, but this contact was solved elsewhere, so the material of its"
+            f" bodies is not known; {remedy}"
         )
     material = contact.body().material
-    hardness = getattr(material, "hardness", None)
+    hardness, name = getattr(material, "hardness", None), next(iter(contact.problem.bodies))
     if hardness is None:
         raise wl.InputError(
-            f"hardness: wear law 'archard' needs it, but the material of the body that wears, a"
-            f" {type(material).__name__}, has none; give the body a material with a hardness, as in"
-            f' wl.material("SteelWithHardness", hardness="2.6 GPa"), or {remedy}'
+            f"hardness: wear law 'archard' needs it, but the material of {name}, a {type(material).__name__}, has none;"
+            f" give {name} a material with a hardness, such as a SteelWithHardness, or {remedy}"
         )
-    return float(PASCAL.si(hardness, f"{type(material).__name__}.hardness"))
+    return float(PASCAL.si(hardness, f"hardness of the material of {name}"))
 
 
 @wl.hookimpl
