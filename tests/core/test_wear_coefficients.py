@@ -94,7 +94,7 @@ def test_the_mild_steel_of_an_encyclopedia() -> None:
 
 @pytest.mark.validates(
     "wear-laws",
-    "The mild k of KTH in mass per energy, at its H and μ of the test: the mass that KTH predicts over the energy",
+    "The lowest k of KTH in mass per energy, at the μ of a test: the mass that KTH predicts over the energy",
     source="a prediction in full slip, where s is the creepage and T = μN",
     held_to="{within:g}, relative",
     within=1e-13,  # the mean over the patch is a quadrature, exact to a few dozen roundings
