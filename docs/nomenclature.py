@@ -28,6 +28,13 @@ CLASSES = (
 OF_ANY_UNIT = ("outcome", "outcome_error", "value", "local_value")
 """Quantities of a law, whose unit is that of its outcome."""
 
+SEVERE = {"mass_per_energy": "5 ug/J", "severe_mass_per_energy": "15 ug/J"}
+WITHOUT_DEFAULTS: dict[str, tuple[dict[str, Any], ...]] = {
+    "archard": ({"coefficient": 1e-4, "hardness": "2.6 GPa"},),
+    "energy": ({**SEVERE, "power_limit": "4 W/mm^2"}, {**SEVERE, "energy_limit": "10 N/mm^2"}),
+}
+"""Fields of wear laws that have no defaults; all fields of a law together have a row."""
+
 SHOWN_AS = {"TwinDiscConditions": "conditions", "WheelRailConditions": "conditions"}
 
 ATTRIBUTE = re.compile(
@@ -87,7 +94,7 @@ def shipped_models() -> Iterator[wl.Law | wl.ContactModel]:
             yield model()
     for name, law in found.wear_laws.items().items():
         if found.wear_laws.origin(name).distribution == "wearlaw":
-            yield law().explicit()
+            yield from (law(**fields).explicit() for fields in WITHOUT_DEFAULTS.get(name, ({},)))
 
 
 def shipped_laws() -> tuple[wl.Law, ...]:

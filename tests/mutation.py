@@ -33,7 +33,9 @@ from parso.python.tree import Keyword, String  # pyright: ignore[reportMissingIm
 ROOT = Path(__file__).parents[1]
 
 TESTS = {
+    "wearlaw_archard": "plugins/test_archard.py",
     "wearlaw_brr": "plugins/test_brr.py",
+    "wearlaw_energy": "plugins/test_energy.py",
     "wearlaw_exact": "plugins/test_exact_kernel.py plugins/test_exact.py test_numbers.py",
     "wearlaw_fastsim": "plugins/test_fastsim_kernel.py plugins/test_fastsim_first_slip.py plugins/test_fastsim.py"
     " plugins/test_fastsim_solution.py plugins/test_fastsim_strip_forces.py plugins/test_fastsim_strip_fields.py"
@@ -61,6 +63,7 @@ TESTS = {
     " core/test_models.py test_interface.py",
     "wearlaw.contact.contact": "core/test_records.py core/test_contact_from_arrays.py core/test_elliptic_contact.py"
     " core/test_several_patches.py plugins/test_fastsim_given_strips.py",
+    "wearlaw.units.wear_coefficients": "core/test_wear_coefficients.py",
     "wearlaw.units.quantities": "core/test_units.py core/test_quantities.py core/test_unit_registries.py",
 }
 """The test files of each package or module; a plugin must pass the conformance kit too."""

@@ -60,6 +60,13 @@ WEAR_LAWS: list[wl.WearLaw] = [
     *(wl.wear_law("usfd", fitted_for=fitted_for) for fitted_for in ("global", "exact", "fastsim")),
     *(wl.wear_law("kth", coefficient=coefficient) for coefficient in ("low", "mid", "high", OWN)),
     wl.wear_law("brr"),
+    wl.wear_law("archard", coefficient=1e-4),
+    wl.wear_law("archard", coefficient=1e-4, hardness="3 GPa"),
+    wl.wear_law("energy", mass_per_energy="5 ug/J"),
+    *(
+        wl.wear_law("energy", mass_per_energy="5 ug/J", severe_mass_per_energy="15 ug/J", **limit)
+        for limit in ({"power_limit": "4 W/mm^2"}, {"energy_limit": "10 N/mm^2"})
+    ),
 ]
 LAWS: list[wl.Law] = [
     wl.law("wlrm", threshold="20 N", peak="65 N", balance="175 N", peak_damage=1e-5, beyond=beyond, traction=traction)

@@ -134,8 +134,17 @@ def test_all_numbers_of_rig_and_models_are_in_the_table_with_a_unit_of_their_dim
     values |= {("third_body", field): wl.Q(1.0, "") for field in ("reduction", "limit_reduction", "reduction_decay")}
     values |= {("wlrm", "peak_damage"): wl.Q(1.0, "")}
     values |= {("polach", field): wl.Q(1.0, "") for field in ("adhesion_reduction", "slip_reduction")}
+    values[("archard", "coefficient")] = wl.Q(1.0, "")
+    values |= {
+        (law, name): wl.parse(text)
+        for law, laws in nomenclature.WITHOUT_DEFAULTS.items()
+        for fields in laws
+        for name, text in fields.items()
+        if isinstance(text, str)
+    }
     values |= {("kth", field): wl.Q(1.0, "") for field in ("high_pressure", "low_speed", "mid_speed", "high_speed")}
-    units = {(one.where, one.name): one.unit for one in documented if one.where in holders}
+    known = {*holders, *nomenclature.WITHOUT_DEFAULTS}
+    units = {(one.where, one.name): one.unit for one in documented if one.where in known}
     of_known_unit = {place: value for place, value in values.items() if place[1] not in nomenclature.OF_ANY_UNIT}
     assert units.keys() == of_known_unit.keys()
     for place, value in of_known_unit.items():

@@ -79,6 +79,7 @@ from wearlaw.settings.text_files import beside
 from wearlaw.study.sections import CheckedClaim, Section, Verdict
 from wearlaw.uncertainties.distributions import lognormal, normal, published_range, uniform
 from wearlaw.units.quantities import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
+from wearlaw.units.wear_coefficients import wear_coefficient
 from wearlaw.version import __version__
 from wearlaw.wear_tests.reader import read_tests
 from wearlaw.wear_tests.tests import WearTests
@@ -210,6 +211,7 @@ __all__ = [
     "sweep",
     "uncertainty",
     "uniform",
+    "wear_coefficient",
     "wear_law",
     "wear_laws",
 ]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 FIRST_PARTY_MODELS = {"exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins"}
-FIRST_PARTY_LAWS = {"brr", "kth", "usfd"}
+FIRST_PARTY_LAWS = {"archard", "brr", "energy", "kth", "usfd"}
 
 LAW = """
     import wearlaw as wl

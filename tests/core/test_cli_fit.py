@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import files, wearlaw
-from tests.core.cli_data import CREEPAGE, FIT, HEAD, RIG_NOTE, listed, rates, rows, write_tests
+from tests.core.cli_data import CREEPAGE, FIT, HEAD, LAW, RIG_NOTE, listed, rates, rows, write_tests
 from tests.core.distributions import Install
 from tests.core.test_stages import PLUGIN
 from wearlaw import Q
@@ -49,6 +49,23 @@ def test_what_is_not_fitted_and_the_rig_that_is_taken_are_noted() -> None:
     notes = wearlaw(*FIT).stderr
     assert notes.startswith(RIG_NOTE)
     assert "note: fit: not fitted, m_c = 83.70 µg/m/N, tr_sc = 95.00 N/mm²\n" in notes
+
+
+@pytest.mark.parametrize(
+    ("options", "free"),
+    [
+        (("--law", "archard:coefficient=1e-3:hardness=2.6 GPa"), "coefficient"),
+        (("--law", "archard:coefficient=1e-3", "--fixed", "hardness=2.6 GPa"), "coefficient"),
+        (("--law", "archard:hardness=2.6 GPa", "--fixed", "coefficient=1e-3"), "hardness"),
+        (("--law", "energy:mass_per_energy=5 ug/J"), "mass_per_energy"),
+        (("--law", LAW, "--stage", "third_body:reduction=0.9"), "reduction"),  # as in the help of the command
+        (("--law", LAW, "--stage", "third_body:reduction=1"), "reduction"),
+    ],
+)
+def test_a_number_without_a_unit_is_a_number(options: tuple[str, ...], free: str) -> None:
+    result = wearlaw("fit", "tests.csv", "--contact", "exact", *options, "--free", free, "--bootstrap", "0")
+    assert result.exit_code == 0, result.stderr
+    assert f"  {free} " in result.stdout
 
 
 def test_the_files_of_a_fit_hold_what_it_found() -> None:

@@ -90,9 +90,10 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
             for name in ("exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins")
         ),
         *(["stage", name, "wearlaw", wl.__version__] for name in ("patch_mean", "thermal", "third_body")),
-        *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("brr", "kth", "usfd")),
+        *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("archard", "brr", "energy", "kth", "usfd")),
         ["law", "wlrm", "wearlaw", wl.__version__],
         ["material", "steel", "wearlaw", wl.__version__],
+        ["material", "type", "SteelWithHardness", "wearlaw", wl.__version__],
         *(["case", name, "wearlaw", wl.__version__] for name in ("tassini2010", "wheel_on_rail", "wheelset")),
         ["test", "set", "lewis2004", "wearlaw", wl.__version__],
         *(["section", f"tassini2010_{name}", "wearlaw", wl.__version__] for name in ("claims", "table_4", "tables")),

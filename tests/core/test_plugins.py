@@ -315,7 +315,7 @@ def test_an_unknown_contact_model_gets_a_suggestion_and_the_list(name: str, hint
 def test_a_name_near_to_none_gets_the_list_only(name: object) -> None:
     with pytest.raises(wl.UnknownModelError) as error:
         wl.wear_law(name)  # type: ignore[arg-type]
-    assert str(error.value) == f"no wear law is called {name!r}. Installed: brr, kth, usfd"
+    assert str(error.value) == f"no wear law is called {name!r}. Installed: archard, brr, energy, kth, usfd"
 
 
 def test_an_unknown_option_is_named_with_the_fields_there_are() -> None:

@@ -173,7 +173,7 @@ def test_what_would_end_the_fresh_process_is_the_reason_why_a_model_cannot_be_ma
 
 
 MODELS_OF_THE_DOCUMENTATION = {
-    "wearlaw_energy": "Energy",
+    "wearlaw_work": "Work",
     "wearlaw_threshold": "Threshold",
     "pv_limit": "PvLimit",
     "wearlaw_gradual": "Gradual",

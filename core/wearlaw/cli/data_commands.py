@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +11,13 @@ import click
 from wearlaw.cli.shared import (
     CommandT,
     contact_model,
-    fields,
     law_of,
     listed,
     print_notes,
     print_results,
     read_rig,
     stage,
+    values,
     written_formats,
 )
 from wearlaw.errors import FitError
@@ -129,7 +130,7 @@ def _fit(
     **settings: Any,
 ) -> Fit:
     """Return the fit for these options."""
-    names, given = listed("--free", free), fields("--fixed", fixed)
+    names, given = listed("--free", free), values("--fixed", fixed)
     both = [name for name in names if name in given]
     if both:
         raise click.UsageError(f"--fixed: '{both[0]}' is to be fitted; take it out of --fixed or of --free")
@@ -151,7 +152,9 @@ def _fit(
         )
 
 
-def _with_law(contact: Pipeline[...], text: str, given: dict[str, str], free: list[str], notes: Notes) -> Pipeline[...]:
+def _with_law(
+    contact: Pipeline[...], text: str, given: Mapping[str, str | float], free: list[str], notes: Notes
+) -> Pipeline[...]:
     """Return the pipeline with the law to fit, and note the values of its fixed parameters.
 
     There is no warning that the law was fitted for another contact: it is about to be fitted.

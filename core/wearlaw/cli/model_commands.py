@@ -15,7 +15,7 @@ from rich.table import Table
 
 from wearlaw.cli.describe import accuracies, describe
 from wearlaw.cli.scaffold import Kind, Licence, next_commands, write_plugin
-from wearlaw.cli.shared import fields
+from wearlaw.cli.shared import fields, values
 from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
@@ -113,7 +113,7 @@ def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> Non
     wearlaw check twin_disc --option track_width="8 mm"
     wearlaw check my_law --expect-failure "rate_is_finite=divides by zero at zero pressure"
     """  # noqa: D301
-    source, given = _installed(name), {field: _value(text) for field, text in fields("--option", options).items()}
+    source, given = _installed(name), values("--option", options)
     model = _made(source, given) if isinstance(source, type) else loader.wear_law(name, **given)
     reasons, kit = fields("--expect-failure", expected, "CHECK=REASON"), _kit()
     found = list(kit.checks(model))
@@ -137,14 +137,6 @@ OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 
 ALWAYS_COUNTED = ("ok", "failed", "not claimed")
 """What `wearlaw check` counts in its last line even if there is none."""
-
-
-def _value(text: str) -> str | float:
-    """Return the number that a text is, or else the text."""
-    try:
-        return int(text) if text.lstrip("+-").isdecimal() else float(text)
-    except ValueError:
-        return text
 
 
 def _made(model: type[Model], options: Mapping[str, object]) -> Model:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -75,33 +75,46 @@ def fields(option: str, settings: tuple[str, ...], form: str = "FIELD=VALUE") ->
     return dict(setting.split("=", 1) for setting in settings)
 
 
+def values(option: str, settings: tuple[str, ...]) -> dict[str, str | float]:
+    """Return settings such as "q_s=56 ug/m/mm^2" or "strips=20" by field; a number without a unit is a number."""
+    return {field: _value(text) for field, text in fields(option, settings).items()}
+
+
+def _value(text: str) -> str | float:
+    """Return the number that a text is, or else the text."""
+    try:
+        return int(text) if text.lstrip("+-").isdecimal() else float(text)
+    except ValueError:
+        return text
+
+
 def contact_model(text: str) -> ContactModel:
     """Return the contact model of "NAME" or "NAME:FIELD=VALUE:..."."""
     name, *settings = text.split(":")
-    return loader.contact_model(name, **fields(text, tuple(settings)))
+    return loader.contact_model(name, **values(text, tuple(settings)))
 
 
 def stage(text: str) -> Stage:
     """Return the stage of "NAME" or "NAME:FIELD=VALUE:..."."""
     name, *settings = text.split(":")
-    return loader.stage(name, **fields(text, tuple(settings)))
+    return loader.stage(name, **values(text, tuple(settings)))
 
 
-def law_of(text: str, fixed: dict[str, str] | None = None) -> Law:
+def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
     """Return the law of "NAME", "NAME:FIELD=VALUE:..." or the path of a TOML file.
 
     Parameters
     ----------
     text : str
         As on the command line.
-    fixed : dict of str to str, optional
+    fixed : mapping of str to str or float, optional
         Further fields.
     """
     if text.endswith(".toml"):
         law = read_law(text)
         return law.model_copy(update=fixed) if fixed else law
     name, *settings = text.split(":")
-    return loader.law(name, **fields(text, tuple(settings)) | (fixed or {}))
+    return loader.law(name, **{**values(text, tuple(settings)), **(fixed or {})})
 
 
 def print_notes(notes: Iterable[str]) -> None:

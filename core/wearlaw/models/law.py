@@ -202,8 +202,9 @@ class Law(Model):
     """"patch" if the law is stated only for the means of the whole patch, otherwise "any". A law that contains another
     can make it a property."""
 
-    example_material: ClassVar[Material | None] = None
-    """A material to try the law with, if it reads fields of a class of materials; by default steel."""
+    example_material: ClassVar = cast(Any, None)  # Any: as for `scale`
+    """A material to try the law with, if it reads fields of a class of materials; None for steel. A law can make it a
+    property, so that the material is not made when the law is loaded."""
 
     monotone_in: ClassVar[tuple[LawVariable, ...]] = ()
     """Variables of a `Contact` with which the rate never falls while the others stay the same."""

@@ -180,6 +180,8 @@ hard = RailSteel(youngs_modulus="210 GPa", poisson_ratio=0.3, density="7800 kg/m
 assert_type(hard.hardness, wl.Quantity)
 assert_type(contact(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4).contact.body().material, wl.Material)
 assert_type(wl.material("steel", density="7800 kg/m^3"), wl.Material)
+assert_type(wl.wear_coefficient(7e-3, "k_of_3h", to="k"), float)
+assert_type(wl.wear_coefficient("5 ug/J", "mass_per_energy", to="volume_per_energy", density="7 g/cm^3"), wl.Quantity)
 
 
 class Lubricated(wl.Stage):

@@ -51,6 +51,8 @@ result.outcome("rcf_damage", 1)  # expect-error
 result.contact.body().material.hardness  # expect-error
 wl.Outcome("rcf_damage", unit="", of="nodes")  # expect-error
 wl.Outcome("rcf_damage", unit="")  # expect-error
+wl.wear_coefficient(1e-4, "k", to="k/H", hardness="2.6 GPa")  # expect-error
+wl.wear_coefficient(1e-4, to="k_of_3h")  # expect-error
 
 wheel = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 on_rail = wheel | model | law

@@ -1,0 +1,188 @@
+"""Wear coefficients as papers print them, and the conversion from one form to another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias, overload
+
+from wearlaw.errors import InputError, UnitError, did_you_mean
+from wearlaw.units.quantities import Quantity, QuantityLike, Unit, coefficient, from_si
+
+PlainForm: TypeAlias = Literal["k", "k_of_3h"]
+
+FormWithUnit: TypeAlias = Literal["volume_per_load", "mass_per_load", "volume_per_energy", "mass_per_energy"]
+
+
+@dataclass(frozen=True)
+class _Form:
+    """A form of the wear coefficient: `factor` H^hardness ρ^density μ^friction_coefficient times V/(N s)."""
+
+    formula: str
+    unit: str
+    factor: float = 1.0
+    hardness: int = 0
+    density: int = 0
+    friction_coefficient: int = 0
+
+
+FORMS: Mapping[str, _Form] = {
+    "k": _Form("V = k N s / H", "", hardness=1),
+    "k_of_3h": _Form("V = k N s / (3 H)", "", hardness=1, factor=3.0),
+    "volume_per_load": _Form("V = k N s", "mm^3/N/m"),
+    "mass_per_load": _Form("m = k N s", "ug/N/m", density=1),
+    "volume_per_energy": _Form("V = k E", "mm^3/J", friction_coefficient=-1),
+    "mass_per_energy": _Form("m = k E", "ug/J", density=1, friction_coefficient=-1),
+}
+"""The forms by name."""
+
+
+@overload
+def wear_coefficient(
+    value: QuantityLike | float,
+    form: PlainForm | FormWithUnit,
+    *,
+    to: PlainForm,
+    hardness: QuantityLike | None = ...,
+    density: QuantityLike | None = ...,
+    friction_coefficient: float | None = ...,
+) -> float: ...
+@overload
+def wear_coefficient(
+    value: QuantityLike | float,
+    form: PlainForm | FormWithUnit,
+    *,
+    to: FormWithUnit,
+    hardness: QuantityLike | None = ...,
+    density: QuantityLike | None = ...,
+    friction_coefficient: float | None = ...,
+) -> Quantity: ...
+def wear_coefficient(
+    value: QuantityLike | float,
+    form: str,
+    *,
+    to: str,
+    hardness: QuantityLike | None = None,
+    density: QuantityLike | None = None,
+    friction_coefficient: float | None = None,
+) -> Quantity | float:
+    """Return a published wear coefficient in another form.
+
+    A unit does not tell the form: m³/(N m), m²/N and 1/Pa are the same as m³/J, but a volume per load and sliding
+    distance is μ times the volume per energy. So name both forms.
+
+    ===================== ========================== ==================================================
+    form                  meaning                    unit
+    ===================== ========================== ==================================================
+    "k"                   V = k N s / H              none
+    "k_of_3h"             V = k N s / (3 H)          none
+    "volume_per_load"     V = k N s                  mm³/(N m), m²/N, 1/Pa; also called specific wear rate or k/H
+    "mass_per_load"       m = k N s                  µg/(N m)
+    "volume_per_energy"   V = k E                    mm³/J
+    "mass_per_energy"     m = k E                    µg/J, µg/m/N
+    ===================== ========================== ==================================================
+
+    V is the worn volume and m the worn mass of one body, N the normal force, s the sliding distance, H the hardness,
+    and E = μ N s the energy of friction.
+
+    Parameters
+    ----------
+    value : Quantity, str or float
+        The published coefficient; a plain number for "k" and "k_of_3h".
+    form : str
+        Its form.
+    to : str
+        The form to convert it to.
+    hardness : Quantity or str, optional
+        H [Pa], to convert between one of the plain numbers and another form; that of the paper.
+    density : Quantity or str, optional
+        ρ of the body that wears [kg/m³], to convert between a volume and a mass.
+    friction_coefficient : float, optional
+        μ of the test, to convert between load and energy.
+
+    Returns
+    -------
+    Quantity or float
+        The coefficient, a plain number for "k" and "k_of_3h".
+
+    Raises
+    ------
+    InputError
+        If a form is unknown, or the conversion needs a value that is not given.
+    UnitError
+        If a value lacks the unit of its form, or is not positive.
+
+    Notes
+    -----
+    J. F. Archard, J. Appl. Phys. 24 (1953) 981-988.
+    """
+    source, target = _known(form, "form"), _known(to, "to")
+    result = _value(value, form) * target.factor / source.factor
+    given = {"hardness": hardness, "density": density, "friction_coefficient": friction_coefficient}
+    in_si = {name: _property(one, name) for name, one in given.items() if one is not None}
+    missing = []
+    for name in given:
+        exponent = getattr(target, name) - getattr(source, name)
+        if exponent and name in in_si:
+            result *= in_si[name] ** exponent
+        elif exponent:
+            missing.append(name)
+    if missing:
+        raise InputError(
+            f"{to}, {target.formula}, from {form}, {source.formula}, needs {_listed(missing)}; give the values of your"
+            f" source, as in {', '.join(EXAMPLES[name] for name in missing)}"
+        )
+    return from_si(result, target.unit) if target.unit else float(result)
+
+
+EXAMPLES = {
+    "hardness": 'hardness="2.6 GPa"',
+    "density": 'density="7850 kg/m^3"',
+    "friction_coefficient": "friction_coefficient=0.45",
+}
+"""Arguments in messages."""
+
+
+def _listed(words: Sequence[str]) -> str:
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+
+
+def _known(form: str, argument: str) -> _Form:
+    if form not in FORMS:
+        forms = "; ".join(f"{name}, {one.formula}" for name, one in FORMS.items())
+        raise InputError(f"{argument}: no form {form!r}{did_you_mean(str(form), FORMS)} There are: {forms}")
+    return FORMS[form]
+
+
+def _value(value: Any, form: str) -> float:
+    try:
+        return _in_form(value, form)
+    except UnitError as error:
+        fits = " or ".join(_fitting(value))
+        hint = f". As given, its form could be {fits}" if fits else ""
+        raise UnitError(f"{form}, {FORMS[form].formula}: {error}{hint}") from None
+
+
+def _in_form(value: Any, form: str) -> float:
+    unit = FORMS[form].unit
+    return _scalar(Unit(unit).si(value, "value") if unit else coefficient(value, "value"), "value")
+
+
+def _fitting(value: Any) -> Iterator[str]:
+    """Yield the forms that a value can have."""
+    for name in FORMS:
+        with suppress(InputError):
+            _in_form(value, name)
+            yield name
+
+
+def _property(value: Any, name: str) -> float:
+    units = {"hardness": "GPa", "density": "kg/m^3"}
+    return _scalar(Unit(units[name]).si(value, name) if name in units else coefficient(value, name), name)
+
+
+def _scalar(array: Any, name: str) -> float:
+    if array.ndim:
+        raise InputError(f"{name}: must be one value, got an array of shape {array.shape}")
+    return float(array)

@@ -1,0 +1,118 @@
+"""Archard's wear law with the hardness of the body that wears, as a wearlaw plugin."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+import wearlaw as wl
+from wearlaw import Array
+
+PASCAL = wl.Unit("GPa")
+
+
+class SteelWithHardness(wl.Material):
+    """A steel with its hardness; the defaults of all other fields are those of `wearlaw.steel`."""
+
+    youngs_modulus: wl.Stress = Field(default="206.47742 GPa", validate_default=True)
+    """Young's modulus, E [Pa]."""
+    poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5, strict=True)] = 0.28
+    """Poisson's ratio, ν [-]."""
+    density: wl.Density = Field(default="7850 kg/m^3", validate_default=True)
+    """Mass density, ρ [kg/m³]."""
+    shear_yield_stress: wl.Stress | None = Field(default="541.3 MPa", validate_default=True)
+    """Yield stress in shear, k [Pa]; None if not known, and then no contact counts as yielding."""
+    hardness: wl.Stress
+    """Hardness, H [Pa]. A Brinell or Vickers number is in kgf/mm²."""
+
+    if TYPE_CHECKING:  # checkers do not know that a text is accepted for a quantity
+
+        def __init__(
+            self,
+            *,
+            youngs_modulus: wl.QuantityLike = ...,
+            poisson_ratio: float = ...,
+            density: wl.QuantityLike = ...,
+            shear_yield_stress: wl.QuantityLike | None = ...,
+            hardness: wl.QuantityLike,
+        ) -> None: ...
+
+
+class Archard(wl.WearLaw):
+    """Archard's law V = k N s / H with one wear coefficient k; at a node, ρ k p s / H.
+
+    k is dimensionless. Some sources print V = k N s / (3H), with a k three times as large; `wearlaw.wear_coefficient`
+    converts it. H and the density ρ are those of the body that wears. If you give no hardness, it is the field
+    `hardness` of the body's material, such as a `SteelWithHardness`.
+
+    Prefer this law where k was measured under one regime of wear. It can't tell mild from severe wear; use `kth` for
+    Archard's law with a map of k.
+    """
+
+    name: ClassVar[str] = "archard"
+    source: ClassVar[str] = "J. F. Archard, J. Appl. Phys. 24 (1953) 981-988"
+    monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("pressure", "slip")
+
+    coefficient: Annotated[float, Field(gt=0.0, strict=True)]
+    """Wear coefficient of V = k N s / H, k [-]."""
+    hardness: wl.Stress | None = None
+    """Hardness of the body that wears, H [Pa]; None for that of its material."""
+    fitted_for: wl.Calibration | None = None
+    """Record of the tests that the coefficient is from, with their range; None if there is none."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        """Return the wear rate at the nodes [kg/m/m²]."""
+        hardness = p["hardness"] if "hardness" in p else _hardness_of_material(contact)
+        density = contact.per_node(contact.density)
+        rate: Array = density * p["coefficient"] * contact.pressure * np.abs(contact.slip) / hardness
+        return rate
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:  # noqa: ARG002
+        """Return nothing: the law is smooth."""
+        return {}
+
+    @property
+    def example_material(self) -> wl.Material:
+        """A steel with a hardness, for the checks."""
+        return SteelWithHardness(hardness="2.6 GPa")
+
+    @property
+    def calibration(self) -> wl.Calibration | None:
+        """The record of the tests that the coefficient is from."""
+        return self.fitted_for
+
+    def fitted(self, calibration: wl.Calibration) -> Archard:
+        """Return the law with a record of the fit of its coefficient."""
+        return self.model_copy(update={"fitted_for": calibration})
+
+
+def _hardness_of_material(contact: wl.Contact) -> float:
+    """Return the hardness of the material of the body that wears [Pa]."""
+    remedy = 'give the law its field hardness, such as hardness="2.6 GPa"'
+    if contact.problem is None:
+        raise wl.InputError(
+            "hardness: wear law 'archard' needs it, but this contact was solved elsewhere, so the material of its"
+            f" bodies is not known; {remedy}"
+        )
+    material = contact.body().material
+    hardness, name = getattr(material, "hardness", None), next(iter(contact.problem.bodies))
+    if hardness is None:
+        raise wl.InputError(
+            f"hardness: wear law 'archard' needs it, but the material of {name}, a {type(material).__name__}, has none;"
+            f" give {name} a material with a hardness, such as a SteelWithHardness, or {remedy}"
+        )
+    return float(PASCAL.si(hardness, f"hardness of the material of {name}"))
+
+
+@wl.hookimpl
+def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
+    """Return the law of this plugin."""
+    return [Archard]
+
+
+@wl.hookimpl
+def wearlaw_materials() -> dict[str, wl.Material | type[wl.Material]]:
+    """Return the class of steels with a hardness, so that files can name it."""
+    return {"SteelWithHardness": SteelWithHardness}
