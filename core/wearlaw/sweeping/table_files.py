@@ -218,9 +218,8 @@ class CsvFile(TableFile):
 
         if not self.first_line:
             return
-        separator = self.separator.encode(self.encoding if self.encoding != "utf-16" else "ascii")
         count, before = 0, 0
-        with _Counting(self.path, separator) as raw:
+        with _Counting(self.path, self.separator.encode("ascii")) as raw:
             buffer = io.BufferedReader(raw, BUFFER)
             text = io.TextIOWrapper(buffer, encoding=self.encoding, errors="replace", newline="")
             above = sum(line.count(self.separator) for line in itertools.islice(text, self.first_line - 1))
