@@ -29,11 +29,11 @@ KEEP = {"time": "Time"}
 FRICTION: Any = {"friction_coefficient": 0.4}
 
 
-def frame() -> pd.DataFrame:
+def frame() -> Any:
     return pd.DataFrame({"Time [s]": TIME, "Fz [N]": LOAD, "slip [-]": -CREEPAGE, "note": "dry"})
 
 
-def dataset() -> xr.Dataset:
+def dataset() -> Any:
     units = {"Fz": "N", "slip": "1"}
     given = {"Fz": LOAD, "slip": -CREEPAGE}
     along = {name: ("time", values, {"units": units[name]}) for name, values in given.items()}
@@ -278,7 +278,7 @@ def test_a_row_that_only_its_block_shows_to_be_wrong_is_named(
     workers: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("wearlaw.sweeping.sweep.SAMPLE", 10)  # of a rig with several patches, before it starts
-    table = pd.DataFrame({"y [mm]": np.linspace(-5.0, 5.0, 60), "mu": 0.3})
+    table: Any = pd.DataFrame({"y [mm]": np.linspace(-5.0, 5.0, 60), "mu": 0.3})
     table.loc[33, "mu"] = -0.3
     table.to_csv(tmp_path / "run.csv", index=False)
     given: Any = {"load": "80 kN", "longitudinal_creepage": "0.2 %", "spin": "0.3 1/m"}

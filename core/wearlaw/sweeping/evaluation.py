@@ -23,8 +23,8 @@ from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import ERROR, Prediction, unsolved
 from wearlaw.pipeline.ranges import Seen
+from wearlaw.sweeping.located import posed
 from wearlaw.sweeping.points import Block, Points
-from wearlaw.sweeping.tables import posed
 from wearlaw.units.quantities import Quantity
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS, name_of

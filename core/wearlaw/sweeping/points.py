@@ -13,7 +13,7 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import IO, Any, cast
+from typing import IO, TYPE_CHECKING, Any, cast
 
 import numpy as np
 import pint
@@ -21,9 +21,11 @@ import pint
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
 from wearlaw.errors import ConditionsError, UnitError
-from wearlaw.sweeping.table_files import TableFile
 from wearlaw.units.quantities import Q, real_array
 from wearlaw.units.registry import symbol
+
+if TYPE_CHECKING:
+    from wearlaw.sweeping.table_files import TableFile
 
 ITEM = np.dtype(np.float64).itemsize
 

@@ -21,10 +21,11 @@ from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
+from wearlaw.sweeping.located import posed
 from wearlaw.sweeping.points import BLOCK, Block, Points, outer_product
 from wearlaw.sweeping.progress import Bar
 from wearlaw.sweeping.storage import Memory, Store, Target, damage, finished
-from wearlaw.sweeping.tables import from_table, posed
+from wearlaw.sweeping.tables import from_table
 from wearlaw.sweeping.workers import Done, in_processes, on_cluster
 from wearlaw.units.quantities import shortened
 

@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+import pandas as pd
+import xarray
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import DataError, described
@@ -214,8 +216,6 @@ class CsvFile(TableFile):
 
     def pieces(self, places: Sequence[int]) -> Iterator[Piece]:
         """Yield the rows of some columns."""
-        import pandas as pd
-
         if not self.first_line:
             return
         count, before = 0, 0
@@ -281,8 +281,6 @@ class CsvFile(TableFile):
 
 def _numbers(column: Any) -> tuple[Array, Any]:
     """Return a column of pandas as floats, and where it holds text, or None."""
-    import pandas as pd
-
     if column.dtype.kind in "iuf" and isinstance(column.dtype, np.dtype):
         return column.to_numpy(dtype=np.float64), None
     if column.dtype == bool:
@@ -298,13 +296,7 @@ class ParquetFile(TableFile):
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
-        try:
-            import pyarrow.parquet
-        except ImportError:
-            raise DataError(
-                f"table: '{path}' is a parquet file, which pyarrow reads; install it with"
-                ' python -m pip install "wearlaw[parquet]", or give the table as CSV or netCDF'
-            ) from None
+        pyarrow = self._pyarrow()
         try:
             with pyarrow.parquet.ParquetFile(path) as file:
                 self.heads = [Head(name) for name in file.schema_arrow.names]
@@ -312,12 +304,20 @@ class ParquetFile(TableFile):
         except (OSError, pyarrow.ArrowException) as error:
             raise self.failed(error) from None
 
+    def _pyarrow(self) -> Any:
+        try:
+            import pyarrow.parquet
+        except ImportError:
+            raise DataError(
+                f"table: '{self.path}' is a parquet file, which pyarrow reads; install it with"
+                ' python -m pip install "wearlaw[parquet]", or give the table as CSV or netCDF'
+            ) from None
+        return pyarrow
+
     def pieces(self, places: Sequence[int]) -> Iterator[Piece]:
         """Yield the rows of some columns."""
-        import pyarrow as pa
-        import pyarrow.parquet
-
-        with pyarrow.parquet.ParquetFile(self.path) as file:
+        pa = self._pyarrow()
+        with pa.parquet.ParquetFile(self.path) as file:
             for place in places:
                 kind = file.schema_arrow.field(place).type
                 if not (pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_decimal(kind)):
@@ -349,8 +349,6 @@ class XarrayFile(TableFile):
         self._sizes = sizes
 
     def _opened(self) -> Any:
-        import xarray
-
         try:
             if self.path.is_dir():
                 return xarray.open_zarr(self.path, chunks=None, consolidated=False, decode_times=False)
