@@ -37,7 +37,7 @@ class CaseError(InputError):
 
 
 class DataError(InputError):
-    """Tests of a lab cannot be used: their file or a value is missing or wrong.
+    """Tests of a lab or a table of a sweep cannot be used: a file, a column or a value is missing or wrong.
 
     Attributes
     ----------

@@ -23,6 +23,7 @@ from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import ERROR, Prediction, unsolved
 from wearlaw.pipeline.ranges import Seen
+from wearlaw.sweeping.located import posed
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.units.quantities import Quantity
 from wearlaw.units.registry import symbol
@@ -96,7 +97,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     kernels.accelerate(job.accelerate)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", WearlawWarning)
-        problem = job.pipeline.posed(part.conditions())
+        problem = posed(part, job.pipeline.posed)
     remarks = dict.fromkeys(str(one.message) for one in caught if isinstance(one.message, WearlawWarning))
     if job.dims or problem.dims:
         _check_axes(job, problem, part)
@@ -227,7 +228,7 @@ def output_units(
             ' name what to keep, as in outputs=["tangential_force"]'
         )
     prediction, of_laws = unsolved(problem, pipeline.staged_model, pipeline.laws), outcome_units(pipeline.laws)
-    given = {*points.varying, *points.fixed}
+    given = {*points.coordinates(), *points.fixed}
     units = {}
     for name in list(named_outcomes(pipeline.laws)) if outputs is None else outputs:
         if name in given:

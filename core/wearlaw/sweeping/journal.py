@@ -21,7 +21,7 @@ from wearlaw.models.contact_model import Model
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import BlockRecord, Job
-from wearlaw.sweeping.points import Points, Varying
+from wearlaw.sweeping.points import BLOCK, Points, Varying
 from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 
@@ -49,6 +49,8 @@ def run_of(job: Job, points: Points) -> Run:
         "outputs": dict(job.units),
         "blocks": list(points.block_shape),
     }
+    if points.kept:
+        run["kept"] = {name: _summary(one) for name, one in points.kept.items()}
     if job.dims:
         run["axes"] = {name: list(labels) for name, labels in job.dims.items()}
     as_read: Run = json.loads(json.dumps(run))
@@ -61,9 +63,13 @@ def _text(value: object) -> str:
 
 
 def _summary(one: Varying) -> str:
-    digest = hashlib.sha256(one.values.tobytes()).hexdigest()[:16]
-    ends = f"{one.values[0]:g} to {one.values[-1]:g} {one.unit or ''}".rstrip()
-    return f"{one.values.size} values, {ends}, along {one.dim}, checksum {digest}"
+    digest = hashlib.sha256()
+    for start in range(0, one.values.size, BLOCK):
+        digest.update(one.values[start : start + BLOCK].data)
+    first, last = (float(one.values[part][0]) for part in (slice(1), slice(-1, None)))
+    ends = f"{first:g} to {last:g} {one.unit or ''}".rstrip()
+    origin = f", {one.origin}" if one.origin else ""
+    return f"{one.values.size} values, {ends}, along {one.dim}{origin}, checksum {digest.hexdigest()[:16]}"
 
 
 def check_same(where: Path, before: Run, now: Run) -> None:

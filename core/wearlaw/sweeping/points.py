@@ -8,29 +8,29 @@ from __future__ import annotations
 
 import itertools
 import math
-import sys
+import mmap
+import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import IO, TYPE_CHECKING, Any, cast
 
 import numpy as np
 import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
-from wearlaw.errors import ConditionsError, DataError, UnitError
-from wearlaw.units.quantities import HEAD, Q, real_array
+from wearlaw.errors import ConditionsError, UnitError
+from wearlaw.units.quantities import Q, real_array
 from wearlaw.units.registry import symbol
+
+if TYPE_CHECKING:
+    from wearlaw.sweeping.table_files import TableFile
+
+ITEM = np.dtype(np.float64).itemsize
 
 BLOCK = 100_000
 """Most operating points in a block; most blocks have more than half as many."""
-
-ROW = "row"
-"""Default name for the dimension of a table's rows."""
-
-Column: TypeAlias = tuple[str, str | None, Any, str | None]
-"""A column: head, dimension, values and unit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,21 +42,54 @@ class Varying:
     dim : str
         The dimension.
     values : ndarray, (size of the dimension,)
+        The values; `OnDisk` if they are too many for memory.
     unit : str or None
         Their unit; None for plain numbers.
+    origin : str
+        The column and the file from which they come, "" if none.
     """
 
     dim: str
     values: Array
     unit: str | None
+    origin: str = ""
 
     def __getitem__(self, part: slice) -> Varying:
         """Return some of the values."""
-        return Varying(self.dim, self.values[part], self.unit)
+        return Varying(self.dim, self.values[part], self.unit, self.origin)
+
+    @property
+    def on_disk(self) -> bool:
+        """Whether the values are read from disk when used."""
+        return isinstance(cast(object, self.values), OnDisk)
 
     def given(self, values: Array | float) -> Any:
         """Return values as an argument of a prediction."""
         return values if self.unit is None else Q(values, self.unit)
+
+
+class OnDisk:
+    """Numbers in a temporary file, which are read when used.
+
+    Parameters
+    ----------
+    file : binary file
+        It holds nothing but the numbers, as float64, at least one.
+    """
+
+    def __init__(self, file: IO[bytes]) -> None:
+        file.flush()
+        self._file = file
+        self.size = os.fstat(file.fileno()).st_size // ITEM
+        self.shape = (self.size,)
+
+    def __getitem__(self, part: slice) -> Array:
+        """Return some of the numbers."""
+        with mmap.mmap(self._file.fileno(), self.size * ITEM, access=mmap.ACCESS_READ) as mapped:
+            every = np.frombuffer(mapped, dtype=np.float64)
+            found = every[part].copy()
+            del every  # a mapping in use cannot be closed
+        return found
 
 
 @dataclass(frozen=True)
@@ -96,6 +129,12 @@ class Points:
         Other conditions. Those along one dimension vary together; different dimensions are combined.
     rows : mapping of str to object
         Labels of a table's rows, by their dimension.
+    kept : mapping of str to Varying
+        Columns of a table that are not conditions, to be coordinates of the results.
+    file : TableFile or None
+        The file from which the points come, to name the places of errors.
+    numbers : range or None
+        The numbers of the points among the rows of the file.
     weight : float
         Size of an operating point compared with a single line or ellipse, such as the number of its patches. Blocks
         have fewer points in proportion.
@@ -105,6 +144,9 @@ class Points:
     varying: Mapping[str, Varying]
     rows: Mapping[str, Any] = field(default_factory=dict)
     weight: float = 1.0
+    kept: Mapping[str, Varying] = field(default_factory=dict)
+    file: TableFile | None = None
+    numbers: range | None = None
 
     @cached_property
     def sizes(self) -> dict[str, int]:
@@ -153,7 +195,13 @@ class Points:
     def part(self, slices: Iterable[slice]) -> Points:
         """Return the points of a block."""
         by_dim = dict(zip(self.dims, slices, strict=True))
-        return Points(self.fixed, {name: one[by_dim[one.dim]] for name, one in self.varying.items()})
+        varying = {name: one[by_dim[one.dim]] for name, one in self.varying.items()}
+        numbers = None if self.numbers is None else self.numbers[by_dim[self.dims[0]]]
+        return Points(self.fixed, varying, file=self.file, numbers=numbers)
+
+    def coordinates(self) -> dict[str, Varying]:
+        """Return the conditions and kept columns that vary, by name."""
+        return {**self.varying, **self.kept}
 
     def conditions(self) -> dict[str, Any]:
         """Return the conditions as arguments of a prediction, with an entry for each operating point."""
@@ -229,104 +277,3 @@ def axis(name: str, dim: str, values: object, unit: str | None) -> Varying:
     if array.size == 0:
         raise ConditionsError(f"{name}: the axis is empty; give at least one value")
     return Varying(dim, np.ascontiguousarray(array), unit)
-
-
-def from_table(table: Any, conditions: Mapping[str, Any]) -> Points:
-    """Return the operating points in the rows of a table, with further conditions that all rows share.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame or xarray.Dataset
-        Its columns are conditions. The unit of a column comes from its type (pint), from its `attrs["units"]`, or from
-        its head, as in "creepage [%]".
-    conditions : mapping of str to object
-        Conditions that are the same in all rows.
-
-    Raises
-    ------
-    DataError
-        If this is not a table, or a column is wrong.
-    """
-    fixed, arrays = split(conditions)
-    for name in arrays:
-        raise DataError(f"{name}: beside a table it must be one value; add it to the table as a column")
-    columns, rows = _columns(table)
-    found: dict[str, Varying] = {}
-    for head, dim, values, given_unit in columns:
-        name, unit = _named(head, given_unit)
-        if name in found or name in fixed:
-            raise DataError(f"table: {name} is given twice; keep one")
-        if dim is None:
-            fixed[name] = values if unit is None else Q(values, unit)
-        else:
-            found[name] = _column(head, name, dim, values, unit)
-    if not found:
-        raise DataError("table: has no columns")
-    return Points(fixed, found, rows)
-
-
-def _columns(table: Any) -> tuple[list[Column], dict[str, Any]]:
-    """Return the columns, and the labels of the rows."""
-    pandas, xarray = (
-        sys.modules.get("pandas"),
-        sys.modules.get("xarray"),
-    )  # loaded already if the table is one of theirs
-    if pandas is not None and isinstance(table, pandas.DataFrame):
-        return _of_pandas(table)
-    if xarray is not None and isinstance(table, xarray.Dataset):
-        return _of_xarray(table)
-    raise DataError(
-        f"table: must be a pandas.DataFrame or an xarray.Dataset with a row for each operating point, got"
-        f" {type(table).__name__}; give conditions by name, as in creepage=..."
-    )
-
-
-def _of_pandas(table: Any) -> tuple[list[Column], dict[str, Any]]:
-    if table.index.nlevels > 1:
-        raise DataError("table: its index has several levels; call reset_index() on it")
-    dim = str(table.index.name or ROW)
-    columns: list[Column] = [(str(head), dim, *_typed(table[head])) for head in table.columns]
-    return columns, {dim: (dim, table.index.to_numpy())}
-
-
-def _typed(column: Any) -> tuple[Any, str | None]:
-    """Return the values of a column, and their unit from its type or attributes, if any."""
-    units = getattr(column.dtype, "units", None)  # a PintType
-    if units is not None:
-        return np.asarray(column.pint.magnitude), symbol(units, "~C")
-    return column.to_numpy(), column.attrs.get("units")
-
-
-def _of_xarray(table: Any) -> tuple[list[Column], dict[str, Any]]:
-    dims = [str(dim) for dim in table.dims]
-    if len(dims) != 1:
-        raise DataError(f"table: must have one dimension for its rows, got {', '.join(dims) or 'none'}")
-    columns = [(str(head), *_variable(variable)) for head, variable in table.data_vars.items()]
-    named = {dim: (dim, table.indexes[dim].to_numpy()) for dim in dims if dim in table.indexes}
-    return columns, named
-
-
-def _variable(variable: Any) -> tuple[str | None, Any, str | None]:
-    data, dim = variable.data, str(variable.dims[0]) if variable.dims else None
-    if isinstance(data, pint.Quantity):
-        return dim, data.magnitude, symbol(data.units, "~C")
-    return dim, variable.to_numpy() if dim else variable.item(), variable.attrs.get("units")
-
-
-def _named(head: str, unit: str | None) -> tuple[str, str | None]:
-    """Return the name of a column and its unit, which may stand in its head."""
-    match = HEAD.fullmatch(head)
-    if match is None or match["unit"] is None:
-        return head, unit
-    if unit is not None and unit != match["unit"]:
-        raise DataError(f"table: column '{head}' has the unit '{unit}' as well; keep one of the two")
-    return match["name"], "" if match["unit"] == "-" else match["unit"]
-
-
-def _column(head: str, name: str, dim: str, values: Any, unit: str | None) -> Varying:
-    try:
-        return axis(name, dim, values, unit)
-    except ConditionsError:
-        raise DataError("table: has no rows") from None
-    except UnitError as error:
-        raise DataError(f"table: column '{head}': {error}; leave out columns that are not conditions") from None

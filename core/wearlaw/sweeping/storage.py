@@ -21,11 +21,9 @@ from wearlaw.contact.conditions import is_friction_law
 from wearlaw.errors import InputError, OutputError
 from wearlaw.sweeping.evaluation import BlockRecord, Job, checksum, load_zarr, zarr_group
 from wearlaw.sweeping.journal import Journal, Run, check_same, run_of, sync_file
-from wearlaw.sweeping.points import Block, Points
+from wearlaw.sweeping.points import ITEM, Block, Points
 from wearlaw.units.quantities import parse
 from wearlaw.units.registry import symbol
-
-ITEM = np.dtype(np.float64).itemsize
 
 GIB = 2.0**30
 
@@ -188,7 +186,8 @@ class Store(Target):
         if resume and beside.exists():
             journal = Journal.resume(beside, self._run, path, self._sync)
         else:
-            check_disk(self.size, path)
+            kept = sum(one.values.size for one in points.coordinates().values() if one.on_disk)
+            check_disk(self.size + kept * ITEM, path)
             path.parent.mkdir(parents=True, exist_ok=True)
             journal = Journal.begin(beside, self._run, self._sync)
         self._lay_out()
@@ -197,7 +196,8 @@ class Store(Target):
     def _lay_out(self) -> None:
         """Write the layout of the store anew, without results: an existing layout may be damaged."""
         empty = dataset(self.points, {}, self.job).assign_attrs(status=INCOMPLETE)
-        for name in map(str, empty.coords):
+        large = {name: one for name, one in self.points.coordinates().items() if one.on_disk}
+        for name in (*map(str, empty.coords), *large):
             shutil.rmtree(self.path / name, ignore_errors=True)
         for name in ("", *self.job.units):
             (self.path / name / METADATA).unlink(missing_ok=True)
@@ -214,6 +214,25 @@ class Store(Target):
                 attributes=self.job.attributes(name),
             )
         empty.to_zarr(self.store, mode="a", consolidated=False, zarr_format=3)
+        size = dict(zip(self.points.dims, self.points.block_shape, strict=True))
+        for name, one in large.items():
+            array = group.create_array(
+                name,
+                shape=one.values.shape,
+                chunks=(size[one.dim],),
+                dtype="float64",
+                compressors=None,
+                fill_value=np.nan,
+                dimension_names=(one.dim,),
+                attributes={"units": one.unit or ""},
+            )
+            for start in range(0, one.values.size, size[one.dim]):
+                part = slice(start, start + size[one.dim])
+                array[part] = one.values[part]
+        if large:
+            group = load_zarr().open_group(self.store, mode="r+")  # with the attributes that xarray has written
+            names = [*group.attrs.get("coordinates", "").split(), *large]
+            group.attrs["coordinates"] = " ".join(name for name in names if name not in self.points.dims)
 
     def places(self, block: Block) -> list[Array]:  # noqa: ARG002
         """Return nothing: the evaluating processes write to the store."""
@@ -293,8 +312,9 @@ def _opened(path: Path) -> xarray.Dataset:
 def dataset(points: Points, variables: Mapping[str, Array], job: Job) -> xarray.Dataset:
     """Return results, (points, *axes of the rig) each, as a dataset with the conditions as coordinates."""
     coordinates: dict[str, Any] = {**points.rows, **_labels(job)}
-    for name, one in points.varying.items():
-        coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
+    for name, one in points.coordinates().items():
+        if not one.on_disk:
+            coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
     numbers = {name: _number(value) for name, value in points.fixed.items()}
     coordinates |= {name: number for name, number in numbers.items() if number is not None}
     data = {

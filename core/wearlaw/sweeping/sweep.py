@@ -7,8 +7,8 @@ import math
 import os
 import pickle
 import warnings
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,9 +21,11 @@ from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
-from wearlaw.sweeping.points import Block, Points, from_table, outer_product
+from wearlaw.sweeping.located import posed
+from wearlaw.sweeping.points import BLOCK, Block, Points, outer_product
 from wearlaw.sweeping.progress import Bar
 from wearlaw.sweeping.storage import Memory, Store, Target, damage, finished
+from wearlaw.sweeping.tables import from_table
 from wearlaw.sweeping.workers import Done, in_processes, on_cluster
 from wearlaw.units.quantities import shortened
 
@@ -38,8 +40,10 @@ SAMPLE = 250
 def sweep(
     predict: Pipeline[...],
     /,
-    table: pandas.DataFrame | xarray.Dataset | None = None,
+    table: pandas.DataFrame | xarray.Dataset | str | os.PathLike[str] | None = None,
     *,
+    columns: Mapping[str, str] | None = None,
+    keep: Mapping[str, str] | None = None,
     outputs: Sequence[str] | None = None,
     workers: int = 1,
     client: Any = None,
@@ -54,9 +58,17 @@ def sweep(
     ----------
     predict : Pipeline
         A rig, a contact model, and stages and laws if given. Without a law, name the `outputs`.
-    table : pandas.DataFrame or xarray.Dataset, optional
+    table : pandas.DataFrame, xarray.Dataset or path, optional
         Operating points in rows, conditions in columns, with units by type (pint), `attrs["units"]` or heads such as
-        "creepage [%]". Further conditions are the same in all rows.
+        "creepage [%]". Further conditions are the same in all rows. A file may be CSV, parquet (with pyarrow), netCDF
+        or zarr. It is read in pieces. With `store`, a table in a file of any length needs no more memory than a short
+        one.
+    columns : mapping of str to str, optional
+        The column of each condition, as in {"normal_force": "Fz [N]", "longitudinal_creepage": "-creep_x [-]"}. A minus
+        changes the sign. The unit in brackets may be left out if the table has it, and the table may lack it if it is
+        given. Other columns are not used. Default: columns have the names of conditions.
+    keep : mapping of str to str, optional
+        Further columns of numbers to keep as coordinates of the results, such as {"time": "Time [s]"}.
     outputs : sequence of str, optional
         Names of outcomes and properties of a prediction to keep, such as "wear_rate", "rcf_damage" or
         "tangential_force". If laws of one outcome differ by body, the name of the body follows, as in "wear_rate_rail".
@@ -86,6 +98,8 @@ def sweep(
     ------
     CompositionError
         If the pipeline has no law and no outputs are named.
+    DataError
+        If the table is wrong; for a file, the message names line and column.
     InputError
         If conditions or outputs are invalid, or the results would not fit into memory or on the disk.
     OutputError
@@ -97,28 +111,53 @@ def sweep(
         raise InputError(f"workers: must be the number of processes, at least 1; got {workers!r}")
     if not isinstance(store, str | os.PathLike | None):
         raise InputError(f'store: must be the path of a folder, such as "map.zarr"; got {shortened(store)}')
-    points = outer_product(conditions) if table is None else from_table(table, conditions)
-    not_given = {name: None for name, value in conditions.items() if value is None}
-    first = _checked_conditions(predict, points, not_given)
-    points = dataclasses.replace(points, weight=weight(first))
-    job = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
-    if store is None:
-        if resume:
-            raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
-        target: Memory | Store = Memory(job, points)
-    else:
-        path = Path(store)
-        there = finished(job, points, path, resume)
-        if there is not None:
-            return there
-        target = Store(job, points, path, resume)
-        if target.damaged:
-            warnings.warn(damage(target.damaged, target.listed, path), ResumeWarning, stacklevel=2)
-    with closing(target), Bar(points.size, progress) as bar:
-        found = run(target, bar, workers, client)
-        for warning in found:
-            warnings.warn(warning, stacklevel=2)
-        return target.finish([str(warning) for warning in found])
+    with _points(predict, table, conditions, columns, keep, store, progress) as points:
+        not_given = {name: None for name, value in conditions.items() if value is None}
+        first = _checked_conditions(predict, points, not_given)
+        points = dataclasses.replace(points, weight=weight(first))
+        job = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
+        if store is None:
+            if resume:
+                raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
+            target: Memory | Store = Memory(job, points)
+        else:
+            path = Path(store)
+            there = finished(job, points, path, resume)
+            if there is not None:
+                return there
+            target = Store(job, points, path, resume)
+            if target.damaged:
+                warnings.warn(damage(target.damaged, target.listed, path), ResumeWarning, stacklevel=2)
+        with closing(target), Bar(points.size, progress) as bar:
+            found = run(target, bar, workers, client)
+            for warning in found:
+                warnings.warn(warning, stacklevel=2)
+            return target.finish([str(warning) for warning in found])
+
+
+@contextmanager
+def _points(
+    predict: Pipeline[...],
+    table: Any,
+    conditions: Mapping[str, Any],
+    columns: Mapping[str, str] | None,
+    keep: Mapping[str, str] | None,
+    store: str | os.PathLike[str] | None,
+    progress: bool,
+) -> Iterator[Points]:
+    """Give the operating points of a sweep."""
+    if table is None:
+        for name, value in {"columns": columns, "keep": keep}.items():
+            if value is not None:
+                raise InputError(f"{name}: belongs to a table; give one, as in wl.sweep(predict, 'run.csv', ...)")
+        yield outer_product(conditions)
+        return
+    on_disk = None if store is None else Path(store)
+    check = predict.rig.check_names
+    with from_table(
+        table, conditions, columns=columns, keep=keep, check=check, on_disk=on_disk, progress=progress
+    ) as points:
+        yield points
 
 
 def _checked_job(
@@ -167,17 +206,23 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
         line = points.part(values if other == dim else slice(0, 1) for other in points.dims)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", WearlawWarning)  # the blocks record them
-            return pipeline.rig.checked_problem({**not_given, **line.conditions()})
+            return posed(line, lambda given: pipeline.rig.checked_problem({**not_given, **given}))
 
     first = along(points.dims[0], slice(0, SAMPLE))
     _check_names(pipeline.rig, first, points)
-    every = {dim: max(size // SAMPLE, 1) if first.dims else 1 for dim, size in points.sizes.items()}
+    slipperiest, there = first, first if first.size else None
     known = points.sizes[points.dims[0]] <= SAMPLE
-    problems = [first, *(along(dim, slice(None, None, every[dim])) for dim in points.dims[1 if known else 0 :])]
+    for dim in points.dims[1 if known else 0 :]:
+        size = points.sizes[dim]
+        every = max(size // SAMPLE, 1) if first.dims else 1
+        step = size if points.file is None else every * BLOCK  # a table of any length must not need more memory
+        for start in range(0, size, step):
+            one = along(dim, slice(start, start + step, every))
+            slipperiest = min(slipperiest, one, key=lambda some: np.nanmin(some.friction_coefficient, initial=np.inf))
+            if there is None and one.size:
+                there = one
     pipeline.warn_of_problem(first, stacklevel=4)
-    slipperiest = min(problems, key=lambda one: np.nanmin(one.friction_coefficient, initial=np.inf))
     warn_of_unlike_materials(pipeline.contact_model, slipperiest, stacklevel=4)
-    there = next((one for one in problems if one.size), None)
     if there is None:
         raise ConditionsError(TOUCH_NOWHERE.format(pipeline.rig.name))
     return there
@@ -185,7 +230,7 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
 
 def _check_names(rig: Rig, problem: Problem, points: Points) -> None:
     """Raise an error if an axis of the rig has the name of a condition."""
-    taken = {*points.dims, *points.varying, *points.fixed} & problem.dims.keys()
+    taken = {*points.dims, *points.coordinates(), *points.fixed} & problem.dims.keys()
     if taken:
         raise ModelError(f"rig '{rig.name}' has an axis and a condition named '{min(taken)}'; rename one of the two")
 

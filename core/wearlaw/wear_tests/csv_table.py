@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import NamedTuple
@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wearlaw.errors import DataError, UnitError, did_you_mean
+from wearlaw.settings.csv_files import Row, preamble, rows
 from wearlaw.units.quantities import HEAD, Q
 from wearlaw.units.registry import symbol
 from wearlaw.wear_tests.columns import COLUMNS, factor, faulty_columns, head
@@ -22,13 +23,6 @@ TEXTS = ("label", "comment")
 
 WEAR_OF = "wear_rate"
 """The wear rate; behind it may follow the name of a body, as in "wear_rate_rail"."""
-
-
-class Row(NamedTuple):
-    """The cells of a row, and the number of its first line."""
-
-    line: int
-    cells: list[str]
 
 
 class Head(NamedTuple):
@@ -102,56 +96,25 @@ def table_of(
 
     `conditions` are those of the installed rigs, and `outcomes` those of the installed laws.
     """
-    source, separator, lines, start = _preamble(text)
+    lines = io.StringIO(text, newline=None).readlines()
+    source, separator, start = preamble(lines)
     try:
-        rows = list(_rows(lines, start, separator))
+        found = [] if start is None else list(rows(lines[start:], start, separator))
     except csv.Error as error:
         raise DataError(f"the tests '{name}' cannot be read as CSV: {error}") from None
-    if not rows:
+    if not found:
         raise DataError(f"the tests '{name}' are empty; begin with a header such as: {head('creepage')}, ...")
-    heads = _heads(rows[0], wrong, conditions, outcomes)
+    heads = _heads(found[0], wrong, conditions, outcomes)
     if not any(one.name for one in heads):
         known = ", ".join([*map(head, COLUMNS), *TEXTS])
         raise DataError(
-            f"the tests '{name}' are wrong in:", [f"line {rows[0].line}: is not a header; the columns are: {known}"]
+            f"the tests '{name}' are wrong in:", [f"line {found[0].line}: is not a header; the columns are: {known}"]
         )
     table = Table(source, separator, heads, [])
-    table.rows.extend(row for row in rows[1:] if any(map(str.strip, row.cells)) and _fits(row, table, wrong))
+    table.rows.extend(row for row in found[1:] if any(map(str.strip, row.cells)) and _fits(row, table, wrong))
     if not table.rows and not wrong.found:
-        wrong.add(rows[0].line, "", "no test follows the header")
+        wrong.add(found[0].line, "", "no test follows the header")
     return table
-
-
-def _preamble(text: str) -> tuple[str, str, list[str], int]:
-    """Return the source stated in comments, the separator, all lines, and the index of the header."""
-    lines = io.StringIO(text, newline=None).readlines()
-    source = separator = ""
-    for number, line in enumerate(lines):
-        stripped = line.strip()
-        if re.fullmatch("sep=[,;|]?", stripped):
-            separator = stripped[4:] or "\t"
-        elif stripped.startswith(("#", '"#')):
-            key, _, value = _comment(stripped).partition(":")
-            source = value.strip() if key.casefold() == "source" else source
-        elif stripped.strip(",;"):
-            found = next((mark for mark in ";\t" if mark in line), ",")
-            return source, separator or found, lines, number
-    return source, ",", lines, len(lines)
-
-
-def _comment(line: str) -> str:
-    """Return a comment without the quotes and separators that a spreadsheet adds to it."""
-    quoted = re.match(r'"((?:[^"]|"")*)', line)
-    text = quoted[1].replace('""', '"') if quoted else line.rstrip(",;\t ")
-    return text.lstrip("# ")
-
-
-def _rows(lines: list[str], start: int, separator: str) -> Iterator[Row]:
-    reader = csv.reader(lines[start:], delimiter=separator, skipinitialspace=True)
-    line = start + 1
-    for cells in reader:
-        yield Row(line, cells)
-        line = start + reader.line_num + 1
 
 
 def _heads(header: Row, wrong: Problems, conditions: Collection[str], outcomes: Collection[str]) -> list[Head]:

@@ -13,6 +13,7 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.errors import DataError, did_you_mean
 from wearlaw.plugins import loader
+from wearlaw.settings.csv_files import kind_of
 from wearlaw.settings.text_files import UTF_16, decoded
 from wearlaw.units.quantities import Q, shortened
 from wearlaw.wear_tests.columns import faulty, with_traction
@@ -23,7 +24,6 @@ MISSING = ("", "na", "n/a", "nan", "-")
 """Contents of a cell without a value, in upper or lower case."""
 
 _NUMBER = re.compile(r"[+\-\u2212]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
-_NOT_TEXT = {b"PK\x03\x04": "a workbook (.xlsx, .ods)", b"\xd0\xcf\x11\xe0": "an old workbook (.xls)"}
 
 
 def read_tests(path_or_name: str | Path, *, outcomes: Collection[str] = ()) -> WearTests:
@@ -80,7 +80,7 @@ def _refuse_missing(path: Path, shipped: list[str]) -> NoReturn:
 
 def _decoded(content: bytes, path: Path) -> str:
     """Decode UTF-8, UTF-16 with its mark, or else the code page of old spreadsheets."""
-    kind = next((kind for start, kind in _NOT_TEXT.items() if content.startswith(start)), None)
+    kind = kind_of(content)
     if kind is None and b"\0" in content and not content.startswith(UTF_16):
         kind = "no text"
     if kind is not None:
