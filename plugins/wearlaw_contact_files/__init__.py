@@ -28,9 +28,9 @@ class ContactMat(wl.Reader):
     """Solved patches of CONTACT, from its .mat files of versions 12.2 to 24.1 of their format.
 
     A file holds one patch, `case.0001.mat` of module 3 or `case.0001a.mat` of module 1, for wheel and rail. The wheel
-    is the upper body, and the rail is the lower one. The elements in contact are the nodes, with the element's area; the
-    local friction coefficient gives the traction bound. CONTACT writes the magnitude of the slip, which lies along the
-    traction.
+    is the upper body, and the rail is the lower one. The elements in contact are the nodes, with the element's area.
+    The local friction coefficient gives the traction bound. CONTACT writes the magnitude of the slip, which lies along
+    the traction.
 
     The file does not hold the creepages. In steady rolling they follow from slip and elastic displacements, to the
     digits that the file has. Otherwise give `cksi`, `ceta` and `cphi`.
@@ -111,7 +111,7 @@ class ContactMat(wl.Reader):
     def _creepages(self, case: Case, fields: _Fields) -> Creepages:
         """Return the given creepages or those of the fields, in the signs of wearlaw and 1/mm."""
         if self.cksi is not None and self.ceta is not None and self.cphi is not None:
-            spin = wl.scalar_si(self.cphi, "1/mm")
+            spin = MM * wl.scalar_si(self.cphi, "1/m")
             return Creepages(fields.sign * self.cksi, fields.sign * self.ceta, fields.body * spin)
         found = None
         if case.steady and math.isclose(case.step, case.grid.dx, rel_tol=1e-4):
@@ -241,7 +241,8 @@ class _Fields:
         self.bound = over_grid(np.maximum(MPA * values["MU"] * values["PN"], magnitude))  # both have six digits
         along_traction = values["SREL"] / np.where(magnitude > 0.0, magnitude, np.inf)
         self.slip = over_grid(along_traction * on_rail[0]), over_grid(along_traction * on_rail[1])
-        self.displacement = tuple(over_grid(self.sign * values[name], np.nan) for name in ("UX", "UY"))
+        ux, uy = self.sign * values["UX"], self.sign * values["UY"]
+        self.displacement = over_grid(ux, np.nan), over_grid(uy, np.nan)
 
 
 @wl.hookimpl

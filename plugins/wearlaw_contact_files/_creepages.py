@@ -6,8 +6,8 @@ elastic displacement along the rolling direction,
     s(x) = w(x) + (u(x) - u(x_ahead)) / DQ,
 
 so w is known at every element whose neighbour ahead, at the distance DQ, touches too. It is that of a rigid motion,
-(ξ - φy, η - φ(x - DQ/6)) in the axes of wearlaw, and a fit by least squares gives ξ, η and φ. DQ/6 is CONTACT's own shift
-of the spin in steady rolling (`facphi` in its sources).
+(ξ - φy, η - φ(x - DQ/6)) in the axes of wearlaw, and a fit by least squares gives ξ, η and φ. DQ/6 is CONTACT's own
+shift of the spin in steady rolling (`facphi` in its sources).
 
 The simplified theory with three flexibilities L1, L2, L3 has φ L1/L3 and φ L2/L3 in the two components. Its slip is not
 parallel to its traction, so that only elements that stick can be used.

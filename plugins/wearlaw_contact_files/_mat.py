@@ -1,7 +1,7 @@
 """The surface results of a case of CONTACT: its .mat files, which are text.
 
-Layout, signs and history are those of the program's own `matlab/loadcase.m` and `src/m_soutpt.f90` (E. A. H. Vollebregt,
-https://github.com/eve70a/CONTACT).
+Layout, signs and history are those of the program's own `matlab/loadcase.m` and `src/m_soutpt.f90` (E. A. H.
+Vollebregt, https://github.com/eve70a/CONTACT).
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -151,7 +151,7 @@ def _rows_of_position(version: int) -> int:
     return 3 if version >= 2320 else 2 if version >= 1801 else 1 if version >= 1401 else 0
 
 
-def _position(table: Table, version: int) -> dict[str, float | int]:
+def _position(table: Table, version: int) -> dict[str, Any]:
     """Return the module, the radii of the bodies and the contact angle."""
     none = {"module": 3, "wheel_radius": 0.0, "roller_radius": 0.0, "angle": 0.0}
     if version < 1801:
@@ -166,13 +166,13 @@ def _position(table: Table, version: int) -> dict[str, float | int]:
     return {"module": 1, "wheel_radius": radius, "roller_radius": max(roller, 0.0), "angle": place[3] + roll}
 
 
-def _kinematics(table: Table, row: int) -> dict[str, object]:
+def _kinematics(table: Table, row: int) -> dict[str, Any]:
     """Return the grid, the direction and the speed of rolling."""
     mx, my = (table.whole(row, column, name, range(1, 10**7)) for column, name in enumerate(("MX", "MY")))
     xl, yl = table.values[row, 2:4].tolist()
     dx, dy = table.positive(row, 4, "DX"), table.positive(row, 5, "DY")
     chi = table.values[row, 6]
-    if abs(math.sin(chi)) > 1e-6:
+    if abs(math.sin(chi)) > 1e-5:  # π has six digits in a file
         table.wrong(row, 6, "CHI", "must be 0 or π, for rolling along x; other directions have no strips along them")
     tang = table.values[row + 1, 0]
     if tang not in (TRANSIENT, STEADY):
@@ -186,7 +186,7 @@ def _kinematics(table: Table, row: int) -> dict[str, object]:
     }
 
 
-def _bodies(table: Table, row: int) -> dict[str, object]:
+def _bodies(table: Table, row: int) -> dict[str, Any]:
     """Return the elastic constants of both bodies."""
     kind = table.whole(row, 1, "M", range(8))
     ratios = []
@@ -205,7 +205,7 @@ def _bodies(table: Table, row: int) -> dict[str, object]:
     }
 
 
-def _elements(table: Table, grid_row: int, first: int) -> dict[str, object]:
+def _elements(table: Table, grid_row: int, first: int) -> dict[str, Any]:
     """Return the elements in contact."""
     mx, my = (int(number) for number in table.values[grid_row, :2])
     rows = table.values[first:]
@@ -223,8 +223,8 @@ def _elements(table: Table, grid_row: int, first: int) -> dict[str, object]:
             table.wrong(first + int(np.argmax(wrong)), column, columns[column], rule)
     if (state == EXTERIOR).any() and numbers.size != mx * my:
         raise wl.DataError(
-            f"'{table.path}', line {table.lines[-1]}: ends after {numbers.size} elements, but the grid has {mx} x {my} ="
-            f" {mx * my}, and the file lists those outside the contact too; it is cut short there"
+            f"'{table.path}', line {table.lines[-1]}: ends after {numbers.size} elements, but the grid has {mx} x {my}"
+            f" = {mx * my}, and the file lists those outside the contact too; it is cut short there"
         )
     touching = state != EXTERIOR
     if not touching.any() or not rows[touching, 4].sum() > 0.0:

@@ -75,9 +75,8 @@ def read_subsurface(path: str | os.PathLike[str], block: int = 1) -> xarray.Data
     shape = tuple(axis.size for axis in axes)
     place = tuple(np.searchsorted(axis, points[:, column]) for column, axis in enumerate(axes))
     if shape != counts or np.unique(np.ravel_multi_index(place, shape)).size != len(points):
-        raise wl.DataError(
-            f"'{table.path}', line {table.lines[first]}: the points of this block are no grid of {' x '.join(map(str, counts))}"
-        )
+        grid = " x ".join(map(str, counts))
+        raise wl.DataError(f"'{table.path}', line {table.lines[first]}: the points of this block are no grid of {grid}")
     variables = {}
     for column, name in enumerate(COLUMNS[width], 3):
         values = np.empty(shape)

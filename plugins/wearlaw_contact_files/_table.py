@@ -47,9 +47,7 @@ class Table:
     def wrong(self, row: int, column: int, name: str, rule: str) -> NoReturn:
         """Raise an error for a number, by its row and column from 0."""
         got = f"{self.values[row, column]:g}"
-        raise wl.DataError(
-            f"'{self.path}', line {self.lines[row]}, column {column + 1} ({name}): {rule}, got {got}"
-        )
+        raise wl.DataError(f"'{self.path}', line {self.lines[row]}, column {column + 1} ({name}): {rule}, got {got}")
 
     def whole(self, row: int, column: int, name: str, known: Sequence[int] | range) -> int:
         """Return a whole number among those known, or raise an error."""
@@ -87,9 +85,7 @@ def table_of(path: Path) -> Table:
     for line, cells in rows:
         if len(cells) != width:
             cut = "; the file seems to be cut short there" if line == rows[-1][0] and len(cells) < width else ""
-            raise wl.DataError(
-                f"'{path}', line {line}: has {len(cells)} columns, but line {first} has {width}{cut}"
-            )
+            raise wl.DataError(f"'{path}', line {line}: has {len(cells)} columns, but line {first} has {width}{cut}")
     lines = np.array([line for line, _ in rows])
     try:
         values = np.array([cells for _, cells in rows], dtype=np.float64)

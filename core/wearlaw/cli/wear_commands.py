@@ -102,8 +102,8 @@ def _note_powers(table: pd.DataFrame, notes: Notes) -> None:
     for name, of_creepages, of_slip in table[["contact", POWER_OF_CREEPAGES, POWER_OF_SLIP]].itertuples(index=False):
         if abs(of_slip - of_creepages) > APART * abs(of_creepages):
             notes.add(
-                f"{name}: the slip of the nodes dissipates {of_slip:.4g} W, the creepages {of_creepages:.4g} W; the laws"
-                " see the slip of the nodes, whose error falls with finer elements"
+                f"{name}: the slip of the nodes dissipates {of_slip:.4g} W, the creepages {of_creepages:.4g} W; the"
+                " laws see the slip of the nodes, whose error falls with finer elements"
             )
 
 

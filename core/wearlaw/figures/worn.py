@@ -75,7 +75,7 @@ def profile_tables(found: Prediction, labels: Sequence[str]) -> dict[str, pd.Dat
     for body in _worn_bodies(found):
         across, strips = _across(found, body)
         where = np.nonzero(strips)
-        columns: dict[str, Any] = {"contact": [labels[row] for row in where[0]]}
+        columns: dict[str, Any] = {"contact": [labels[int(row)] for row in where[0]]}
         columns["y [mm]"] = across["y"].to_numpy().reshape(strips.shape)[where]
         for name, values in across.data_vars.items():
             columns[f"{name} [{values.units}]"] = values.to_numpy().reshape(strips.shape)[where]
@@ -104,7 +104,8 @@ def worn_figure(found: Prediction, labels: Sequence[str], law: str) -> FigureDat
             for row, label in enumerate(labels)
         )
         values = across["depth"]
-        panels.append(Panel(PlotAxis("y [mm]"), PlotAxis(f"{values.long_name} [{symbol(Q(1.0, values.units).units, '~P')}]"), curves, body))
+        unit = symbol(Q(1.0, values.units).units, "~P")
+        panels.append(Panel(PlotAxis("y [mm]"), PlotAxis(f"{values.long_name} [{unit}]"), curves, body))
     if not panels:
         return None
     return FigureData("wear", f"Wear across the patch by {law}", tuple(panels))

@@ -70,9 +70,9 @@ class Solved(ContactModel):
 
 def flat(contact: Contact, problem: Problem) -> Contact:
     """Return the contacts of the existing patches along one batch axis."""
-    axes, exists = contact.rolling_speed.ndim, problem.exists
+    speed, exists = contact.rolling_speed, problem.exists
 
     def along_one_axis(array: Array) -> Array:
-        return array.reshape(-1, *array.shape[axes:]) if exists is None else array[exists]
+        return array.reshape(speed.size, *array.shape[speed.ndim :]) if exists is None else array[exists]
 
     return contact.replaced(problem=None).mapped(along_one_axis).replaced(problem=problem.flatten())

@@ -107,7 +107,8 @@ def _between(contact: Contact, first: Any, second: Any, share: Array) -> Contact
     for name in FIELDS:
         values = getattr(contact, name)
         low, high = values[first][:, None], values[second][:, None]
-        fields[name] = (low + share * (high - low))[..., None]
+        with np.errstate(invalid="ignore"):  # a traction bound may be infinite
+            fields[name] = (low + share * (high - low))[..., None]
     return Contact(
         **fields,
         area=np.ones_like(fields["x"]),

@@ -163,13 +163,20 @@ def _single(path: Path, contact: Contact) -> Problem:
 
 
 def _check_bodies(path: Path, problem: Problem, first_path: Path, first: Problem) -> None:
-    """Raise an error unless the bodies of two problems are of the same materials."""
+    """Raise an error unless the bodies of two problems are of the same materials and both roll or both do not."""
     materials, others = ({name: body.material for name, body in one.bodies.items()} for one in (problem, first))
     if materials != others:
         raise InputError(
             f"'{path}': its bodies are of other materials than those of '{first_path}', {materials} and not {others};"
             " read these files apart"
         )
+    for name, body in problem.bodies.items():
+        if np.isinf(body.rolling_radius) != np.isinf(first.bodies[name].rolling_radius):
+            without, one = (path, first_path) if np.isinf(body.rolling_radius) else (first_path, path)
+            raise InputError(
+                f"'{without}': has no radius of '{name}', but '{one}' has one; give the radius in the options of the"
+                " reader, or read these files apart"
+            )
 
 
 def _stacked_problem(problems: Sequence[Problem]) -> Problem:

@@ -68,7 +68,8 @@ class Installed:
     def shelves(self) -> tuple[Shelf[Any], ...]:
         """Return the shelf of each kind."""
         models = (self.rigs, self.contact_models, self.stages, self.wear_laws, self.laws, self.readers)
-        return *models, self.parameter_sets, self.materials, self.material_types, self.cases, self.test_sets, self.sections
+        named = (self.parameter_sets, self.materials, self.material_types, self.cases, self.test_sets, self.sections)
+        return *models, *named
 
     def of_kind(self, kind: str) -> Shelf[Any]:
         """Return the shelf of a kind, such as "wear law"."""
