@@ -34,6 +34,7 @@ ROOT = Path(__file__).parents[1]
 
 TESTS = {
     "wearlaw_brr": "plugins/test_brr.py",
+    "wearlaw_contact_files": "plugins/test_contact_files.py plugins/test_contact_files_refusals.py",
     "wearlaw_exact": "plugins/test_exact_kernel.py plugins/test_exact.py test_numbers.py",
     "wearlaw_fastsim": "plugins/test_fastsim_kernel.py plugins/test_fastsim_first_slip.py plugins/test_fastsim.py"
     " plugins/test_fastsim_solution.py plugins/test_fastsim_strip_forces.py plugins/test_fastsim_strip_fields.py"

@@ -1,4 +1,7 @@
-"""Result files of the program CONTACT, as a wearlaw plugin: solved patches, and stresses below the surface."""
+"""Result files of the program CONTACT, as a wearlaw plugin.
+
+`wearlaw_contact_files.subsurface` reads its stresses below the surface.
+"""
 
 from __future__ import annotations
 
@@ -14,10 +17,7 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw_contact_files._creepages import Creepages, derived
 from wearlaw_contact_files._mat import ADHESION, Case, case_of
-from wearlaw_contact_files._subs import read_subsurface
 from wearlaw_contact_files._table import is_table
-
-__all__ = ["ContactMat", "read_subsurface", "wearlaw_readers"]
 
 MM, MPA = 1e-3, 1e6
 

@@ -1,18 +1,18 @@
-"""Stresses below the surface: the .subs files of CONTACT."""
+"""Stresses below the surface: the .subs files of CONTACT.
+
+This module is no part of the plugin that wearlaw loads, since xarray takes as long to load as the rest.
+"""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 import wearlaw as wl
 from wearlaw_contact_files._table import Table, table_of
-
-if TYPE_CHECKING:
-    import xarray
 
 DISPLACEMENTS = ("ux", "uy", "uz")
 INVARIANTS = ("sigma_hydrostatic", "sigma_von_mises")
@@ -58,8 +58,6 @@ def read_subsurface(path: str | os.PathLike[str], block: int = 1) -> xarray.Data
     InputError
         If there is no such block.
     """
-    import xarray
-
     table = table_of(Path(path))
     width = table.values.shape[1]
     if width not in COLUMNS:
