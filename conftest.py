@@ -1,9 +1,9 @@
 """Runs the code blocks of README.md and docs/ as tests and compares their output.
 
 Blocks of ``python`` run in one namespace a page, blocks of ``console`` as in a shell, both in an empty folder. A
-block with a caption is a file of that name, which the blocks after it find there, and so is a file to download. What a page installs is there for
-its own shells only. Blocks of ``toml`` are tables of a case file. Of blocks of ``matlab`` the names are looked up in
-the files that they read. `tests/test_blocks.py` holds that no block is left out.
+block with a caption is a file of that name, which the blocks after it find there, and so is a file to download. What a
+page installs is there for its own shells only. Blocks of ``toml`` are tables of a case file. Of blocks of ``matlab``
+the names are looked up in the files that they read. `tests/test_blocks.py` holds that no block is left out.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ class CaseError(InputError):
 
 
 class DataError(InputError):
-    """Tests of a lab cannot be used: their file or a value is missing or wrong.
+    """Tests of a lab or the contact of another program cannot be used: their file or a value is missing or wrong.
 
     Attributes
     ----------

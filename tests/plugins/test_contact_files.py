@@ -301,3 +301,21 @@ def test_a_plastic_zone_is_no_slip(tmp_path: Path) -> None:
     contact = wl.read_contact(write_rows(tmp_path / "plastic.mat", rows), cksi=-0.001, ceta=0.0, cphi=Q(0, "1/mm"))
     assert (contact.area > 0.0).sum() == 100
     assert ((contact.area > 0.0) & (contact.slip == 0.0)).sum() == 70
+
+
+def test_the_place_of_the_grid_moves_the_patch_and_the_rail_turns_it(tmp_path: Path) -> None:
+    rows, contact = rows_of(FILES["flange"]), wl.read_contact(FILES["flange"])
+    rows[3, 2:4] += 1.0, 2.0  # mm, in the rolling direction and along y
+    rows[0, 5] = 0.025  # the roll of the rail
+    moved = wl.read_contact(write_rows(tmp_path / "moved.mat", rows))
+    assert moved.x == pytest.approx(contact.x - 1e-3, abs=1e-12)
+    assert moved.y == pytest.approx(contact.y + 2e-3, abs=1e-12)
+    of, other = contact.problem, moved.problem
+    assert of is not None
+    assert other is not None
+    assert of.contact_angle is not None
+    assert other.contact_angle == pytest.approx(of.contact_angle + 0.025)
+    # the same rigid motion about another point
+    assert other.longitudinal_creepage == pytest.approx(of.longitudinal_creepage + 2e-3 * of.spin)
+    assert other.lateral_creepage == pytest.approx(of.lateral_creepage - 1e-3 * of.spin)
+    assert moved.wear_index == pytest.approx(contact.wear_index)
