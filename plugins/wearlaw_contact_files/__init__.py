@@ -228,8 +228,8 @@ class _Fields:
 
         along = grid.xl + (low_x + np.arange(shape[0]) + 0.5) * grid.dx
         across = grid.yl + (low_y + np.arange(shape[1]) + 0.5) * grid.dy
-        self.x = np.sort(-turned * MM * along)[:, None]
-        self.y = np.sort(turned * MM * across)
+        self.x: Array = np.sort(-turned * MM * along)[:, None].astype(np.float64)
+        self.y: Array = np.sort(turned * MM * across).astype(np.float64)
         self.strip_width = np.full(shape[1], MM * grid.dy)
         self.length = over_grid(np.full(case.ix.size, MM * grid.dx))
         values = case.values

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 import wearlaw as wl
 from wearlaw import Array
@@ -93,8 +94,8 @@ class Case:
     poisson_ratios: tuple[float, float]
     flexibilities: tuple[float, float, float] | None
     speed: float
-    ix: Array
-    iy: Array
+    ix: NDArray[np.intp]
+    iy: NDArray[np.intp]
     values: dict[str, Array]
 
 

@@ -66,14 +66,15 @@ def wear(
     It prints forces, dissipated powers and the wear of each body. The folder then holds wear.csv, the table that is
     printed; a table and a figure of the wear across each patch; and wear.json with the laws and the notes.
     """  # noqa: D301
-    folder = output if output is not None else Path(f"{Path(files[0]).stem}-wear")
+    first, *others = files
+    folder = output if output is not None else Path(f"{Path(first).stem}-wear")
     notes, chosen = Notes(), [law_of(text) for text in laws]
     given = fields("--option", options)
     labels = _labels(files)
     with fresh_folder(folder, overwrite, WEAR) as fresh:
-        contact = read_contact(files if len(files) > 1 else files[0], reader=reader, **given)
+        contact = read_contact(files if others else first, reader=reader, **given)
         found = _predicted(contact.patch_mean() if patch_mean else contact, chosen, notes)
-        if len(files) == 1 and found.problem.batch_shape:
+        if not others and found.problem.batch_shape:
             labels = [f"{labels[0]} {number}" for number in range(1, found.problem.size + 1)]
         with notes.of("wear"):
             table = worn_table(found, labels)
