@@ -1,9 +1,9 @@
 """Runs the code blocks of README.md and docs/ as tests and compares their output.
 
 Blocks of ``python`` run in one namespace a page, blocks of ``console`` as in a shell, both in an empty folder. A
-block with a caption is a file of that name, which the blocks after it find there. What a page installs is there for
-its own shells only. Blocks of ``toml`` are tables of a case file. Of blocks of ``matlab`` the names are looked up in
-the files that they read. `tests/test_blocks.py` holds that no block is left out.
+block with a caption is a file of that name, which the blocks after it find there, and so is a file to download. What a
+page installs is there for its own shells only. Blocks of ``toml`` are tables of a case file. Of blocks of ``matlab``
+the names are looked up in the files that they read. `tests/test_blocks.py` holds that no block is left out.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import gc
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -36,6 +37,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 MATLAB_READS = re.compile(r'(\w*read\w*)\("([^"]+)"(?:, "([^"]+)")?(?:, "([^"]+)")?')
 """A function of MATLAB, its file, and the variable and attribute that it reads there."""
+DOWNLOAD = re.compile(r"\{download\}`[^`<]*<([^>]+)>`")
+"""A link to a file for the reader to download."""
 
 
 @pytest.hookimpl(optionalhook=True)  # without xdist there is no such hook
@@ -159,6 +162,17 @@ def write_file(example: Example) -> None:
         sys.path.insert(0, os.path.join(example.namespace["_folder"].name, path.parent))
 
 
+def downloads(document: Any) -> Any:
+    """Yield the links to files that a page offers, to be copied."""
+    for found in DOWNLOAD.finditer(document.text):
+        yield Region(*found.span(), Path(document.path).resolve().parent / found[1], copy_file)
+
+
+def copy_file(example: Example) -> None:
+    """Copy a file that the page offers into its folder."""
+    shutil.copy(example.parsed, ".")
+
+
 def enter_folder(namespace: dict[str, Any]) -> None:
     """Give the page an empty folder to work in."""
     namespace["_home"] = os.getcwd()
@@ -186,6 +200,7 @@ def leave_folder(namespace: dict[str, Any]) -> None:
 PAGES = Sybil(
     parsers=[
         captioned_files,
+        downloads,
         PythonCodeBlockParser(doctest_optionflags=OPTIONS),
         CodeBlockParser(language="console", evaluator=run_console),
         CodeBlockParser(language="toml", evaluator=read_tables),

@@ -35,6 +35,7 @@ ROOT = Path(__file__).parents[1]
 TESTS = {
     "wearlaw_archard": "plugins/test_archard.py",
     "wearlaw_brr": "plugins/test_brr.py",
+    "wearlaw_contact_files": "plugins/test_contact_files.py plugins/test_contact_files_refusals.py",
     "wearlaw_energy": "plugins/test_energy.py",
     "wearlaw_exact": "plugins/test_exact_kernel.py plugins/test_exact.py test_numbers.py",
     "wearlaw_fastsim": "plugins/test_fastsim_kernel.py plugins/test_fastsim_first_slip.py plugins/test_fastsim.py"

@@ -51,10 +51,12 @@ from wearlaw.models.creep_force_model import CreepForceModel
 from wearlaw.models.functions import as_wear_law
 from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome
 from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
+from wearlaw.models.reader import Reader
 from wearlaw.models.stage import Forces, Solve, Stage
 from wearlaw.models.wear_law import LocalWear, WearLaw
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.reading import read_contact
 from wearlaw.plugins.fields import ContactModelField, LawField, MaterialField, StageField, WearLawField
 from wearlaw.plugins.loader import (
     contact_model,
@@ -65,6 +67,7 @@ from wearlaw.plugins.loader import (
     materials,
     parameter_sets,
     patch_mean,
+    readers,
     rig,
     rigs,
     stage,
@@ -145,6 +148,7 @@ __all__ = [
     "Quantity",
     "QuantityLike",
     "RangeWarning",
+    "Reader",
     "ResumeWarning",
     "Rig",
     "Scale",
@@ -198,9 +202,11 @@ __all__ = [
     "parse",
     "patch_mean",
     "published_range",
+    "read_contact",
     "read_law",
     "read_tests",
     "read_wear_law",
+    "readers",
     "rig",
     "rigs",
     "run",

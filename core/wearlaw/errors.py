@@ -37,7 +37,7 @@ class CaseError(InputError):
 
 
 class DataError(InputError):
-    """Tests of a lab or a table of a sweep cannot be used: a file, a column or a value is missing or wrong.
+    """Data cannot be used: a file with tests or a contact, a table of a sweep, or a value in it is missing or wrong.
 
     Attributes
     ----------

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from wearlaw.contact.material import Material
     from wearlaw.models.contact_model import ContactModel, Model
     from wearlaw.models.law import Law
+    from wearlaw.models.reader import Reader
     from wearlaw.models.stage import Stage
     from wearlaw.models.wear_law import WearLaw
 
@@ -94,3 +95,8 @@ def wearlaw_tests() -> Mapping[str, str]:  # type: ignore[empty-body]
 @hookspec
 def wearlaw_sections() -> Mapping[str, Callable[[Any], Any]]:  # type: ignore[empty-body]
     """Return functions by name that take a `wearlaw.Study` and return a `wearlaw.Section` of its report."""
+
+
+@hookspec
+def wearlaw_readers() -> Iterable[type[Reader]]:  # type: ignore[empty-body]
+    """Return the readers of other programs' contacts that the plugin provides."""

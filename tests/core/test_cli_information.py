@@ -92,6 +92,7 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
         *(["stage", name, "wearlaw", wl.__version__] for name in ("patch_mean", "thermal", "third_body")),
         *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("archard", "brr", "energy", "kth", "usfd")),
         ["law", "wlrm", "wearlaw", wl.__version__],
+        ["reader", "contact_mat", "wearlaw", wl.__version__],
         ["material", "steel", "wearlaw", wl.__version__],
         ["material", "type", "SteelWithHardness", "wearlaw", wl.__version__],
         *(["case", name, "wearlaw", wl.__version__] for name in ("tassini2010", "wheel_on_rail", "wheelset")),

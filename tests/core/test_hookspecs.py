@@ -14,7 +14,7 @@ HOOKS = {name: hook for name, hook in inspect.getmembers(hookspecs, inspect.isfu
 
 
 def test_there_are_hooks() -> None:
-    assert len(HOOKS) == 10
+    assert len(HOOKS) == 11
 
 
 @pytest.mark.parametrize("name", HOOKS)

@@ -135,3 +135,36 @@ def test_kth_on_ten_strips_is_nearer_to_many() -> None:
     many = mean(120)
     errors = [float(np.sqrt(np.mean((rate / many - 1.0) ** 2))) for rate in (mean(10), unsplit(10))]
     assert errors[0] < 0.75 * errors[1]
+
+
+def test_a_patch_whose_strips_are_not_in_the_middle_wears_as_one_whose_strips_are() -> None:
+    half, count = 5e-3, 8
+    x = (np.arange(count) + 0.5) * 2.0 * half / count - half
+    p, s = 1e9 * (x + half) / half, np.linspace(0.5, 1.5, count)
+    nodes = {"pressure": p, "slip": s, "traction": 1e8 * np.ones(count)}
+    problem = wl.Problem.ellipse(
+        a="5 mm", b="3 mm", normal_force="80 kN", shear_modulus="82 GPa", poisson_ratio=0.28, friction_coefficient=0.3,
+        longitudinal_creepage="10 %", lateral_creepage="0 %", spin="0 1/m",
+    )  # fmt: skip
+    one = wl.CreepForces(longitudinal=np.array(1.0), lateral=np.array(0.0), spin_moment=np.array(0.0))
+    jump = 1.1e9  # where x = 0.1 half
+
+    def wear(shift: float, more: int) -> float:
+        """Return the wear with the patch moved along x, and some nodes without area before it."""
+
+        def column(values: Array) -> Array:
+            return np.pad(values, (more, 0))[:, None]
+
+        step = x[1] - x[0]
+        along = (x[0] + shift + step * np.arange(-more, count))[:, None]
+        contact = wl.Contact.from_strips(
+            problem, one, x=along, y=np.zeros(1), length=column(np.full(count, step)), strip_width=np.full(1, 1e-3),
+            traction=(column(nodes["traction"]), column(np.zeros(count))), slip=(column(s), column(np.zeros(count))),
+            traction_bound=column(np.full(count, np.inf)), pressure=column(p),
+        )  # fmt: skip
+        return float(wl.Prediction.of(contact, law(jump)).wear_rate.m_as("kg/m/m^2"))
+
+    # The pressure is linear, so the part beyond the jump is exact: it wears from x = 0.1 half to half.
+    assert wear(0.0, 0) == pytest.approx(1e-3 * 0.45, rel=1e-12)
+    for shift, more in ((3e-3, 0), (-2e-3, 0), (0.0, 4), (1e-3, 2)):
+        assert wear(shift, more) == pytest.approx(1e-3 * 0.45, rel=1e-12), (shift, more)

@@ -33,6 +33,7 @@ COMMANDS = {
     "schema": _Command("case_commands", "schema", "Print the JSON Schema of case files."),
     "show": _Command("model_commands", "show", "Explain a rig, a contact model or a wear law."),
     "uncertainty": _Command("study_commands", "uncertainty", "Say how uncertain the predictions of a case are."),
+    "wear": _Command("wear_commands", "wear", "Predict the wear of contacts that another program solved."),
 }
 """All commands. Their modules import pandas, matplotlib and more, so each is loaded when a command of it is used."""
 
@@ -85,6 +86,7 @@ def main() -> None:
       wearlaw uncertainty my.toml           how uncertain its predictions are
       wearlaw fit my-tests.csv --help       parameters of a law, fitted to your own tests
       wearlaw compare my-tests.csv --help   which model predicts your tests best
+      wearlaw wear case.0001.mat --law usfd the wear of a contact that another program solved
       wearlaw new-plugin NAME --wear-law    your own wear law
     """  # noqa: D301  (\b tells click to keep the lines)
     for stream in (sys.stdout, sys.stderr):

@@ -14,6 +14,7 @@ from wearlaw.contact.problem import PATCHES
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.law import WEAR, Law
+from wearlaw.models.reader import Reader
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
@@ -39,6 +40,8 @@ def describe(model: type[Model], parameter_set: str | None = None) -> str:
         conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
         declared = ["", "declares:", *(f"  {text}" for text in _not_kept(default))]
         return "\n".join([*lines, *conditions, *_example(model), *(declared if len(declared) > 2 else [])])
+    if issubclass(model, Reader):
+        return "\n".join([*lines, "", f"reads files that end in {', '.join(model.suffixes)}"])
     of_fields = () if default is None and issubclass(model, Stage) else _declared(default)
     lines += ["", "declares:", *(f"  {text}" for text in (*_of_class(model), *of_fields))]
     return "\n".join(lines)

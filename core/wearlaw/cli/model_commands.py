@@ -187,7 +187,7 @@ def _outcome(check: Check, expected: str | None, not_run: type[AssertionError]) 
 def _installed(name: str) -> type[Model] | WearLaw:
     """Return the class of the model with this name, or the law of a parameter set."""
     found = loader.installed()
-    models = (found.wear_laws, found.laws, found.contact_models, found.stages, found.rigs)
+    models = (found.wear_laws, found.laws, found.contact_models, found.stages, found.rigs, found.readers)
     shelves: tuple[Shelf[Any], ...] = (*models, found.parameter_sets)
     for shelf in shelves:
         if name in shelf.providers:

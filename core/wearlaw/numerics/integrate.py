@@ -33,6 +33,7 @@ from wearlaw.models.law import Law, Numbers
 from wearlaw.models.line_contact_model import LineContactModel
 from wearlaw.numerics.blocks import Columns, OfBlock, OnBlock, blocks, by_block
 from wearlaw.numerics.crossings import crossings
+from wearlaw.numerics.solved import Solved
 from wearlaw.numerics.solving import Solver, check_columns, check_type
 from wearlaw.numerics.splits import split_rates
 from wearlaw.numerics.staged import Staged
@@ -401,7 +402,7 @@ def _columns(forces: CreepForces) -> Columns:
 def _by_block(solver: Solver, problem: Problem, columns: OfBlock, on_block: OnBlock | None = None) -> Columns:
     """Return columns over blocks; the model's number of nodes decides the number of operating points in a block."""
     block = NODE_BLOCK
-    if problem.geometry != "line":
+    if problem.geometry != "line" and not isinstance(solver.model, Solved):
         few = problem.size <= FEW
         nodes = 1 if few else Solver(solver.model).solve(problem.flatten()[:1]).pressure.size
         block = FEW if few else max(ELLIPSE_NODES // nodes, 1)
@@ -494,7 +495,7 @@ def _on_own_nodes(solver: Solver, laws: Mapping[int, tuple[Law, Numbers]], probl
             found[f"error {index}"] = EPS * np.abs(mean) if model.scale == "patch" else thinning_error(seen, rate)
         return found
 
-    return by_block(problem, NODE_BLOCK, columns)
+    return by_block(problem, solver.block(NODE_BLOCK, problem), columns)
 
 
 def _over_zones(solver: Solver, law: Law, p: Numbers, problem: Problem) -> Columns:

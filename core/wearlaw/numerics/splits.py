@@ -16,6 +16,9 @@ from wearlaw.numerics.solving import VECTORS, Solver
 FIELDS = ("pressure", "traction", "slip", "traction_bound", "x", *VECTORS)
 """The fields of a contact that are interpolated between nodes."""
 
+ROUNDING = 1e-9
+"""Relative rounding error of distances of nodes that come from a file or a sum of lengths."""
+
 
 def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p: Numbers) -> Array:
     """Return the rates of a law at the nodes of strips; where the rate jumps in a node's cell, the mean over the cell.
@@ -65,7 +68,7 @@ def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p:
     point, node, strip = first
     second = point, node + 1, strip
     length = contact.area / contact.strip_width[..., None, :]
-    border = (length.cumsum(axis=-2) - 0.5 * length.sum(axis=-2, keepdims=True))[first]  # between the two cells
+    border = _borders(contact.x, length, step)[first]
     shares = np.empty((node.size, len(levels) + 1))
     shares[:] = np.clip((border - contact.x[first]) / step[first], 0.0, 1.0)[:, None]
     in_first_until = shares[:, -1:].copy()
@@ -85,6 +88,18 @@ def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p:
     return split
 
 
+def _borders(x: Array, length: Array, step: Array) -> Array:
+    """Return the border between the cells of each node of a strip and the next one, (points, nodes - 1, strips) [m].
+
+    If two nodes are as far apart as the halves of their cells, they lie in the middles of these. Otherwise the cells
+    fill the strip from end to end, and the middle of the strip is at x = 0.
+    """
+    half = 0.5 * length
+    filling = length.cumsum(axis=-2) - half.sum(axis=-2, keepdims=True)
+    in_middles = np.isclose(half[..., 1:, :] + half[..., :-1, :], step, rtol=ROUNDING, atol=0.0)
+    return np.where(in_middles, x[..., :-1, :] + half[..., :-1, :], filling[..., :-1, :])
+
+
 def _between(contact: Contact, first: Any, second: Any, share: Array) -> Contact:
     """Return the contact at shares (pairs, k) of the way from a first node to a second, as one strip for each pair."""
     point, _, strip = first
@@ -92,7 +107,8 @@ def _between(contact: Contact, first: Any, second: Any, share: Array) -> Contact
     for name in FIELDS:
         values = getattr(contact, name)
         low, high = values[first][:, None], values[second][:, None]
-        fields[name] = (low + share * (high - low))[..., None]
+        with np.errstate(invalid="ignore"):  # a traction bound may be infinite
+            fields[name] = (low + share * (high - low))[..., None]
     return Contact(
         **fields,
         area=np.ones_like(fields["x"]),

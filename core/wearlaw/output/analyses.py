@@ -1,4 +1,4 @@
-"""Writing the results of a fit, a comparison or an uncertainty analysis."""
+"""Writing the results of a fit, a comparison, an uncertainty analysis, or of contacts that were read."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from wearlaw.errors import OutputError
 from wearlaw.figures.curves import FigureData, FigureFormat
 from wearlaw.fitting.comparison import Comparison
 from wearlaw.fitting.result import Fit
+from wearlaw.models.law import Law
 from wearlaw.output.results import save_figure, save_table
+from wearlaw.plugins.fields import specification
 from wearlaw.study.case import Case, written
 from wearlaw.study.study import provenance
 from wearlaw.study.uncertainty import CaseUncertainty
@@ -24,6 +26,7 @@ from wearlaw.version import __version__
 FIT = "fit.json"
 COMPARISON = "comparison.json"
 UNCERTAINTY = "uncertainty.json"
+WEAR = "wear.json"
 LAW = "law.toml"
 
 
@@ -92,19 +95,50 @@ def write_comparison(
     return _write(folder, COMPARISON, record, tables, comparison.figure_data(), figure_formats, latex)
 
 
+def write_wear(
+    tables: Mapping[str, pd.DataFrame],
+    figure: FigureData | None,
+    laws: Sequence[Law],
+    notes: Sequence[str],
+    folder: Path,
+    figure_formats: Sequence[FigureFormat] = ("png",),
+    latex: bool = False,
+) -> list[str]:
+    """Write the wear in contacts of other programs into an empty folder and return the names of the files.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        The tables by the names of their files.
+    figure : FigureData or None
+        The figure, if there is one.
+    laws : sequence of Law
+        The laws.
+    notes, folder, figure_formats, latex
+        As for `write_fit`.
+
+    Raises
+    ------
+    OutputError
+        If a file cannot be written.
+    """
+    record = {"wearlaw": __version__, "laws": [specification(law) for law in laws], "notes": list(notes)}
+    return _write(folder, WEAR, record, tables, figure, figure_formats, latex)
+
+
 def _write(
     folder: Path,
     marker: str,
     record: Mapping[str, Any],
     tables: Mapping[str, pd.DataFrame],
-    figure: FigureData,
+    figure: FigureData | None,
     figure_formats: Sequence[FigureFormat],
     latex: bool,
 ) -> list[str]:
-    """Write tables, a figure and a JSON record."""
+    """Write tables, a figure if there is one, and a JSON record."""
     try:
         names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
-        names += save_figure(figure, folder, figure.name, figure_formats)
+        names += save_figure(figure, folder, figure.name, figure_formats) if figure is not None else []
         text = json.dumps(record, indent=2, ensure_ascii=False)
         (folder / marker).write_text(text + "\n", encoding="utf-8")
     except OSError as error:

@@ -21,8 +21,7 @@ from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelE
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.stage import Stage
-from wearlaw.numerics.blocks import Columns
-from wearlaw.numerics.integrate import integrate_forces, integrate_laws, prepared
+from wearlaw.numerics.integrate import integrate_forces, prepared
 from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.composition import (
     check_geometry,
@@ -36,7 +35,7 @@ from wearlaw.pipeline.composition import (
     warn_of_materials,
     warn_of_unlike_materials,
 )
-from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch, overload_of
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.settings.configuration import Configuration
@@ -448,20 +447,7 @@ class Pipeline(Configuration, Generic[P]):
         model, problem = prepared(self.staged_model, problem)
         if not self.laws:
             return self._without_law(model, problem, watch, on_block)
-
-        def see(part: Problem, columns: Columns) -> None:
-            watch.see_block(part, columns)
-            if on_block is not None:
-                on_block(part.size)
-
-        totals = integrate_laws(model, self.laws, problem, see)
-        found = Prediction(problem, model, self.laws, forces=totals.forces, totals=totals)
-        for index, law in enumerate(self.laws):
-            if law.outcome.of == "patch":
-                law.check_not_negative(totals.values[index])
-            else:
-                law.check_not_negative(totals.values[index], partial(found.error_of_law, index))
-        return found
+        return solved(model, self.laws, problem, watch, on_block)
 
     def _without_law(
         self, model: ContactModel, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,12 +20,22 @@ from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.models.line_contact_model import LineContactModel
 from wearlaw.numerics import integrate
+from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import SlipTotals, Totals
+from wearlaw.numerics.solved import Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.numerics.staged import without_stages
-from wearlaw.pipeline.composition import law_among, other_materials, warn_of_body
+from wearlaw.pipeline.composition import (
+    check_laws,
+    check_scale,
+    law_among,
+    other_materials,
+    warn_of_body,
+    warn_of_calibration,
+    warn_of_materials,
+)
 from wearlaw.pipeline.profiles import across_patch, along_patch, on_profile
-from wearlaw.pipeline.ranges import elastic_limits, outside_range
+from wearlaw.pipeline.ranges import RangeWatch, elastic_limits, outside_range
 from wearlaw.pipeline.selection import Label, Selection
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
 from wearlaw.units.variables import UNITS
@@ -90,6 +100,47 @@ class Prediction:
         self._asked_for: set[tuple[int, str]] = set()
         self._errors: dict[int, Array] = {}
 
+    @classmethod
+    def of(cls, contact: Contact, law: Law, /, *more: Law) -> Prediction:
+        """Return the outcomes of laws in a contact that is already solved, such as one from `wearlaw.read_contact`.
+
+        Parameters
+        ----------
+        contact : Contact
+            A contact with its `problem`, from a file or from the `contact` of another prediction.
+        law, *more : Law
+            The laws, of different outcomes or for different bodies.
+
+        Raises
+        ------
+        InputError
+            If the contact has no problem.
+        CompositionError
+            If the laws do not fit each other, or the contact, as in a pipeline.
+        ModelError
+            If the contact holds impossible values, or a law fails.
+        """
+        laws, problem = (law, *more), contact.problem
+        if problem is None:
+            raise InputError(
+                "contact: has no problem, so its bodies and creepages are not known; use contact | law for its wear"
+                " rate, or give it one with contact.replaced(problem=...)"
+            )
+        model = Solved(contact=flat(contact, problem))
+        for one in laws:
+            check_scale(model.scale, model, one, "use contact.patch_mean()")
+            one.check_variables()
+        check_laws(laws, problem.bodies)
+        for one in laws:
+            warn_of_calibration(problem.geometry, model, model.scale, one)
+            warn_of_materials(problem.bodies, one)
+            if one.body is not None and problem.bodies:
+                warn_of_body(problem.bodies, one, one.body, stacklevel=3)
+        watch = RangeWatch(*laws)
+        found = solved(model, laws, problem, watch)
+        watch.warn(2)
+        return found
+
     _whole: tuple[Prediction, Selection] | None = None
     """The prediction that this one is a part of, and the selection; None if it is no part."""
 
@@ -134,7 +185,10 @@ class Prediction:
         """Return the prediction for some entries along the axes."""
         totals = self._totals and chosen.of_totals(self._totals, self.problem)
         forces = chosen.of_forces(self._forces)
-        found = Prediction(chosen.of_problem(self.problem), self._model, self.laws, forces=forces, totals=totals)
+        model, problem = self._model, chosen.of_problem(self.problem)
+        if isinstance(model, Solved) and totals is not None:
+            model = model.model_copy(update={"contact": totals.contact})
+        found = Prediction(problem, model, self.laws, forces=forces, totals=totals)
         found._whole = self, chosen
         found._asked_for = self._asked_for
         return found
@@ -651,6 +705,33 @@ class Prediction:
         if own_axes or problem.exists is not None:
             points = f"{problem.size} {'patch' if problem.size == 1 else 'patches'} at {points}"
         return f"{type(self).__name__} of {points}{rows}"
+
+
+def solved(
+    model: ContactModel,
+    laws: tuple[Law, ...],
+    problem: Problem,
+    watch: RangeWatch,
+    on_block: Callable[[int], None] | None = None,
+) -> Prediction:
+    """Return the prediction of laws in the contacts of a model, without warnings; `watch` sees the operating points.
+
+    `on_block` is called after each block with the number of its operating points.
+    """
+
+    def see(part: Problem, columns: Columns) -> None:
+        watch.see_block(part, columns)
+        if on_block is not None:
+            on_block(part.size)
+
+    totals = integrate.integrate_laws(model, laws, problem, see)
+    found = Prediction(problem, model, laws, forces=totals.forces, totals=totals)
+    for index, law in enumerate(laws):
+        if law.outcome.of == "patch":
+            law.check_not_negative(totals.values[index])
+        else:
+            law.check_not_negative(totals.values[index], partial(found.error_of_law, index))
+    return found
 
 
 def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Prediction:

@@ -24,6 +24,7 @@ from wearlaw.contact.material import Material
 from wearlaw.errors import PluginWarning, UnknownModelError, described
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
+from wearlaw.models.reader import Reader
 from wearlaw.models.stage import Stage
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins.isolation import Isolation
@@ -37,7 +38,8 @@ class Installed:
 
     Attributes
     ----------
-    rigs, contact_models, wear_laws, parameter_sets, materials, material_types, cases, test_sets, sections : Shelf
+    rigs, contact_models, stages, wear_laws, laws, readers, parameter_sets, materials, material_types, cases, test_sets,
+    sections : Shelf
         What the plugins provide, by kind and name.
     plugins : list of Origin
         All plugins.
@@ -52,6 +54,7 @@ class Installed:
     stages: Shelf[type[Stage]] = field(default_factory=lambda: Shelf("stage", type))
     wear_laws: Shelf[type[WearLaw]] = field(default_factory=lambda: Shelf("wear law", type))
     laws: Shelf[type[Law]] = field(default_factory=lambda: Shelf("law", type))
+    readers: Shelf[type[Reader]] = field(default_factory=lambda: Shelf("reader", type))
     parameter_sets: Shelf[WearLaw] = field(default_factory=lambda: Shelf("parameter set", WearLaw))  # type: ignore[type-abstract]
     materials: Shelf[Material] = field(default_factory=lambda: Shelf("material", Material))
     material_types: Shelf[type[Material]] = field(default_factory=lambda: Shelf("material type", type))
@@ -64,8 +67,9 @@ class Installed:
 
     def shelves(self) -> tuple[Shelf[Any], ...]:
         """Return the shelf of each kind."""
-        models = (self.rigs, self.contact_models, self.stages, self.wear_laws, self.laws, self.parameter_sets)
-        return *models, self.materials, self.material_types, self.cases, self.test_sets, self.sections
+        models = (self.rigs, self.contact_models, self.stages, self.wear_laws, self.laws, self.readers)
+        named = (self.parameter_sets, self.materials, self.material_types, self.cases, self.test_sets, self.sections)
+        return *models, *named
 
     def of_kind(self, kind: str) -> Shelf[Any]:
         """Return the shelf of a kind, such as "wear law"."""
@@ -156,6 +160,11 @@ def stages() -> Mapping[str, type[Stage]]:
 def laws() -> Mapping[str, type[Law]]:
     """Return the installed laws of other outcomes than wear by name."""
     return installed().laws.items()
+
+
+def readers() -> Mapping[str, type[Reader]]:
+    """Return the installed readers of other programs' contacts by name."""
+    return installed().readers.items()
 
 
 def rig(name: str, /, **options: Any) -> Any:
@@ -352,6 +361,8 @@ def _add_models(plugin: _Plugin, origin: Origin, found: Installed) -> None:
         add_model(found.wear_laws, law_class, origin)
     for law_class in chain.from_iterable(plugin.answers("wearlaw_laws")):
         add_model(found.laws, law_class, origin)
+    for reader_class in chain.from_iterable(plugin.answers("wearlaw_readers")):
+        add_model(found.readers, reader_class, origin)
 
 
 def _add_named(plugin: _Plugin, origin: Origin, found: Installed) -> None:

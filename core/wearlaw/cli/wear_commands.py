@@ -1,0 +1,115 @@
+"""The command that predicts the wear of contacts that another program solved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+import pandas as pd
+
+from wearlaw.cli.shared import fields, law_of, print_notes, print_results, written_formats
+from wearlaw.contact.contact import Contact
+from wearlaw.figures.curves import FigureFormat
+from wearlaw.figures.worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
+from wearlaw.models.law import Law
+from wearlaw.output.analyses import WEAR, write_wear
+from wearlaw.output.folder import fresh_folder
+from wearlaw.pipeline.notes import Notes
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.reading import read_contact
+
+APART = 0.01
+"""Share by which the two powers may differ without a note."""
+
+
+@click.command()
+@click.argument("files", nargs=-1, required=True)
+@click.option(
+    "--law",
+    "laws",
+    required=True,
+    multiple=True,
+    metavar="LAW",
+    help="Law: usfd, NAME:FIELD=VALUE or a TOML file; repeat it for laws of other outcomes or bodies.",
+)
+@click.option("--reader", metavar="NAME", help="Reader of the files [default: the one that recognises them].")
+@click.option(
+    "--option",
+    "options",
+    metavar="FIELD=VALUE",
+    multiple=True,
+    help="Set a field of the reader, such as density; may be repeated. wearlaw show NAME lists them.",
+)
+@click.option("--patch-mean", is_flag=True, help="Replace each contact by its means, for laws stated for them.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: FILE-wear].")
+@click.option("--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay.")
+@written_formats
+def wear(
+    files: tuple[str, ...],
+    laws: tuple[str, ...],
+    reader: str | None,
+    options: tuple[str, ...],
+    patch_mean: bool,
+    output: Path | None,
+    overwrite: bool,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+) -> None:
+    """Predict the wear of contacts that another program solved: FILES are its result files, such as CONTACT's .mat.
+
+    \b
+    wearlaw wear case.0001.mat --law usfd
+    wearlaw wear case.0001a.mat case.0001b.mat --law kth --option density="7800 kg/m^3" -o flange/
+    wearlaw wear case.0001.mat --law usfd:body=wheel --law kth:body=rail
+
+    It prints forces, dissipated powers and the wear of each body. The folder then holds wear.csv, the table that is
+    printed; a table and a figure of the wear across each patch; and wear.json with the laws and the notes.
+    """  # noqa: D301
+    first, *others = files
+    folder = output if output is not None else Path(f"{Path(first).stem}-wear")
+    notes, chosen = Notes(), [law_of(text) for text in laws]
+    given = fields("--option", options)
+    labels = _labels(files)
+    with fresh_folder(folder, overwrite, WEAR) as fresh:
+        contact = read_contact(files if others else first, reader=reader, **given)
+        found = _predicted(contact.patch_mean() if patch_mean else contact, chosen, notes)
+        if not others and found.problem.batch_shape:
+            labels = [f"{labels[0]} {number}" for number in range(1, found.problem.size + 1)]
+        with notes.of("wear"):
+            table = worn_table(found, labels)
+            figure = worn_figure(found, labels, " and ".join(law.name for law in chosen))
+            tables = {"wear": table, **profile_tables(found, labels)}
+        _note_powers(table, notes)
+        names = write_wear(tables, figure, chosen, notes.texts, fresh, figure_formats, latex)
+    print_notes(notes.texts)
+    _print(table)
+    print_results(folder, names)
+
+
+def _predicted(contact: Contact, laws: Sequence[Law], notes: Notes) -> Prediction:
+    with notes.of("wear"):
+        return Prediction.of(contact, *laws)
+
+
+def _labels(files: Sequence[str]) -> list[str]:
+    """Return the names of the files without their folders, or the paths if names are equal."""
+    names = [Path(one).name for one in files]
+    return names if len({*names}) == len(names) else list(files)
+
+
+def _note_powers(table: pd.DataFrame, notes: Notes) -> None:
+    """Note contacts whose two powers differ."""
+    for name, of_creepages, of_slip in table[["contact", POWER_OF_CREEPAGES, POWER_OF_SLIP]].itertuples(index=False):
+        if abs(of_slip - of_creepages) > APART * abs(of_creepages):
+            notes.add(
+                f"{name}: the slip of the nodes dissipates {of_slip:.4g} W, the creepages {of_creepages:.4g} W; the"
+                " laws see the slip of the nodes, whose error falls with finer elements"
+            )
+
+
+def _print(table: pd.DataFrame) -> None:
+    """Print a row for each quantity, with a column for each contact."""
+    across = table.set_index("contact").T
+    across.columns.name = None
+    click.echo(across.to_string(float_format=lambda number: f"{number:.4g}"))

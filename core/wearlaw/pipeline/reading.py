@@ -1,0 +1,223 @@
+"""Reading contacts that other programs have solved, by the readers of plugins."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import TOTALS, Contact
+from wearlaw.contact.problem import ARRAYS, Body, Problem, Strips
+from wearlaw.errors import DataError, InputError, ModelError, UnknownModelError, did_you_mean
+from wearlaw.models.contact_model import Blame
+from wearlaw.models.reader import Reader
+from wearlaw.numerics.solved import Solved, flat
+from wearlaw.numerics.solving import Solver
+from wearlaw.plugins import loader
+from wearlaw.plugins.shelf import unknown
+
+File: TypeAlias = str | os.PathLike[str]
+"""The path of a file."""
+
+HEAD = 4096
+"""Bytes by which a reader recognises a file."""
+
+
+def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, **options: Any) -> Contact:
+    """Return the contact that another program has solved and written to a file, or a batch of contacts.
+
+    `Prediction.of` predicts the wear of the contact.
+
+    Parameters
+    ----------
+    paths : str, path, or sequence of these
+        The file of one contact. Several files make a batch in their order, padded with nodes of no area to the most
+        nodes of a file; their bodies must be of the same materials.
+    reader : str, optional
+        Name of the reader, such as "contact_mat"; `readers()` lists all. By default it is the one that recognises the
+        file.
+    **options
+        The reader's fields, for what the file does not hold; ``wearlaw show NAME`` lists them.
+
+    Raises
+    ------
+    DataError
+        If a file is missing or no reader recognises it.
+    UnknownModelError
+        If there is no such reader, or several readers recognise a file.
+    InputError
+        If the content of a file is wrong, or the contacts cannot be in one batch.
+    ModelError
+        If the reader fails, or returns a contact with impossible values.
+    """
+    if isinstance(paths, str | os.PathLike):
+        return _read(Path(paths), reader, options)
+    files = [Path(path) for path in paths]
+    if not files:
+        raise InputError("paths: give at least one file")
+    return _stacked(files, [_read(path, reader, options) for path in files])
+
+
+def _read(path: Path, name: str | None, options: dict[str, Any]) -> Contact:
+    """Return the contact in a file, checked."""
+    head = _head(path)
+    reader = (_recognised(path, head) if name is None else _by_name(name))(**options)
+    with Blame(reader):
+        contact = reader.read(path)
+    if not isinstance(contact, Contact) or contact.problem is None:
+        raise ModelError(f"reader '{reader.name}' returned {contact!r}, not a wearlaw.Contact with its problem")
+    model = Solved(contact=flat(contact, contact.problem), read_by=reader.name)
+    try:
+        Solver(model).check(model.contact, model.contact.problem, totals=True)
+    except ModelError as error:
+        raise ModelError(f"'{path}': {error}") from None
+    return contact
+
+
+def _head(path: Path) -> bytes:
+    """Return the first bytes of a file."""
+    try:
+        with path.open("rb") as file:
+            return file.read(HEAD)
+    except FileNotFoundError:
+        beside = sorted(one.name for one in path.parent.iterdir()) if path.parent.is_dir() else []
+        raise DataError(f"there is no file '{path}'{did_you_mean(path.name, beside)}") from None
+    except (OSError, ValueError) as error:
+        reason = "it is a folder" if os.path.isdir(path) else getattr(error, "strerror", None) or error
+        raise DataError(f"cannot read '{path}': {reason}; give the file of a contact") from None
+
+
+def _by_name(name: str) -> type[Reader]:
+    found = loader.installed()
+    return found.readers.find(name, found.broken)
+
+
+def _recognised(path: Path, head: bytes) -> type[Reader]:
+    """Return the one reader for the ending and the content of a file."""
+    found = loader.installed()
+    shelf = found.readers
+    by_ending = {
+        name: [(one, origin) for one, origin in providers if path.suffix.lower() in one.suffixes]
+        for name, providers in shelf.providers.items()
+    }
+    candidates = [(name, one, origin) for name, some in by_ending.items() for one, origin in some]
+    if not candidates:
+        endings = sorted({suffix for one in shelf.items().values() for suffix in one.suffixes})
+        known = unknown("reader", path.suffix or path.name, shelf.items(), found.broken).partition("Installed: ")[2]
+        raise DataError(
+            f"cannot read '{path}': no reader reads files that end in '{path.suffix}'; those of the installed readers"
+            f" end in {', '.join(endings) or 'nothing'}. Installed: {known}. If it is a file of theirs, name the"
+            " reader, as in read_contact(path, reader=...)"
+        )
+    if len(candidates) == 1:
+        return candidates[0][1]  # whose error says what is wrong with the content
+    fitting = [(name, one, origin) for name, one, origin in candidates if _recognises(one, head)]
+    if len(fitting) == 1:
+        return fitting[0][1]
+    names = " and ".join(f"'{name}' of {origin}" for name, _, origin in fitting or candidates)
+    which = "several readers recognise it" if fitting else "none of the readers for its ending recognises it"
+    raise UnknownModelError(f"cannot read '{path}': {which}, {names}; name one, as in read_contact(path, reader=...)")
+
+
+def _recognises(reader: type[Reader], head: bytes) -> bool:
+    try:
+        return bool(reader.recognises(head))
+    except Exception as error:
+        raise ModelError(f"reader '{reader.name}' failed to recognise a file: {error}") from error
+
+
+def _stacked(paths: Sequence[Path], contacts: Sequence[Contact]) -> Contact:
+    """Return contacts of one operating point each as a batch."""
+    problems = [_single(path, one) for path, one in zip(paths, contacts, strict=True)]
+    first = problems[0]
+    for path, one in zip(paths, problems, strict=True):
+        if one.geometry != first.geometry or (one.strips is None) != (first.strips is None):
+            raise InputError(f"'{path}': is of geometry '{one.geometry}', but '{paths[0]}' is of '{first.geometry}'")
+        _check_bodies(path, one, paths[0], first)
+    problem = _stacked_problem(problems)
+    nodes = tuple(np.max([one.pressure.shape for one in contacts], axis=0).tolist())
+    fields: dict[str, Any] = {name: np.array([getattr(one, name) for one in contacts]) for name in TOTALS}
+    for name in ("pressure", "traction", "slip", "traction_bound", "area", *COMPONENTS):
+        fields[name] = np.array([_padded(getattr(one, name), nodes, "constant") for one in contacts])
+    fields["x"] = np.array([_padded(one.x, nodes, "edge") for one in contacts])
+    if not contacts[0].on_strips:
+        return Contact(**{name: value for name, value in fields.items() if name not in COMPONENTS}, problem=problem)
+    width = [_padded(one.strip_width, nodes[1:], "edge") for one in contacts]
+    fields["y"] = np.array([_evenly_on(one.y, one.strip_width, nodes) for one in contacts])
+    return Contact(**fields, strip_width=np.array(width), problem=problem)
+
+
+COMPONENTS = ("traction_x", "traction_y", "slip_x", "slip_y")
+
+
+def _single(path: Path, contact: Contact) -> Problem:
+    problem = contact.problem
+    if problem is None or problem.batch_shape:
+        raise InputError(f"'{path}': holds several operating points; read it alone")
+    return problem
+
+
+def _check_bodies(path: Path, problem: Problem, first_path: Path, first: Problem) -> None:
+    """Raise an error unless the bodies of two problems are of the same materials and both roll or both do not."""
+    materials, others = ({name: body.material for name, body in one.bodies.items()} for one in (problem, first))
+    if materials != others:
+        raise InputError(
+            f"'{path}': its bodies are of other materials than those of '{first_path}', {materials} and not {others};"
+            " read these files apart"
+        )
+    for name, body in problem.bodies.items():
+        if np.isinf(body.rolling_radius) != np.isinf(first.bodies[name].rolling_radius):
+            without, one = (path, first_path) if np.isinf(body.rolling_radius) else (first_path, path)
+            raise InputError(
+                f"'{without}': has no radius of '{name}', but '{one}' has one; give the radius in the options of the"
+                " reader, or read these files apart"
+            )
+
+
+def _stacked_problem(problems: Sequence[Problem]) -> Problem:
+    fields: dict[str, Any] = {}
+    for name in ARRAYS:
+        values = [getattr(one, name) for one in problems]
+        some = any(value is not None for value in values)
+        fields[name] = np.array([0.0 if value is None else value for value in values]) if some else None
+    strips = [one.strips for one in problems if one.strips is not None]
+    if strips:
+        count = (max(one.y.size for one in strips),)
+        made = {
+            name: np.array([_padded(getattr(one, name), count, "constant") for one in strips])
+            for name in ("half_length", "max_pressure")
+        }
+        made["width"] = np.array([_padded(one.width, count, "edge") for one in strips])
+        made["y"] = np.array([_evenly_on(one.y, one.width, count) for one in strips])
+        fields["strips"] = Strips(**made)
+    bodies = {name: _stacked_body([one.bodies[name] for one in problems]) for name in problems[0].bodies}
+    return problems[0].replaced(**fields, bodies=bodies)
+
+
+def _stacked_body(bodies: Sequence[Body]) -> Body:
+    found: dict[str, Any] = {"rolling_radius": np.array([float(body.rolling_radius) for body in bodies])}
+    if all(body.profile_position is not None for body in bodies):
+        for name in ("profile_position", "profile_direction"):
+            found[name] = np.array([float(getattr(body, name)) for body in bodies])
+    else:
+        found["profile_position"] = None
+    return dataclasses.replace(bodies[0], **found)
+
+
+def _padded(values: Array, shape: tuple[int, ...], mode: Any) -> Array:
+    """Return an array of a larger shape, with zeros or the values of the edge after its own."""
+    more = [(0, whole - own) for whole, own in zip(shape, values.shape, strict=True)]
+    return np.pad(values, more, mode=mode)
+
+
+def _evenly_on(y: Array, width: Array, shape: tuple[int, ...]) -> Array:
+    """Return the positions of strips, continued beyond the last one by its width."""
+    padded = _padded(y, shape, "edge")
+    beyond = np.maximum(np.arange(shape[-1]) - (width.size - 1), 0) * width[-1]
+    found: Array = padded + beyond
+    return found
