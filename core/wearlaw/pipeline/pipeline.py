@@ -363,7 +363,9 @@ class Pipeline(Configuration, Generic[P]):
         """Return the contact and the wear under the given conditions; see the rig's `problem` for the conditions."""
         if positional:
             raise ConditionsError(f"{positional[0]!r}: is given without a name; write creepage=..., for example")
-        return self.predict(self.posed(conditions), stacklevel=3)
+        found = self.predict(self.posed(conditions), stacklevel=3)
+        found._given = conditions
+        return found
 
     def posed(self, conditions: Mapping[str, Any], of_one_patch: str = "") -> Problem:
         """Return the rig's problem for these conditions, with loads that balance the forces.

@@ -30,8 +30,8 @@ from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
-from wearlaw.pipeline.prediction import ERROR, Prediction
-from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import known_name, parts
 from wearlaw.study.case import Case

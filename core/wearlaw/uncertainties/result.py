@@ -13,7 +13,7 @@ import pandas as pd
 import scipy
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.conditions import broadcast
+from wearlaw.contact.conditions import Known, broadcast
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
@@ -25,7 +25,7 @@ from wearlaw.pipeline.composition import check_traction, warn_of_unlike_material
 from wearlaw.pipeline.named_numbers import Kind, Place, check_loads_stay, staged_models
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
-from wearlaw.uncertainties.inputs import OTHERS, Known, Uncertain, check_samples, numbers_of, split
+from wearlaw.uncertainties.inputs import OTHERS, Uncertain, check_samples, numbers_of, split
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, shortened
 from wearlaw.units.variables import UNITS, label, name_of
 
