@@ -70,7 +70,9 @@ class Predicted(Protocol):
     laws: tuple[Law, ...]
 
 
-def default_variables(prediction: Predicted, without: Iterable[str] = ()) -> list[str]:
+def default_variables(
+    prediction: Predicted, without: Iterable[str] = (), several_patches: bool | None = None
+) -> list[str]:
     """Return the variables of datasets and sweeps for which no names are given: the outcomes of laws come first.
 
     Parameters
@@ -78,17 +80,21 @@ def default_variables(prediction: Predicted, without: Iterable[str] = ()) -> lis
     prediction : Prediction
     without : iterable of str
         Names of the conditions, which are coordinates.
+    several_patches : bool, optional
+        Whether the rig makes several patches, if the prediction does not show it.
     """
-    every = (*named_outcomes(prediction.laws), *offered(prediction, (MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *MORE)))
+    known = (MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *MORE)
+    every = (*named_outcomes(prediction.laws), *offered(prediction, known, several_patches))
     left_out = {*without}
     return [name for name in dict.fromkeys(every) if name not in left_out]
 
 
-def offered(prediction: Predicted, variables: Iterable[str]) -> tuple[str, ...]:
-    """Return the variables that the results of a prediction show."""
+def offered(prediction: Predicted, variables: Iterable[str], several_patches: bool | None = None) -> tuple[str, ...]:
+    """Return the variables that the results of a prediction show; for `several_patches` see `default_variables`."""
     problem = prediction.problem
     others = OF_OTHERS[problem.geometry]
-    if problem.dims and problem.geometry != "line":
+    several = bool(problem.dims) if several_patches is None else several_patches
+    if several and problem.geometry != "line":
         others = (others - {"creepage"}) | ({"contact_angle"} if problem.contact_angle is None else set())
     else:
         others |= {*OF_PATCH}
