@@ -39,12 +39,9 @@ from wearlaw.pipeline.composition import (
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.ranges import RangeWatch, overload_of
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
-from wearlaw.settings.configuration import Configuration
+from wearlaw.settings.configuration import LINE, Configuration
 
 ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
-
-LINE = 100
-"""Longest pipeline shown on one line, in characters; a longer one has a line for each part."""
 
 TOUCH_NOWHERE = "rig '{}': the bodies touch nowhere under these conditions; check the conditions"
 

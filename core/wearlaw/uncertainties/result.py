@@ -185,6 +185,22 @@ class Uncertainty:
             raise InputError(f"confidence: must lie between 0 and 1, such as 0.95; got {confidence!r}")
         return self._quantile(0.5 - 0.5 * confidence), self._quantile(0.5 + 0.5 * confidence)
 
+    def table(self) -> pd.DataFrame:
+        """Return medians and 95 % intervals with the known conditions, a row for each operating point.
+
+        The heads hold the units. The median of an outcome stands under its name, as in "wear_rate [ug/m/mm^2]", and the
+        ends of its interval under "wear_rate_low" and "wear_rate_high".
+        """
+        columns = {}
+        for name, known in self.known.items():
+            head = f"{name} [{known.unit}]" if known.unit else name
+            columns[head] = np.broadcast_to(known.values, self.shape).reshape(-1)
+        for one in map(self.of, self.outcomes):
+            unit = f" [{one.unit}]" if one.unit else ""
+            for ending, value in zip(("", "_low", "_high"), (one.median, *one.interval()), strict=True):
+                columns[f"{one.outcomes[0]}{ending}{unit}"] = np.reshape(value.to(one.unit).magnitude, -1)
+        return pd.DataFrame(columns)
+
     def sobol(self) -> pd.DataFrame:
         """Return the share of the variance of the outcome that each input explains.
 
@@ -375,6 +391,10 @@ class Uncertainty:
                 lines.append(f"{outcome:20} {one.median!r}, {share} {low!r} to {high!r}")
             else:
                 lines += [f"{'median':20} {one.median!r}", f"{share:20} {low!r} to {high!r}"]
+        for outcome in self.outcomes if self.shape else ():
+            median = self.of(outcome).median
+            name = f"median of {outcome}" if several else "median"
+            lines.append(f"{name:20} {median.min()!r} to {median.max()!r}")
         lines += [f"{one.name:20} {one.shown}" for one in self.inputs]
         return "\n  ".join(lines)
 
