@@ -190,3 +190,44 @@ def test_the_shipped_study_and_a_copy_of_its_file_give_equal_results(folder: Pat
             np.testing.assert_allclose(rates.sel(pair=pair), rate, rtol=0, atol=0.05)
         assert dict(sweep.sizes) == {"pair": 7, "contact_model": 3, "creepage": 600}
         assert ours["sweeps/load"].sizes["normal_force_per_width"] == 300
+
+
+@pytest.mark.parametrize(
+    ("options", "most", "is_written", "note"),
+    [
+        ([], 10, True, None),  # 2 models, 5 points
+        (
+            [],
+            9,
+            False,
+            "results.csv is left out, since it would have up to 10 rows, and Excel reads 9; results.nc holds",
+        ),
+        (["--csv"], 9, True, None),
+        (["--no-csv"], 10, False, "results.csv is left out, as --no-csv asks; results.nc holds all numbers"),
+    ],
+)
+def test_a_long_table_is_left_out_and_it_is_said(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, options: list[str], most: int, is_written: bool, note: str | None
+) -> None:
+    monkeypatch.setattr(output, "MOST_ROWS", most)
+    write(folder / "c.toml", table(contact_models=["exact", "fastsim"], wear_laws=["kth"], profiles={}))
+    result = wearlaw("run", "c.toml", "-o", "out", *options)
+    assert result.exit_code == 0
+    assert (folder / "out" / "results.csv").is_file() == is_written
+    assert ("results.csv" in result.stdout) == is_written
+    assert (folder / "out" / "results.nc").is_file()
+    report = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    if note is None:
+        assert "is left out" not in result.stderr
+    else:
+        assert f"note: {note}" in result.stderr
+        assert note in report
+    assert wearlaw("run", "c.toml", "-o", "out", "--overwrite", "--no-csv").exit_code == 0
+    assert not (folder / "out" / "results.csv").exists(), "the one of the earlier run would be another's"
+
+
+def test_a_table_that_is_left_out_needs_no_room(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(output, "ROW_IN_MEMORY", 2**60)
+    write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["kth"], profiles={}))
+    assert_refused(wearlaw("run", "c.toml", "-o", "out"), "GiB of memory")
+    assert wearlaw("run", "c.toml", "-o", "out", "--no-csv").exit_code == 0

@@ -18,6 +18,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import Linear
 from wearlaw import Q
+from wearlaw.settings.configuration import Configuration
 from wearlaw.study.grid import Axis
 
 STEEL = wl.steel()
@@ -143,6 +144,25 @@ def test_a_configuration_prints_as_text_with_units() -> None:
     shown = "Disc(diameter=47.0 mm, material=Material(youngs_modulus=206.47742 GPa, poisson_ratio=0.28"
     assert repr(disc()).startswith(shown)
     assert str(disc()) == repr(disc())
+
+
+class Texts(Configuration):
+    """A record of texts."""
+
+    one: str = ""
+    two: str = ""
+
+
+def test_a_long_configuration_breaks_between_its_fields() -> None:
+    both = wl.TwinDisc.suros(disc_2=disc())
+    lines = repr(both).splitlines()
+    assert len(lines) > 1
+    assert max(map(len, lines)) <= 100
+    assert all(line.endswith(",") for line in lines[:-1])
+    assert " ".join(map(str.strip, lines)).startswith("TwinDisc(disc_1=Disc(diameter=47.0 mm, material=Material(youngs")
+    for quote in ("'", '"', "'\"", "\\'", ""):
+        record = Texts(one=f"a, b{quote}, c" * 10, two="d, e" * 30)
+        assert eval(repr(record), {"Texts": Texts}) == record
 
 
 def test_the_schema_describes_a_quantity_as_text_with_its_unit() -> None:

@@ -118,6 +118,23 @@ def test_what_is_written_next_is_said(tmp_path: Path, point: Study) -> None:
     assert stages == ["writing results", *(f"drawing {name}" for name in names), "writing the report"]
 
 
+@pytest.mark.usefixtures("blank_figures")
+def test_a_long_table_is_written_with_progress_to_the_same_bytes(
+    tmp_path: Path, study: Study, results: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stages: list[str] = []
+    rows = len(table(study))
+    monkeypatch.setattr("wearlaw.output.results.CHUNK", -(-rows // 4))
+    write(study, tmp_path, (), on_stage=stages.append)
+    shares = [stage for stage in stages if "results.csv" in stage]
+    assert [shares[0].partition(", ")[0], len(shares)] == ["writing results.csv", 3]
+    assert [round(float(stage.rpartition(" ")[2].rstrip("%")) / 25.0) for stage in shares] == [1, 2, 3]
+    assert (tmp_path / CSV).read_bytes() == (results / CSV).read_bytes()
+    whole = tmp_path / "whole.csv"
+    table(study).to_csv(whole, index=False)
+    assert (tmp_path / CSV).read_bytes() == whole.read_bytes()
+
+
 def test_the_netcdf_file_holds_every_dataset_whole_in_a_group(study: Study, results: Path) -> None:
     with xarray.open_datatree(results / RESULTS, engine="h5netcdf") as opened:
         groups = {node.path: node.to_dataset(inherit=False).load() for node in opened.leaves}

@@ -30,6 +30,17 @@ def study() -> Study:
     return lattice_study()
 
 
+def test_a_study_prints_its_pairs_sweeps_and_profiles(study: Study) -> None:
+    lines = repr(study).splitlines()
+    assert lines[0] == f"Study of '{study.case.title}'"
+    assert max(map(len, lines)) <= 100
+    shown = " ".join(map(str.strip, lines[1:]))
+    assert shown.startswith("pairs      " + ", ".join(pair.label for pair in study.pairs))
+    for name, sweep in study.sweeps.items():
+        assert f"{name} ({', '.join(f'{axis} {sweep.sizes[axis]}' for axis in axes_of(sweep))})" in shown
+    assert shown.endswith(f"notes      {len(study.notes)}") or not study.notes
+
+
 def direct(model: str, law: wl.WearLaw, **conditions: Any) -> wl.Prediction:
     """Return the prediction for one point, by the public way."""
     with warnings.catch_warnings():

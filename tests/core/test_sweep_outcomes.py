@@ -29,9 +29,10 @@ def swept(predict: Any, **options: Any) -> xr.Dataset:
         return wl.sweep(predict, **{**GIVEN, **options})
 
 
-def test_by_default_a_sweep_holds_the_outcomes_of_all_laws() -> None:
+def test_by_default_a_sweep_holds_the_variables_of_a_prediction_and_the_outcomes_of_all_laws_first() -> None:
     ds = swept(TOGETHER)
-    labels = {name: (one.attrs["units"], one.attrs["long_name"]) for name, one in ds.data_vars.items()}
+    first = list(ds.data_vars)[:3]
+    labels = {name: (ds[name].attrs["units"], ds[name].attrs["long_name"]) for name in first}
     assert labels == {
         "wear_rate": ("ug/m/mm^2", "wear rate"),
         "rcf_damage": ("", "rcf damage"),
@@ -45,7 +46,8 @@ def test_by_default_a_sweep_holds_the_outcomes_of_all_laws() -> None:
 
 def test_a_sweep_of_damage_alone_needs_no_wear_law() -> None:
     ds = swept(silently(RIG, EXACT, Damage()))
-    assert list(ds.data_vars) == ["rcf_damage"]
+    assert next(iter(ds.data_vars)) == "rcf_damage"
+    assert not {"wear_rate", "mass_per_distance"} & set(ds.data_vars)
     np.testing.assert_allclose(
         ds.rcf_damage,
         1e-6 * (swept(silently(RIG, EXACT, Damage()), outputs=["wear_index"]).wear_index - 15.0),
@@ -57,7 +59,7 @@ def test_a_sweep_of_damage_alone_needs_no_wear_law() -> None:
 def test_laws_of_bodies_are_outputs_of_their_own() -> None:
     predict = silently(MIXED, EXACT, Volume(body="disc_1"), Volume(body="disc_2", factor=3.0))
     ds = swept(predict)
-    assert {name: one.attrs["long_name"] for name, one in ds.data_vars.items()} == {
+    assert {name: one.attrs["long_name"] for name, one in ds.data_vars.items() if "wear_rate" in str(name)} == {
         "wear_rate_disc_1": "wear rate of disc_1",
         "wear_rate_disc_2": "wear rate of disc_2",
     }
@@ -89,7 +91,24 @@ def test_an_unknown_output_is_refused_with_the_outcomes_first() -> None:
     assert list(swept(TOGETHER, outputs=known).data_vars) == known
 
 
-def test_without_a_law_the_outputs_must_be_named() -> None:
+def test_a_large_sweep_keeps_the_outcomes_of_laws_alone_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = swept(TOGETHER)
+    assert {"tangential_force", "max_pressure", "stick_ratio", "mass_per_distance", "outside_range"} <= set(whole)
+    assert "keeps only" not in whole.attrs["notes"]
+    numbers = len(whole.data_vars) * 6
+    monkeypatch.setattr("wearlaw.sweeping.sweep.MOST", numbers)
+    assert list(swept(TOGETHER)) == list(whole)
+    monkeypatch.setattr("wearlaw.sweeping.sweep.MOST", numbers - 1)
+    cut = swept(TOGETHER)
+    assert list(cut) == ["wear_rate", "rcf_damage", "heat_flux"]
+    said = f"the sweep is large and keeps only the outcomes of laws: all outputs are {numbers:.2g} numbers"
+    assert said in cut.attrs["notes"].splitlines()
+    assert list(swept(TOGETHER, outputs=["wear_index"])) == ["wear_index"]
+
+
+def test_a_small_sweep_needs_no_law_and_a_large_one_then_needs_outputs(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert {"tangential_force", "max_pressure"} <= set(swept(RIG | EXACT))
+    monkeypatch.setattr("wearlaw.sweeping.sweep.MOST", 1)
     with pytest.raises(wl.CompositionError, match=r'or name what to keep, as in outputs=\["tangential_force"\]'):
         swept(RIG | EXACT)
 

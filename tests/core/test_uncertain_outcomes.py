@@ -53,6 +53,26 @@ def test_each_outcome_has_samples_with_its_unit() -> None:
     assert high.magnitude == pytest.approx(0.5 * alone["heat_flux"].magnitude, abs=2 * part)
 
 
+def test_the_table_has_a_row_for_each_point_and_the_heads_of_conditions_and_outcomes() -> None:
+    given = {**GIVEN, "creepage": Q([1.0, 3.0], "%")}
+    u = wl.uncertainty(EXACT | Heat() | Damage(), **given, law={"share": wl.uniform(0.2, 0.6)}, samples=16)
+    table = u.table()
+    assert table.columns.tolist() == [
+        "max_pressure [MPa]", "creepage [%]", "friction_coefficient",
+        "heat_flux [W/mm^2]", "heat_flux_low [W/mm^2]", "heat_flux_high [W/mm^2]",
+        "rcf_damage", "rcf_damage_low", "rcf_damage_high",
+    ]  # fmt: skip
+    assert table["creepage [%]"].tolist() == [1.0, 3.0]
+    assert table["heat_flux [W/mm^2]"].tolist() == u.of("heat_flux").median.magnitude.tolist()
+    low, high = u.of("heat_flux").interval()
+    assert table["heat_flux_low [W/mm^2]"].tolist() == low.magnitude.tolist()
+    assert table["heat_flux_high [W/mm^2]"].tolist() == high.magnitude.tolist()
+    median = u.of("heat_flux").median
+    assert f"\n  median of heat_flux  {median.min()!r} to {median.max()!r}\n" in repr(u)
+    one = wl.uncertainty(EXACT | Heat(), **GIVEN, law={"share": wl.uniform(0.2, 0.6)}, samples=16)
+    assert len(one.table()) == 1
+
+
 def test_the_contact_is_solved_once_for_all_outcomes(monkeypatch: pytest.MonkeyPatch) -> None:
     u = wl.uncertainty(EXACT | Heat() | Damage(), **GIVEN, law={"share": wl.uniform(0.2, 0.6)}, samples=16)
     first = u.of("heat_flux").median

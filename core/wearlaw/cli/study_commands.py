@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -16,7 +17,7 @@ from wearlaw.cli.shared import print_notes, print_results, written_formats
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.output.analyses import UNCERTAINTY, write_uncertainty
 from wearlaw.output.folder import ElsewhereError, fresh_folder
-from wearlaw.output.results import RESULTS, check_room, write
+from wearlaw.output.results import RESULTS, check_room, without_csv, write
 from wearlaw.report.tables import NamedTable, summaries
 from wearlaw.study.case import load_case
 from wearlaw.study.study import Study, evaluations, provenance, used
@@ -33,6 +34,11 @@ from wearlaw.version import __version__
 @click.option("--overwrite", is_flag=True, help="Replace the files of an earlier run in that folder; others stay.")
 @click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
 @click.option("--resume", is_flag=True, help="Go on from the finished blocks of an interrupted run, in FOLDER.partial.")
+@click.option(
+    "--csv/--no-csv",
+    default=None,
+    help="Write results.csv or leave it out [default: write it up to 1 048 575 rows, those that Excel reads].",
+)
 @written_formats
 def run(
     case: str,
@@ -40,6 +46,7 @@ def run(
     overwrite: bool,
     workers: int,
     resume: bool,
+    csv: bool | None,
     figure_formats: tuple[FigureFormat, ...],
     latex: bool,
 ) -> None:
@@ -53,10 +60,13 @@ def run(
     folder = output if output is not None else Path(f"{Path(case).stem}-results")
     checkpoint = Checkpoint(folder.parent / f"{folder.name}.partial", provenance(loaded), resume)
     with _kept(checkpoint), fresh_folder(folder, overwrite, RESULTS) as fresh:
-        check_room(loaded, folder)
+        left_out = without_csv(loaded, csv)
+        check_room(loaded, folder, left_out is None)
         with Bar(evaluations(loaded)) as shown:
             study = run_case(loaded, shown, workers, checkpoint)
-            names = write(study, fresh, figure_formats, latex, shown.stage)
+            if left_out is not None:
+                study = replace(study, notes=(*study.notes, left_out))
+            names = write(study, fresh, figure_formats, latex, shown.stage, left_out is None)
     print_notes([*study.notes, *checkpoint.notes()])
     for table in summaries(study):
         Console().print(_summary(table))

@@ -8,10 +8,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeGuard
 
 import numpy as np
+import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import ConditionsError, UnitError, did_you_mean
-from wearlaw.units.quantities import Unit, coefficient
+from wearlaw.units.quantities import Q, Unit, coefficient, parse, real_array
+from wearlaw.units.registry import symbol
 from wearlaw.units.variables import VARIABLES, expected
 
 if TYPE_CHECKING:
@@ -156,3 +158,27 @@ def _read_only(array: Array, shape: tuple[int, ...]) -> Array:
     view = array.view()
     view.setflags(write=False)
     return view
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """A known condition: one number or several, and their unit, None for plain numbers."""
+
+    values: Array
+    unit: str | None
+
+    @classmethod
+    def of(cls, value: object) -> Known | None:
+        """Return a given condition, or None if it is not numeric, such as a law of friction."""
+        try:
+            quantity = parse(value) if isinstance(value, str) else value
+            if isinstance(quantity, pint.Quantity):
+                return cls(real_array(quantity.magnitude), symbol(quantity.units, "~C"))
+            return cls(real_array(quantity), None)
+        except UnitError:
+            return None
+
+    def at_samples(self) -> Any:
+        """Return the condition as an argument for a rig, with a last axis for the samples."""
+        values = np.asarray(self.values)[..., None]
+        return values if self.unit is None else Q(values, self.unit)

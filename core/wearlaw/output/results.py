@@ -22,7 +22,8 @@ from wearlaw.report.tables import tables
 from wearlaw.study.case import CASE_FILE, Case, written
 from wearlaw.study.results import patch_axes
 from wearlaw.study.study import Study, numbers
-from wearlaw.sweeping.storage import ITEM, check_disk, check_memory
+from wearlaw.sweeping.points import ITEM
+from wearlaw.sweeping.storage import check_disk, check_memory
 
 RESULTS = "results.nc"
 CSV = "results.csv"
@@ -33,23 +34,59 @@ COPIES = 2
 """Number of copies of a result in memory: the computed one, and one in the stack of all pairs."""
 ROW_IN_MEMORY, ROW_ON_DISK = 800, 400
 """Bytes of a row of the table of results in memory (measured) and as CSV."""
+MOST_ROWS = 2**20 - 1
+"""Most rows of a table of results that is written unasked: those that a sheet of Excel holds below the head."""
+CHUNK = 2**16
+"""Rows that are written before progress is shown."""
 METADATA: dict[FigureFormat, Any] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
 """Metadata to suppress in each format, so that the same figure gives the same bytes."""
 T = TypeVar("T")
 
 
-def check_room(case: Case, folder: Path) -> None:
+def rows_of(case: Case) -> int:
+    """Return the most rows that the table of results of a case can have."""
+    patches = math.prod(map(len, next(iter(case.sweeps.values())).problem(case.rig).dims.values()))
+    points = sum(grid.size for grid in case.sweeps.values())
+    return points * patches * len(case.contact_models) * len(case.laws_by_label)
+
+
+def without_csv(case: Case, asked: bool | None) -> str | None:
+    """Return a note on why the table of results of a case is left out as CSV, or None if it is written.
+
+    Parameters
+    ----------
+    case : Case
+    asked : bool, optional
+        Whether it was asked for; by default it is written up to `MOST_ROWS`.
+    """
+    if asked is False:
+        return f"{CSV} is left out, as --no-csv asks; {RESULTS} holds all numbers"
+    rows = rows_of(case)
+    if asked is None and rows > MOST_ROWS:
+        return (
+            f"{CSV} is left out, since it would have up to {rows} rows, and Excel reads {MOST_ROWS}; {RESULTS} holds"
+            " all numbers, and --csv writes the table too"
+        )
+    return None
+
+
+def check_room(case: Case, folder: Path, csv: bool = True) -> None:
     """Raise an error if the results of a case would not fit into memory or on the disk.
+
+    Parameters
+    ----------
+    case : Case
+    folder : Path
+        Where they go to.
+    csv : bool
+        Whether the table of results is written as CSV.
 
     Raises
     ------
     InputError
         If they would not; the message says how much they need.
     """
-    count = numbers(case)
-    patches = math.prod(map(len, next(iter(case.sweeps.values())).problem(case.rig).dims.values()))
-    points = sum(grid.size for grid in case.sweeps.values())
-    rows = points * patches * len(case.contact_models) * len(case.laws_by_label)
+    count, rows = numbers(case), rows_of(case) if csv else 0
     check_memory(COPIES * ITEM * count + ROW_IN_MEMORY * rows, "give the sweeps fewer points")
     check_disk(2 * ITEM * count + ROW_ON_DISK * rows, folder)
 
@@ -60,6 +97,7 @@ def write(
     figure_formats: Sequence[FigureFormat] = ("png",),
     latex: bool = False,
     on_stage: Callable[[str], None] = lambda _: None,
+    csv: bool = True,
 ) -> list[str]:
     """Write a study's results into an empty folder and return the names of the files, the report first.
 
@@ -75,6 +113,8 @@ def write(
         Whether the tables are also written for LaTeX.
     on_stage : callable, optional
         Called with a text for each stage, to show progress.
+    csv : bool
+        Whether the table of results is written as CSV.
 
     Raises
     ------
@@ -85,16 +125,26 @@ def write(
     try:
         on_stage("writing results")
         write_netcdf(study, folder / RESULTS)
-        table(study).to_csv(folder / CSV, index=False)
+        if csv:
+            _write_csv(table(study), folder / CSV, on_stage)
         for name, text in case_files.items():
             (folder / name).write_text(text, encoding="utf-8")
-        names = [REPORT, RESULTS, CSV, *case_files, *_write_tables(study, folder, latex)]
+        names = [REPORT, RESULTS, *([CSV] if csv else []), *case_files, *_write_tables(study, folder, latex)]
         names += write_figures(study, folder, figure_formats, on_stage)
         on_stage("writing the report")
         (folder / REPORT).write_text(report(study, case_files[CASE_FILE]), encoding="utf-8")
     except OSError as error:
         raise OutputError(f"output: cannot write the results: {error.strerror or error}") from None
     return names
+
+
+def _write_csv(rows: pd.DataFrame, path: Path, on_stage: Callable[[str], None]) -> None:
+    """Write the table of results, with progress if it is long."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        for start in range(0, len(rows), CHUNK):
+            if start:
+                on_stage(f"writing {path.name}, {start / len(rows):.0%}")
+            rows[start : start + CHUNK].to_csv(file, index=False, header=start == 0)
 
 
 def _write_tables(study: Study, folder: Path, latex: bool) -> list[str]:

@@ -38,12 +38,9 @@ from wearlaw.pipeline.composition import (
 from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch, overload_of
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
-from wearlaw.settings.configuration import Configuration
+from wearlaw.settings.configuration import LINE, Configuration
 
 ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
-
-LINE = 100
-"""Longest pipeline shown on one line, in characters; a longer one has a line for each part."""
 
 TOUCH_NOWHERE = "rig '{}': the bodies touch nowhere under these conditions; check the conditions"
 
@@ -362,7 +359,9 @@ class Pipeline(Configuration, Generic[P]):
         """Return the contact and the wear under the given conditions; see the rig's `problem` for the conditions."""
         if positional:
             raise ConditionsError(f"{positional[0]!r}: is given without a name; write creepage=..., for example")
-        return self.predict(self.posed(conditions), stacklevel=3)
+        found = self.predict(self.posed(conditions), stacklevel=3)
+        found._given = conditions
+        return found
 
     def posed(self, conditions: Mapping[str, Any], of_one_patch: str = "") -> Problem:
         """Return the rig's problem for these conditions, with loads that balance the forces.

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
+from html import escape
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, same
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
@@ -34,18 +36,20 @@ from wearlaw.pipeline.composition import (
     warn_of_calibration,
     warn_of_materials,
 )
+from wearlaw.pipeline.datasets import Conditions, dataset, frame
+from wearlaw.pipeline.pictures import draw
 from wearlaw.pipeline.profiles import across_patch, along_patch, on_profile
 from wearlaw.pipeline.ranges import RangeWatch, elastic_limits, outside_range
-from wearlaw.pipeline.selection import Label, Selection
+from wearlaw.pipeline.selection import Index, Label, Selection
+from wearlaw.pipeline.variables import ERROR, default_variables, long_name, outcome_units
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
 from wearlaw.units.variables import UNITS
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
+    from matplotlib.axes import Axes
 
-
-ERROR = "_error"
-"""Ending of the name of an outcome's numerical error in results."""
 
 PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
@@ -99,6 +103,9 @@ class Prediction:
         self._totals = totals
         self._asked_for: set[tuple[int, str]] = set()
         self._errors: dict[int, Array] = {}
+
+    _given: Mapping[str, Any] = MappingProxyType({})
+    """The conditions, as given to the pipeline; {} if a problem was given."""
 
     @classmethod
     def of(cls, contact: Contact, law: Law, /, *more: Law) -> Prediction:
@@ -190,26 +197,56 @@ class Prediction:
             model = model.model_copy(update={"contact": totals.contact})
         found = Prediction(problem, model, self.laws, forces=forces, totals=totals)
         found._whole = self, chosen
+        found._given = self._given
         found._asked_for = self._asked_for
         return found
 
-    def __getitem__(self, name: str) -> Quantity:
-        """Return an outcome by its name in results, such as "rcf_damage" or "wear_rate_rail", or another variable.
+    @overload
+    def __getitem__(self, name: str, /) -> Quantity: ...
+    @overload
+    def __getitem__(self, name: Index, /) -> Prediction: ...
+    def __getitem__(self, name: str | Index, /) -> Quantity | Prediction:
+        """Return a variable by its name, or the prediction at some operating points by their positions.
 
-        ``prediction["rcf_damage_error"]`` is the estimate of its numerical error.
+        ``prediction["rcf_damage"]`` is an outcome by its name in results, ``prediction["wear_rate_rail"]`` that of a
+        law for one body, and ``prediction["rcf_damage_error"]`` the estimate of its numerical error.
+        ``prediction[0]``, ``prediction[1:3]`` and ``prediction[0, [1, 2]]`` choose positions along the axes, as `isel`
+        does.
         """
+        if not isinstance(name, str):
+            return self._part(Selection.by_index(self.problem, name))
         named = named_outcomes(self.laws)
-        if isinstance(name, str) and name in named:
+        if name in named:
             index = named[name]
             return from_si(self._solved_totals.values[index], self.laws[index].outcome.unit)
-        if isinstance(name, str) and name.endswith(ERROR) and name.removesuffix(ERROR) in named:
+        if name.endswith(ERROR) and name.removesuffix(ERROR) in named:
             index = named[name.removesuffix(ERROR)]
             return from_si(self._whole_error(index), self.laws[index].outcome.unit)
-        if isinstance(name, str) and not name.startswith("_") and hasattr(type(self), name):
+        if not name.startswith("_") and hasattr(type(self), name):
             value = getattr(self, name)
             if isinstance(value, pint.Quantity):
                 return value
         return self.outcome(name)
+
+    def __iter__(self) -> Iterator[Prediction]:
+        """Iterate over the predictions along the first axis."""
+        shape = self.problem.batch_shape
+        if not shape:
+            raise TypeError("a prediction of one operating point cannot be iterated over")
+        return (self[place] for place in range(shape[0]))
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether there is a variable of this name."""
+        return isinstance(name, str) and name in (*outcome_units(self.laws), *default_variables(self))
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether another prediction is one of the same contacts with the same models."""
+        if not isinstance(other, Prediction):
+            return NotImplemented
+        return same((self.problem, self._model, self.laws), (other.problem, other._model, other.laws))
+
+    def __hash__(self) -> int:
+        return hash((self.problem.geometry, self.problem.batch_shape))
 
     def outcome(self, name: str, body: str | None = None) -> Quantity:
         """Return the outcome of a law, with its unit.
@@ -244,6 +281,75 @@ class Prediction:
             law, totals = self.laws[index], self._solved_totals
             self._errors[index] = integrate.outcome_error(self._model, law, self.problem, totals, index)
         return self._errors[index]
+
+    @cached_property
+    def _conditions(self) -> Conditions:
+        if self._whole is not None:
+            whole, chosen = self._whole
+            return whole._conditions.chosen(chosen)
+        shape = self.problem.batch_shape
+        return Conditions(self._given, shape[: len(shape) - len(self.problem.dims)])
+
+    def to_dataset(self, names: Sequence[str] | None = None) -> xarray.Dataset:
+        """Return the prediction as a labelled dataset.
+
+        Parameters
+        ----------
+        names : sequence of str, optional
+            Names of variables, such as ["wear_rate", "wear_rate_error"]. Default: all outcomes and properties, but no
+            numerical errors, which may need further solutions.
+
+        Returns
+        -------
+        xarray.Dataset
+            The variables, with units in `attrs["units"]` and readable names in `attrs["long_name"]`, and the conditions
+            as coordinates in the units that they were given in. An axis along which one condition varies has the name
+            of that condition; other axes are point_0, point_1 and so on, as in `isel`. A rig's own axes follow, with
+            their labels; missing patches are NaN.
+        """
+        return dataset(self, self._conditions, names)
+
+    def to_dataframe(self, names: Sequence[str] | None = None) -> pandas.DataFrame:
+        """Return the prediction as a table with a row for each operating point, or for each existing patch.
+
+        Parameters
+        ----------
+        names : sequence of str, optional
+            Names of variables, as in `to_dataset`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The conditions, the labels of the patches and the variables. The heads hold the units, as in
+            "wear_rate [ug/m/mm^2]"; `wearlaw.sweep` and `wearlaw.read_tests` read such heads.
+        """
+        return frame(self, self._conditions, names)
+
+    def plot(self, name: str | None = None, *, x: str | None = None, ax: Axes | None = None) -> Axes:
+        """Draw a variable over the operating points, and return the axes of matplotlib.
+
+        One condition with several values gives curves, one for each patch. Two give a curve for each value of the
+        shorter axis, or a map if it is long. At one operating point with several patches there is a bar for each; with
+        one patch, the picture shows the fields of the patch. Where a point lies outside the range of the law, a curve
+        is pale and a map is hatched. The title states the conditions that are the same at all points.
+
+        Parameters
+        ----------
+        name : str, optional
+            Name of an outcome or another variable, such as "tangential_force"; for the fields of a single patch
+            "pressure", "traction" or "slip". Default: the first outcome.
+        x : str, optional
+            Name of the condition or variable along the horizontal axis, such as "wear_index_density". Default: the
+            longest axis.
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw into. Default: those of a new figure of `matplotlib.pyplot`.
+
+        Raises
+        ------
+        InputError
+            If there is nothing to draw, or too many axes.
+        """
+        return draw(self, self._conditions, name, x, ax)
 
     @property
     def longitudinal_force(self) -> Quantity:
@@ -696,15 +802,34 @@ class Prediction:
         return 2.0 * np.pi * radius
 
     def __repr__(self) -> str:
+        return "".join([self._head, *(f"\n  {name:<20} {text}" for name, text in self._summary.items())])
+
+    def _repr_html_(self) -> str:
+        models = ", ".join(model.name for model in (self.contact_model, *self.laws))
+        lines = [f"<b>{escape(self._head)}</b>", *map(escape, (models, self._conditions.text()))]
+        rows = "".join(
+            f"<tr><td>{escape(long_name(name, self.laws))}</td><td><code>{escape(name)}</code></td>"
+            f"<td>{escape(text)}</td></tr>"
+            for name, text in self._summary.items()
+        )
+        return f"<div>{'<br>'.join(filter(None, lines))}<table>{rows}</table></div>"
+
+    @property
+    def _summary(self) -> dict[str, str]:
+        """The variables of a summary, as text by name."""
         names = (*named_outcomes(self.laws), *SHOWN[self.problem.geometry])
-        rows = "".join(f"\n  {name:<20} {_brief(self[name])}" for name in names)
+        return {name: _brief(self[name]) for name in names}
+
+    @property
+    def _head(self) -> str:
+        """How many operating points and patches there are."""
         problem = self.problem
         own_axes = len(problem.dims)
         count = math.prod(problem.batch_shape[: len(problem.batch_shape) - own_axes])
         points = "1 operating point" if count == 1 else f"{count} operating points"
         if own_axes or problem.exists is not None:
             points = f"{problem.size} {'patch' if problem.size == 1 else 'patches'} at {points}"
-        return f"{type(self).__name__} of {points}{rows}"
+        return f"{type(self).__name__} of {points}"
 
 
 def solved(

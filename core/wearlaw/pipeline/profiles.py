@@ -41,7 +41,7 @@ def along_patch(problem: Problem, columns: Columns) -> xarray.Dataset:
         name: (dims, in_unit(values if problem.exists is None else problem.unflatten(values), unit), {"units": unit})
         for name, (values, unit) in columns.items()
     }
-    return _dataset(problem, {"x": data.pop("x")}, data)
+    return labelled(problem, {"x": data.pop("x")}, data)
 
 
 def across_patch(problem: Problem, body: Body, y: Array, columns: Columns, per: str) -> xarray.Dataset:
@@ -52,7 +52,7 @@ def across_patch(problem: Problem, body: Body, y: Array, columns: Columns, per: 
     if body.profile_position is not None:
         places[POSITION] = _arc(body, y)
     coordinates = {name: (dims, *_shown(name, values)) for name, values in places.items()}
-    return _dataset(problem, coordinates, _data(dims, columns, per))
+    return labelled(problem, coordinates, _data(dims, columns, per))
 
 
 def on_profile(
@@ -94,7 +94,7 @@ def on_profile(
             np.add.at(total.reshape(-1), flat, values)
     dims = [*rest, POSITION]
     data = _data(dims, {name: (total, columns[name][1]) for name, total in sums.items()}, per)
-    return _dataset(problem, {POSITION: (POSITION, *_shown(POSITION, positions))}, data, without=PATCH)
+    return labelled(problem, {POSITION: (POSITION, *_shown(POSITION, positions))}, data, without=PATCH)
 
 
 def _arc(body: Body, y: Array) -> Array:
@@ -114,7 +114,7 @@ def _data(dims: list[str], columns: Columns, per: str) -> dict[str, Any]:
     }
 
 
-def _dataset(
+def labelled(
     problem: Problem, coordinates: Mapping[str, Any], variables: Mapping[str, Any], without: str = ""
 ) -> xarray.Dataset:
     """Return a dataset with the labels of the rig's own axes as coordinates, but for one axis."""

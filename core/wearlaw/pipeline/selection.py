@@ -14,12 +14,21 @@ from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.numerics.integrate import SlipTotals, Totals
+from wearlaw.units.variables import name_of
 
 Label: TypeAlias = str | int
 """A label of an entry along one of a rig's own axes."""
 
+Index: TypeAlias = "int | slice | Sequence[int] | NDArray[Any] | tuple[int | slice | Sequence[int] | NDArray[Any], ...]"
+"""Positions along the axes in square brackets."""
+
 Position: TypeAlias = int | slice | list[int]
 """Entries along an axis. An integer drops the axis; a slice or a list keeps it."""
+
+
+def in_words(labels: Mapping[str, Label]) -> str:
+    """Return the labels of a patch in words, such as "left, patch 1"; a number stands behind the name of its axis."""
+    return ", ".join(one if isinstance(one, str) else f"{name_of(axis)} {one}" for axis, one in labels.items())
 
 
 def axis_names(problem: Problem) -> list[str]:
@@ -78,6 +87,36 @@ class Selection:
                 raise InputError(f"isel: no axis '{name}'{did_you_mean(name, names)} Axes (with sizes): {known}")
         return cls(tuple(_position(name, positions.get(name, slice(None)), sizes[name]) for name in names))
 
+    @classmethod
+    def by_index(cls, problem: Problem, index: Any) -> Selection:
+        """Return the selection of positions along the axes in their order, as in square brackets.
+
+        Raises
+        ------
+        InputError
+            If there are more positions than axes, or there is no such position.
+        """
+        names = axis_names(problem)
+        positions = index if isinstance(index, tuple) else (index,)
+        if len(positions) > len(names):
+            known = ", ".join(names) or "none: this is one operating point"
+            raise InputError(f"{_listed(positions)}: are more positions than there are axes. Axes: {known}")
+        given = {
+            name: np.flatnonzero(one) if _is_mask(one, size) else one
+            for name, size, one in zip(names, problem.batch_shape, positions, strict=False)
+        }
+        return cls.by_position(problem, given)
+
+    def of_conditions(self, values: Array) -> Array:
+        """Return the chosen entries of a condition, with an axis for each of the conditions, of full length or 1."""
+        chosen = Selection(
+            tuple(
+                position if size > 1 else 0 if isinstance(position, int) else slice(None)
+                for position, size in zip(self.positions, values.shape, strict=False)
+            )
+        )
+        return chosen.of(values)
+
     def of(self, array: Array) -> Array:
         """Return the chosen entries of an array whose first axes are those of the batch."""
         chosen: Array = self._of(array)
@@ -127,6 +166,10 @@ class Selection:
         return contact[chosen[chosen >= 0]]
 
 
+def _is_mask(given: object, size: int) -> bool:
+    return isinstance(given, np.ndarray) and given.dtype.kind == "b" and given.shape == (size,)
+
+
 def _place(name: str, label: object, labels: Sequence[Label]) -> int:
     """Return the place of a label among those of an axis."""
     for place, known in enumerate(labels):
@@ -149,5 +192,5 @@ def _position(name: str, given: object, size: int) -> Position:
     return found if numbers.ndim else found[0]
 
 
-def _listed(labels: Sequence[Label]) -> str:
+def _listed(labels: Sequence[object]) -> str:
     return f"({', '.join(map(repr, labels))})"

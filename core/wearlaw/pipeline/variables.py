@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Protocol
 
 import pint
 
-from wearlaw.contact.problem import Geometry
+from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import CompositionError
+from wearlaw.models.law import Law, named_outcomes
+from wearlaw.units.quantities import Quantity
+from wearlaw.units.registry import symbol
+from wearlaw.units.variables import UNITS, name_of
 
-if TYPE_CHECKING:
-    from wearlaw.pipeline.prediction import Prediction
+ERROR = "_error"
+"""Ending of the name of an outcome's numerical error in results."""
 
 OF_CONTACT = (
     "tangential_force",
@@ -48,6 +52,9 @@ OF_PATCH = ("lateral_creepage", "spin", "contact_angle")
 MASS = "mass_per_distance"
 """The variable of a wear law that can be added over several patches, unlike the wear rate."""
 
+MORE = ("patch_area", "outside_range")
+"""Further variables of predictions and sweeps."""
+
 OF_OTHERS: Mapping[Geometry, frozenset[str]] = {
     "line": frozenset({"longitudinal_force", "lateral_force", "spin_moment", "cell_wear_index"}),
     "ellipse": frozenset({"averaged_wear_index", "creepage"}),
@@ -56,19 +63,72 @@ OF_OTHERS: Mapping[Geometry, frozenset[str]] = {
 """Variables that results leave out for a shape of patch because they repeat another one or say nothing."""
 
 
-def offered(prediction: Prediction, variables: Iterable[str]) -> tuple[str, ...]:
-    """Return the variables that the results of a prediction show."""
+class Predicted(Protocol):
+    """A prediction: a contact problem, and variables as attributes."""
+
+    problem: Problem
+    laws: tuple[Law, ...]
+
+
+def default_variables(
+    prediction: Predicted, without: Iterable[str] = (), several_patches: bool | None = None
+) -> list[str]:
+    """Return the variables of datasets and sweeps for which no names are given: the outcomes of laws come first.
+
+    Parameters
+    ----------
+    prediction : Prediction
+    without : iterable of str
+        Names of the conditions, which are coordinates.
+    several_patches : bool, optional
+        Whether the rig makes several patches, if the prediction does not show it.
+    """
+    known = (MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *MORE)
+    every = (*named_outcomes(prediction.laws), *offered(prediction, known, several_patches))
+    left_out = {*without}
+    return [name for name in dict.fromkeys(every) if name not in left_out]
+
+
+def offered(prediction: Predicted, variables: Iterable[str], several_patches: bool | None = None) -> tuple[str, ...]:
+    """Return the variables that the results of a prediction show; for `several_patches` see `default_variables`."""
     problem = prediction.problem
     others = OF_OTHERS[problem.geometry]
-    if problem.dims and problem.geometry != "line":
+    several = bool(problem.dims) if several_patches is None else several_patches
+    if several and problem.geometry != "line":
         others = (others - {"creepage"}) | ({"contact_angle"} if problem.contact_angle is None else set())
     else:
         others |= {*OF_PATCH}
     return tuple(name for name in variables if name not in others and _has(prediction, name))
 
 
-def _has(prediction: Prediction, name: str) -> bool:
+def _has(prediction: Predicted, name: str) -> bool:
     try:
         return isinstance(getattr(prediction, name), pint.Quantity)
     except CompositionError:  # of another shape of patch
         return False
+
+
+def outcome_units(laws: Sequence[Law]) -> dict[str, str]:
+    """Return the unit of each outcome of laws, and of the errors of means over the patch, by name."""
+    found = {}
+    for name, index in named_outcomes(laws).items():
+        outcome = laws[index].outcome
+        found[name] = outcome.unit
+        if outcome.of == "area mean":
+            found[f"{name}{ERROR}"] = outcome.unit
+    return found
+
+
+def unit_of(name: str, value: Quantity, laws: Sequence[Law]) -> str:
+    """Return the unit of a variable in results, in the notation of `UNITS`."""
+    known = {**UNITS, **outcome_units(laws)}
+    return known[name] if name in known else symbol(value.units, "~C").replace("µ", "u").replace("**", "^")
+
+
+def long_name(variable: str, laws: Sequence[Law]) -> str:
+    """Return the readable name of a variable, such as "wear rate of rail"."""
+    index = named_outcomes(laws).get(variable)
+    if index is None:
+        return name_of(variable)
+    law = laws[index]
+    return name_of(law.outcome.name) + (f" of {law.body}" if law.body is not None else "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from threading import RLock
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 
     from pydantic import GetJsonSchemaHandler
     from pydantic_core import CoreSchema, ErrorDetails
+
+LINE = 100
+"""Most characters on a line of a record or a pipeline that is shown."""
 
 ConfigurationT = TypeVar("ConfigurationT", bound="Configuration")
 
@@ -122,6 +126,9 @@ class Configuration(BaseModel):
     def __str__(self) -> str:
         return repr(self)
 
+    def __repr__(self) -> str:
+        return _in_lines(super().__repr__())
+
     def __repr_args__(self) -> Any:
         for name, value in super().__repr_args__():
             yield name, _Text(shown(value)) if isinstance(value, pint.Quantity) else value
@@ -161,6 +168,21 @@ def known_as(name: str, record: ConfigurationT) -> ConfigurationT:
 def known_name(record: Configuration) -> str | None:
     """Return the name under which a record was looked up, or None if it was not looked up."""
     return vars(record).get("_known_as")
+
+
+_FIELD = re.compile(r"""(?:'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*"|,(?!\s)|[^,])+(?:,\s+|$)""")
+"""A field of a record that is shown, up to the next one; a text between quotes may hold commas."""
+
+
+def _in_lines(shown: str) -> str:
+    """Break the text of a record between its fields, at any depth, so that lines are no longer than `LINE`."""
+    lines = [""]
+    for field in _FIELD.findall(shown):
+        if lines[-1].strip() and len(lines[-1]) + len(field.rstrip()) > LINE:
+            lines[-1] = lines[-1].rstrip()
+            lines.append(4 * " ")
+        lines[-1] += " ".join([field.rstrip(), ""]) if field != field.rstrip() else field
+    return "\n".join(lines)
 
 
 class _Text(str):

@@ -12,10 +12,11 @@ import xarray
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.models.law import WEAR, Outcome
 from wearlaw.pipeline.composition import fitted_to_other_body
+from wearlaw.pipeline.selection import in_words as in_words
 from wearlaw.pipeline.variables import MASS
 from wearlaw.study.case import Case
 from wearlaw.study.pairs import Pair
-from wearlaw.units.variables import UNITS, name_of
+from wearlaw.units.variables import UNITS
 
 Patch: TypeAlias = Mapping[str, Any]
 """Labels of a patch along the axes of its rig, such as {"side": "left", "patch": 1}; {} if the rig makes one patch."""
@@ -138,11 +139,6 @@ def by_patch(point: xarray.Dataset, asked: Mapping[str, Collection[Any]] | None 
     axes, found = patch_axes(point), patches_of(point, asked)
     each = [point.sel(patch).drop_vars(axes) for patch in found]
     return xarray.concat(each, xarray.Variable("patch", range(len(each))), coords="minimal", compat="override")
-
-
-def in_words(patch: Patch) -> str:
-    """Return the labels of a patch in words, such as "left, patch 1"; a number stands behind the name of its axis."""
-    return ", ".join(one if isinstance(one, str) else f"{name_of(axis)} {one}" for axis, one in patch.items())
 
 
 def labelled_by(patch: Patch, label: str) -> str:

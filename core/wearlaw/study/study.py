@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
+import textwrap
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -30,14 +31,14 @@ from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
-from wearlaw.pipeline.prediction import ERROR, Prediction
-from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
 from wearlaw.plugins import loader
-from wearlaw.settings.configuration import known_name, parts
+from wearlaw.settings.configuration import LINE, known_name, parts
 from wearlaw.study.case import Case
 from wearlaw.study.figures import figures_of
 from wearlaw.study.pairs import Pair, pairs_of
-from wearlaw.study.results import PATCH_AXES, Results
+from wearlaw.study.results import PATCH_AXES, Results, axes_of
 from wearlaw.study.sections import Section
 from wearlaw.sweeping.checkpoint import Checkpoint, Evaluator
 from wearlaw.sweeping.points import Points
@@ -60,7 +61,7 @@ PROFILE_STRIPS = 101
 """Strips of a profile across the patch, if the contact model can choose them."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Study(Results):
     """The results of a case.
 
@@ -85,6 +86,26 @@ class Study(Results):
     def figures(self) -> tuple[FigureData, ...]:
         """The data of the figures of the study."""
         return figures_of(self)
+
+    def __repr__(self) -> str:
+        sweeps = [
+            f"{name} ({', '.join(f'{axis} {one.sizes[axis]}' for axis in axes_of(one)) or 'one point'})"
+            for name, one in self.sweeps.items()
+        ]
+        rows = {
+            "pairs": [pair.label for pair in self.pairs],
+            "sweeps": sweeps,
+            "profiles": [name for name, profile in self.profiles.items() if profile],
+            "sections": [section.title for section in self.sections],
+            "notes": [str(len(self.notes))] if self.notes else [],
+        }
+        indent = 13 * " "
+        shown = [
+            textwrap.fill(", ".join(those), LINE, initial_indent=f"  {row:11}", subsequent_indent=indent)
+            for row, those in rows.items()
+            if those
+        ]
+        return "\n".join([f"Study of '{self.case.title}'", *shown])
 
 
 def run(

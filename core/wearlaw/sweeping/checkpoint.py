@@ -15,7 +15,8 @@ from pydantic import TypeAdapter
 from wearlaw.arrays.array import Array
 from wearlaw.errors import OutputError
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.sweeping.evaluation import Job, outcome_units
+from wearlaw.pipeline.variables import outcome_units
+from wearlaw.sweeping.evaluation import Job
 from wearlaw.sweeping.journal import Run, check_same, write_whole
 from wearlaw.sweeping.points import Points
 from wearlaw.sweeping.storage import Arrays, Files, Memory, damage

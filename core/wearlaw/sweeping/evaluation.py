@@ -21,13 +21,12 @@ from wearlaw.errors import CompositionError, InputError, ModelError, RangeWarnin
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.pipeline.prediction import ERROR, Prediction, unsolved
+from wearlaw.pipeline.prediction import Prediction, unsolved
 from wearlaw.pipeline.ranges import Seen
+from wearlaw.pipeline.variables import long_name, outcome_units, unit_of
 from wearlaw.sweeping.located import posed
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.units.quantities import Quantity
-from wearlaw.units.registry import symbol
-from wearlaw.units.variables import UNITS, name_of
 
 Outputs = dict[str, Array]
 """Results of a block by name, (points, *axes of the rig) each, in the units of the job."""
@@ -242,19 +241,8 @@ def output_units(
                 f"outputs: there is no '{name}' at an operating point{did_you_mean(name, known)}"
                 f" There are: {', '.join(known)}"
             )
-        units[name] = {**UNITS, **of_laws}.get(name, _written(value))
+        units[name] = unit_of(name, value, pipeline.laws)
     return units
-
-
-def outcome_units(laws: Sequence[Law]) -> dict[str, str]:
-    """Return the unit of each outcome of laws, and of the errors of means over the patch, by name."""
-    found = {}
-    for name, index in named_outcomes(laws).items():
-        outcome = laws[index].outcome
-        found[name] = outcome.unit
-        if outcome.of == "area mean":
-            found[f"{name}{ERROR}"] = outcome.unit
-    return found
 
 
 def _check_body(name: str, laws: Sequence[Law]) -> None:
@@ -262,15 +250,6 @@ def _check_body(name: str, laws: Sequence[Law]) -> None:
     of_bodies = [known for known, index in named_outcomes(laws).items() if laws[index].outcome.name == name != known]
     if of_bodies:
         raise InputError(f"outputs: '{name}' has a law for each body; name {' or '.join(of_bodies)}")
-
-
-def long_name(output: str, laws: Sequence[Law]) -> str:
-    """Return the readable name of an output, such as "wear rate of rail"."""
-    index = named_outcomes(laws).get(output)
-    if index is None:
-        return name_of(output)
-    law = laws[index]
-    return name_of(law.outcome.name) + (f" of {law.body}" if law.body is not None else "")
 
 
 def _output(prediction: Prediction, name: str) -> Quantity | None:
@@ -287,11 +266,6 @@ def _is_output(prediction: Prediction, name: str) -> bool:
         return _output(prediction, name) is not None
     except CompositionError:  # without a law there is no wear
         return False
-
-
-def _written(quantity: Quantity) -> str:
-    """Return the unit of a quantity in the notation of `UNITS`."""
-    return symbol(quantity.units, "~C").replace("µ", "u").replace("**", "^")
 
 
 def _in_unit(quantity: Any, unit: str) -> Array:

@@ -19,6 +19,8 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConditionsError, InputError, ModelError, ResumeWarning, WearlawWarning, WorkerWarning
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig
+from wearlaw.pipeline.prediction import unsolved
+from wearlaw.pipeline.variables import default_variables
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
 from wearlaw.sweeping.located import posed
@@ -32,6 +34,9 @@ from wearlaw.units.quantities import shortened
 if TYPE_CHECKING:
     import pandas
 
+
+MOST = 2**24
+"""Most numbers of a sweep whose outputs are not named; a larger sweep keeps the outcomes of laws alone."""
 
 SAMPLE = 250
 """A rig that makes several patches is checked at this many values along a dimension, or up to twice as many."""
@@ -57,7 +62,7 @@ def sweep(
     Parameters
     ----------
     predict : Pipeline
-        A rig, a contact model, and stages and laws if given. Without a law, name the `outputs`.
+        A rig, a contact model, and stages and laws if given.
     table : pandas.DataFrame, xarray.Dataset or path, optional
         Operating points in rows, conditions in columns, with units by type (pint), `attrs["units"]` or heads such as
         "creepage [%]". Further conditions are the same in all rows. A file may be CSV, parquet (with pyarrow), netCDF
@@ -72,7 +77,8 @@ def sweep(
     outputs : sequence of str, optional
         Names of outcomes and properties of a prediction to keep, such as "wear_rate", "rcf_damage" or
         "tangential_force". If laws of one outcome differ by body, the name of the body follows, as in "wear_rate_rail".
-        Default: the outcomes of all laws.
+        Default: the variables of `Prediction.to_dataset`, as long as they are no more than 2²⁴ numbers (128 MiB), and
+        in a larger sweep the outcomes of all laws alone; `attrs["notes"]` then says so.
     workers : int
         Number of processes on this machine; they are kept for later sweeps.
     client : distributed.Client, optional
@@ -97,7 +103,7 @@ def sweep(
     Raises
     ------
     CompositionError
-        If the pipeline has no law and no outputs are named.
+        If a large sweep has no law and no outputs are named.
     DataError
         If the table is wrong; for a file, the message names line and column.
     InputError
@@ -115,7 +121,7 @@ def sweep(
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
         points = dataclasses.replace(points, weight=weight(first))
-        job = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
+        job, notes = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
         if store is None:
             if resume:
                 raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
@@ -132,7 +138,7 @@ def sweep(
             found = run(target, bar, workers, client)
             for warning in found:
                 warnings.warn(warning, stacklevel=2)
-            return target.finish([str(warning) for warning in found])
+            return target.finish([*notes, *(str(warning) for warning in found)])
 
 
 @contextmanager
@@ -162,8 +168,8 @@ def _points(
 
 def _checked_job(
     pipeline: Pipeline[...], first: Problem, points: Points, outputs: Sequence[str] | None, elsewhere: bool
-) -> Job:
-    """Return the job of a sweep, after checks of its outputs and models.
+) -> tuple[Job, list[str]]:
+    """Return the job of a sweep, after checks of its outputs and models, and remarks on the outputs.
 
     Raises
     ------
@@ -176,7 +182,16 @@ def _checked_job(
     if elsewhere:
         check_importable(pipeline)
     one = first.flatten()[:1]
-    return Job(pipeline, output_units(pipeline, one, points, list(dict.fromkeys(names)) or None), first.dims)
+    notes = []
+    if outputs is None:
+        known = unsolved(one, pipeline.staged_model, pipeline.laws)
+        names = default_variables(known, {*points.varying, *points.fixed}, bool(first.dims))
+        size = len(names) * points.size * math.prod(map(len, first.dims.values()))
+        if size > MOST:
+            names = []
+            notes = [f"the sweep is large and keeps only the outcomes of laws: all outputs are {size:.2g} numbers"]
+    units = output_units(pipeline, one, points, list(dict.fromkeys(names)) or None)
+    return Job(pipeline, units, first.dims), notes
 
 
 def check_importable(pipeline: Pipeline[...]) -> None:

@@ -11,14 +11,14 @@ import numpy as np
 import pint
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import InputError, UnitError, did_you_mean
+from wearlaw.errors import InputError, did_you_mean
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.named_numbers import Kind, NamedNumbers, Place
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange, uniform
-from wearlaw.units.quantities import Q, Unit, coefficient, from_si, parse, real_array, shortened
+from wearlaw.units.quantities import Unit, coefficient, from_si, shortened
 from wearlaw.units.registry import symbol
 
 
@@ -55,30 +55,6 @@ class Uncertain:
         """Return the values of a condition at probabilities, as an argument for a rig."""
         values = self.values(probability)[self.name]
         return values if self.unit is None else from_si(values, self.unit)
-
-
-@dataclass(frozen=True, eq=False)
-class Known:
-    """A known condition: one number or several, and their unit, None for plain numbers."""
-
-    values: Array
-    unit: str | None
-
-    @classmethod
-    def of(cls, value: object) -> Known | None:
-        """Return a given condition, or None if it is not numeric, such as a law of friction."""
-        try:
-            quantity = parse(value) if isinstance(value, str) else value
-            if isinstance(quantity, pint.Quantity):
-                return cls(real_array(quantity.magnitude), symbol(quantity.units, "~C"))
-            return cls(real_array(quantity), None)
-        except UnitError:
-            return None
-
-    def at_samples(self) -> Any:
-        """Return the condition as an argument for a rig, with a last axis for the samples."""
-        values = np.asarray(self.values)[..., None]
-        return values if self.unit is None else Q(values, self.unit)
 
 
 OTHERS = (

@@ -13,7 +13,7 @@ import pandas as pd
 import scipy
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.conditions import broadcast
+from wearlaw.contact.conditions import Known, broadcast
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
@@ -25,7 +25,7 @@ from wearlaw.pipeline.composition import check_traction, warn_of_unlike_material
 from wearlaw.pipeline.named_numbers import Kind, Place, check_loads_stay, staged_models
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
-from wearlaw.uncertainties.inputs import OTHERS, Known, Uncertain, check_samples, numbers_of, split
+from wearlaw.uncertainties.inputs import OTHERS, Uncertain, check_samples, numbers_of, split
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, shortened
 from wearlaw.units.variables import UNITS, label, name_of
 
@@ -184,6 +184,22 @@ class Uncertainty:
         if not 0.0 < confidence < 1.0:
             raise InputError(f"confidence: must lie between 0 and 1, such as 0.95; got {confidence!r}")
         return self._quantile(0.5 - 0.5 * confidence), self._quantile(0.5 + 0.5 * confidence)
+
+    def table(self) -> pd.DataFrame:
+        """Return medians and 95 % intervals with the known conditions, a row for each operating point.
+
+        The heads hold the units. The median of an outcome stands under its name, as in "wear_rate [ug/m/mm^2]", and the
+        ends of its interval under "wear_rate_low" and "wear_rate_high".
+        """
+        columns = {}
+        for name, known in self.known.items():
+            head = f"{name} [{known.unit}]" if known.unit else name
+            columns[head] = np.broadcast_to(known.values, self.shape).reshape(-1)
+        for one in map(self.of, self.outcomes):
+            unit = f" [{one.unit}]" if one.unit else ""
+            for ending, value in zip(("", "_low", "_high"), (one.median, *one.interval()), strict=True):
+                columns[f"{one.outcomes[0]}{ending}{unit}"] = np.reshape(value.to(one.unit).magnitude, -1)
+        return pd.DataFrame(columns)
 
     def sobol(self) -> pd.DataFrame:
         """Return the share of the variance of the outcome that each input explains.
@@ -375,6 +391,10 @@ class Uncertainty:
                 lines.append(f"{outcome:20} {one.median!r}, {share} {low!r} to {high!r}")
             else:
                 lines += [f"{'median':20} {one.median!r}", f"{share:20} {low!r} to {high!r}"]
+        for outcome in self.outcomes if self.shape else ():
+            median = self.of(outcome).median
+            name = f"median of {outcome}" if several else "median"
+            lines.append(f"{name:20} {median.min()!r} to {median.max()!r}")
         lines += [f"{one.name:20} {one.shown}" for one in self.inputs]
         return "\n  ".join(lines)
 
