@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
 
 import wearlaw as wl
 from tests.core import axles, discs
@@ -261,7 +262,7 @@ def legend(axes: Any) -> list[str]:
 def test_one_axis_is_a_curve_with_its_conditions_above() -> None:
     found = discs.PREDICT(**{**discs.CONDITIONS, "creepage": CREEPAGES})
     axes = found.plot("tangential_force")
-    assert isinstance(axes, mpl.axes.Axes)
+    assert isinstance(axes, Axes)
     ((x, y),) = curves(axes).values()
     assert x == CREEPAGES.magnitude.tolist()
     assert y == found.tangential_force.magnitude.tolist()
@@ -386,8 +387,9 @@ def test_pictures_of_too_many_axes_or_of_no_values_are_refused() -> None:
         deep.plot()
     assert deep[0].plot().get_title(loc="left") == "friction coefficient 0.2"
     missing = axles.PREDICT(**GIVEN).sel(side="left", patch=2)
-    with pytest.raises(wl.InputError, match="plot: wear_rate has no value at these operating points"):
-        missing.plot()
+    for ax in (None, plt.subplots()[1]):
+        with pytest.raises(wl.InputError, match="plot: wear_rate has no value at these operating points"):
+            missing.plot(ax=ax)
 
 
 def test_matplotlib_is_loaded_with_the_first_picture() -> None:

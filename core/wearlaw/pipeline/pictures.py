@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.models.contact_model import Scale
@@ -60,13 +59,13 @@ class Drawn(Named, Protocol):
     scale: Scale
 
     @property
-    def contact(self) -> Contact:
+    def contact(self) -> Any:  # a Contact; pyright takes no cached property for one
         """The solved contact."""
         ...
 
     @property
-    def profile(self) -> xarray.Dataset:
-        """The fields along the patch of a line."""
+    def profile(self) -> Any:
+        """The fields along the patch of a line, a dataset."""
         ...
 
 
@@ -126,6 +125,7 @@ def _curves(
     apart = [*others, *(dim for dim in problem.dims if dim in found.dims)]
     look = _look(ax)
     pale = False
+    drawn: Axes | None = None
     for index in np.ndindex(*(found.sizes[dim] for dim in apart)):
         place = dict(zip(apart, index, strict=True))
         table = found.isel(place).to_dataframe().reset_index()
@@ -134,27 +134,26 @@ def _curves(
             continue
         named = _series(found, place, problem)
         marked: dict[str, Any] = {"marker": "o" if len(table) <= FEW_POINTS else "", "markersize": 4, "legend": False}
-        outside = table[OUTSIDE_RANGE] > 0.0 if OUTSIDE_RANGE in table else table[shown].isna()
-        if not np.any(outside):
-            ax = table.plot(x=across, y=shown, label=named, **look, **marked)
-        else:  # the whole curve pale, and on it the part inside
-            ax = table.plot(
-                x=across, y=shown, label="_" if not np.all(outside) else named, alpha=PALE, **look, **marked
+        outside = table[OUTSIDE_RANGE] > 0.0 if OUTSIDE_RANGE in table else table[shown].isna()  # none
+        inside = table.assign(**{shown: table[shown].where(~outside)})
+        pale |= bool(outside.any())
+        if outside.any():  # the whole curve is pale, and on it lies the part inside
+            behind: Axes = table.plot(
+                x=across, y=shown, label=named if outside.all() else "_", alpha=PALE, **look, **marked
             )
-            colour = ax.get_lines()[-1].get_color()
-            inside = table.assign(**{shown: table[shown].where(~outside)})
-            if not np.all(outside):
-                inside.plot(x=across, y=shown, label=named, color=colour, ax=ax, **marked)
-            pale = True
-        look["ax"] = ax
-    if ax is None:
+            marked["color"] = behind.get_lines()[-1].get_color()
+            look["ax"] = drawn = behind
+        if not outside.all():
+            drawn = inside.plot(x=across, y=shown, label=named, **look, **marked)
+        look["ax"] = drawn
+    if drawn is None:
         raise InputError(f"plot: {shown} has no value at these operating points")
     if pale:
-        ax.plot([], [], color="black", alpha=PALE, label=OUTSIDE)
+        drawn.plot([], [], color="black", alpha=PALE, label=OUTSIDE)
     if apart or pale:
-        ax.legend(fontsize="small")
-    ax.set(xlabel=_label(found[across]), ylabel=_label(found[shown]))
-    return ax
+        drawn.legend(fontsize="small")
+    drawn.set(xlabel=_label(found[across]), ylabel=_label(found[shown]))
+    return drawn
 
 
 def _map(found: xarray.Dataset, shown: str, along: str, up: str, problem: Problem, ax: Axes | None) -> Axes:
@@ -182,7 +181,7 @@ def _bars(prediction: Drawn, conditions: Conditions, name: str | None, ax: Axes 
     labels = [row if isinstance(row, tuple) else (row,) for row in table.index.tolist()]
     names = [in_words(dict(zip(dims, row, strict=True))) for row in labels]
     drawn: Axes = table[[shown]].set_axis(names).plot.bar(legend=False, rot=0, **_look(ax))
-    marks = table.get(OUTSIDE_RANGE, 0.0 * table[shown])
+    marks = table[OUTSIDE_RANGE].tolist() if OUTSIDE_RANGE in table else []
     outside = [place for place, mark in enumerate(marks) if mark > 0.0]
     for place in outside:
         drawn.patches[place].set(alpha=PALE, label=OUTSIDE if place == outside[0] else "_")
