@@ -82,21 +82,19 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def photograph(page: Path) -> None:
-    """Take a screenshot of a report in a browser, with the mouse over a curve."""
+    """Take a screenshot of the first screen of a report in a browser, with the mouse over a curve."""
     from selenium import webdriver
     from selenium.webdriver import ActionChains
     from selenium.webdriver.chrome.service import Service
 
     options = webdriver.ChromeOptions()
-    for flag in ("--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--window-size=1200,860"):
+    for flag in ("--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--window-size=1200,900"):
         options.add_argument(flag)
     browser = webdriver.Chrome(options, Service(shutil.which("chromedriver")))
     try:
         browser.get(page.resolve().as_uri())
-        figure = browser.find_element("css selector", "#figure-figure_08")
-        browser.execute_script("arguments[0].scrollIntoView()", figure)
-        plot = figure.find_element("css selector", ".draglayer .xy .nsewdrag")
-        ActionChains(browser).move_to_element_with_offset(plot, -100, -100).pause(1).perform()
+        plot = browser.find_element("css selector", ".main .draglayer .xy .nsewdrag")
+        ActionChains(browser).move_to_element_with_offset(plot, -150, -20).pause(1).perform()
         browser.save_screenshot(str(FOLDER / "report.png"))
     finally:
         browser.quit()

@@ -20,7 +20,9 @@ import wearlaw as wl
 from tests.core import cases
 from tests.core.report_data import CLAIMS, EVIL, ODD, ONE, SECTION, THREE, small_study
 from wearlaw.report.interactive import plotly_figure
+from wearlaw.report.main_result import main_figure, main_result
 from wearlaw.report.page import cells, paragraphs, report
+from wearlaw.report.sentences import sentences
 from wearlaw.report.tables import Cell
 from wearlaw.study.sections import Verdict
 from wearlaw.study.study import Study, run
@@ -85,8 +87,26 @@ def page(written: str) -> Page:
 
 def test_the_order_is_results_first_and_where_they_come_from_last(page: Page) -> None:
     headings = [attributes["id"] for tag, attributes in page.elements if tag == "h2"]
-    expected = ["contents", "results", "figures", "section-1", "parameters", "notes", "case", "provenance"]
-    assert headings == expected
+    expected = ["title-wear_rate_over_creepage", "contents", "figures", "claims", "results", "section-1", "parameters"]
+    assert headings == [*expected, "notes", "case", "provenance"]
+
+
+def test_the_page_begins_with_title_sentences_and_the_main_figure(study: Study, page: Page) -> None:
+    main = main_result(study)
+    found = page.within("header/ul/li")
+    assert found == sentences(main)
+    assert len(found) == 3
+    tags = [tag for tag, _ in page.elements]
+    assert tags.index("h1") < tags.index("li") < tags.index("figure") < tags.index("nav") < tags.index("main")
+    first = json.loads(page.within("figure/div/script")[0])
+    assert first == json.loads(json.dumps(plotly_figure(main_figure(main))))
+
+
+def test_a_figure_of_the_study_with_the_same_curves_is_the_main_figure_and_stands_once() -> None:
+    spec = {"title": "My own", "sweep": "creepage", "x": "creepage", "y": "wear_rate"}
+    page = Page(report(run(cases.case(wear_laws=["usfd"], profiles={}, figures={"own": spec})), ""))
+    assert page.within("header/figure/h2") == ["My own"]
+    assert [identifier for identifier in page.attributes("id") if identifier.startswith("figure")] == ["figure-own"]
 
 
 def test_the_contents_lead_to_every_part(page: Page) -> None:
@@ -95,6 +115,7 @@ def test_the_contents_lead_to_every_part(page: Page) -> None:
     targets = {link.removeprefix("#") for link in page.attributes("href")}
     assert targets <= set(identifiers)
     parts = {str(attributes["id"]) for tag, attributes in page.elements if tag == "h2"} - {"contents"}
+    parts = {part.replace("title-", "figure-") for part in parts}
     assert parts | {"figure-one", "figure-three"} <= targets
 
 
@@ -117,16 +138,16 @@ def test_every_text_is_shown_as_it_is_written(page: Page) -> None:
     assert page.within("head/title") == page.within("h1") == [f"Title {EVIL}"]
     literal = " ".join(EVIL.split())
     assert page.text.count(f"Claims {literal}") == 3  # among the contents, above the claims, and above the section
-    for where in ("figure/h3", "figcaption", "li", "th"):
+    for where in ("figure/h3", "figcaption", "summary/span", "th"):
         assert EVIL in "".join(page.within(where))
-    # plotly.js, our own, and the numbers of three figures; none from a text.
-    assert sum(tag == "script" for tag, _ in page.elements) == 5
+    # plotly.js, our own, and the numbers of four figures; none from a text.
+    assert sum(tag == "script" for tag, _ in page.elements) == 6
     assert not {"b", "i"} & {tag for tag, _ in page.elements}
     assert "49" not in page.within("h1")[0]
 
 
 def test_the_numbers_of_every_figure_stand_in_the_page(page: Page) -> None:
-    numbers = [json.loads(text) for text in page.within("div/div/script")]
+    numbers = [json.loads(text) for text in page.within("section/figure/div/script")]
     assert numbers == [json.loads(json.dumps(plotly_figure(figure))) for figure in (ONE, THREE, ODD)]
 
 
@@ -147,7 +168,7 @@ def test_claims_are_a_list_of_verdicts_with_criteria_and_numbers(page: Page) -> 
     assert f"✓ holds {holding}" in page.text
     literal = " ".join(EVIL.split())
     assert f"✗ does not hold {literal} (section 5.3) Criterion: {literal} 5.2 µg/m/mm² against 6.1" in page.text
-    assert {"5.2 µg/m/mm² against 6.1 µg/m/mm²", "and more"} <= {*page.within("li/p")}
+    assert {"5.2 µg/m/mm² against 6.1 µg/m/mm²", "and more"} <= {*page.within("details/div/p")}
 
 
 def test_claims_are_counted_by_verdict_and_none_is_not_spoken_of(study: Study) -> None:
@@ -193,7 +214,8 @@ def test_a_model_of_another_distribution_is_said_to_be_from_there(monkeypatch: p
 def test_a_figure_that_bears_the_title_of_the_study_is_headed_by_its_name() -> None:
     study = run(cases.case(profiles={}))
     names = [figure.name for figure in study.figures if figure.title == study.case.title]
-    headings = Page(report(study, "")).within("figure/h3")
+    page = Page(report(study, ""))
+    headings = [*page.within("figure/h2"), *page.within("figure/h3")]
     for name in names:
         assert name.replace("_", " ").capitalize() in headings
     assert study.case.title not in headings

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from axe_core_python.selenium import Axe
 from selenium import webdriver
 from selenium.webdriver import ActionChains, Keys
 from selenium.webdriver.chrome.service import Service
@@ -91,6 +92,22 @@ def page_to_change(page: webdriver.Chrome, file: Path) -> Iterator[webdriver.Chr
     """Give the page to a test that changes it."""
     yield page
     open_page(page, file)
+
+
+SIZES = {"desktop": (1300, 900), "phone": (390, 800)}
+"""Screens on which the report must be readable [px]."""
+
+
+@pytest.fixture(params=SIZES)
+def screen(request: pytest.FixtureRequest, browser: webdriver.Chrome, file: Path) -> Iterator[tuple[int, int]]:
+    """Open the page on a screen and give its size."""
+    width, height = SIZES[request.param]
+    size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": request.param == "phone"}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    open_page(browser, file)
+    yield width, height
+    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    open_page(browser, file)
 
 
 def scheme(browser: webdriver.Chrome, wanted: str) -> None:
@@ -272,13 +289,137 @@ def test_text_and_measured_points_can_be_read_in_both_colour_schemes(page: webdr
     assert contrast(rgb, paper) >= 4.5
 
 
-def test_what_was_hidden_stays_hidden_when_the_colours_change(page_to_change: webdriver.Chrome) -> None:
+@pytest.mark.parametrize("by", ["keyboard", "mouse"])
+def test_what_was_hidden_stays_hidden_when_the_colours_change(page_to_change: webdriver.Chrome, by: str) -> None:
     page = page_to_change
     element = plot(page, ONE.name)
-    legend_entry(element, "falling").find_element("css selector", ".legendtoggle").click()
+    if by == "mouse":
+        legend_entry(element, "falling").find_element("css selector", ".legendtoggle").click()
+    else:
+        page.execute_script("arguments[0].focus()", legend_entry(element, "falling"))
+        page.switch_to.active_element.send_keys(Keys.SPACE)
     wait(page, lambda: visible(page, element, "falling") == ["legendonly"])
     ink = "return arguments[0]._fullLayout.font.color"
     before = page.execute_script(ink, element)
     scheme(page, "dark")
     wait(page, lambda: page.execute_script(ink, element) != before)
     assert visible(page, element, "falling") == ["legendonly"]
+
+
+def boxes(page: webdriver.Chrome, selector: str) -> list[tuple[str, float, float, float, float]]:
+    """Return text, left, top, right and bottom of each visible element on the page, without contents of tables."""
+    script = """
+        return [...document.querySelectorAll(arguments[0])].filter(e => !e.closest(".wide") || e.matches(".wide"))
+          .map(e => [e.textContent.trim().slice(0, 40), e.getBoundingClientRect()]).filter(([, box]) => box.width > 0)
+          .map(([text, box]) => [text, box.left, box.top + scrollY, box.right, box.bottom + scrollY])
+    """
+    return [tuple(box) for box in page.execute_script(script, selector)]
+
+
+def test_the_first_screen_holds_title_sentences_and_the_main_figure(
+    browser: webdriver.Chrome, screen: tuple[int, int]
+) -> None:
+    width, height = screen
+    found = boxes(browser, "h1, header li, .main h2, .main .plot, .main .legend")
+    assert len(found) == 1 + 3 + 1 + 1 + 1
+    for text, left, top, right, bottom in found:
+        assert 0.0 <= left < right <= width, text
+        assert 0.0 <= top < bottom <= height, text
+    assert browser.execute_script("return document.querySelector('.main .cartesianlayer').getBBox().height") > 100.0
+
+
+def test_nothing_is_wider_than_the_screen(browser: webdriver.Chrome, screen: tuple[int, int]) -> None:
+    width, _ = screen
+    browser.execute_script("document.querySelectorAll('details').forEach(one => one.open = true)")
+    assert browser.execute_script("return document.documentElement.scrollWidth") <= width
+    everything = "h1, h2, h3, p, li, figcaption, summary, .wide, .plot, .legend, .xtitle, .ytitle, .annotation-text"
+    cut = [box for box in boxes(browser, everything) if box[1] < 0.0 or box[3] > width]
+    assert not cut
+    scrolling = "return [...document.querySelectorAll('.wide')].map(e => getComputedStyle(e).overflowX)"
+    assert set(browser.execute_script(scrolling)) == {"auto"}
+
+
+def test_panels_stand_below_each_other_on_a_phone_and_do_not_overlap(
+    browser: webdriver.Chrome, screen: tuple[int, int]
+) -> None:
+    parts = "#figure-three .xy, #figure-three .x2y2, #figure-three .x3y3"
+    script = "return [...document.querySelectorAll(arguments[0])].map(e => e.getBoundingClientRect())"
+    drags = browser.execute_script(script, ", ".join(f"{part} .nsewdrag" for part in parts.split(", ")))
+    assert len(drags) == 3
+    across = {round(box["left"]) for box in drags}
+    assert len(across) == (1 if screen[0] < 640 else 2)
+    titles = browser.execute_script(script, "#figure-three .xtitle, #figure-three .x2title, #figure-three .x3title")
+    if screen[0] < 640:
+        for box, title, below in zip(drags, titles, [*drags[1:], None], strict=True):
+            assert title["top"] > box["bottom"]
+            assert below is None or title["bottom"] < below["top"]
+
+
+@pytest.mark.parametrize("wanted", ["light", "dark"])
+def test_a_checker_of_accessibility_finds_no_fault(page_to_change: webdriver.Chrome, wanted: str) -> None:
+    """The rules of axe-core: contrast, names, roles, headings, landmarks, focus."""
+    page = page_to_change
+    scheme(page, wanted)
+    page.execute_script("document.querySelectorAll('details').forEach(one => one.open = true)")
+    found = Axe().run(page)
+    faults = {fault["id"]: [node["html"][:200] for node in fault["nodes"]] for fault in found["violations"]}
+    assert not faults
+    assert "color-contrast" in {rule["id"] for rule in found["passes"]}
+
+
+def test_all_controls_can_be_reached_with_the_tab_key_and_show_the_focus(page_to_change: webdriver.Chrome) -> None:
+    page = page_to_change
+    script = """
+        const e = document.activeElement, style = getComputedStyle(e);
+        return [e.tagName.toLowerCase(), style.outlineStyle, parseFloat(style.outlineWidth)];
+    """
+    page.execute_script("document.querySelector('.skip').focus()")
+    reached = []
+    for _ in range(200):
+        tag, outline, width = page.execute_script(script)
+        if tag == "body":
+            break
+        reached.append(tag)
+        assert outline != "none", tag
+        assert width > 0.0, tag
+        page.switch_to.active_element.send_keys(Keys.TAB)
+    count = "return document.querySelectorAll(arguments[0]).length"
+    for tag, selector in (("a", "nav a, .skip"), ("summary", "summary"), ("button", "#open"), ("div", ".wide")):
+        assert reached.count(tag) >= page.execute_script(count, selector)
+    assert reached.count("g") == page.execute_script(count, ".legend .traces")
+
+
+def test_a_claim_opens_with_the_keyboard_and_all_with_the_button(page_to_change: webdriver.Chrome) -> None:
+    page = page_to_change
+    summaries, findings = (page.find_elements("css selector", one) for one in ("summary", ".finding"))
+    assert len(summaries) == len(findings) == 2
+    assert not any(finding.is_displayed() for finding in findings)
+    summaries[0].send_keys(Keys.ENTER)
+    assert [finding.is_displayed() for finding in findings] == [True, False]
+    button = page.find_element("id", "open")
+    for text, shown in (("Close all", True), ("Open all", False)):
+        button.send_keys(Keys.SPACE)
+        assert button.text == text
+        assert {finding.is_displayed() for finding in findings} == {shown}
+
+
+def test_a_print_shows_every_claim_on_a_bright_page(page_to_change: webdriver.Chrome) -> None:
+    page = page_to_change
+    scheme(page, "dark")
+    record = """
+        window.seen = [];
+        window.addEventListener("beforeprint", () => {
+          const background = getComputedStyle(document.body).backgroundColor;
+          window.seen.push([[...document.querySelectorAll("details")].every(one => one.open), background]);
+        });
+    """
+    page.execute_script(record)
+    assert page.print_page()
+    ((opened, background),) = page.execute_script("return window.seen")
+    assert opened
+    assert luminance(background) > 0.9
+    wait(page, lambda: not page.execute_script("return document.querySelectorAll('details[open]').length"))
+    page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    assert not page.find_element("tag name", "nav").is_displayed()
+    assert not page.find_element("id", "open").is_displayed()
+    page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})

@@ -17,6 +17,8 @@ from plotly.offline import get_plotlyjs
 
 from wearlaw.figures.curves import FigureData
 from wearlaw.report.interactive import plotly_figure
+from wearlaw.report.main_result import main_figure, main_result
+from wearlaw.report.sentences import sentences
 from wearlaw.report.tables import Cell, cell, models, parameters, profiles, summaries
 from wearlaw.study.sections import VERDICTS, CheckedClaim, Verdict
 from wearlaw.study.study import Study, used
@@ -34,11 +36,16 @@ def report(study: Study, case_text: str) -> str:
         The case, as TOML.
     """
     claims = [claim for section in study.sections for claim in section.claims]
+    main = main_result(study)
+    first = main_figure(main)
     return _template().render(
         study=study,
         case_text=case_text,
         claims=claims,
         counted=counted,
+        sentences=sentences(main),
+        main_figure=first,
+        figures=[figure for figure in study.figures if figure is not first],
         summaries=[*summaries(study), *profiles(study)],
         parameters=parameters(study),
         models=models(study),

@@ -190,8 +190,12 @@ def meaning_of(variable: str) -> str:
 
 def label(*variables: str, units: Mapping[str, str] = UNITS) -> str:
     """Return the names of variables that share a unit, with the unit, as in "creepage [%]"."""
-    unit = units[variables[0]].replace("ug", "µg").replace("um", "µm").replace("mm^2", "mm²").replace("*", "·")
-    return f"{', '.join(name_of(variable) for variable in variables)} [{unit or '-'}]"
+    return f"{', '.join(name_of(variable) for variable in variables)} [{readable(units[variables[0]]) or '-'}]"
+
+
+def readable(unit: str) -> str:
+    """Return a unit for a reader, as in "µg/m/mm²"."""
+    return unit.replace("ug", "µg").replace("um", "µm").replace("mm^2", "mm²").replace("*", "·")
 
 
 def expected(*names: str) -> dict[str, Unit]:

@@ -1,0 +1,140 @@
+"""The main result of a study: the outcomes of its first sweep, with the figure that the report shows first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray
+
+from wearlaw.arrays.array import Array
+from wearlaw.figures.curves import FigureData
+from wearlaw.models.law import WEAR
+from wearlaw.pipeline.variables import MASS
+from wearlaw.study.figure_spec import FigureSpec, Scale
+from wearlaw.study.figures import figures_of
+from wearlaw.study.grid import Axis
+from wearlaw.study.results import (
+    LIMITS,
+    main_axis,
+    outcomes_of,
+    patch_axes,
+    predicting,
+)
+from wearlaw.study.study import Study
+from wearlaw.units.quantities import Q, parse
+from wearlaw.units.registry import symbol
+from wearlaw.units.variables import readable
+
+MANY_CURVES = 6
+"""Number of curves beyond which the figure shows the pairs of one contact model only."""
+
+WIDE = 30.0
+"""Ratio of the largest outcome to the smallest beyond which the figure has a logarithmic axis."""
+
+
+@dataclass(frozen=True)
+class MainResult:
+    """The outcomes of the first sweep, with all patches of a point together.
+
+    Attributes
+    ----------
+    study : Study
+        The study.
+    name : str
+        Name of the sweep.
+    sweep : xarray.Dataset
+        The sweep; that of `together` if the rig makes several patches.
+    axis : str
+        The axis along which tables and figures run.
+    outcome : str
+        The wear rate, the mass lost at all patches, or the outcome of the first law.
+    pairs : tuple of str
+        The pairs that predict it.
+    """
+
+    study: Study
+    name: str
+    sweep: xarray.Dataset
+    axis: str
+    outcome: str
+    pairs: tuple[str, ...]
+
+    def along(self, axis: str) -> tuple[Array, str]:
+        """Return the values of an axis, and their unit for a reader, both as the case gives them."""
+        values, unit = self.sweep[axis].values, self.sweep[axis].attrs["units"]
+        given = self.study.case.sweeps[self.name].given[axis]
+        first = given.start if isinstance(given, Axis) else given[0]
+        if not unit or not isinstance(first, str):
+            return values, readable(unit)
+        wanted = parse(first).units
+        return Q(values, unit).to(wanted).magnitude, symbol(wanted, "~P")
+
+
+def main_result(study: Study) -> MainResult:
+    """Return the main result of a study."""
+    name, sweep = next(iter(study.sweeps.items()))
+    outcome = outcomes_of(study, sweep)[0].name
+    if patch_axes(sweep):
+        outcome = MASS if outcome == WEAR else outcome
+        sweep = together(sweep, outcome)
+    axis = main_axis(sweep, study.case.rig.creepage)
+    return MainResult(study, name, sweep, axis, outcome, tuple(predicting(study, outcome, sweep.pair.values.tolist())))
+
+
+def together(sweep: xarray.Dataset, outcome: str) -> xarray.Dataset:
+    """Return a sweep of several patches with one value at each point.
+
+    The mass lost is the sum over the patches, and any other outcome the largest of them. A point is outside a range or
+    beyond a limit if one of its patches is: its maximum pressure is the largest one, and its limits are scaled to it.
+    """
+    axes = patch_axes(sweep)
+    value = sweep[outcome].sum(axes, min_count=1) if outcome == MASS else sweep[outcome].max(axes)
+    found = {outcome: value, "outside_range": sweep.outside_range.max(axes)}
+    if all(name in sweep for name in ("max_pressure", *LIMITS)):
+        found["max_pressure"] = largest = sweep.max_pressure.max(axes)
+        found |= {limit: largest * (sweep[limit] / sweep.max_pressure).min(axes) for limit in LIMITS}
+    return sweep.drop_dims(axes).assign({name: one.assign_attrs(sweep[name].attrs) for name, one in found.items()})
+
+
+def main_figure(main: MainResult) -> FigureData:
+    """Return the figure of the main result: one of the study if it shows the same curves, otherwise a new one."""
+    wanted = _drawn(main)
+    return next((one for one in main.study.figures if _contents(one) == _contents(wanted)), wanted)
+
+
+def _contents(figure: FigureData) -> list[Any]:
+    """Return the labels of what a figure shows."""
+    return [(panel.x.label, panel.y.label, {curve.label for curve in panel.curves}) for panel in figure.panels]
+
+
+def _drawn(main: MainResult) -> FigureData:
+    """Return the figure of the outcome along the main axis."""
+    study, pairs, more = main.study, main.pairs, ""
+    if len(pairs) > MANY_CURVES:
+        first = study.pair(pairs[0]).contact_model
+        pairs = tuple(pair for pair in pairs if study.pair(pair).contact_model == first)
+        more = f" Only the pairs with {first} are shown; the tables hold all."
+    given = study.case.sweeps[main.name].given.get(main.axis)
+    spec = FigureSpec(
+        sweep=main.name,
+        x=main.axis,
+        y=(main.outcome,),
+        x_scale="log" if isinstance(given, Axis) and given.spacing == "log" else "linear",
+        y_scale=_scale(main.sweep[main.outcome].sel(pair=list(pairs)).values),
+        pairs=pairs,
+    )
+    case = study.case.model_copy(update={"figures": {f"{main.outcome}_over_{main.axis}": spec}})
+    (figure,) = figures_of(replace(study, case=case, sweeps={main.name: main.sweep}))
+    if patch_axes(study.sweeps[main.name]):
+        more += f" {'The sum over' if main.outcome == MASS else 'The largest of'} all patches."
+    return replace(figure, caption=figure.caption + more)
+
+
+def _scale(values: Array) -> Scale:
+    """Return a logarithmic scale for values of one sign that differ by more than `WIDE`."""
+    known = values[np.isfinite(values)]
+    positive = known[known > 0.0]
+    wide = positive.size and not (known < 0.0).any() and positive.max() > WIDE * positive.min()
+    return "log" if wide else "linear"
