@@ -221,6 +221,20 @@ def test_stresses_are_drawn_to_the_edges_of_the_patch() -> None:
         assert line[0, 0] == -line[-1, 0]
 
 
+def test_wear_is_drawn_to_the_edges_of_an_ellipse() -> None:
+    rig = {"type": "wheel_rail", "wheel_radius": "460 mm", "rail_head_radius": "300 mm", "material": "steel",
+           "rolling_speed": "20 m/s"}  # fmt: skip
+    at = {"normal_force": "60 kN", "longitudinal_creepage": "0.1 %", "friction_coefficient": 0.3}
+    fields = {"rig": rig, "contact_models": ["fastsim"], "wear_laws": ["kth"], "profiles": {"patch": at}}
+    found = run(case(**fields, sweeps={"own": at}))
+    edge = found.conditions(profile="patch")
+    half = found.pairs[0].pipeline(**edge).problem.b.item()
+    for axes in drawings(found)["patch_across_the_patch"].axes:
+        for line in axes.lines:
+            points = np.asarray(line.get_xydata())
+            assert points[[0, -1]] == pytest.approx(np.array([[-1e3 * half, 0.0], [1e3 * half, 0.0]]), rel=1e-12)
+
+
 # One operating point
 
 

@@ -41,7 +41,6 @@ STYLE: Any = {
     "figure.titlesize": "large",
     "legend.frameon": False,
     "legend.fontsize": "small",
-    "legend.handlelength": 3.0,
     "legend.title_fontsize": "small",
     "font.size": 10,
     "lines.linewidth": 1.6,
@@ -333,6 +332,7 @@ def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
         list(entries.values()),
         list(entries),
         loc="outside lower center",
+        handlelength=3.0,  # a whole period of every line style
         ncols=len(entries) if sum(widths) <= LEGEND_WIDTH else max(1, LEGEND_WIDTH // max(widths)),
         title=_literal(f"bands: {figure.bands}") if has_band(figure) else None,
     )

@@ -28,7 +28,7 @@ OF_LOAD = (*LOADS, "half_width", "semi_axis_a", "semi_axis_b")
 """The variables that the load alone determines."""
 
 BY_PATCH = "patch"
-"""The `x` of a figure with a point for each patch, if the rig makes several."""
+"""The `x` of a figure with bars for each patch, if the rig makes several."""
 
 Scale = Literal["linear", "log"]
 
@@ -98,7 +98,7 @@ class FigureSpec(Window):
     """The profile to show."""
     x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", BY_PATCH, *OF_CONTACT, *OF_POINT, *OF_PATCH]})] = "x"
     """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it. If the rig
-    makes several patches, "patch" shows a point for each."""
+    makes several patches, "patch" shows bars for each."""
     pairs: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """The pairs whose wear rates or other outcomes are shown, such as "usfd on exact". Default: all."""
     contact_models: Annotated[tuple[str, ...], Field(min_length=1)] | None = None

@@ -3,8 +3,8 @@
 Line styles stand for contact models. Colours stand for laws in figures of their outcomes, for variables along the patch
 or where several are shown, and otherwise for contact models too. If the rig makes several patches, colours stand for
 patches, line styles for what is shown of each, and values keep their signs. Bands show the published range of a law's
-parameters. Parts of curves outside the range of their law are thin and pale, and parts of panels beyond first yield or
-shakedown are shaded.
+parameters. Two long axes of a sweep also make a map, and a single operating point makes bars. Parts of curves outside
+the range of their law are thin and pale, and parts of panels beyond first yield or shakedown are shaded.
 """
 
 from __future__ import annotations
@@ -371,16 +371,22 @@ def _along_the_patch(results: Results, profile: xarray.Dataset, spec: FigureSpec
 
 
 def _to_the_edges(curve: Curve, half: float) -> Curve:
-    """Return a stress over a patch of this half width with its ends, where every stress is zero; nodes lie inside."""
+    """Return a curve over a patch of this half width with its ends, where it is zero; nodes lie inside."""
     if not curve.x.size or abs(curve.x).max() >= half:
         return curve
     ends = (-half, half) if curve.x[0] <= curve.x[-1] else (half, -half)
-    return replace(curve, x=np.concatenate([ends[:1], curve.x, ends[1:]]), y=np.concatenate([[0.0], curve.y, [0.0]]))
+    x, y = np.concatenate([ends[:1], curve.x, ends[1:]]), np.concatenate([[0.0], curve.y, [0.0]])
+    return replace(curve, x=x, y=y, outside=None if curve.outside is None else np.pad(curve.outside, 1, mode="edge"))
 
 
 def _across_the_patch(results: Results, profile: xarray.Dataset, spec: FigureSpec, window: Window) -> list[Curve]:
-    """Return curves across the patch for a body: depth for each pair, sliding distance for each contact model."""
+    """Return curves across the patch for a body: depth for each pair, sliding distance for each contact model.
+
+    At the edges, where the patch has no length, both are zero.
+    """
     curves, body = [], _body(results, window)
+    problem = results.case.profiles[spec.profile or ""].problem(results.case.rig)
+    half = 1e3 * float(np.ravel(problem.b)[0]) if problem.geometry == "ellipse" and not problem.dims else 0.0
     for variable in window.shown:
         values = profile[f"{body}_{variable}"]
         if "pair" in values.dims:
@@ -394,7 +400,7 @@ def _across_the_patch(results: Results, profile: xarray.Dataset, spec: FigureSpe
             for model in spec.contact_models or profile.contact_model.values.tolist():
                 x, y = _at_nodes(profile, values.sel(contact_model=model), "y", model)
                 curves.append(Curve(model, x, y, _dash(results, model), _dash(results, model)))
-    return curves
+    return [_to_the_edges(curve, half) for curve in curves] if half else curves
 
 
 def _field(results: Results, profile: xarray.Dataset, variable: str, model: str) -> Curve:
