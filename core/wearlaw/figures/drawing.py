@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -87,10 +88,12 @@ def draw(figure: FigureData) -> Figure:
         styles, norm = line_styles(figure), _norm(figure)
         for number, panel in enumerate(figure.panels):
             if panel.map is not None:
-                mesh = _mesh(axes[number], panel.map, norm)
+                _mesh(axes[number], panel.map, norm)
             _fill(axes[number], panel, styles)
         if norm is not None:
-            bar = drawn.colorbar(mesh, ax=list(axes.values()), label=_literal(_maps(figure)[0].label))
+            bar = drawn.colorbar(
+                ScalarMappable(norm, COLOURS), ax=list(axes.values()), label=_literal(_maps(figure)[0].label)
+            )
             if isinstance(norm, LogNorm):
                 _label_ticks(bar.ax.yaxis)
         drawn.suptitle(_literal("\n".join(title)), y=1.0 - 0.05 / height, va="top")
@@ -294,13 +297,12 @@ def _norm(figure: FigureData) -> Any:
     return LogNorm(low, high) if _maps(figure)[0].scale == "log" and low < high else Normalize(low, high)
 
 
-def _mesh(axes: Axes, drawn: Map, norm: Any) -> Any:
+def _mesh(axes: Axes, drawn: Map, norm: Any) -> None:
     """Draw a map as a cell around each point, so that a jump stays one."""
     mesh = axes.pcolormesh(drawn.x, drawn.y, drawn.values, norm=norm, cmap=COLOURS, shading="nearest", zorder=0)
     mesh.set_rasterized(True)
     axes.set_axisbelow(False)
     axes.grid(visible=False)
-    return mesh
 
 
 def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:

@@ -149,6 +149,7 @@ def bars(results: Results, spec: FigureSpec, window: Window, units: Mapping[str,
     """Return a panel with a bar for each pair, or for each contact model, at the one point of a sweep."""
     sweep = results.sweeps[spec.sweep or ""]
     point = along(sweep, main_axis(sweep, results.case.rig.creepage))
+    first = window.shown[0]
     found: list[Curve] = []
     names: list[str] = []
     for variable in window.shown:
@@ -173,7 +174,7 @@ def bars(results: Results, spec: FigureSpec, window: Window, units: Mapping[str,
                     outside=point.outside_range.sel(at).values > 0.0 if kind == "pair" else None, bars=BAR,
                 )
             )  # fmt: skip
-    x_ends = ends(window.shown[0], units[window.shown[0]], window.y_range) if window.y_range else None
+    x_ends = ends(first, units[first], window.y_range) if window.y_range else None
     return Panel(
         PlotAxis(label(*window.shown, units=units), ends=x_ends),
         PlotAxis("", ends=(-0.5, len(names) - 0.5), inverted=True, names=tuple(names)),

@@ -103,7 +103,7 @@ class FigureSpec(Window):
     """The pairs whose wear rates or other outcomes are shown, such as "usfd on exact". Default: all."""
     contact_models: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """The contact models whose other variables are shown. Default: all."""
-    map: Annotated[str, Field(json_schema_extra=_VARIABLE)] | None = None
+    map: Annotated[str, WithJsonSchema(_VARIABLE)] | None = None
     """A variable to show in colours over two axes of a sweep, `x` and `y`. Each pair or contact model has a panel."""
     measured: bool = False
     """Whether to show the measured tests."""
