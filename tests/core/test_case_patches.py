@@ -275,7 +275,7 @@ def test_panels_can_show_other_patches() -> None:
         assert list(by_label(panel)) == [f"kth on fastsim, {side}, patch {patch}" for patch in PATCHES]
 
 
-def test_a_figure_by_patch_has_a_point_for_each_with_its_name() -> None:
+def test_a_figure_by_patch_has_bars_for_each_with_its_name() -> None:
     spec = {"sweep": "moving", "x": "patch", "y": "wear_rate"}
     asked = {"moving": spec, "flanging": {**spec, "sweep": "flanging"}, "one": {**spec, "patches": {"side": "right"}}}
     study = ran(figures=asked)
@@ -289,10 +289,13 @@ def test_a_figure_by_patch_has_a_point_for_each_with_its_name() -> None:
     assert list(curves) == [f"{law} on {model}" for model in ("fastsim", "polach") for law in ("usfd", "kth")]
     rates = study.sweeps["flanging"].wear_rate
     for label, curve in curves.items():
-        assert curve.points
+        assert curve.bars > 0.0
         np.testing.assert_array_equal(curve.y, [rates.sel({"pair": label, **patch}).item() for patch in AT_SEVEN])
         assert (np.round(curve.x) == [0, 1, 2]).all()
-    assert len({curve.x[0] for curve in curves.values()}) == 4, "no point covers another"
+    places = sorted(curve.x[0] for curve in curves.values())
+    assert np.diff(places).min() > max(curve.bars for curve in curves.values()), "no bar covers another"
+    (by_log,) = ran(figures={"one": {**spec, "y_scale": "log"}}).figures
+    assert all(curve.points and not curve.bars for curve in one_panel(by_log).curves), "a bar cannot begin at zero"
 
 
 @pytest.mark.parametrize("spec", [{"x": "wear_index", "x_scale": "log"}, {"x": "patch"}, {"profile": "flanging"}])

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 from typing import Any, Literal
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -13,8 +11,8 @@ from matplotlib.figure import Figure
 
 from tests.core import cases
 from tests.core.cases import case
-from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.figures.drawing import LINES, MARKERS, PALETTE, draw, marked_points
+from wearlaw.figures.curves import Curve, FigureData, Map, Panel, PlotAxis
+from wearlaw.figures.drawing import BAND, LINES, MARKERS, PALETTE, draw, line_styles
 from wearlaw.study.study import run
 
 X = np.array([1.0, 2.0, 4.0])
@@ -64,87 +62,41 @@ def test_no_two_colours_with_their_markers_and_no_two_line_styles_are_alike() ->
     assert len(set(LINES)) == len(LINES)
 
 
-def test_a_curve_of_one_point_has_a_marker() -> None:
+def test_a_curve_of_one_point_is_a_dot() -> None:
     (line,) = axes_of(curve(x=X[:1], y=X[:1])).lines
-    assert line.get_marker() == MARKERS[0]
+    assert (line.get_marker(), line.get_markevery()) == (".", [0])
 
 
-def places(*curves: Curve) -> list[np.ndarray[Any, Any]]:
-    """Return where the markers of each curve are drawn, shape (markers, 2), in points."""
-    figure = drawn(panel(*curves))
-    (axes,) = figure.axes
-    for number, line in enumerate(axes.lines):
-        line.set_gid(f"line {number}")
-    file = io.StringIO()
-    figure.savefig(file, format="svg")
-    groups = {group.get("id"): group for group in ElementTree.fromstring(file.getvalue()).iter(f"{SVG}g")}
-    lines = [groups[f"line {number}"] for number in range(len(curves))]
-    return [np.array([(float(m.attrib["x"]), float(m.attrib["y"])) for m in line.iter(f"{SVG}use")]) for line in lines]
+def test_only_measurements_have_markers() -> None:
+    many = [curve(str(number), colour=number) for number in range(len(PALETTE))]
+    *lines, points = axes_of(*many, curve("tests", colour=6, points=True)).lines
+    assert {line.get_marker() for line in lines} <= {"", "None"}
+    assert (points.get_marker(), points.get_linestyle()) == (MARKERS[6], "None")
 
 
-def test_lines_that_only_colour_would_tell_apart_have_markers_which_are_few_and_do_not_meet() -> None:
-    x = np.linspace(0.0, 1.0, 1001)
-    alike = [curve(str(number), x=x, y=x, colour=number) for number in range(len(PALETTE))]
-    lines = axes_of(*alike).lines
-    assert [line.get_marker() for line in lines] == [*MARKERS]
-    assert {line.get_markerfacecolor() for line in lines} == {"white"}
-    found = places(*alike)
-    assert all(len(one) == 7 for one in found)
-    together = np.concatenate(found)
-    apart = np.hypot(*(together[:, None] - together).transpose(2, 0, 1))
-    assert (apart + np.diag(np.full(len(together), np.inf))).min() > lines[0].get_markersize()
-
-
-def test_markers_stand_at_equal_distances_along_a_line_on_logarithmic_axes_where_the_axes_show_it() -> None:
-    x = np.geomspace(1.0, 1e6, 6001)
-    axis = PlotAxis("x [-]", "log", (10.0, 1e5))
-    level = PlotAxis("y [-]", "linear", (0.0, 1.0))
-    line = curve(x=x, y=np.full(x.size, 0.5), colour=2)
-    marked = np.log10(x[marked_points(line, Panel(axis, level, (line,)))])
-    # A fifth of four decades, with points of a thousandth of a decade; each marker stands at most one of them later.
-    assert np.diff(marked) == pytest.approx(np.full(marked.size - 1, 0.8), abs=2e-3)
-    assert 1.0 < marked[0] < 1.8
-    assert 4.2 < marked[-1] < 5.0
-
-
-@pytest.mark.parametrize("height", [0.0, 1.0])
-def test_a_level_line_has_markers_and_a_jump_does_not_crowd_them(height: float) -> None:
-    line = curve(x=np.linspace(0.0, 1.0, 1000), y=np.where(np.arange(1000) < 500, 0.0, height))
-    marked = marked_points(line, panel(line))
-    # The first stands at a fourteenth of a spacing, 14.3 steps, the next 199.8 steps later, or right after the jump.
-    assert marked == [15, 215, 415, 615, 815] if height == 0.0 else [15, 215, 415, 500, 700, 900]
-
-
-@pytest.mark.parametrize("scale", ["linear", "log"])
-@pytest.mark.parametrize(
-    ("x", "y", "marked"),
-    [
-        ([1.0, 2.0], [np.nan, 1.0], [1]),
-        ([1.0, 1.02, 2.0], [1.0, 1.0, np.inf], [1]),
-        ([1.0, 2.0], [np.nan, np.nan], []),
-        ([], [], []),
-    ],
-    ids=["one point", "a short line", "none", "nothing"],
-)
-def test_the_shortest_line_has_a_marker_and_what_cannot_be_seen_has_none(
-    scale: Literal["linear", "log"], x: list[float], y: list[float], marked: list[int]
-) -> None:
-    line = curve(x=np.array(x), y=np.array(y))
-    assert marked_points(line, panel(line, curve(), y=PlotAxis("y", scale))) == marked
+def dashes(line: Any) -> Any:
+    """Return the dashes of a line in widths of it, None for a solid one."""
+    return line._unscaled_dash_pattern[1]
 
 
 @pytest.mark.parametrize("axis", [0, 1])
-def test_where_one_panel_needs_markers_all_panels_have_them(axis: int) -> None:
+def test_where_only_colour_would_tell_lines_apart_each_line_of_the_figure_has_a_style(axis: int) -> None:
     panels = [panel(curve("a")), panel(curve("a"), curve("b", colour=1))]
     figure = drawn(*panels[:: 1 - 2 * axis])
-    assert [line.get_marker() for axes in figure.axes for line in axes.lines] == [["s", "s", "^"], ["s", "^", "s"]][
-        axis
-    ]
+    found = {str(line.get_label()): dashes(line) for axes in figure.axes for line in axes.lines}
+    assert found["a"] != found["b"]
+    alike = [curve(str(number), colour=number) for number in range(len(PALETTE))]
+    assert len({dashes(line) and tuple(dashes(line)) for line in axes_of(*alike).lines}) == len(PALETTE) == len(LINES)
 
 
-def test_lines_that_their_style_tells_apart_have_no_markers() -> None:
-    points = curve("tests", colour=6, points=True)
-    assert [len(one) for one in places(curve("a"), curve("b", colour=1, dash=1), points)] == [0, 0, 3]
+def test_where_dashes_tell_lines_apart_they_stay_as_they_are() -> None:
+    figure = FigureData("f", "", (panel(curve("a", dash=2), curve("b", colour=1, dash=1)), panel(curve("c", colour=3))))
+    assert line_styles(figure) == {(0, 2): 2, (1, 1): 1, (3, 0): 0}
+
+
+def test_a_sparser_line_lies_over_a_denser_one() -> None:
+    first, second, third = axes_of(curve("a"), curve("b", dash=2), curve("c", dash=1)).lines
+    assert first.get_zorder() < third.get_zorder() < second.get_zorder()
 
 
 def test_points_of_each_colour_have_a_marker_of_their_own() -> None:
@@ -161,6 +113,13 @@ def test_a_band_is_filled_between_its_ends() -> None:
     (band,) = axes_of(curve(low=X, high=20.0 * X)).collections
     corners = {tuple(corner) for corner in np.asarray(band.get_paths()[0].vertices)}
     assert corners == {*zip(X, X, strict=True), *zip(X, 20.0 * X, strict=True)}
+
+
+def test_a_band_is_light_and_has_edges() -> None:
+    (band,) = axes_of(curve(low=X, high=20.0 * X)).collections
+    face, edge = (np.asarray(colours, dtype=float)[0, 3] for colours in (band.get_facecolor(), band.get_edgecolor()))
+    assert face == BAND < 0.1
+    assert edge > 3.0 * BAND
 
 
 def test_the_uncertainty_of_points_is_drawn_as_bars() -> None:
@@ -211,10 +170,8 @@ def test_a_point_of_a_line_without_neighbours_has_a_marker_and_gaps_stay_open() 
     x = np.arange(6.0)
     gaps = curve(x=x, y=np.array([1.0, np.nan, 1.0, 1.0, np.nan, 1.0]))
     (line,) = axes_of(gaps).lines
-    assert (line.get_marker(), line.get_markevery()) == (MARKERS[0], [0, 5])
+    assert (line.get_marker(), line.get_markevery()) == (".", [0, 5])
     np.testing.assert_array_equal(line.get_ydata(), gaps.y)
-    together = axes_of(gaps, curve(x=x, y=x, colour=1)).lines
-    assert {0, 5} < set(together[0].get_markevery())  # type: ignore[arg-type]
 
 
 def test_without_ends_all_of_the_curves_is_seen() -> None:
@@ -261,6 +218,93 @@ def test_texts_are_shown_as_they_are_written(text: str) -> None:
     assert [one.replace(r"\$", "$").strip() for one in shown] == [text] * 5
 
 
+def texts_of(figure: Figure) -> list[str]:
+    """Return the texts below the title, without their line breaks."""
+    return [text.get_text().replace("\n", " ") for text in figure.texts if text is not figure._suptitle]  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "shown"),
+    [
+        (0.02, 300.0, ["0.1", "1", "10", "100"]),
+        (0.5, 30.0, ["0.5", "1", "2", "5", "10", "20"]),
+        (8.0, 70.0, ["10", "20", "50"]),
+        (500.0, 1500.0, ["500", "600", "800", "1000", "1500"]),
+        (61.0, 64.0, ["61", "61.5", "62", "62.5", "63", "63.5", "64"]),
+        (1e-6, 1e6, ["$10^{-6}$", "$10^{-5}$", *["0.0001", "0.001", "0.01", "0.1", "1", "10", "100", "1000", "10000"],
+                     "$10^{5}$", "$10^{6}$"]),
+    ],
+)  # fmt: skip
+def test_a_logarithmic_axis_has_plain_numbers(low: float, high: float, shown: list[str]) -> None:
+    axis = PlotAxis("load [N]", "log", (low, high))
+    axes = axes_of(curve(x=np.array([low, high]), y=np.array([low, high])), x=axis, y=axis)
+    for drawn_axis in (axes.xaxis, axes.yaxis):
+        found = [text.get_text() for text in drawn_axis.get_ticklabels() if text.get_text()]
+        assert found == shown
+        assert not any(text.get_text() for text in drawn_axis.get_ticklabels(minor=True))
+
+
+def test_the_conditions_stand_below_the_title_above_the_panels() -> None:
+    figure = draw(FigureData("f", "A title", (panel(),), conditions="A study: load 4 kN, " + "more, " * 30))
+    figure.draw_without_rendering()
+    (shown,) = (text for text in figure.texts if text is not figure._suptitle)  # type: ignore[attr-defined]
+    assert shown.get_text().count("\n") == 1, "they are wrapped"
+    box, title = shown.get_window_extent(), figure._suptitle.get_window_extent()  # type: ignore[attr-defined]
+    around = figure.axes[0].get_tightbbox()
+    assert around is not None
+    assert around.y1 <= box.y0 < box.y1 <= title.y0 < title.y1 <= figure.bbox.y1
+    assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
+
+
+BARS = Panel(
+    PlotAxis("wear [g]"),
+    PlotAxis("", ends=(-0.5, 1.5), inverted=True, names=("a", "b")),
+    (
+        Curve("a", np.array([3.0]), np.array([0.0]), low=np.array([1.0]), high=np.array([7.0]), bars=0.7),
+        Curve("b", np.array([5.0]), np.array([1.0]), colour=1, outside=np.array([True]), bars=0.7),
+    ),
+)
+
+
+def test_bars_begin_at_zero_with_their_names_on_the_axis_and_their_numbers_at_their_ends() -> None:
+    figure = drawn(BARS)
+    (axes,) = figure.axes
+    first, second = axes.patches
+    assert [(bar.get_x(), bar.get_width()) for bar in (first, second)] == [(0.0, 3.0), (0.0, 5.0)]  # type: ignore[attr-defined]
+    assert first.get_window_extent().y0 > second.get_window_extent().y1, "from top to bottom"
+    assert [text.get_text() for text in axes.get_yticklabels()] == ["a", "b"]
+    assert [text.get_text() for text in axes.texts] == ["3 (1 to 7)", "5"]
+    assert names(figure) == ["published range of parameters", "outside the range of the law"]
+    assert first.get_alpha() != second.get_alpha()
+    assert axes.texts[0].get_window_extent().x1 <= axes.get_window_extent().x1
+
+
+def test_bars_of_an_axis_of_names_below_stand_upright() -> None:
+    axis = PlotAxis("patch", names=("left", "right"))
+    (axes,) = drawn(panel(curve("a", x=np.arange(2.0), y=X[:2], bars=0.7), x=axis)).axes
+    assert [(bar.get_y(), bar.get_height()) for bar in axes.patches] == [(0.0, 1.0), (0.0, 2.0)]  # type: ignore[attr-defined]
+    assert names(axes.figure) == ["a"]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_maps_share_a_scale_of_colours_and_draw_borders_of_regions(scale: Literal["linear", "log"]) -> None:
+    x, y = np.array([1.0, 2.0, 3.0]), np.array([10.0, 100.0])
+    values = np.array([[1.0, 10.0, 100.0], [2.0, 20.0, np.nan]])
+    borders = {"beyond": values > 5.0, "nowhere": values > 1e3}
+    first, second = (Map("wear [g]", x, y, factor * values, scale, borders) for factor in (1.0, 7.0))
+    axis = PlotAxis("b [-]", "log")
+    figure = drawn(*(Panel(PlotAxis("a [N]"), axis, (), map=one) for one in (first, second)))
+    *panels, bar = figure.axes
+    meshes = [axes.collections[0] for axes in panels]
+    assert [mesh.norm.vmin for mesh in meshes] == [1.0, 1.0]
+    assert [mesh.norm.vmax for mesh in meshes] == [700.0, 700.0]
+    np.testing.assert_array_equal(np.ma.filled(meshes[1].get_array(), np.nan), 7.0 * values)  # type: ignore[arg-type]
+    assert bar.get_ylabel() == "wear [g]"
+    assert bar.get_yscale() == scale
+    assert [axes.get_yscale() for axes in panels] == ["log", "log"]
+    assert names(figure) == ["beyond"]
+
+
 @pytest.mark.parametrize("creepage", [cases.SWEEP["creepage"], "1 %", "0 %", ["0 %", "-1 %"]])
 def test_every_figure_of_a_study_can_be_drawn_without_a_warning(creepage: Any) -> None:
     """Warnings are errors in the tests."""
@@ -268,5 +312,10 @@ def test_every_figure_of_a_study_can_be_drawn_without_a_warning(creepage: Any) -
     for figure in study.figures:
         made = draw(figure)
         made.draw_without_rendering()
-        assert made.get_suptitle() == "A small study"
-        assert [len(axes.lines) for axes in made.axes] == [len(panel.curves) for panel in figure.panels]
+        assert made.get_suptitle() == figure.title
+        assert texts_of(made) == [figure.conditions]
+        for axes, panel in zip(made.axes, figure.panels, strict=True):
+            bars = [patch for patch in axes.patches if patch.get_zorder() > 0]
+            assert len(bars) == sum(1 for curve in panel.curves if curve.bars)
+            lines = [line for line in axes.lines if line.get_label() != "_nolegend_" or not bars]
+            assert len(lines) == sum(1 for curve in panel.curves if not curve.bars)

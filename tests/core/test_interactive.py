@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import json
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import plotly.graph_objects as go
@@ -15,7 +15,7 @@ from matplotlib.colors import to_hex
 
 from tests.core import report_data as data
 from tests.core.report_data import ONE, THREE
-from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.curves import Curve, FigureData, Map, Panel, PlotAxis
 from wearlaw.figures.drawing import draw
 from wearlaw.report.interactive import literal, plotly_figure
 
@@ -60,39 +60,72 @@ def test_what_is_not_a_number_is_left_out(one: dict[str, Any]) -> None:
     assert one["gaps"]["y"] == [None, 1.0, None, 2.0]
 
 
-def test_points_are_not_joined_and_a_single_point_of_a_line_is_seen(one: dict[str, Any]) -> None:
+def test_only_measurements_and_single_points_of_a_line_have_markers(one: dict[str, Any]) -> None:
     modes = {name: trace["mode"] for name, trace in one.items()}
     assert modes.pop("tests") == modes.pop("uncertain tests") == "markers"
-    assert set(modes.values()) == {"lines+markers"}  # of which "rising" and "gaps" have one line style
-    told_by_style = Panel(PlotAxis("x [-]"), PlotAxis("y [-]"), (data.RISING, data.FALLING, data.LONE))
-    modes = {name: trace["mode"] for name, trace in traces(FigureData("f", "", (told_by_style,))).items()}
-    assert modes == {"rising": "lines", "falling": "lines", "lone": "lines+markers"}
+    assert {name for name, mode in modes.items() if mode == "lines+markers"} == {"lone", "gaps"}
+    assert {mode for name, mode in modes.items() if name not in ("lone", "gaps")} == {"lines"}
+    some = Curve("some", np.arange(5.0), np.array([1.0, 2.0, 3.0, np.nan, 5.0]))
+    (trace,) = traces(FigureData("f", "", (Panel(PlotAxis("x"), PlotAxis("y"), (some,)),))).values()
+    assert trace["selectedpoints"] == [4]
+    assert trace["unselected"] == {"marker": {"opacity": 0}}
 
 
-def test_markers_are_those_of_the_printed_figure_on_lines_hollow_and_sparse(one: dict[str, Any]) -> None:
+def test_markers_are_those_of_the_printed_figure(one: dict[str, Any]) -> None:
     symbols = {"s": "square", "^": "triangle-up", "D": "diamond", "v": "triangle-down", "X": "x", "o": "circle"}
     (axes,) = draw(ONE).axes
     printed = {str(line.get_label()): line for line in axes.get_lines()}
-    for name, trace in one.items():
-        points = trace["mode"] == "markers"
-        assert trace["marker"]["symbol"] == symbols[str(printed[name].get_marker())] + ("" if points else "-open")
-        if not points and name != "lone":
-            assert trace["selectedpoints"] == printed[name].get_markevery()
-            assert trace["unselected"] == {"marker": {"opacity": 0}}
-    assert one["lone"]["selectedpoints"] == [0]
+    for name in ("tests", "uncertain tests"):
+        assert one[name]["marker"]["symbol"] == symbols[str(printed[name].get_marker())]
+    assert {one[name]["marker"]["symbol"] for name in ("lone", "gaps")} == {"circle"}
+    assert {printed[name].get_marker() for name in ("lone", "gaps")} == {"."}
 
 
 def test_colours_and_line_styles_are_those_of_the_printed_figure(one: dict[str, Any]) -> None:
     (axes,) = draw(ONE).axes
-    dashes = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
     printed = {label: line for line in axes.get_lines() if (label := str(line.get_label())) != "_nolegend_"}
     assert printed.keys() == one.keys()
+    names = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
     for name, trace in one.items():
         assert trace["line"]["color"].lower() == trace["marker"]["color"].lower() == to_hex(printed[name].get_color())
         if trace["mode"] != "markers":
-            assert trace["line"]["dash"] == dashes[str(printed[name].get_linestyle())]
+            pattern = printed[name]._unscaled_dash_pattern[1]  # type: ignore[attr-defined]
+            shown = trace["line"]["dash"]
+            if "px" in shown:  # twice the lengths in line widths, on a line of two pixels
+                assert [float(length) for length in shown.replace("px", "").split(",")] == [2.0 * n for n in pattern]
+            else:
+                assert shown == names[str(printed[name].get_linestyle())]
     assert len({trace["line"]["color"] for trace in one.values()}) > 5
-    assert len({trace["line"]["dash"] for trace in one.values()}) == 4
+    lines = [trace["line"]["dash"] for trace in one.values() if trace["mode"] != "markers"]
+    assert len(set(lines)) == len(lines), "two of them would differ only in colour"
+
+
+def test_bars_lie_along_the_axis_without_names_with_their_numbers() -> None:
+    bar = Curve("a", np.array([3.0]), np.array([0.0]), low=np.array([1.0]), high=np.array([7.0]), bars=0.7)
+    panel = Panel(PlotAxis("wear [g]"), PlotAxis("", names=("a",)), (bar,))
+    drawn = plotly_figure(FigureData("f", "", (panel,)))
+    go.Figure(drawn)
+    (trace,) = drawn["data"]
+    assert (trace["type"], trace["orientation"], trace["x"], trace["y"]) == ("bar", "h", [3.0], [0.0])
+    assert trace["text"] == ["3 (1 to 7)"]
+    assert (trace["error_x"]["array"], trace["error_x"]["arrayminus"]) == ([4.0], [2.0])
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_maps_share_a_scale_of_colours(scale: Literal["linear", "log"]) -> None:
+    values = np.array([[1.0, 10.0, 100.0], [2.0, 20.0, np.nan]])
+    maps = [Map("wear [g]", np.arange(3.0), np.arange(2.0), factor * values, scale, {"beyond": values > 5.0})
+            for factor in (1.0, 7.0)]  # fmt: skip
+    drawn = plotly_figure(FigureData("f", "", tuple(Panel(PlotAxis("a"), PlotAxis("b"), (), map=m) for m in maps)))
+    go.Figure(drawn)
+    assert json.loads(json.dumps(drawn, allow_nan=False)) == json.loads(json.dumps(drawn))
+    heats = [trace for trace in drawn["data"] if trace["type"] == "heatmap"]
+    ends = [0.0, np.log10(700.0)] if scale == "log" else [1.0, 700.0]
+    for heat in heats:
+        assert [heat["zmin"], heat["zmax"]] == pytest.approx(ends, rel=1e-15)
+    assert heats[0]["customdata"] == [[1.0, 10.0, 100.0], [2.0, 20.0, None]]
+    assert [heat["showscale"] for heat in heats] == [True, False]
+    assert [trace["showlegend"] for trace in drawn["data"] if trace["type"] == "contour"] == [True, False]
 
 
 def test_axes_have_their_labels_scales_and_ends() -> None:

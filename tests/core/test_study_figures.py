@@ -9,7 +9,8 @@ import pytest
 
 from tests.core import cases
 from tests.core.cases import InstallModel, case
-from tests.core.panels import LOADS, assert_shows, by_label, by_name, one_panel
+from tests.core.panels import LOADS, assert_passes, assert_shows, by_label, by_name, one_panel
+from wearlaw.figures.drawing import draw
 from wearlaw.study.study import Study, run
 
 
@@ -42,25 +43,26 @@ def test_a_case_that_asks_for_no_figures_has_one_of_each_kind(study: Study) -> N
 def test_wear_rate_is_shown_for_every_pair_as_the_dataset_has_it(study: Study, name: str, x: str, label: str) -> None:
     panel = one_panel(by_name(study)[name])
     assert (panel.x.label, panel.y.label) == (label, "wear rate [µg/m/mm²]")
-    assert (panel.x.scale, panel.y.scale) == ("log", "log")
-    assert (panel.x.ends, panel.y.ends) == (None, None)
+    scale = "linear" if name.startswith("load") else "log"  # as the values of the sweep are spaced
+    assert (panel.x.scale, panel.y.scale) == (scale, scale)
+    assert panel.x.ends is None
     sweep = study.sweeps["creepage"]
     if name.startswith("load"):
         sweep = study.sweeps["load"].isel(friction_coefficient=1)
         assert panel.title == "friction coefficient 0.4"
     else:
         assert panel.title == ""
-    assert list(by_label(panel)) == list(sweep.pair.values)
+    assert sorted(by_label(panel)) == sorted(sweep.pair.values)
     for pair, curve in by_label(panel).items():
         along = sweep[x].sel(contact_model=pair.split(" on ")[1]) if x == "wear_index" else sweep[x]
-        assert_shows(curve, along, sweep.wear_rate.sel(pair=pair))
+        assert_passes(curve, along, sweep.wear_rate.sel(pair=pair))
 
 
 def test_colour_tells_the_law_and_line_style_the_contact_model_in_all_figures(study: Study) -> None:
     styles = {
         (curve.label, curve.colour, curve.dash)
         for name, figure in by_name(study).items()
-        if "wear_rate" in name
+        if name.startswith("creepage_wear_rate")
         for curve in one_panel(figure).curves
     }
     assert styles == {
@@ -88,9 +90,15 @@ def test_traction_is_shown_for_every_contact_model(study: Study) -> None:
     assert panel.y.ends is not None
     assert panel.y.ends[0] == 0.0
     sweep = study.sweeps["creepage"]
-    assert [(curve.label, curve.colour, curve.dash) for curve in panel.curves] == [("global", 0, 0), ("exact", 1, 1)]
-    for curve in panel.curves:
-        assert_shows(curve, sweep.creepage, sweep.traction_coefficient.sel(contact_model=curve.label))
+    assert [(curve.label, curve.colour, curve.dash) for curve in panel.curves] == [("global = exact", 0, 0)]
+    for model, curve in by_label(panel).items():
+        assert_passes(curve, sweep.creepage, sweep.traction_coefficient.sel(contact_model=model))
+
+
+def test_contact_models_that_differ_have_a_colour_and_a_line_style_each() -> None:
+    figures = by_name(run(case(contact_models=["exact", "fastsim"], wear_laws=["kth"], profiles={})))
+    panel = one_panel(figures["creepage_traction_against_creepage"])
+    assert [(curve.label, curve.colour, curve.dash) for curve in panel.curves] == [("exact", 0, 0), ("fastsim", 1, 1)]
 
 
 def test_stresses_and_slip_are_shown_along_the_patch(study: Study) -> None:
@@ -99,9 +107,14 @@ def test_stresses_and_slip_are_shown_along_the_patch(study: Study) -> None:
     assert (slip.x.label, slip.y.label) == ("position x, leading edge left [mm]", "relative slip s [%]")
     profile = study.profiles["partial_slip"].sel(contact_model="exact")
     curves = {**by_label(stresses), **by_label(slip)}
-    assert_shows(curves.pop("pressure p"), profile.x, profile.pressure)
-    assert_shows(curves.pop("traction q, exact"), profile.x, profile.traction)
-    assert_shows(curves.pop("traction bound, exact"), profile.x, profile.traction_bound)
+    # a = 2 p0 R / E*, as in test_study_figures_asked; there every stress is zero, and the nodes lie inside.
+    edge = 2 * 1500 * 11.75 / 112021.2
+    for label, field in (("pressure p", "pressure"), ("traction q, exact", "traction"),
+                         ("traction bound, exact", "traction_bound")):  # fmt: skip
+        curve = curves.pop(label)
+        np.testing.assert_array_equal((curve.x[1:-1], curve.y[1:-1]), (profile.x, profile[field]))
+        assert curve.x[[0, -1]] == pytest.approx([-edge, edge], rel=1e-6)
+        assert curve.y[[0, -1]].tolist() == [0.0, 0.0]
     assert_shows(curves.pop("relative slip s, exact"), profile.x, profile.slip)
     assert not curves
 
@@ -110,25 +123,41 @@ def test_a_model_with_nodes_of_its_own_is_shown_on_these(install_model: InstallM
     install_model(cases.Coarse)
     figures = by_name(run(case(contact_models=["coarse", "exact"], wear_laws=["kth"])))
     nodes = {c.label: c.x.size for panel in figures["partial_slip_along_the_patch"].panels for c in panel.curves}
-    assert {size for label, size in nodes.items() if "coarse" in label or label == "pressure p"} == {7}
-    assert {size for label, size in nodes.items() if "exact" in label} == {200}
+    stresses = {label: size - 2 for label, size in nodes.items() if "slip" not in label}  # without the edges
+    assert {size for label, size in stresses.items() if "coarse" in label or label == "pressure p"} == {7}
+    assert {size for label, size in stresses.items() if "exact" in label} == {200}
+    assert {label: size for label, size in nodes.items() if "slip" in label} == {
+        "relative slip s, coarse": 7, "relative slip s, exact": 200,
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize(
     ("creepage", "scale"),
     [
-        ("1 %", "log"),
-        ("0 %", "linear"),
-        ("-1 %", "log"),
-        (["0 %", "1 %"], "log"),
-        ({"from": "-1 %", "to": "1 %", "points": 5}, "log"),
+        ({"from": "0.1 %", "to": "10 %", "points": 5, "spacing": "log"}, "log"),
+        ({"from": "1 %", "to": "10 %", "points": 5}, "linear"),
+        (["0.1 %", "0.2 %", "0.5 %", "1 %", "2 %", "5 %"], "log"),
+        (["1 %", "2 %", "3 %", "4.1 %"], "linear"),
+        (["1 %", "2 %"], "linear"),
+        (["0 %", "1 %"], "linear"),
+        ({"from": "-1 %", "to": "1 %", "points": 5}, "linear"),
+        ({"from": "-10 %", "to": "-0.1 %", "points": 5, "spacing": "log"}, "log"),
     ],
-    ids=["one point", "no creepage", "negative", "from zero", "through zero"],
 )
-def test_axes_are_logarithmic_unless_nothing_would_be_seen(creepage: Any, scale: str) -> None:
-    ran = run(case(sweeps={"s": {**cases.POINT, "creepage": creepage}}, profiles={}))
-    panel = one_panel(by_name(ran)["s_wear_rate_against_creepage"])
-    assert (panel.x.scale, panel.y.scale) == (scale, scale)
+def test_axes_are_spaced_as_the_values_of_the_sweep(creepage: Any, scale: str) -> None:
+    figures = by_name(run(case(sweeps={"s": {**cases.POINT, "creepage": creepage}}, profiles={})))
+    for name in ("s_wear_rate_against_creepage", "s_wear_rate_against_wear_index"):
+        panel, (axes,) = one_panel(figures[name]), draw(figures[name]).axes
+        assert (panel.x.scale, axes.get_xscale(), axes.get_yscale()) == (scale, scale, panel.y.scale)
+        assert panel.y.scale == scale or scale == "linear"
+    assert one_panel(figures["s_traction_against_creepage"]).x.scale == scale
+
+
+def test_over_a_linear_sweep_wear_rates_that_differ_much_stand_on_a_logarithmic_axis() -> None:
+    far = {"from": "0.1 %", "to": "20 %", "points": 5}
+    figures = by_name(run(case(sweeps={"s": {**cases.POINT, "creepage": far}}, profiles={})))
+    panel = one_panel(figures["s_wear_rate_against_creepage"])
+    assert (panel.x.scale, panel.y.scale) == ("linear", "log")
 
 
 def test_a_sweep_shows_magnitudes() -> None:

@@ -1,8 +1,9 @@
-"""The data of a figure: curves and points with their axes, independent of how they are drawn."""
+"""The data of a figure: curves, points, bars and maps with their axes, independent of how they are drawn."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -32,7 +33,9 @@ class Curve:
     low, high : ndarray, (points,), or None
         Ends of a band around it.
     points : bool
-        Whether it is a set of points, not joined by a line.
+        Whether it is a set of points, not joined by a line. Predictions are lines or bars, measurements points.
+    bars : float
+        Thickness of bars in place of a line, in values of the axis with names; 0 for a line. Bars begin at zero.
     outside : ndarray of bool, (points,), or None
         Where it lies outside the range of its wear law; drawn thin and pale.
     """
@@ -46,6 +49,39 @@ class Curve:
     high: Array | None = None
     points: bool = False
     outside: NDArray[np.bool_] | None = None
+    bars: float = 0.0
+
+    @property
+    def is_line(self) -> bool:
+        """Whether it is drawn as a line."""
+        return not self.points and not self.bars
+
+
+@dataclass(frozen=True, eq=False)
+class Map:
+    """A variable over a grid of the values of both axes, drawn in colours.
+
+    Attributes
+    ----------
+    label : str
+        The variable with its unit.
+    x : ndarray, (columns,)
+    y : ndarray, (rows,)
+        In the units of the axis labels.
+    values : ndarray, (rows, columns)
+        NaN where there is no value.
+    scale : {"linear", "log"}
+        Scale of the colours.
+    borders : mapping of str to ndarray of bool, (rows, columns)
+        Regions by their names in the legend, of which the border is drawn as a line.
+    """
+
+    label: str
+    x: Array
+    y: Array
+    values: Array
+    scale: Literal["linear", "log"] = "linear"
+    borders: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -101,7 +137,7 @@ class PlotAxis:
 class Panel:
     """A pair of axes with its curves and shades; a darker shade lies over a lighter one.
 
-    With `equal`, a length in x is as long as in y, as for the shape of a body.
+    With `equal`, a length in x is as long as in y, as for the shape of a body. A map lies below the curves.
     """
 
     x: PlotAxis
@@ -110,6 +146,7 @@ class Panel:
     title: str = ""
     shades: tuple[Shade, ...] = ()
     equal: bool = False
+    map: Map | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +162,8 @@ class FigureData:
     panels : tuple of Panel
     bands : str
         Meaning of the bands, if there are any.
+    conditions : str
+        The study and the conditions that are the same in all panels, for a line below the title of a picture.
     """
 
     name: str
@@ -132,11 +171,12 @@ class FigureData:
     panels: tuple[Panel, ...]
     caption: str = ""
     bands: str = "published range of parameters"
+    conditions: str = ""
 
 
 def has_band(figure: FigureData) -> bool:
-    """Return whether any line of a figure has a band; points have error bars."""
-    return any(curve.low is not None and not curve.points for panel in figure.panels for curve in panel.curves)
+    """Return whether any line of a figure has a band; points and bars have error bars."""
+    return any(curve.low is not None and curve.is_line for panel in figure.panels for curve in panel.curves)
 
 
 OUTSIDE = "outside the range of the law"

@@ -15,6 +15,7 @@ from wearlaw.figures.curves import (
     OUTSIDE,
     Curve,
     FigureData,
+    Map,
     Panel,
     PlotAxis,
     has_band,
@@ -22,7 +23,21 @@ from wearlaw.figures.curves import (
     lone_points,
     shows_outside,
 )
-from wearlaw.figures.drawing import LINES, MARKERS, PALE, PALETTE, THIN, has_markers, marked_points
+from wearlaw.figures.drawing import (
+    BAND,
+    COLOURS,
+    EDGE,
+    LINES,
+    MARKERS,
+    PALE,
+    PALETTE,
+    THIN,
+    bar_texts,
+    line_styles,
+    log_ticks,
+    map_range,
+    style_of,
+)
 
 DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
 SYMBOLS = dict(
@@ -48,12 +63,15 @@ def plotly_figure(figure: FigureData) -> Json:
     """
     # plotly.js numbers axes from the second one on: x, x2, x3.
     numbered = list(zip(["", *map(str, range(2, len(figure.panels) + 1))], figure.panels, strict=True))
-    markers = has_markers(figure)
-    data = [
+    styles = line_styles(figure)
+    data = [trace for number, panel in numbered if panel.map for trace in _map(panel.map, number, map_range(figure))]
+    data += [
         trace
         for number, panel in numbered
         for curve in panel.curves
-        for trace in _traces(curve, panel, number, markers)
+        for trace in (
+            [_bar(curve, panel, number)] if curve.bars else _traces(curve, panel, number, style_of(curve, styles))
+        )
     ]
     data += _explained(figure)
     listed: set[str] = set()
@@ -123,7 +141,7 @@ def literal(text: str) -> str:
     return html.escape(text, quote=False).replace("%", "&#37;")
 
 
-def _traces(curve: Curve, panel: Panel, number: str, markers: bool) -> list[Json]:
+def _traces(curve: Curve, panel: Panel, number: str, line_style: int) -> list[Json]:
     """Return the traces of a curve: its band, if any, and the line."""
     colour = PALETTE[curve.colour % len(PALETTE)]
     common: Json = {
@@ -134,15 +152,15 @@ def _traces(curve: Curve, panel: Panel, number: str, markers: bool) -> list[Json
         "yaxis": f"y{number}",
     }
     lone = lone_points(curve)
-    some = markers or 0 < len(lone) < np.isfinite(curve.y).sum()
+    some = 0 < len(lone) < np.isfinite(curve.y).sum()
     inside, outside = in_parts(curve)
-    style: Json = {"color": colour, "dash": DASHES[LINES[curve.dash % len(LINES)]], "width": 2}
+    style: Json = {"color": colour, "dash": _dash(line_style), "width": 2}
     line = {
         **common,
-        **(_sparse(curve, panel, lone, markers) if some and not curve.points else {}),
+        **({"selectedpoints": lone, "unselected": {"marker": {"opacity": 0}}} if some and not curve.points else {}),
         "x": _numbers(curve.x),
         "y": _numbers(inside),
-        "mode": "markers" if curve.points else "lines+markers" if some or lone else "lines",
+        "mode": "markers" if curve.points else "lines+markers" if lone else "lines",
         "line": style,
         "marker": _marker(curve, colour),
         "hovertemplate": _hover(curve, panel),
@@ -161,17 +179,91 @@ def _traces(curve: Curve, panel: Panel, number: str, markers: bool) -> list[Json
     return [{**common, **_band(curve, panel, colour), "showlegend": False}, *lines]
 
 
+def _dash(style: int) -> str:
+    """Return a line style as plotly.js names it, or its lengths in pixels on a line of two."""
+    pattern = LINES[style]
+    return DASHES[pattern] if isinstance(pattern, str) else ",".join(f"{2 * length:g}px" for length in pattern[1])
+
+
+def _bar(curve: Curve, panel: Panel, number: str) -> Json:
+    """Return the trace of bars, with their numbers at their ends."""
+    colour, flat = PALETTE[curve.colour % len(PALETTE)], bool(panel.y.names)
+    values = curve.x if flat else curve.y
+    bar: Json = {
+        "type": "bar",
+        "name": literal(curve.label),
+        "legendgroup": literal(curve.label),
+        "xaxis": f"x{number}",
+        "yaxis": f"y{number}",
+        "x": _numbers(curve.x),
+        "y": _numbers(curve.y),
+        "width": curve.bars,
+        "orientation": "h" if flat else "v",
+        "marker": {"color": colour, "opacity": PALE if curve.outside is not None and curve.outside.any() else 1.0},
+        "text": bar_texts(curve, panel),
+        "textposition": "outside",
+        "cliponaxis": False,
+        "hovertemplate": f"<b>{literal(curve.label)}</b>: %{{{'x' if flat else 'y'}:.4~g}}<extra></extra>",
+        "showlegend": not flat,
+    }
+    if curve.low is not None and curve.high is not None:
+        bar["error_x" if flat else "error_y"] = _bars(values, curve.low, curve.high, "rgb(96, 96, 96)")
+    return bar
+
+
+def _map(shown: Map, number: str, ends: Ends) -> list[Json]:
+    """Return the trace of a map and those of the borders of its regions.
+
+    Colours have no logarithmic scale in plotly.js, so they stand for logarithms, and the bar has values at its ticks.
+    """
+    values = np.asarray(shown.values, dtype=float)
+    log = shown.scale == "log"
+    with np.errstate(divide="ignore", invalid="ignore"):
+        colours = np.log10(np.where(values > 0.0, values, np.nan)) if log else values
+    ticks = log_ticks(*ends) if log and ends[0] < ends[1] else []
+    low, high = np.log10(ends) if log else ends
+    axes: Json = {"xaxis": f"x{number}", "yaxis": f"y{number}", "x": _numbers(shown.x), "y": _numbers(shown.y)}
+    bar: Json = {"title": {"text": literal(shown.label), "side": "right"}}
+    if ticks:
+        bar |= {"tickvals": _numbers(np.log10(ticks)), "ticktext": [f"{tick:g}" for tick in ticks]}
+    heat: Json = {
+        **axes,
+        "type": "heatmap",
+        "name": literal(shown.label),
+        "legendgroup": literal(shown.label),
+        "z": [_numbers(row) for row in colours],
+        "customdata": [_numbers(row) for row in values],
+        "zmin": float(low),
+        "zmax": float(high),
+        "colorscale": COLOURS.capitalize(),
+        "colorbar": bar,
+        "showscale": not number,
+        "hovertemplate": f"%{{x:.4~g}}, %{{y:.4~g}}: %{{customdata:.4~g}}<extra>{literal(shown.label)}</extra>",
+        "showlegend": False,
+    }
+    borders = [
+        {
+            **axes,
+            "type": "contour",
+            "name": literal(label),
+            "legendgroup": literal(label),
+            "z": [_numbers(row) for row in region.astype(float)],
+            "contours": {"start": 0.5, "end": 0.5, "size": 1.0, "coloring": "none"},
+            "line": {"color": "black", "width": 2, "dash": _dash(place % len(LINES))},
+            "hoverinfo": "skip",
+            "showscale": False,
+            "showlegend": True,
+        }
+        for place, (label, region) in enumerate(shown.borders.items())
+        if region.any() and not region.all()
+    ]
+    return [heat, *borders]
+
+
 def _marker(curve: Curve, colour: str) -> Json:
-    symbol = SYMBOLS[MARKERS[curve.colour % len(MARKERS)]]
     if curve.points:
-        return {"color": colour, "symbol": symbol, "size": 7}
-    return {"color": colour, "symbol": f"{symbol}-open", "size": 9, "line": {"width": 2}}
-
-
-def _sparse(curve: Curve, panel: Panel, lone: list[int], markers: bool) -> Json:
-    """Show markers at some points only: plotly.js would space them by index, not along the line."""
-    marked = marked_points(curve, panel) if markers else []
-    return {"selectedpoints": sorted({*marked, *lone}), "unselected": {"marker": {"opacity": 0}}}
+        return {"color": colour, "symbol": SYMBOLS[MARKERS[curve.colour % len(MARKERS)]], "size": 7}
+    return {"color": colour, "symbol": "circle", "size": 5}
 
 
 def _texts(curve: Curve, panel: Panel) -> Json:
@@ -207,11 +299,15 @@ def _band(curve: Curve, panel: Panel, colour: str) -> Json:
         "x": _numbers(np.concatenate([x[seen], x[seen][::-1]])),
         "y": _numbers(np.concatenate([low[seen], high[seen][::-1]])),
         "mode": "lines",
-        "line": {"width": 0},
+        "line": {"width": 0.5, "color": _faint(colour, EDGE)},
         "fill": "toself",
-        "fillcolor": f"rgba({', '.join(str(part) for part in bytes.fromhex(colour[1:]))}, 0.12)",
+        "fillcolor": _faint(colour, BAND),
         "hoverinfo": "skip",
     }
+
+
+def _faint(colour: str, opacity: float) -> str:
+    return f"rgba({', '.join(str(part) for part in bytes.fromhex(colour[1:]))}, {opacity:g})"
 
 
 def _axis(axis: PlotAxis) -> Json:

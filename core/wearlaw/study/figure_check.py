@@ -104,6 +104,9 @@ class Contents:
             return
         grid = grids[asked]
         known = self._variables(kind, asked, grid)
+        if spec.map:
+            yield from self._of_map(spec, grid, known)
+            return
         yield from _unknown("x", [spec.x], known.x)
         for number, window in enumerate(spec.windows()):
             path = f"panels.{number}." if spec.panels else ""
@@ -117,6 +120,15 @@ class Contents:
         if spec.measured and missing:
             has = f"have only {', '.join(self.measured)}" if self.measured else "are missing; add [measured]"
             yield "measured", f"cannot show {' and '.join(missing)} of the measured tests, which {has}"
+
+    def _of_map(self, spec: FigureSpec, grid: Grid, known: Variables) -> Iterator[tuple[str, str]]:
+        """Yield the faults of a map."""
+        axes = tuple(grid.axes())
+        for field_, axis in (("x", spec.x), ("y", spec.shown[0])):
+            if axis not in axes:
+                yield field_, f"a map runs along axes of the sweep; there is no {_choice(axis, axes)}"
+        yield from _unknown("map", spec.of_values, known.y)
+        yield from self._of_models(spec, grid)
 
     def _variables(self, kind: str, name: str, grid: Grid) -> Variables:
         """Return the variables of a sweep or profile, found by predicting its first operating point."""
@@ -250,7 +262,7 @@ class Contents:
         if not pairs:
             yield "profile" if spec.profile else "sweep", next(iter(refusals.values()))
             return
-        shown = {variable for window in spec.windows() for variable in window.shown if variable in self.outcomes}
+        shown = spec.of_values & {*self.outcomes}
         for outcome in sorted(shown - {law.outcome.name for law in pairs.values()}):
             reasons = (refusal for (_, law), refusal in refusals.items() if self.laws[law].outcome.name == outcome)
             yield "y", f"no pair of the case gives {outcome}: {next(reasons)}"

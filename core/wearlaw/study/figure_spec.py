@@ -28,7 +28,7 @@ OF_LOAD = (*LOADS, "half_width", "semi_axis_a", "semi_axis_b")
 """The variables that the load alone determines."""
 
 BY_PATCH = "patch"
-"""The `x` of a figure with a point for each patch, if the rig makes several."""
+"""The `x` of a figure with bars for each patch, if the rig makes several."""
 
 Scale = Literal["linear", "log"]
 
@@ -98,11 +98,13 @@ class FigureSpec(Window):
     """The profile to show."""
     x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", BY_PATCH, *OF_CONTACT, *OF_POINT, *OF_PATCH]})] = "x"
     """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it. If the rig
-    makes several patches, "patch" shows a point for each."""
+    makes several patches, "patch" shows bars for each."""
     pairs: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """The pairs whose wear rates or other outcomes are shown, such as "usfd on exact". Default: all."""
     contact_models: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """The contact models whose other variables are shown. Default: all."""
+    map: Annotated[str, WithJsonSchema(_VARIABLE)] | None = None
+    """A variable to show in colours over two axes of a sweep, `x` and `y`. Each pair or contact model has a panel."""
     measured: bool = False
     """Whether to show the measured tests."""
     panels: tuple[Window, ...] = ()
@@ -114,6 +116,11 @@ class FigureSpec(Window):
         if wrong:
             raise ConfigurationError("figure", wrong)
         return self
+
+    @property
+    def of_values(self) -> set[str]:
+        """The variables that the figure shows along the y axis or in colours."""
+        return {self.map} if self.map else {variable for window in self.windows() for variable in window.shown}
 
     def windows(self) -> tuple[Window, ...]:
         """Return the panels, each with the fields that it inherits."""
@@ -133,7 +140,9 @@ class FigureSpec(Window):
                 yield (*path, "y"), "is missing"
             elif len(set(window.y)) < len(window.y):
                 yield (*path, "y"), "names a variable twice"
-        shown = {variable for window in self.windows() for variable in window.shown}
+        shown = self.of_values
+        if self.map:
+            yield from self._of_map()
         if self.pairs and shown <= OF_CONTACTS:
             yield (
                 ("pairs",),
@@ -144,6 +153,18 @@ class FigureSpec(Window):
             yield ("contact_models",), f"the figure shows only {only}; choose among pairs instead"
         if self.measured and self.profile:
             yield ("measured",), "tests are measured over the whole patch; show them in a figure of a sweep"
+
+    def _of_map(self) -> Iterator[tuple[tuple[str, ...], str]]:
+        """Yield the faults of the fields that a map does not take."""
+        why = {
+            "profile": "a map shows a sweep; name one with at least two axes",
+            "panels": "a map has a panel for each pair; leave them out",
+            "measured": "a map shows no tests; leave it out",
+            "body": "a map shows no single body; leave it out",
+        }
+        yield from (((name,), text) for name, text in why.items() if getattr(self, name))
+        if len(self.shown) != 1 or self.shown[0] == self.x:
+            yield ("y",), "a map runs over two axes of the sweep; name the other one as y"
 
 
 def wrong_range(variable: str, unit: str, given: Range | None, scale: Scale | None) -> Iterator[str]:

@@ -3,32 +3,41 @@
 Line styles stand for contact models. Colours stand for laws in figures of their outcomes, for variables along the patch
 or where several are shown, and otherwise for contact models too. If the rig makes several patches, colours stand for
 patches, line styles for what is shown of each, and values keep their signs. Bands show the published range of a law's
-parameters. Parts of curves outside the range of their law are thin and pale, and parts of panels beyond first yield or
-shakedown are shaded.
+parameters. Two long axes of a sweep also make a map, and a single operating point makes bars. Parts of curves outside
+the range of their law are thin and pale, and parts of panels beyond first yield or shakedown are shaded.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray
 
-from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis, Shade
+from wearlaw.figures.coinciding import united
+from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.models.law import WEAR
+from wearlaw.study.figure_kinds import (
+    axes_of_map,
+    bars,
+    converted,
+    fit_for_log,
+    limits_in_words,
+    maps,
+    whole_maps,
+)
 from wearlaw.study.figure_spec import ACROSS, BY_PATCH, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
+from wearlaw.study.jumps import with_jumps
 from wearlaw.study.measured import measured_points
 from wearlaw.study.results import (
-    LIMITS,
     Patch,
     Results,
     along,
     axes_of,
-    beyond_limits,
-    by_patch,
     in_words,
     is_of_patches,
     labelled_by,
@@ -40,17 +49,19 @@ from wearlaw.study.results import (
     possible_patches,
     predicting,
 )
+from wearlaw.study.shades import all_over, lines_of, over_limits, shade_in, values_of
 from wearlaw.units.variables import UNITS, label, name_of
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from wearlaw.arrays.array import Array
     from wearlaw.study.grid import Grid
 
 
-BESIDE = 0.15
-"""Largest distance of points from the middle of their patch, so that they do not cover each other."""
+STRESSES = ("pressure", "traction", "traction_bound")
+"""Variables along the patch that a title calls stresses."""
+
+TOGETHER = 0.8
+"""Thickness of the bars of a patch together; the next patch is at a distance of 1."""
 
 MANY_LINES = 8
 """Number of lines in a panel beyond which a figure's caption says how to choose."""
@@ -59,64 +70,138 @@ MANY_LINES = 8
 def figures_of(results: Results) -> tuple[FigureData, ...]:
     """Return the data of each figure of a study."""
     asked = results.case.figures or dict(_usual(results))
-    return tuple(_figure(results, name, spec) for name, spec in asked.items())
+    titles = {name: spec.title or _title(spec, results) for name, spec in asked.items()}
+    of_many = {title for title, count in Counter(titles.values()).items() if count > 1}
+    for name, spec in asked.items():
+        if titles[name] in of_many and not spec.title:
+            titles[name] += f" ({(spec.sweep or spec.profile or '').replace('_', ' ')})"
+    return tuple(_figure(results, name, spec, titles[name]) for name, spec in asked.items())
 
 
 def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
-    """Yield the default figures: outcomes and traction over each sweep, and the fields or wear of each profile."""
+    """Yield the default figures: outcomes and traction over each sweep, and the fields or wear of each profile.
+
+    Scales are those of the sweep's own spacing.
+    """
     creepage = results.case.rig.creepage
     for name, sweep in results.sweeps.items():
         axis, several = main_axis(sweep, creepage), is_of_patches(sweep)
-        # One operating point of several patches is no curve. The conditions of a wheelset may be zero or negative.
-        first = BY_PATCH if several and not axes_of(sweep) else axis
-        x_scale: Scale = "linear" if several else "log"
+        # One operating point of several patches is no curve.
+        point = not axes_of(sweep)
+        first = BY_PATCH if several and point else axis
+        spacing: Scale = "linear" if point else results.case.sweeps[name].spacing(axis)
+        plane = axes_of_map(sweep, creepage)
         for outcome in outcomes_of(results, sweep):
+            if plane is not None:
+                spec = FigureSpec(sweep=name, x=plane[0], y=(plane[1],), map=outcome.name)
+                yield f"{name}_{outcome.name}_over_{plane[0]}_and_{plane[1]}", spec
+            if point and not several:
+                yield f"{name}_{outcome.name}", FigureSpec(sweep=name, x=axis, y=(outcome.name,))
+                continue
+            along_axis = along(sweep, axis)[outcome.name].values
+            log = not outcome.signed and first != BY_PATCH and (spacing == "log" or fit_for_log(along_axis))
             for x in (first,) if first == BY_PATCH else ("wear_index", first):
-                y_scale: Scale = "linear" if outcome.signed else "log"
-                spec = FigureSpec(sweep=name, x=x, y=(outcome.name,), x_scale=x_scale, y_scale=y_scale)
+                y_scale: Scale = "log" if log else "linear"
+                spec = FigureSpec(sweep=name, x=x, y=(outcome.name,), x_scale=spacing, y_scale=y_scale)
                 yield f"{name}_{outcome.name}_against_{x}", spec
         if axis == creepage:
             measured = results.case.measured is not None
-            spec = FigureSpec(sweep=name, x=first, y=("traction_coefficient",), x_scale=x_scale, measured=measured)
-            yield f"{name}_traction_against_{first}", spec
+            spec = FigureSpec(sweep=name, x=first, y=("traction_coefficient",), x_scale=spacing, measured=measured)
+            yield f"{name}_traction" if point and not several else f"{name}_traction_against_{first}", spec
     for name, profile in results.profiles.items():
         if "y" in profile:
             bodies = [body for body in results.case.rig.bodies if f"{body}_depth" in profile]
             across = tuple(Window(title=body, y=(y,), body=body) for y in ACROSS for body in bodies)
             yield f"{name}_across_the_patch", FigureSpec(profile=name, x="y", panels=across)
         elif profile:
-            panels = (Window(y=("pressure", "traction", "traction_bound")), Window(y=("slip",)))
+            panels = (Window(y=STRESSES), Window(y=("slip",)))
             yield f"{name}_along_the_patch", FigureSpec(profile=name, panels=panels)
 
 
-def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
+def _title(spec: FigureSpec, results: Results) -> str:
+    """Return a title in words, such as "Wear rate over normal force"."""
+    if spec.map:
+        words = f"{name_of(spec.map)} over {name_of(spec.x)} and {name_of(spec.shown[0])}"
+    else:
+        shown = dict.fromkeys(variable for window in spec.windows() for variable in window.shown)
+        names = [name_of(variable) for variable in shown if variable not in STRESSES]
+        stresses = [name_of(variable) for variable in shown if variable in STRESSES]
+        names = [*(["stresses"] if len(stresses) == len(STRESSES) else stresses), *names]
+        words = " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+        if spec.profile:
+            words += f" {'across' if spec.x == 'y' else 'along'} the patch"
+        elif spec.x == BY_PATCH:
+            words += " by patch"
+        elif not _is_of_bars(results, spec):
+            words += f" over {name_of(spec.x)}"
+    return words[:1].upper() + words[1:]
+
+
+def _is_of_bars(results: Results, spec: FigureSpec) -> bool:
+    """Return whether a figure shows the one point of a sweep as bars."""
+    sweep = results.sweeps.get(spec.sweep or "")
+    return sweep is not None and not (axes_of(sweep) or is_of_patches(sweep) or spec.measured)
+
+
+def _figure(results: Results, name: str, spec: FigureSpec, title: str) -> FigureData:
     grid = results.case.sweeps[spec.sweep] if spec.sweep else results.case.profiles[spec.profile or ""]
+    units = results.case.result_units | grid.written_units()
     axis = axis_along(grid, spec.x, results.case.rig.creepage) if spec.sweep else ""
-    fixed = _conditions(grid, axis, results.case.units)
-    heads = [text for condition, text in fixed.items() if condition in grid.axes()]
-    panels = []
-    for window in spec.windows():
-        units = results.case.result_units
-        x = spec.x
-        if spec.sweep:
-            curves = _over_sweep(results, spec, window, axis)
-            shades = _over_limits(results, spec, window, axis)
-        else:
-            profile = results.profiles[spec.profile or ""]
-            curves = _of_profile(results, profile, spec, window)
-            shades = _all_over(profile, spec, window, curves)
-            if "y" in profile:
-                x, body = "y", _body(results, window)
-                units = units | {name: profile[f"{body}_{name}"].attrs["units"] for name in window.shown}
-        title = ", ".join(filter(None, (window.title, *heads)))
-        by_name = x == BY_PATCH
-        x_axis = _named(results.sweep(spec.sweep or ""), window) if by_name else _x_axis(x, window, curves, units)
-        low, high = x_axis.ends or (-np.inf, np.inf)
-        seen = (shade for shade in shades if any(start < high and end > low for start, end in shade.spans))
-        y_axis = _y_axis(x_axis, window, curves, units)
-        panels.append(Panel(x_axis, y_axis, curves=tuple(curves), title=title, shades=tuple(seen)))
-    caption = spec.caption or f"At {', '.join(fixed.values())}.{_hint(results, spec, panels)}"
-    return FigureData(name=name, title=spec.title or results.case.title, panels=tuple(panels), caption=caption)
+    of_bars = _is_of_bars(results, spec)
+    free = {spec.x, *spec.shown} if spec.map else {"" if of_bars else axis}
+    fixed = _conditions(grid, free, units)
+    more, heads = "", []
+    if spec.map:
+        panels, left_out = maps(results, spec, units)
+        more = whole_maps(panels)
+        if left_out:
+            more += f" {left_out} more are left out; choose among them with pairs, contact_models or patches."
+    elif of_bars:
+        panels = [bars(results, spec, window, units) for window in spec.windows()]
+        more = limits_in_words(results.sweeps[spec.sweep or ""])
+    else:
+        heads = [text for condition, text in fixed.items() if condition in grid.axes()]
+        panels = [_panel(results, spec, window, axis, heads, units) for window in spec.windows()]
+        several = is_of_patches(results.sweeps[spec.sweep] if spec.sweep else results.profiles[spec.profile or ""])
+        if not several and all(len(window.shown) == 1 for window in spec.windows()):
+            panels = list(united(panels))  # lines of several variables or patches stay apart
+    head, conditions = results.case.title, ", ".join(fixed.values())
+    below = ", ".join(text for text in fixed.values() if text not in heads)
+    return FigureData(
+        name=name,
+        title=title,
+        panels=tuple(panels),
+        caption=spec.caption or f"At {conditions}.{more}{_hint(results, spec, panels)}",
+        conditions=f"{head}: {below}" if below else head,
+    )
+
+
+def _panel(
+    results: Results, spec: FigureSpec, window: Window, axis: str, heads: list[str], shown_units: Mapping[str, str]
+) -> Panel:
+    """Return a panel of curves, with its x axis in the unit of the case's own file."""
+    units, x = results.case.result_units, spec.x
+    if spec.sweep:
+        curves = _over_sweep(results, spec, window, axis)
+        shades = over_limits(results, spec, window, axis)
+        if x != BY_PATCH and units[x] != shown_units[x]:
+            curves = [replace(curve, x=converted(curve.x, units[x], shown_units[x])) for curve in curves]
+            shades = [shade_in(shade, units[x], shown_units[x]) for shade in shades]
+        units = {**units, x: shown_units.get(x, "")}
+    else:
+        profile = results.profiles[spec.profile or ""]
+        curves = _of_profile(results, profile, spec, window)
+        shades = all_over(profile, spec, window, curves)
+        if "y" in profile:
+            x, body = "y", _body(results, window)
+            units = units | {name: profile[f"{body}_{name}"].attrs["units"] for name in window.shown}
+    by_name = x == BY_PATCH
+    x_axis = _named(results.sweep(spec.sweep or ""), window) if by_name else _x_axis(x, window, curves, units)
+    low, high = x_axis.ends or (-np.inf, np.inf)
+    seen = (shade for shade in shades if any(start < high and end > low for start, end in shade.spans))
+    y_axis = _y_axis(x_axis, window, curves, units)
+    title = ", ".join(filter(None, (window.title, *heads)))
+    return Panel(x_axis, y_axis, curves=tuple(curves), title=title, shades=tuple(seen))
 
 
 def _hint(results: Results, spec: FigureSpec, panels: list[Panel]) -> str:
@@ -124,7 +209,7 @@ def _hint(results: Results, spec: FigureSpec, panels: list[Panel]) -> str:
     dataset = results.sweeps[spec.sweep] if spec.sweep else results.profiles[spec.profile or ""]
     if not is_of_patches(dataset):
         return ""
-    if any(not panel.curves for panel in panels):
+    if any(not panel.curves and panel.map is None for panel in panels) or not panels:
         return " None of the chosen patches exists here."
     if spec.x == BY_PATCH or all(len(panel.curves) <= MANY_LINES for panel in panels):
         return ""
@@ -132,11 +217,11 @@ def _hint(results: Results, spec: FigureSpec, panels: list[Panel]) -> str:
     return f" To show fewer lines, choose in the table of the figure, as in patches = {{ {chosen} }}."
 
 
-def _conditions(grid: Grid, axis: str, units: Mapping[str, str]) -> dict[str, str]:
-    """Return the fixed conditions of a figure in words; axes are at their middle value."""
+def _conditions(grid: Grid, free: Collection[str], units: Mapping[str, str]) -> dict[str, str]:
+    """Return the conditions of a figure in words, without those that vary in it; axes are at their middle value."""
     found = {}
     for name in grid.given:
-        if name != axis:
+        if name not in free:
             level = grid.level(name, units)
             shown = level if isinstance(level, str) else f"{level:.5g} {units[name]}"
             found[name] = f"{name_of(name)} {shown}".rstrip()
@@ -147,12 +232,15 @@ def _over_sweep(results: Results, spec: FigureSpec, window: Window, axis: str) -
     """Return curves of outcomes for each pair, and of other variables for each contact model, by patch."""
     sweep = results.sweeps[spec.sweep or ""]
     curves: list[Curve] = []
-    for patch, line in _lines(sweep, spec, window, axis):
-        found = _of_patch(results, line, spec, window)
+    for patch, line in lines_of(sweep, spec, window, axis):
+        found = _of_patch(results, line, spec, window, axis)
         if spec.x == BY_PATCH:
-            beside = np.linspace(-BESIDE, BESIDE, len(found)) if len(found) > 1 else [0.0]
+            step = TOGETHER / len(found) if found else 0.0
+            beside = step * (np.arange(len(found)) - 0.5 * (len(found) - 1))
+            # Bars begin at zero, which a logarithmic axis does not have.
+            look: dict[str, Any] = {"points": True} if window.y_scale == "log" else {"bars": 0.9 * step}
             found = [
-                replace(curve, x=curve.x + shift, points=True, colour=number, dash=0)
+                replace(curve, x=curve.x + shift, colour=number, dash=0, **look)
                 for number, (curve, shift) in enumerate(zip(found, beside, strict=True))
             ]
         elif patch:
@@ -170,29 +258,21 @@ def _coloured(curves: list[Curve], patch: Patch, dataset: xarray.Dataset) -> lis
     ]
 
 
-def _lines(
-    sweep: xarray.Dataset, spec: FigureSpec, window: Window, axis: str
-) -> Iterator[tuple[Patch, xarray.Dataset]]:
-    """Yield each existing patch that a panel shows, with the sweep along an axis; or all of them as one axis."""
-    if spec.x == BY_PATCH:
-        point = middle_of(sweep)
-        if patches_of(point, window.patches):
-            yield {}, by_patch(point, window.patches)
-        return
-    line = along(sweep, axis)
-    for patch in patches_of(line, window.patches):
-        yield patch, line.sel(patch)
-
-
-def _of_patch(results: Results, line: xarray.Dataset, spec: FigureSpec, window: Window) -> list[Curve]:
-    """Return the curves of a line through the points of a sweep."""
+def _of_patch(results: Results, line: xarray.Dataset, spec: FigureSpec, window: Window, axis: str) -> list[Curve]:
+    """Return the curves of a line along an axis of a sweep."""
     shown = window.shown
     models = spec.contact_models or line.contact_model.values.tolist()
     curves = []
     for y in shown:
         if "pair" in line[y].dims:
             pairs = predicting(results, y, spec.pairs or line.pair.values.tolist())
-            curves += [_outcome(results, line, spec.x, shown, y, pair) for pair in pairs]
+            found = [_outcome(results, line, spec.x, shown, y, pair) for pair in pairs]
+            if spec.sweep and axes_of(line) and not is_of_patches(line):
+                found = [
+                    with_jumps(results, spec.sweep, axis, spec.x, y, pair, curve)
+                    for pair, curve in zip(pairs, found, strict=True)
+                ]
+            curves += found
         else:
             alike = None if "contact_model" in line[y].dims or "contact_model" in line[spec.x].dims else 1
             curves += [_of_contact(results, line, spec.x, shown, y, model, alike) for model in models[:alike]]
@@ -206,7 +286,7 @@ def _outcome(results: Results, line: xarray.Dataset, x: str, shown: tuple[str, .
     has_band = bool((high > low).any())
     return Curve(
         pair if len(shown) == 1 else f"{name_of(y)}, {pair}",
-        _values(line, x, one.pair_contact_model.item()),
+        values_of(line, x, one.pair_contact_model.item()),
         one[y].values,
         *_style(results, pair),
         low=low if has_band else None,
@@ -215,91 +295,20 @@ def _outcome(results: Results, line: xarray.Dataset, x: str, shown: tuple[str, .
     )
 
 
-def _over_limits(results: Results, spec: FigureSpec, window: Window, axis: str) -> list[Shade]:
-    """Return where the contact of any model of a panel is beyond its elastic limits, over a sweep."""
-    sweep = results.sweeps[spec.sweep or ""]
-    models = spec.contact_models or sweep.contact_model.values.tolist()
-    if all("pair" in sweep[y].dims for y in window.shown):
-        every = sweep.pair.values.tolist()
-        pairs = [pair for y in window.shown for pair in predicting(results, y, spec.pairs or every)]
-        models = sweep.pair_contact_model.sel(pair=pairs).values.tolist()
-    tracks = [
-        (_values(line, spec.x, model), {limit: one.sel(contact_model=model).values for limit, one in beyond.items()})
-        for _, line in _lines(sweep, spec, window, axis)
-        for beyond in (beyond_limits(line),)
-        for model in dict.fromkeys(models)
-    ]
-    shades = []
-    for level, (limit, words) in enumerate(LIMITS.items(), start=1):
-        spans = [span for x, beyond in tracks if limit in beyond for span in _spans(x, beyond[limit])]
-        if window.x_scale == "log" and spans:
-            positive = np.concatenate([x[x > 0.0] for x, _ in tracks])
-            spans = [(max(low, positive.min()), high) for low, high in spans if high > 0.0]
-        if spans:
-            shades.append(Shade(words, level, tuple(_merged(spans))))
-    return shades
-
-
-def _all_over(profile: xarray.Dataset, spec: FigureSpec, window: Window, curves: list[Curve]) -> list[Shade]:
-    """Return shades over the whole patch if the contact of any model is beyond its elastic limits."""
-    if not curves:
-        return []
-    models = list(spec.contact_models or profile.contact_model.values)
-    x = np.concatenate([curve.x for curve in curves])
-    return [
-        Shade(LIMITS[limit], level, ((float(x.min()), float(x.max())),))
-        for level, (limit, beyond) in enumerate(beyond_limits(profile).items(), start=1)
-        if any(beyond.sel({"contact_model": models, **patch}).any() for patch in patches_of(profile, window.patches))
-    ]
-
-
-def _spans(x: Array, beyond: NDArray[np.bool_]) -> Iterator[tuple[float, float]]:
-    """Yield the ends of each run of points beyond a limit, half-way to the next point on either side."""
-    known = np.flatnonzero(np.isfinite(x))
-    order = known[np.argsort(x[known], kind="stable")]
-    x, beyond = x[order], beyond[order]
-    steps = np.flatnonzero(np.diff(np.concatenate([[False], beyond, [False]]).astype(int)))
-    edges = np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]])
-    for first, after in zip(steps[::2], steps[1::2], strict=True):
-        yield float(edges[first]), float(edges[after])
-
-
-def _merged(spans: Iterable[tuple[float, float]]) -> Iterator[tuple[float, float]]:
-    """Yield the union of spans as spans that do not touch."""
-    start, end = np.inf, -np.inf
-    for low, high in sorted(spans):
-        if low > end and start <= end:
-            yield start, end
-        start, end = (low, high) if low > end else (start, max(end, high))
-    if start <= end:
-        yield start, end
-
-
 def _of_contact(
     results: Results, line: xarray.Dataset, x: str, shown: tuple[str, ...], variable: str, model: str, alike: int | None
 ) -> Curve:
     """Return the curve of a variable for one contact model, or for all if they agree."""
-    along = _values(line, x, model)
+    along = values_of(line, x, model)
     dash = 0 if alike else _dash(results, model)
     several = name_of(variable) if alike else f"{name_of(variable)}, {model}"
     return Curve(
         label=model if len(shown) == 1 and not alike else several,
         x=along,
-        y=np.broadcast_to(_values(line, variable, model), along.shape),
+        y=np.broadcast_to(values_of(line, variable, model), along.shape),
         colour=dash if len(shown) == 1 else shown.index(variable),
         dash=dash,
     )
-
-
-def _values(line: xarray.Dataset, variable: str, model: str) -> Array:
-    """Return the magnitude of a variable, for one contact model if it depends on the model.
-
-    If the rig makes several patches, the values keep their signs, which differ from side to side.
-    """
-    values = line[variable]
-    found = values.sel(contact_model=model) if "contact_model" in values.dims else values
-    shown: Array = (found if is_of_patches(line) else abs(found)).values
-    return shown
 
 
 def _measured(results: Results, x: str, y: str) -> Curve:
@@ -340,9 +349,11 @@ def _body(results: Results, window: Window) -> str:
 def _along_the_patch(results: Results, profile: xarray.Dataset, spec: FigureSpec, window: Window) -> list[Curve]:
     """Return curves along the patch: outcomes for each pair, other variables for each contact model."""
     curves = []
+    grid = results.case.profiles[spec.profile or ""]
+    problem = grid.problem(results.case.rig)
+    half = 0.0 if problem.dims else 1e3 * float(np.ravel(problem.half_width)[0])
     for variable in window.shown:
         if variable == "creepage":
-            grid = results.case.profiles[spec.profile or ""]
             level = np.full(2, grid.level(results.case.rig.creepage, results.case.units))
             curves.append(Curve(name_of(variable), profile.x.values[[0, -1]], level, OF_PROFILE.index(variable)))
         elif "pair" in profile[variable].dims:
@@ -354,13 +365,28 @@ def _along_the_patch(results: Results, profile: xarray.Dataset, spec: FigureSpec
         else:
             models = spec.contact_models or profile.contact_model.values.tolist()
             alike = 1 if variable == "pressure" else None
-            curves += [_field(results, profile, variable, model) for model in models[:alike]]
+            found = [_field(results, profile, variable, model) for model in models[:alike]]
+            curves += [_to_the_edges(curve, half) for curve in found] if half and variable in STRESSES else found
     return curves
 
 
+def _to_the_edges(curve: Curve, half: float) -> Curve:
+    """Return a curve over a patch of this half width with its ends, where it is zero; nodes lie inside."""
+    if not curve.x.size or abs(curve.x).max() >= half:
+        return curve
+    ends = (-half, half) if curve.x[0] <= curve.x[-1] else (half, -half)
+    x, y = np.concatenate([ends[:1], curve.x, ends[1:]]), np.concatenate([[0.0], curve.y, [0.0]])
+    return replace(curve, x=x, y=y, outside=None if curve.outside is None else np.pad(curve.outside, 1, mode="edge"))
+
+
 def _across_the_patch(results: Results, profile: xarray.Dataset, spec: FigureSpec, window: Window) -> list[Curve]:
-    """Return curves across the patch for a body: depth for each pair, sliding distance for each contact model."""
+    """Return curves across the patch for a body: depth for each pair, sliding distance for each contact model.
+
+    At the edges, where the patch has no length, both are zero.
+    """
     curves, body = [], _body(results, window)
+    problem = results.case.profiles[spec.profile or ""].problem(results.case.rig)
+    half = 1e3 * float(np.ravel(problem.b)[0]) if problem.geometry == "ellipse" and not problem.dims else 0.0
     for variable in window.shown:
         values = profile[f"{body}_{variable}"]
         if "pair" in values.dims:
@@ -374,7 +400,7 @@ def _across_the_patch(results: Results, profile: xarray.Dataset, spec: FigureSpe
             for model in spec.contact_models or profile.contact_model.values.tolist():
                 x, y = _at_nodes(profile, values.sel(contact_model=model), "y", model)
                 curves.append(Curve(model, x, y, _dash(results, model), _dash(results, model)))
-    return curves
+    return [_to_the_edges(curve, half) for curve in curves] if half else curves
 
 
 def _field(results: Results, profile: xarray.Dataset, variable: str, model: str) -> Curve:
@@ -423,7 +449,8 @@ def _y_axis(x_axis: PlotAxis, window: Window, curves: list[Curve], units: Mappin
     elif scale == "log":
         y_ends = (positive.min() / 1.5, positive.max() * 1.5) if x_axis.ends else None
     else:
-        y_ends = (0.0, 1.05 * seen.max()) if positive.size and seen.min() >= 0.0 else None
+        room = 1.12 if any(curve.bars for curve in curves) else 1.05  # for the numbers at the ends of bars
+        y_ends = (0.0, room * seen.max()) if positive.size and seen.min() >= 0.0 else None
     return PlotAxis(label(*window.shown, units=units), scale, y_ends)
 
 

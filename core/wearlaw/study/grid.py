@@ -141,11 +141,28 @@ class Grid(Configuration, extra="allow"):
 
     def units(self) -> dict[str, str]:
         """Return the units of the conditions in results: the usual unit of a known variable, else as written."""
-        found = {}
-        for name, value in self.given.items():
-            written = self._axes[name].unit if name in self._axes else _unit(value)
-            found[name] = shown_unit(name, written)
-        return found
+        return {name: shown_unit(name, unit) for name, unit in self._written().items()}
+
+    def written_units(self) -> dict[str, str]:
+        """Return the unit in which the grid gives each condition; plain numbers and names have none here."""
+        return {name: unit for name, unit in self._written().items() if unit}
+
+    def _written(self) -> dict[str, str | None]:
+        return {name: self._axes[name].unit if name in self._axes else _unit(self.given[name]) for name in self.given}
+
+    def spacing(self, name: str) -> Literal["log", "linear"]:
+        """Return how the values of an axis are spaced; a list is logarithmic if its ratios differ less than its steps.
+
+        Two values, or values of both signs, are linear.
+        """
+        given = self.given[name]
+        if isinstance(given, Axis):
+            return given.spacing
+        values = np.unique(np.abs(self._axes[name].values))
+        if values.size < 3 or values[0] == 0.0 or np.ptp(np.sign(self._axes[name].values)) > 0.0:
+            return "linear"
+        ratios, steps = values[1:] / values[:-1], np.diff(values)
+        return "log" if ratios.max() / ratios.min() < steps.max() / steps.min() else "linear"
 
     def points(self, units: Mapping[str, str]) -> Points:
         """Return the operating points, with the axes in these units.
@@ -167,6 +184,20 @@ class Grid(Configuration, extra="allow"):
         shapes = {name: (-1,) + (1,) * (last - number) for number, name in enumerate(self._axes)}
         axes = {name: axis.given(axis.values.reshape(shapes[name])) for name, axis in self._axes.items()}
         return {**self.given, **axes}
+
+    def values_along(self, axis: str) -> Array:
+        """Return the values of an axis, in the unit in which the grid gives them."""
+        return self._axes[axis].values
+
+    def conditions_along(self, axis: str, values: Array) -> dict[str, Any]:
+        """Return conditions along an axis at these values, as of `values_along`; other axes are at their middle."""
+        middle = {name: one.given(float(one.values[one.values.size // 2])) for name, one in self._axes.items()}
+        return {**self.given, **middle, axis: self._axes[axis].given(values)}
+
+    def in_units(self, axis: str, values: Array, units: Mapping[str, str]) -> Array:
+        """Return values of an axis, as `values_along`, in the unit of results."""
+        found: Array = _converted(axis, values, self._axes[axis].unit, units[axis])[0]
+        return found
 
     def level(self, name: str, units: Mapping[str, str]) -> float | str:
         """Return the value of a condition in the given unit, or its text; for an axis, its middle value."""
