@@ -427,7 +427,7 @@ def peak_of(rows: int, folder: Path) -> int:
     frame().sample(rows, replace=True, random_state=1).to_csv(folder / "run.csv", index=False)
     tracemalloc.start()
     try:
-        swept(folder / "run.csv", store=folder / f"{rows}.zarr")
+        swept(folder / "run.csv", store=folder / f"{rows}.zarr", outputs=["wear_rate"])
         return tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
