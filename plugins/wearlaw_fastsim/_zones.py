@@ -92,7 +92,7 @@ def stick_and_slip(strips: Strips, stick_nodes: int, slip_nodes: int) -> Zone:
     nodes = _empty(stick_nodes + slip_nodes, edge.shape)
     _stick(strips, Point(edge, edge, edge, edge), start.u, nodes, slice(0, stick_nodes))
     _slip(strips, start, edge, nodes, slice(stick_nodes, None))
-    again = (Zone(*nodes).excess[stick_nodes:] < 0.0).any(axis=0)
+    again = np.asarray((Zone(*nodes).excess[stick_nodes:] < 0.0).any(axis=0))
     if again.any():
         nodes[:, stick_nodes:, again] = _split(*_some(again, strips, start), slip_nodes)
     return Zone(*nodes)
