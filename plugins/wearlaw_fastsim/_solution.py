@@ -62,20 +62,30 @@ def forces(problem: wl.Problem, patches: Ellipses, count: int) -> wl.CreepForces
         layout = _strips.given_layout(problem.flatten(), patches.elliptic)
     else:
         layout = _strips.layout_on(patches, *_strips.even_strips(count))
-    found = _strips.forces(layout, _fields(patches, count, layout))
-    names = ("longitudinal", "lateral", "spin_moment")
-    return wl.CreepForces(**{name: problem.unflatten(getattr(found, name)) for name in names})
+    found = _strips.forces_alone(patches, layout, *_nodes(count))
+    totals = {name: getattr(found, name) for name in ("longitudinal", "lateral", "spin_moment")}
+    _clear(patches, *totals.values())
+    return wl.CreepForces(**{name: problem.unflatten(total) for name, total in totals.items()})
+
+
+def _nodes(count: int) -> tuple[int, int]:
+    """Return the numbers of nodes along a strip before it first slips, and from there on."""
+    return max(round(STICK_NODES_PER_STRIP * count), 4), max(round(SLIP_NODES_PER_STRIP * count), 8)
 
 
 def _fields(patches: Ellipses, count: int, layout: _strips.Layout) -> _strips.StripFields:
-    along = max(round(STICK_NODES_PER_STRIP * count), 4), max(round(SLIP_NODES_PER_STRIP * count), 8)
-    found = _strips.strips(patches, layout, *along)
+    found = _strips.strips(patches, layout, *_nodes(count))
+    _clear(patches, found.traction_x, found.traction_y, found.slip_x, found.slip_y)
+    return found
+
+
+def _clear(patches: Ellipses, *fields: Array) -> None:
+    """Set fields of patches that roll freely to zero, in place; nodes of no length at their trailing edge slip."""
     creepages = patches.longitudinal_creepage, patches.lateral_creepage, patches.spin
     rolls_freely = (creepages[0] == 0.0) & (creepages[1] == 0.0) & (creepages[2] == 0.0)
-    if rolls_freely.any():  # otherwise nodes of zero length at the trailing edge slip
-        for field in (found.traction_x, found.traction_y, found.slip_x, found.slip_y):
+    if rolls_freely.any():
+        for field in fields:
             field[rolls_freely] = 0.0
-    return found
 
 
 def _on_strips(problem: wl.Problem, patches: Ellipses, count: int, layout: _strips.Layout) -> wl.Contact:

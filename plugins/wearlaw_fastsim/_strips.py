@@ -14,7 +14,7 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_fastsim._march import Ellipses
-from wearlaw_fastsim._zones import NODES, Strips, stick_and_slip
+from wearlaw_fastsim._zones import NODES, Strips, stick_and_slip, sums
 
 
 class StripFields(NamedTuple):
@@ -107,10 +107,17 @@ def strips(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_nodes: int
     Each strip has `stick_nodes` nodes before it first slips and `slip_nodes` from there on. The last axis is the
     axis of the strips, but in memory the axis of the nodes comes first.
     """
-    rows = _rows(ellipses, layout)
-    compiled = wl.accelerated(rows[0].size * (stick_nodes + slip_nodes) // NODES)
-    zone = stick_and_slip(Strips(rows, ellipses.elliptic, compiled), stick_nodes, slip_nodes)
+    zone = stick_and_slip(_strips(ellipses, layout, stick_nodes + slip_nodes), stick_nodes, slip_nodes)
     return StripFields(*(getattr(zone, name).transpose(2, 0, 1) for name in StripFields._fields))
+
+
+def forces_alone(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_nodes: int) -> wl.CreepForces:
+    """Return the forces and the moment on the nodes of `strips`; compiled loops leave out the fields."""
+    found = _strips(ellipses, layout, stick_nodes + slip_nodes)
+    if not found.compiled:
+        return forces(layout, strips(ellipses, layout, stick_nodes, slip_nodes))
+    along, across, turning = sums(found, slip_nodes) * (layout.half_length * layout.greatest)
+    return _of_strips(layout, along, across, layout.half_length * turning)
 
 
 def forces(layout: Layout, fields: StripFields) -> wl.CreepForces:
@@ -118,9 +125,19 @@ def forces(layout: Layout, fields: StripFields) -> wl.CreepForces:
     arrays = fields.length, fields.x, fields.traction_x, fields.traction_y
     length, x, q_x, q_y = (array.transpose(1, 2, 0) for array in arrays)  # in memory order
     along, across = np.einsum("kjp,kjp->jp", length, q_x), np.einsum("kjp,kjp->jp", length, q_y)
-    turning = np.einsum("kjp,kjp,kjp->jp", length, x, q_y) + layout.y * along
-    longitudinal, lateral, moment = ((layout.width * part).sum(axis=0) for part in (along, across, turning))
+    return _of_strips(layout, along, across, np.einsum("kjp,kjp,kjp->jp", length, x, q_y))
+
+
+def _of_strips(layout: Layout, along: Array, across: Array, turning: Array) -> wl.CreepForces:
+    """Return the forces and the moment from ∫ q_x, ∫ q_y and ∫ x q_y dx along strips."""
+    parts = along, across, turning + layout.y * along
+    longitudinal, lateral, moment = ((layout.width * part).sum(axis=0) for part in parts)
     return wl.CreepForces(longitudinal=longitudinal, lateral=lateral, spin_moment=-moment)
+
+
+def _strips(ellipses: Ellipses, layout: Layout, nodes: int) -> Strips:
+    rows = _rows(ellipses, layout)
+    return Strips(rows, ellipses.elliptic, wl.accelerated(rows[0].size * nodes // NODES))
 
 
 def _rows(ellipses: Ellipses, layout: Layout) -> Array:

@@ -42,6 +42,16 @@ def stuck(
     return x + since * along, y + since * (across - turning * (u + before - 2.0))
 
 
+def held(along: Number, across: Number, turning: Number, u: Number) -> tuple[Number, Number, Number]:
+    """Return ∫q_x, ∫q_y and ∫X q_y dX up to a distance u from the leading edge, in strips that stick from that edge."""
+    lateral, half, third = across + 2.0 * turning, 0.5 * u * u, u * u * u / 3.0
+    return (
+        along * half,
+        lateral * half - turning * third,
+        lateral * (third - half) - turning * (0.5 * half * u * u - third),
+    )
+
+
 def sticking(elliptic: bool, x: Number, y: Number, u: Number) -> tuple[Number, Number, Number]:
     """Return the bound, and the traction (x, y) kept below it."""
     square = u * (2.0 - u)
@@ -141,6 +151,31 @@ def lag_loop(elliptic: bool, strips: Array, tangent: Array, left: Array, kappa: 
             to_kappa[i], to_lagged[i] = lagging(
                 along[i], across[i], turning[i], u, bound, to_u, to_bound, left_here[i] - left_there[i]
             )
+
+
+@wl.compiled_loop(f"void(boolean, {', '.join([ROWS] * 5)}, float64[::1], {ROWS})")
+def sum_loop(
+    elliptic: bool, strips: Array, start: Array, tangent: Array, decay: Array, lagged: Array, weight: Array, sums: Array
+) -> None:
+    """Add up ∫q_x, ∫q_y and ∫X q_y dX over zones that slip, and find their least excess, without the nodes.
+
+    `start` is that of `slip_loop`.
+    """
+    along, across, turning, half_x, half_y, span = strips[0], strips[1], strips[2], start[0], start[1], start[2]
+    to_x, to_y, to_turning, least = sums[0], sums[1], sums[2], sums[3]
+    for k in range(weight.size):
+        there, fades, w = tangent[k + 1], decay[k], lagged[k]
+        for i in range(least.size):
+            u, sine, bound = place(elliptic, there[i])
+            more, less, other = turn(along[i], w[i], fades[i])
+            next_x, next_y = more * half_x[i] + other * half_y[i], less * half_y[i] + other * half_x[i]
+            half_x[i], half_y[i] = next_x, next_y
+            q_x, q_y, excess = slipping(elliptic, along[i], across[i], turning[i], u, sine, next_x, next_y)
+            share = weight[k] * span[i] * sine * bound
+            to_x[i] += share * q_x
+            to_y[i] += share * q_y
+            to_turning[i] += share * (u - 1.0) * q_y
+            least[i] = min(least[i], excess)
 
 
 @wl.compiled_loop(f"void(boolean, {', '.join([ROWS] * 5)}, float64[::1], int64, {NODES})")

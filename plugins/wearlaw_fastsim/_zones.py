@@ -19,6 +19,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wearlaw import Array
 from wearlaw_fastsim import _zone_loops as loops
@@ -86,19 +87,52 @@ def stick_and_slip(strips: Strips, stick_nodes: int, slip_nodes: int) -> Zone:
     The nodes are Gauss's: in x where a strip sticks, since q is a polynomial there, and in the angle where it slips,
     in which both bounds and q·s are smooth.
     """
+    start = _first_slip(strips)
+    edge = np.zeros_like(start.u)
+    nodes = _empty(stick_nodes + slip_nodes, edge.shape)
+    _stick(strips, Point(edge, edge, edge, edge), start.u, nodes, slice(0, stick_nodes))
+    _slip(strips, start, edge, nodes, slice(stick_nodes, None))
+    again = np.asarray((Zone(*nodes).excess[stick_nodes:] < 0.0).any(axis=0))
+    if again.any():
+        nodes[:, stick_nodes:, again] = _split(*_some(again, strips, start), slip_nodes)
+    return Zone(*nodes)
+
+
+def sums(strips: Strips, slip_nodes: int) -> Array:
+    """Return ∫q_x, ∫q_y and ∫X q_y dX of strips, (3, ...), on the nodes of `stick_and_slip`, by compiled loops."""
+    start, shape = _first_slip(strips), strips.rows.shape[1:]
+    found = np.empty((4, *shape))
+    found[:3] = loops.held(*strips.growth, start.u)
+    held, found[3] = found[:3].copy(), np.inf
+    share, weight = _gauss(slip_nodes)
+    rows, flat = _flat(strips.rows), _flat(found)
+    march = _compiled_march(strips, start, np.zeros(shape), share)
+    loops.sum_loop(strips.elliptic, rows, *march, weight, flat)
+    again = found[3] < 0.0
+    if again.any():
+        zone = Zone(*_split(*_some(again, strips._replace(rows=_unscaled(strips.rows)), start), slip_nodes))
+        x, y = zone.length * zone.traction_x, zone.length * zone.traction_y
+        found[:3, again] = held[:, again] + np.stack([x, y, zone.x * y]).sum(axis=1)
+    return found[:3]
+
+
+def _first_slip(strips: Strips) -> Point:
+    """Return the points where strips first slip; the traction there is given by its direction."""
     growth = strips.growth
     square = first_slip(growth, strips.elliptic)
     angle, u = np.maximum(2.0 * np.arctan(np.sqrt(square)), LEAST_ANGLE), 2.0 / (1.0 + square)
-    edge = np.zeros_like(angle)
-    start = Point(angle, u, growth.along, growth.lateral_rate(0.5 * u - 1.0))
-    nodes = _empty(stick_nodes + slip_nodes, angle.shape)
-    _stick(strips, Point(edge, edge, edge, edge), u, nodes, slice(0, stick_nodes))
-    _slip(strips, start, edge, nodes, slice(stick_nodes, None))
-    again = (Zone(*nodes).excess[stick_nodes:] < 0.0).any(axis=0)
-    if again.any():
-        gathered = strips._replace(rows=np.stack([row[again] for row in strips.rows]))
-        nodes[:, stick_nodes:, again] = _split(gathered, Point(*(part[again] for part in start)), slip_nodes)
-    return Zone(*nodes)
+    return Point(angle, u, growth.along, growth.lateral_rate(0.5 * u - 1.0))
+
+
+def _some(chosen: NDArray[np.bool_], strips: Strips, start: Point) -> tuple[Strips, Point]:
+    """Return some of the strips, and where they first slip."""
+    rows = np.stack([row[chosen] for row in strips.rows])
+    return strips._replace(rows=rows), Point(*(part[chosen] for part in start))
+
+
+def _unscaled(rows: Array) -> Array:
+    """Return strips with a half length, a greatest bound and slips of one."""
+    return np.concatenate([rows[:3], np.ones_like(rows[3:])])
 
 
 def _empty(count: int, shape: tuple[int, ...]) -> Array:
@@ -153,19 +187,12 @@ def _slip(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) -
     """Fill some of the nodes of strips that slip from a point up to an angle."""
     zone = Zone(*nodes[:, part])
     share, weight = _gauss(len(zone.x))
-    span = start.angle - end
-    angle = np.multiply.outer(_down(len(share)), span)
-    angle += end
-    tangent = np.tan(0.5 * angle)
-    left = angle if strips.elliptic else np.log(tangent)  # ∫ dX over the bound from this point on, up to a constant
-    half = _half_angle(start)
     if strips.compiled:
-        rows, tangent = _flat(strips.rows), _flat(tangent)
-        kappa, lagged = np.empty((2, len(share), span.size))
-        loops.lag_loop(strips.elliptic, rows, tangent, _flat(left), kappa, lagged)
-        decay, begin = np.exp(kappa, out=kappa), _flat(np.stack([*half, span]))
-        loops.slip_loop(strips.elliptic, rows, begin, tangent, decay, lagged, weight, part.start, _flat(nodes, 2))
+        march = _compiled_march(strips, start, end, share)
+        loops.slip_loop(strips.elliptic, _flat(strips.rows), *march, weight, part.start, _flat(nodes, 2))
         return
+    span, half = start.angle - end, _half_angle(start)
+    tangent, left = _steps(strips, span, end, share)
     along, across, turning, half_length, greatest, to_slip_x, to_slip_y = strips.rows
     u, sine, bound = loops.place(strips.elliptic, tangent)
     steps = u[:-1], bound[:-1], u[1:], bound[1:], left[:-1] - left[1:]
@@ -190,6 +217,23 @@ def _slip(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) -
     np.multiply(to_slip_y * slips, q_y, out=zone.slip_y)
 
 
+def _steps(strips: Strips, span: Array, end: Array, share: Array) -> tuple[Array, Array]:
+    """Return the tangents of half the angles of nodes, (1 + nodes, ...), and ∫ dX over the bound up to a constant."""
+    angle = np.multiply.outer(_down(len(share)), span)
+    angle += end
+    tangent = np.tan(0.5 * angle)
+    return tangent, angle if strips.elliptic else np.log(tangent)
+
+
+def _compiled_march(strips: Strips, start: Point, end: Array, share: Array) -> tuple[Array, Array, Array, Array]:
+    """Return the arguments `start`, `tangent`, `decay` and `lagged` of the compiled loops over zones that slip."""
+    span = start.angle - end
+    tangent, left = (_flat(array) for array in _steps(strips, span, end, share))
+    kappa, lagged = np.empty((2, len(share), span.size))
+    loops.lag_loop(strips.elliptic, _flat(strips.rows), tangent, left, kappa, lagged)
+    return _flat(np.stack([*_half_angle(start), span])), tangent, np.exp(kappa, out=kappa), lagged
+
+
 def _flat(array: Array, axes: int = 1) -> Array:
     """Return an array that keeps its first axes and has one axis for all strips."""
     return array.reshape(*array.shape[:axes], -1)
@@ -207,8 +251,7 @@ def _split(strips: Strips, start: Point, count: int) -> Array:
     """Return the nodes of strips (strips,) that slip from the start on, stick again and slip again."""
     edge = np.zeros_like(start.angle)
     trial, nodes = _empty(2 * count, edge.shape), _empty(count, edge.shape)
-    unscaled = strips._replace(rows=np.concatenate([strips.growth, np.ones_like(strips.rows[3:])]))
-    _slip(unscaled, start, edge, trial, slice(0, None))
+    _slip(strips._replace(rows=_unscaled(strips.rows)), start, edge, trial, slice(0, None))
     held = _where_it_sticks(Zone(*trial), strips.elliptic)
     again = _where_it_slips(strips, held, 2 * count)
     stuck = count // 4

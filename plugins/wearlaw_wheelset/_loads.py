@@ -54,6 +54,9 @@ NEWTON_STEPS, STEPS = 20, 100
 WIDEST_STEP, MOST_TURN = 1.0, 0.01
 """Greatest step of the logarithm of the penetration, and of the speed of rotation as a share of it."""
 
+COUPLED = np.array([[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, 1.0, 1.0]])
+"""Which of ln h of both wheels and Ω the load of each wheel and the torque depend on."""
+
 LEAST_SHARE = 0.1
 """Smallest share of the load that a step of the penetration counts with."""
 
@@ -276,7 +279,8 @@ class Balance:
     def _newton(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> NDArray[np.bool_]:
         """Balance the loads by Newton's method in place, and return which positions it leaves.
 
-        Broyden's method corrects the estimated rates. The speed of rotation counts with the torque that it changes.
+        Broyden's method corrects the estimated rates, in Schubert's form, which keeps those that are zero. The speed
+        of rotation counts with the torque that it changes.
         """
         count = self.task.load.size
         open_, unit = np.ones(count, dtype=np.bool_), np.ones((count, 1, 3))
@@ -295,8 +299,10 @@ class Balance:
             rates /= unit[rows]
             moved = step[rows] * unit[rows, 0]
             unforeseen = miss - before[rows] - ((rates + self.correction[rows]) @ moved[..., None])[..., 0]
-            along = moved / np.maximum((moved**2).sum(axis=-1, keepdims=True), TINY)
-            self.correction[rows] += unforeseen[..., None] * along[:, None, :]
+            own = moved[:, None, :] * COUPLED  # steps below BALANCED only show rounding
+            self.correction[rows] += (
+                unforeseen[..., None] * own / np.maximum((own**2).sum(axis=-1), BALANCED**2)[..., None]
+            )
             ahead = -np.linalg.solve(rates + self.correction[rows], miss[..., None])[..., 0] / unit[rows, 0]
             ahead[:, :2] = np.clip(ahead[:, :2], -WIDEST_STEP, WIDEST_STEP)
             most = MOST_TURN * self.rotation[rows]

@@ -12,6 +12,7 @@ import wearlaw as wl
 from tests.strategies import EPS
 from tests.testing.strips import Strips
 from wearlaw import Q
+from wearlaw.numerics import integrate
 from wearlaw.units.variables import VARIABLES
 
 RIG = wl.WheelRail(
@@ -169,6 +170,20 @@ def test_the_strips_of_the_contact_sum_to_the_mass_of_the_wheel(points: int | No
     contact: Any = result.contact
     lost = 1e-9 * (profile.depth.values * contact.strip_width).sum(axis=-1) * 2 * np.pi * 0.46 * 7850
     assert lost == pytest.approx(result.mass_per_distance.to("kg/m").magnitude, rel=64 * EPS)
+
+
+def test_profiles_of_many_points_are_kept_from_the_prediction(monkeypatch: pytest.MonkeyPatch) -> None:
+    conditions = {**CONDITIONS, "normal_force": Q(np.linspace(40.0, 90.0, 1200), "kN")}  # three blocks of 468 points
+    Counted.solved.clear()
+    result = (RIG | Counted() | PER_ENERGY)(**conditions)
+    solved = list(Counted.solved)
+    kept, part = result.wear_profile("wheel"), result.isel(point_0=slice(900, None)).wear_profile("wheel")
+    assert Counted.solved == solved
+    monkeypatch.setattr(integrate, "KEPT_STRIPS", 0)
+    again = (RIG | FASTSIM | PER_ENERGY)(**conditions).wear_profile("wheel")
+    for name in ("y", "depth", "sliding_distance"):
+        np.testing.assert_allclose(kept[name].values, again[name].values, rtol=64 * EPS)
+        np.testing.assert_array_equal(part[name].values, kept[name].values[900:])
 
 
 class Counted(type(wl.contact_model("fastsim"))):  # type: ignore[misc]

@@ -100,7 +100,7 @@ def test_few_steps_of_the_mean_are_enough() -> None:
 
 
 def test_the_share_of_hertz_is_that_of_his_ellipse() -> None:
-    for largest, within in ((np.log(100.0), 1e-11), (40.0, 3e-10)):
+    for largest, within in ((np.log(100.0), 2e-12), (40.0, 4e-11)):
         log_ratio = np.concatenate([[0.0, 1e-12, 1e-8, 1e-4], np.linspace(0.01, largest, 200)])
         one = np.ones_like(log_ratio)
         ellipse = hertz(one, np.exp(log_ratio), 1.0, one)

@@ -508,9 +508,8 @@ class Contact:
 
     def over_strip(self, value: Array) -> Array:
         """Return ∫ value dx along each strip of an ellipse, of shape (batch, strips)."""
-        length = self.area / self.strip_width[..., None, :]
-        integral: Array = (value * length).sum(axis=-2)
-        return integral
+        integral: Array = np.einsum("...ij,...ij->...j", value, self.area)
+        return integral / self.strip_width
 
     def scaled_to_wear_index(self) -> Self:
         """Return the contact with slips scaled so that the nodes dissipate Tγ in total.

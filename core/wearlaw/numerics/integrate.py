@@ -54,6 +54,9 @@ memory of any machine."""
 FEW = 8
 """Number of elliptic contacts that are solved at once with any number of nodes."""
 
+KEPT_STRIPS = 2**20
+"""Number of strips whose wear is kept for profiles, 32 MiB for each law; of more strips it is integrated again."""
+
 PANELS_UNDECLARED = 4
 """Panels of the slip zone for a law that does not declare its breakpoints."""
 
@@ -88,6 +91,27 @@ class SlipTotals:
     cell_wear_index: Array
 
 
+class Across(NamedTuple):
+    """Wear and slip integrated along each strip, as SI arrays of the batch shape and an axis of strips.
+
+    Attributes
+    ----------
+    y : ndarray, (batch, strips)
+        Position of each strip [m].
+    width : ndarray, (batch, strips)
+        Width that it represents [m].
+    wear : ndarray, (batch, strips)
+        ∫ rate dx along it [kg/m²].
+    slid : ndarray, (batch, strips)
+        ∫ |s| dx along it [m].
+    """
+
+    y: Array
+    width: Array
+    wear: Array
+    slid: Array
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Totals:
     """Outcomes of laws and forces at each operating point, as SI arrays of the batch shape.
@@ -107,6 +131,9 @@ class Totals:
         with one batch axis.
     slip : SlipTotals or None
         The slip, if an ellipse has several blocks; their contacts are not kept.
+    across : tuple of Across or None
+        Wear and slip of each law along the model's own strips; None on a line, for a law of the patch, and beyond
+        `KEPT_STRIPS`.
     """
 
     values: tuple[Array, ...]
@@ -115,6 +142,7 @@ class Totals:
     patch_area: Array | None = None
     contact: Contact | None = None
     slip: SlipTotals | None = None
+    across: tuple[Across | None, ...] = ()
 
 
 def prepared(model: ContactModel, problem: Problem) -> tuple[ContactModel, Problem]:
@@ -208,8 +236,11 @@ def integrate_laws(
     """
     model, problem = prepared(model, problem)
     numbered = list(zip(laws, numbers or [law.numbers for law in laws], strict=True))
-    integrate = _over_line if problem.geometry == "line" else _over_ellipse
-    found, solver = integrate(model, numbered, problem, on_block)
+    across: tuple[Across | None, ...] = (None,) * len(laws)
+    if problem.geometry == "line":
+        found, solver = _over_line(model, numbered, problem, on_block)
+    else:
+        found, solver, across = _over_ellipse(model, numbered, problem, on_block)
     several_blocks = "cell_wear_index" in found
     return Totals(
         values=tuple(found[f"value {index}"] for index in range(len(laws))),
@@ -218,6 +249,7 @@ def integrate_laws(
         patch_area=found.get("patch_area"),
         contact=solver.solved,
         slip=SlipTotals(**{name: found[name] for name in SlipTotals.__slots__}) if several_blocks else None,
+        across=across,
     )
 
 
@@ -230,23 +262,38 @@ Numbered: TypeAlias = Sequence[tuple[Law, Numbers]]
 
 def _over_ellipse(
     model: ContactModel, laws: Numbered, problem: Problem, on_block: OnBlock | None
-) -> tuple[Columns, Solver]:
+) -> tuple[Columns, Solver, tuple[Across | None, ...]]:
     solver = Solver(model)
+    kept: list[list[Across]] = [[] for _ in laws]
 
     def columns(part: Problem, points: slice) -> Columns:
         contact = solver.solve(part)
         area = contact.patch_area
+        keeps = contact.strip_width.shape[-1] * problem.size <= KEPT_STRIPS
         found = {"patch_area": area, **_columns(contact.forces)}
         for index, (law, p) in enumerate(laws):
             seen, own = _contact_of(law, contact, part), _at_points(p, points)
             if law.outcome.of == "patch":
                 value = solver.rate(law, seen, part, _of_patches(own))
             else:
-                value = seen.integral(split_rates(solver, law, seen, part, _of_nodes(own, seen))) / area
+                wear = seen.over_strip(split_rates(solver, law, seen, part, _of_nodes(own, seen)))
+                value = (wear * seen.strip_width).sum(axis=-1) / area
+                if keeps:
+                    kept[index].append(_across(seen, wear))
             found[f"value {index}"] = value
         return found if part.size == problem.size else found | _slip_columns(contact)
 
-    return _by_block(solver, problem, columns, on_block), solver
+    found = _by_block(solver, problem, columns, on_block)
+    return found, solver, tuple(_joined(problem, parts) if parts else None for parts in kept)
+
+
+def _across(contact: Contact, wear: Array) -> Across:
+    return Across(contact.y[..., 0, :], contact.strip_width, wear, contact.over_strip(contact.slip))
+
+
+def _joined(problem: Problem, parts: Sequence[Across]) -> Across:
+    """Return the wear and slip of all blocks in the shape of the batch."""
+    return Across(*(problem.unflatten(np.concatenate(values)) for values in zip(*parts, strict=True)))
 
 
 def _over_line(
@@ -330,27 +377,6 @@ def outcome_error(model: ContactModel, law: Law, problem: Problem, totals: Total
     return _by_block(solver, problem, columns)["error"]
 
 
-class Across(NamedTuple):
-    """Wear and slip integrated along each strip, as SI arrays of the batch shape and an axis of strips.
-
-    Attributes
-    ----------
-    y : ndarray, (batch, strips)
-        Position of each strip [m].
-    width : ndarray, (batch, strips)
-        Width that it represents [m].
-    wear : ndarray, (batch, strips)
-        ∫ rate dx along it [kg/m²].
-    slid : ndarray, (batch, strips)
-        ∫ |s| dx along it [m].
-    """
-
-    y: Array
-    width: Array
-    wear: Array
-    slid: Array
-
-
 def integrate_across(
     model: ContactModel, law: Law, problem: Problem, strips: int | None, solved_before: Contact | None = None
 ) -> Across:
@@ -383,8 +409,7 @@ def integrate_across(
 
     def along(part: Problem, contact: Contact) -> Across:
         contact = _contact_of(law, contact, part)
-        wear = contact.over_strip(split_rates(solver, law, contact, part, law.numbers))
-        return Across(contact.y[..., 0, :], contact.strip_width, wear, contact.over_strip(contact.slip))
+        return _across(contact, contact.over_strip(split_rates(solver, law, contact, part, law.numbers)))
 
     if strips is None and solved_before is not None:
         found = [along(flat, solved_before)]
@@ -392,7 +417,7 @@ def integrate_across(
         block = max(ELLIPSE_NODES // solved(flat[:1]).pressure.size, 1)
         parts = (flat[points] for points in blocks(flat.size, block))
         found = [along(part, solved(part)) for part in parts]
-    return Across(*(problem.unflatten(np.concatenate(values)) for values in zip(*found, strict=True)))
+    return _joined(problem, found)
 
 
 def _columns(forces: CreepForces) -> Columns:

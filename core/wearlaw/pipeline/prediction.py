@@ -597,7 +597,7 @@ class Prediction:
             raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
         index = self._wear_law(body)
         self._warn_of(index, body, stacklevel=3)
-        across = self._across(self._law_of(index, body), strips)
+        across = self._across(index, body, strips)
         turns = bool(np.isfinite(radius).any())
         once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
         units = ("um/km", "mm/m") if turns else ("nm", "um")
@@ -612,11 +612,15 @@ class Prediction:
             return on_profile(problem, worn, across.y, across.width, columns, per, at)
         return across_patch(problem, worn, across.y, columns, per)
 
-    def _across(self, law: Law, strips: int | None) -> integrate.Across:
-        """Return the result of `integrate_across`, which is NaN for missing patches."""
+    def _across(self, index: int, body: str, strips: int | None) -> integrate.Across:
+        """Return the wear and slip of a law along strips, which are NaN for missing patches."""
+        kept = self._solved_totals.across[index] if strips is None and self._kept_for(index, body) else None
+        if kept is not None:
+            return kept
         if self.problem.size == 0 and self._whole is not None:  # a missing patch alone has no strips
             whole, chosen = self._whole
-            return integrate.Across(*map(chosen.of, whole._across(law, strips)))
+            return integrate.Across(*map(chosen.of, whole._across(index, body, strips)))
+        law = self._law_of(index, body)
         return integrate.integrate_across(self._model, law, self.problem, strips, self._solved)
 
     @property
@@ -775,12 +779,16 @@ class Prediction:
 
     def _of_body(self, index: int, body: str, stacklevel: int) -> Array:
         """Return the outcome of a law for a body; a law for every body is evaluated again if the materials differ."""
-        of_body = self.problem.worn_on(body)
+        kept = self._kept_for(index, body)
         self._warn_of(index, body, stacklevel + 1)
-        law = self.laws[index]
-        if law.body is not None or of_body is self.problem or self.problem.size == 0:
+        if kept:
             return self._solved_totals.values[index]
         return integrate.integrate_laws(self._model, (self._law_of(index, body),), self.problem).values[0]
+
+    def _kept_for(self, index: int, body: str) -> bool:
+        """Return whether the results of a law hold for a body."""
+        problem = self.problem
+        return problem.worn_on(body) is problem or self.laws[index].body is not None or problem.size == 0
 
     def _law_of(self, index: int, body: str) -> Law:
         law = self.laws[index]
@@ -864,7 +872,8 @@ def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Pr
     none, one = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
     forces = CreepForces(longitudinal=none, lateral=none, spin_moment=none)
     every = (none,) * len(laws)
-    found = Prediction(problem, model, laws, forces=forces, totals=Totals(values=every, errors=every, patch_area=one))
+    totals = Totals(values=every, errors=every, patch_area=one, across=(None,) * len(laws))
+    found = Prediction(problem, model, laws, forces=forces, totals=totals)
     found._slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
     return found
 

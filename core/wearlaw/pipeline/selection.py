@@ -13,7 +13,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.errors import InputError, did_you_mean
-from wearlaw.numerics.integrate import SlipTotals, Totals
+from wearlaw.numerics.integrate import Across, SlipTotals, Totals
 from wearlaw.units.variables import name_of
 
 Label: TypeAlias = str | int
@@ -156,6 +156,7 @@ class Selection:
             patch_area=None if totals.patch_area is None else self.of(totals.patch_area),
             contact=totals.contact and self._of_solved(totals.contact, problem),
             slip=totals.slip and self.of_slip(totals.slip),
+            across=tuple(one and Across(*map(self.of, one)) for one in totals.across),
         )
 
     def _of_solved(self, contact: Contact, problem: Problem) -> Contact:
