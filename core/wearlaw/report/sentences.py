@@ -395,7 +395,7 @@ def _where(main: MainResult, mask: Mask) -> str:
     if mask.ndim > 1 or edges.size > 2:
         return f"at {int(mask.sum())} of {mask.size} points"
     values, unit = main.along(main.axis)
-    first, last = number(values[edges[0]]), _with_unit(number(values[edges[1] - 1]), unit)
+    first, last = number(float(values[edges[0]])), _with_unit(number(float(values[edges[1] - 1])), unit)
     if edges[1] == edges[0] + 1:
         return f"at {last}"
     if edges[0] == 0:
