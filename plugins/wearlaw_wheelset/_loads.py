@@ -49,7 +49,7 @@ MOST = 100.0
 """Greatest penetration that is tried, over that of the load without creep forces."""
 
 NEWTON_STEPS, STEPS = 20, 100
-"""Greatest number of steps by Newton's method, of which four or five are usual, and within bounds."""
+"""Greatest number of steps by Newton's method, of which three or four are usual, and within bounds."""
 
 WIDEST_STEP, MOST_TURN = 1.0, 0.01
 """Greatest step of the logarithm of the penetration, and of the speed of rotation as a share of it."""

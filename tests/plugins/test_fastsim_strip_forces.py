@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
 
+import wearlaw as wl
 from tests.plugins.fastsim_marks import each_bound
 from tests.plugins.fastsim_strips import CASE, ROUNDING, ellipses, limit, sample, solve
 from tests.plugins.full_theory import rows
-from wearlaw_fastsim._strips import even_strips
+from wearlaw import Q
+from wearlaw_fastsim._strips import even_strips, forces, forces_alone, layout_on, strips
 
 
 @pytest.mark.validates(
@@ -156,3 +159,39 @@ def test_even_strips_integrate_polynomials_over_the_ellipse(count: int) -> None:
         exact = math.gamma((degree + 1) / 2) * math.gamma(1.5) / math.gamma(degree / 2 + 2)
         found = (widths * shares**degree * np.sqrt(1.0 - shares**2)).sum()
         assert found == pytest.approx(exact, rel=ROUNDING)
+
+
+@pytest.mark.skipif(not find_spec("numba"), reason="needs numba")
+@each_bound
+def test_compiled_loops_add_up_the_fields_of_strips(elliptic: bool) -> None:
+    # the first slips from the leading edge, strips of the next two stick once more, and the fourth sticks in part
+    patches = ellipses([3e-2, 1e-4, -2e-4, 2e-3], [0, 1e-3, 1e-4, -1e-3], [0, 1.5, 2, 0.2], elliptic=elliptic)
+    layout = layout_on(patches, np.array([-0.9, -0.3, -0.01, 0.02, 0.5]), np.full(5, 0.4))
+    try:
+        wl.accelerate(True)
+        found, fields = forces_alone(patches, layout, 3, 12), strips(patches, layout, 3, 12)
+    finally:
+        wl.accelerate(None)
+    slips = fields.slip_x**2 + fields.slip_y**2 > 0.0
+    assert (slips[:, 3:-1] & ~slips[:, 4:]).any()
+    expected = forces(layout, fields)
+    for name, size in (("longitudinal", 1.0), ("lateral", 1.0), ("spin_moment", CASE["a"])):
+        miss = np.abs(getattr(found, name) - getattr(expected, name))
+        assert (miss <= ROUNDING * size * limit(patches)).all(), name
+
+
+@pytest.mark.skipif(not find_spec("numba"), reason="needs numba")
+@each_bound
+def test_patches_that_roll_freely_transmit_nothing_with_compiled_loops(elliptic: bool) -> None:
+    problem = wl.Problem.ellipse(
+        a="6 mm", b="4 mm", normal_force="80 kN", shear_modulus="82 GPa", poisson_ratio=0.28, friction_coefficient=0.3,
+        longitudinal_creepage=Q([0.0, 1e-3], ""), lateral_creepage=Q(0.0, ""), spin="0 1/m",
+    )  # fmt: skip
+    model = wl.contact_model("fastsim", bound="elliptic" if elliptic else "parabolic")
+    try:
+        wl.accelerate(True)
+        found = model.creep_forces(problem)
+    finally:
+        wl.accelerate(None)
+    assert found.longitudinal[0] == found.lateral[0] == found.spin_moment[0] == 0.0
+    assert found.longitudinal[1] > 0.0

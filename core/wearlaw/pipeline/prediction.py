@@ -561,7 +561,7 @@ class Prediction:
             Its name in the rig, such as "wheel" or "rail".
         strips : int, optional
             Number of strips of equal width; more make a smoother profile. The default is the contact model's strips,
-            at no extra cost. A contact model that cannot choose its strips keeps its own.
+            at no extra cost up to a million of them. A contact model that cannot choose its strips keeps its own.
         at : Quantity or str, optional
             Increasing positions along the body's profile, such as ``Q(np.linspace(-40, 30, 141), "mm")``. The result is
             then over these positions, zero where there is no patch, and summed over the axis "patch" if the rig has
