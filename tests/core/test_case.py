@@ -245,12 +245,18 @@ def test_the_schema_knows_the_options_of_every_installed_model(install_model: In
     assert not validator.is_valid(table(contact_models=["other"]))
 
 
+REQUIRED = {"archard": {"coefficient": 1e-4}, "energy": {"mass_per_energy": "1 ug/J"}}
+"""Fields without defaults of models that ship with wearlaw."""
+
+
 @pytest.mark.parametrize("kind", ["contact_models", "wear_laws"])
 def test_the_schema_accepts_each_installed_model_by_name_and_as_a_table(validator: Any, kind: str) -> None:
     for name in getattr(loader, kind)():
+        given = REQUIRED.get(name, {})
         assert validator.is_valid(table(**{kind: [name]}))
-        assert validator.is_valid(table(**{kind: [{"model": name}]}))
-        assert not validator.is_valid(table(**{kind: [{"model": name, "nonsense": 1}]}))
+        assert validator.is_valid(table(**{kind: [{"model": name, **given}]}))
+        assert validator.is_valid(table(**{kind: [{"model": name}]})) == (not given)
+        assert not validator.is_valid(table(**{kind: [{"model": name, **given, "nonsense": 1}]}))
 
 
 @pytest.mark.parametrize("versions", ["", ">=0.1", ">=0.0.1,<99", "==0.1.*"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -160,8 +160,15 @@ def test_outcomes_without_measurements_and_wrong_units_are_refused() -> None:
         wl.fit(EXACT | Damage(), measured_tests({"rcf_damage": Q(np.ones(7), "kN")}), ["slope"])
 
 
+class Cracks(Damage):
+    """The same, of an outcome that no installed law has."""
+
+    name: ClassVar[str] = "cracks"
+    outcome = wl.Outcome("crack_growth", unit="", of="patch", signed=True)
+
+
 CSV = """# source: made up
-creepage [%],normal_force [kN],friction_coefficient,heat_flux [kW/mm^2],rcf_damage [-]
+creepage [%],normal_force [kN],friction_coefficient,heat_flux [kW/mm^2],crack_growth [-]
 0.5,7.4,0.4,0.002,-1e-5
 1,7.4,0.4,{},2e-5
 2,7.4,0.4,0.008,9e-5
@@ -176,18 +183,18 @@ def read(folder: Path, text: str, **more: Any) -> wl.WearTests:
 
 def test_columns_of_outcomes_are_read_where_a_law_predicts_them(tmp_path: Path) -> None:
     tests = read(tmp_path, CSV.format("0.004"))
-    fit = wl.fit(EXACT | Heat(), tests.measuring(["rcf_damage"]), ["share"], bootstrap=0)
+    fit = wl.fit(EXACT | Heat(), tests.measuring(["crack_growth"]), ["share"], bootstrap=0)
     assert fit.residuals["measured"].tolist() == pytest.approx([2.0, 4.0, 8.0])
-    both = wl.fit(EXACT | Heat() | Damage(), tests, ["share", "slope"], scatter="absolute", bootstrap=0)
+    both = wl.fit(EXACT | Heat() | Cracks(), tests, ["share", "slope"], scatter="absolute", bootstrap=0)
     assert both.residuals["measured"].tolist() == pytest.approx([2.0, 4.0, 8.0, -1e-5, 2e-5, 9e-5])
-    with pytest.raises(wl.ConditionsError, match="rcf_damage: unknown condition"):
+    with pytest.raises(wl.ConditionsError, match="crack_growth: unknown condition"):
         wl.fit(EXACT | Heat(), tests, ["share"], bootstrap=0)
 
 
 def test_a_measurement_of_an_outcome_may_be_missing(tmp_path: Path) -> None:
     with pytest.raises(wl.DataError, match=r"column 'heat_flux \[kW/mm\^2\]': is missing; every test needs it"):
         read(tmp_path, CSV.format("NA"))
-    tests = read(tmp_path, CSV.format("NA"), outcomes=["heat_flux", "rcf_damage"])
+    tests = read(tmp_path, CSV.format("NA"), outcomes=["heat_flux", "crack_growth"])
     fit = wl.fit(EXACT | Heat(), tests, ["share"], bootstrap=0)
     assert fit.residuals["measured"].tolist() == pytest.approx([2.0, 8.0])
     assert fit.residuals["label"].tolist() == ["number 1", "number 3"]

@@ -220,6 +220,8 @@ def test_what_lies_outside_a_range_and_beyond_limits_is_placed_on_the_axis() -> 
     assert said(lower)[-1] == "Points lie outside the range of usfd up to 800 MPa."
     inside = study_of({**POINT, "max_pressure": "900 MPa", "creepage": ["0.1 %", "0.2 %"]})
     assert said(inside)[-1] == "Every point lies within the range of usfd and below first yield."
+    unknown = study_of({**POINT, "max_pressure": "900 MPa", "creepage": ["0.1 %", "0.2 %"]}, wear_laws=["brr"])
+    assert said(unknown)[-1] == "Every point lies below first yield; no range is known for brr."
 
 
 def test_other_materials_unknown_limits_and_other_sweeps_are_named() -> None:

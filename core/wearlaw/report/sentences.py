@@ -365,7 +365,8 @@ def _validity(main: MainResult) -> str:
     if reached:
         said.append(f"the contact is {_listed([f'{words} {where}' for where, words in reached.items()])}")
     if not said and (tested or beyond):
-        both = [f"within the range of {_listed(tested)}"] * bool(tested) + ["below first yield"] * bool(beyond)
+        both = [f"within the range of {_listed(tested)}"] if tested else []
+        both += ["below first yield"] if beyond else []
         said.append(f"{'the point' if single else 'every point'} lies {_listed(both)}")
     if len(tested) < len(inside):
         said.append(f"no range is known for {_listed([name for name in inside if name not in tested])}")
