@@ -16,12 +16,13 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
+from wearlaw.fitting.lack_of_fit import LackOfFit
 from wearlaw.fitting.law_files import write_law
 from wearlaw.fitting.observations import TRACTION, Observations, Scatter, wear_index_density
 from wearlaw.models.law import WEAR, Law
 from wearlaw.units.quantities import Quantity, from_si, in_unit
 from wearlaw.units.registry import si_factor
-from wearlaw.units.variables import UNITS, label
+from wearlaw.units.variables import UNITS, label, name_of
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
@@ -79,6 +80,8 @@ class Fit:
         Versions, tests, settings and sums.
     observations : tuple of Observations
         The measurements with their pipeline, and the fitted friction coefficient.
+    lack_of_fit : tuple of LackOfFit
+        A check of the residuals for each kind of measurement, against the scatter of repeated tests if there are any.
     """
 
     parameters: dict[str, Quantity]
@@ -96,6 +99,7 @@ class Fit:
     samples: dict[str, Quantity]
     provenance: Mapping[str, Any]
     observations: tuple[Observations, ...]
+    lack_of_fit: tuple[LackOfFit, ...]
 
     @property
     def standard_errors(self) -> dict[str, Quantity]:
@@ -128,11 +132,16 @@ class Fit:
 
     @property
     def residuals(self) -> pd.DataFrame:
-        """A row for each measurement: test, measured and predicted value, and residual."""
+        """A row for each measurement: test, measured and predicted value, residual, and predicted over measured.
+
+        The ratio is NaN unless both values are positive.
+        """
         rows = []
         for one in self.observations:
             predicted = self._fitted(one)
             shown = one.unit
+            ratio = np.full(predicted.shape, np.nan)
+            np.divide(predicted, one.measured, out=ratio, where=(predicted > 0.0) & (one.measured > 0.0))
             rows.append(
                 pd.DataFrame(
                     {
@@ -142,6 +151,7 @@ class Fit:
                         "measured": from_si(one.measured, shown).magnitude,
                         "predicted": from_si(predicted, shown).magnitude,
                         "residual": one.in_shown_unit(predicted),
+                        "predicted/measured": ratio,
                     }
                 )
             )
@@ -214,7 +224,13 @@ class Fit:
             low, high = (f"{end.magnitude:.3g}" for end in self.intervals[name])
             unit = repr(value).partition(" ")[2]
             lines.append(f"  {name:<21} {value.magnitude:<8.4g} ({low} to {high}) {unit}".rstrip())
-        lines.append(f"  rms residual          {self.rms!r}")
+        first = self.observations[0]
+        factor = f", a factor of {np.exp(self.rms.magnitude):.4g}" if first.scatter == "relative" else ""
+        lines.append(f"  rms residual          {self.rms!r}{factor}")
+        checks = [one for one in self.lack_of_fit if one.p_value is not None or one.poor]
+        for one in checks:
+            of = f" of {name_of(one.observable)}" if len(self.observations) > 1 else ""
+            lines.append(f"  lack of fit           {'yes' if one.poor else 'none'}{of}: {one}")
         lines.append(f"  intervals             {self.confidence:.0%}, {self.interval_method}")
         return "\n".join(lines)
 

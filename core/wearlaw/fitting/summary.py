@@ -12,7 +12,8 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.errors import ConfigurationError, FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
-from wearlaw.fitting.intervals import Replicates, covariance, student_intervals, studentised_intervals
+from wearlaw.fitting.intervals import Replicates, covariance, leverage, student_intervals, studentised_intervals
+from wearlaw.fitting.lack_of_fit import check_fit
 from wearlaw.fitting.least_squares import Solutions
 from wearlaw.fitting.observations import FLOOR, Observations, test_names, wear_index_density
 from wearlaw.fitting.result import Fit
@@ -68,6 +69,7 @@ def summarise(task: Task, best: Solutions, replicates: Replicates | None, confid
         samples={name: free.quantity(name, one) for name, one in samples.items()},
         provenance=provenance,
         observations=observations,
+        lack_of_fit=check_fit(observations, best.residuals[0] / task.weights, leverage(best), task.groups, confidence),
     )
 
 
