@@ -104,7 +104,17 @@ def fit(
         replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
     if overload := task.overload(best):
         overload.warn(stacklevel=2)
-    found = summarise(task, best, replicates, confidence, seed)
+    settings = {
+        "predict": predict,
+        "free": list(free),
+        "friction_coefficient": friction_coefficient,
+        "scatter": scatter,
+        "bounds": bounds,
+        "starts": starts,
+        "seed": seed,
+        "confidence": confidence,
+    }
+    found = summarise(task, best, replicates, confidence, settings)
     _warn(task, best, replicates, found)
     return found
 

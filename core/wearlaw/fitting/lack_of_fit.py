@@ -131,13 +131,13 @@ def check_fit(
 def _check(one: Observations, residuals: Array, spent: float, confidence: float) -> LackOfFit:
     rms = math.sqrt(float(np.mean(residuals**2)))
     if one.scatter == "uncertainty":
-        degrees = residuals.size - spent
+        nu = residuals.size - spent
         chi2 = float(np.sum(residuals**2))
-        p = float(scipy.special.chdtrc(degrees, chi2))
-        return LackOfFit(one.observable, "uncertainty", chi2 / degrees, (degrees,), p, rms, None, p < 1.0 - confidence)
-    f, degrees, p, scatter = f_test(residuals, repeats(one), spent)
-    if p is not None:
-        return LackOfFit(one.observable, "repeats", f, degrees, p, rms, scatter, p < 1.0 - confidence)
+        p = float(scipy.special.chdtrc(nu, chi2))
+        return LackOfFit(one.observable, "uncertainty", chi2 / nu, (nu,), p, rms, None, p < 1.0 - confidence)
+    f, degrees, p_value, scatter = f_test(residuals, repeats(one), spent)
+    if p_value is not None:
+        return LackOfFit(one.observable, "repeats", f, degrees, p_value, rms, scatter, p_value < 1.0 - confidence)
     if one.scatter == "relative":
         factor = math.exp(min(rms, 700.0))  # beyond, a float overflows
         return LackOfFit(one.observable, "factor", factor, (), None, rms, None, factor > POOR_FACTOR)

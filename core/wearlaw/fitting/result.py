@@ -82,6 +82,8 @@ class Fit:
         The measurements with their pipeline, and the fitted friction coefficient.
     lack_of_fit : tuple of LackOfFit
         A check of the residuals for each kind of measurement, against the scatter of repeated tests if there are any.
+    settings : dict
+        The arguments of `fit`, without the tests and the bootstrap, to make the fit anew.
     """
 
     parameters: dict[str, Quantity]
@@ -100,6 +102,7 @@ class Fit:
     provenance: Mapping[str, Any]
     observations: tuple[Observations, ...]
     lack_of_fit: tuple[LackOfFit, ...]
+    settings: Mapping[str, Any]
 
     @property
     def standard_errors(self) -> dict[str, Quantity]:

@@ -4,13 +4,13 @@ import inspect
 import math
 import warnings
 from abc import abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import PrivateAttr, model_validator
 
 from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.contact import (
@@ -208,6 +208,8 @@ class Law(Model):
 
     monotone_in: ClassVar[tuple[LawVariable, ...]] = ()
     """Variables of a `Contact` with which the rate never falls while the others stay the same."""
+
+    _fitted_to: tuple[str, ...] = PrivateAttr(default=())
 
     if not TYPE_CHECKING:  # type checkers already compare the methods with this class
 
@@ -409,6 +411,17 @@ class Law(Model):
     def fitted(self, calibration: Calibration) -> "Law":  # noqa: ARG002
         """Return this law with a record of the fit of its parameters; by default the law keeps no record."""
         return self
+
+    @property
+    def fitted_to(self) -> tuple[str, ...]:
+        """Digests of the tests of a fit (`WearTests.digests`), by which `wl.compare` knows them again."""
+        return self._fitted_to
+
+    def with_tests(self, digests: Iterable[str]) -> Self:
+        """Return the same law, fitted to the tests with these digests."""
+        law = self.model_copy()
+        law._fitted_to = tuple(digests)
+        return law
 
     def band(self) -> "tuple[Law, Law, Law] | None":
         """Return the laws at the low end, middle and high end of published parameter ranges, or None without ranges."""

@@ -89,6 +89,7 @@ def write_comparison(
     record = {
         "wearlaw": __version__,
         "tests": comparison.tests.source,
+        "cross_validated": comparison.cross_validated,
         "predictors": {one.names.label: one.pipeline.model_dump(mode="json") for one in comparison.compared},
         "notes": list(notes),
     }
