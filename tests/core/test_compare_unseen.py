@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,10 @@ def test_a_law_knows_the_tests_that_it_was_fitted_to_also_from_a_file(law: str, 
     fit.to_toml(tmp_path / "law.toml")
     read = wl.read_law(tmp_path / "law.toml")
     assert read == fit.law
+    assert fit.law is not None
+    assert read.fitted_to == fit.law.fitted_to == pickle.loads(pickle.dumps(read)).fitted_to
+    assert read.with_tests([]) == read, "laws with equal numbers are equal"
+    assert read.model_copy().fitted_to == ()
     other = GLOBAL | wl.wear_law("brr")
     comparison = wl.compare({"fit": fit, "read": EXACT | read, "other": other}, tests)
     assert seen(comparison) == {"fit": 8, "read": 8, "other": 0}

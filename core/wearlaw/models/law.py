@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast
 
 import numpy as np
-from pydantic import PrivateAttr, model_validator
+from pydantic import model_validator
 
 from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.contact import (
@@ -208,8 +208,6 @@ class Law(Model):
 
     monotone_in: ClassVar[tuple[LawVariable, ...]] = ()
     """Variables of a `Contact` with which the rate never falls while the others stay the same."""
-
-    _fitted_to: tuple[str, ...] = PrivateAttr(default=())
 
     if not TYPE_CHECKING:  # type checkers already compare the methods with this class
 
@@ -412,15 +410,18 @@ class Law(Model):
         """Return this law with a record of the fit of its parameters; by default the law keeps no record."""
         return self
 
-    @property
+    @cached_property
     def fitted_to(self) -> tuple[str, ...]:
-        """Digests of the tests of a fit (`WearTests.digests`), by which `wl.compare` knows them again."""
-        return self._fitted_to
+        """Digests of the tests of a fit (`WearTests.digests`), by which `wl.compare` knows them again.
+
+        This is no field: a copy with other numbers has none, and laws with equal numbers are equal.
+        """
+        return ()
 
     def with_tests(self, digests: Iterable[str]) -> Self:
         """Return the same law, fitted to the tests with these digests."""
         law = self.model_copy()
-        law._fitted_to = tuple(digests)
+        law.__dict__["fitted_to"] = tuple(digests)  # as `cached_property` keeps its value
         return law
 
     def band(self) -> "tuple[Law, Law, Law] | None":
