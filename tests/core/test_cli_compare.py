@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import files, wearlaw
-from tests.core.cli_data import COMPARE, RIG_NOTE, listed, rates, rows, write_tests
+from tests.core.cli_data import COMPARE, FIT, LAW, RIG_NOTE, listed, rates, rows, write_tests
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")
 
@@ -123,3 +123,43 @@ def test_stages_stand_around_every_contact_model() -> None:
     assert "--stage patch_mean" not in result.stderr
     assert "brr on exact is left out" in (without := wearlaw(*COMPARE, "-o", "plain").stderr)
     assert "add --stage patch_mean" in without
+
+
+def test_a_law_that_has_seen_the_tests_is_marked_and_cross_validation_ranks_fits_by_unseen_tests() -> None:
+    assert wearlaw(*FIT, "-o", "fit").exit_code == 0
+    marked = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", f"fit/law.toml,{LAW}", "-o", "marked")
+    note = (
+        "note: fitted to these tests, which flatters their rank: fit/law.toml on exact (9 of 9); compare on other tests"
+    )
+    assert note in marked.stderr
+    ranking = pd.read_csv("marked/ranking.csv").set_index("predictor")
+    assert ranking.in_sample.to_dict() == {"fit/law.toml on exact": 9, f"{LAW} on exact": 0}
+    command = ("compare", "tests.csv", "--contacts", "exact", "--laws", LAW, "--free", f"{LAW}=m_m,q_s")
+    result = wearlaw(*command, "--cross-validate", "leave-one-out", "-o", "cv")
+    assert result.exit_code == 0, result.output
+    assert result.stdout.startswith("2 predictors on 9 tests, best first, fits cross-validated (leave-one-out);")
+    assert json.loads(Path("cv/comparison.json").read_text(encoding="utf-8"))["cross_validated"] == "leave-one-out"
+    assert wearlaw(*command, "--cross-validate", "3", "-o", "cv3").exit_code == 0
+    assert wearlaw(*command, "-o", "seen").exit_code == 0
+    factors = [
+        pd.read_csv(f"{folder}/ranking.csv").set_index("predictor").rms_factor[f"{LAW} fitted on exact"]
+        for folder in ("seen", "cv")
+    ]
+    assert factors[0] < factors[1]
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (("--cross-validate", "5"), "--cross-validate fits parameters anew; say which ones are free, as in --free"),
+        (
+            ("--cross-validate", "some", "--free", f"{LAW}=m_m"),
+            "give leave-one-out or a number of folds, such as 5, got",
+        ),
+        (("--cross-validate", "99", "--free", f"{LAW}=m_m"), "a number of folds from 2 to the 9 tests, got 99"),
+    ],
+)
+def test_cross_validation_that_cannot_be_is_refused(options: tuple[str, ...], says: str) -> None:
+    result = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", LAW, *options)
+    assert result.exit_code != 0
+    assert says in " ".join(result.output.replace("│", " ").split())

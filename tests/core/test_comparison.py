@@ -29,7 +29,7 @@ def test_the_table_ranks_and_has_its_units_in_the_heads() -> None:
     table = comparison.table()
     assert list(table.columns) == [
         "predictor", "rms_factor", "bias", "geometric_sd", "largest_factor", "rms_error [ug/m/mm^2]", "tests",
-        "without_ratio", "fitted", "aic", "aicc",
+        "in_sample", "without_ratio", "fitted", "aic", "aicc",
     ]  # fmt: skip
     assert table["predictor"].tolist() == ["usfd on exact", "kth on exact"]
     for row, one in zip(table.to_dict("records"), comparison.compared, strict=True):
@@ -51,6 +51,7 @@ def test_the_printed_table_has_the_same_numbers_to_four_digits() -> None:
         "geometric_sd",
         "largest_factor",
         "rms_error",
+        "in_sample",
         "fitted",
         "aic",
         "aicc",
@@ -59,7 +60,8 @@ def test_the_printed_table_has_the_same_numbers_to_four_digits() -> None:
     for line, row in zip(lines, table.to_dict("records"), strict=True):
         cells = line.removeprefix(f"  {row['predictor']}").split()
         assert cells[:5] == [f"{row[name]:.4g}" for name in names[1:6]]
-        assert cells[5:] == (["1", f"{row['aic']:.4g}", f"{row['aicc']:.4g}"] if "fitted" in row["predictor"] else [])
+        seen = "fitted" in row["predictor"]
+        assert cells[5:] == (["8", "1", f"{row['aic']:.4g}", f"{row['aicc']:.4g}"] if seen else ["0"])
 
 
 def test_the_predictions_stand_beside_the_tests() -> None:

@@ -273,3 +273,32 @@ def test_tests_at_several_loads_are_drawn_as_points() -> None:
     assert fitted.low is None
     assert "differ in load" in figure.caption
     assert isinstance(fit.plot(), Figure)
+
+
+@pytest.mark.parametrize("varied", ["max_pressure", "friction_coefficient"])
+def test_tests_that_differ_in_one_condition_have_a_curve_over_it(varied: str) -> None:
+    predict = usfd("exact")
+    conditions: Any = {"creepage": "1 %", "max_pressure": "1200 MPa", "friction_coefficient": 0.4}
+    conditions[varied] = {
+        "max_pressure": Q([1500.0, 600.0, 900.0, 1200.0], "MPa"), "friction_coefficient": np.array([0.3, 0.2, 0.5, 0.4])
+    }[varied]  # fmt: skip
+    factor = np.array([1.1, 0.9, 1.05, 0.95])
+    tests = wl.WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * factor)
+    fit = wl.fit(predict, tests, free=["m_m"], bootstrap=0)
+    figure = fit.figure_data()
+    (panel,) = figure.panels
+    curve, points = panel.curves
+    assert not curve.points
+    assert points.points
+    assert "differ in" not in figure.caption
+    assert (panel.x.label.partition(" [")[0], panel.x.scale) == (
+        {"max_pressure": "maximum pressure", "friction_coefficient": "friction coefficient"}[varied], "linear"
+    )  # fmt: skip
+    given = conditions[varied]
+    np.testing.assert_allclose(points.x, getattr(given, "magnitude", given), rtol=4 * EPS)
+    assert (np.diff(curve.x) > 0.0).all()
+    # Between the tests too, the curve is what the fitted law predicts.
+    over = Q(curve.x, "MPa") if varied == "max_pressure" else curve.x
+    expected = fit.predict(**{**conditions, varied: over}).wear_rate.magnitude
+    np.testing.assert_allclose(curve.y, expected, rtol=1e-9)
+    assert isinstance(fit.plot(), Figure)

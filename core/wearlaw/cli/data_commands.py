@@ -23,6 +23,7 @@ from wearlaw.cli.shared import (
 from wearlaw.errors import FitError
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.fitting.comparison import Comparison, Names, Predictor, compare_named
+from wearlaw.fitting.cross_validation import Folds
 from wearlaw.fitting.fit import fit as fit_parameters
 from wearlaw.fitting.result import Fit
 from wearlaw.output.analyses import COMPARISON, FIT, write_comparison, write_fit
@@ -178,6 +179,11 @@ def _with_law(
 @click.option(
     "--free", metavar="LAW=FIELDS", multiple=True, help="Also fit this one of the laws, on every contact; repeatable."
 )
+@click.option(
+    "--cross-validate",
+    metavar="FOLDS",
+    help="Rank fits by tests that they have not seen: leave-one-out, or a number of folds; needs --free.",
+)
 @common
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-comparison]."
@@ -198,6 +204,7 @@ def compare(
     wearlaw compare my-tests.csv --contacts global,exact,fastsim --laws usfd,kth,brr -o cmp/
     wearlaw compare my-tests.csv --contacts exact,fastsim --laws usfd:fitted_for=exact,fit/law.toml -o cmp/
     wearlaw compare my-tests.csv --contacts global,exact --laws usfd,kth --free usfd=q_s,m_c -o cmp/
+    wearlaw compare my-tests.csv --contacts exact --laws usfd,kth --free usfd=q_s,m_c --cross-validate 5 -o cv/
     wearlaw compare my-tests.csv --contacts exact,fastsim --stage patch_mean --laws usfd,brr -o cmp/
 
     A law is taken with its defaults unless options are given; a note says where its parameters were fitted for another
@@ -225,8 +232,14 @@ def _compare(
     rig: Path | None,
     friction: float | None,
     scatter: str,
+    cross_validate: str | None,
 ) -> Comparison:
     """Return the comparison for these options."""
+    parts = _folds(cross_validate)
+    if parts is not None and not free:
+        raise click.UsageError(
+            "--cross-validate fits parameters anew; say which ones are free, as in --free usfd=q_s,m_c"
+        )
     tests = _tests(path, friction, False, notes)
     named = {text: law_of(text) for text in listed("--laws", laws)}
     around = [stage(text) for text in stages]
@@ -240,10 +253,23 @@ def _compare(
         of_law = [pair for pair in pairs if pair.law == law]
         fits = _fits(of_law, listed("--free", freed), tests, notes, friction_coefficient=friction, scatter=scatter)
         predictors += [(Names(f"{law} fitted on {contact}", f"{law} fitted", contact), one) for contact, one in fits]
-    comparison = compare_named(predictors, tests, friction)
+    comparison = compare_named(predictors, tests, friction, cross_validate=parts)
     for note in comparison.notes:
         notes.add(note)
     return comparison
+
+
+def _folds(text: str | None) -> Folds | None:
+    if text is None:
+        return None
+    if text == "leave-one-out":
+        return "leave-one-out"
+    try:
+        return int(text)
+    except ValueError:
+        raise click.UsageError(
+            f"--cross-validate: give leave-one-out or a number of folds, such as 5, got '{text}'"
+        ) from None
 
 
 def _freed(settings: tuple[str, ...], laws: list[str]) -> dict[str, str]:

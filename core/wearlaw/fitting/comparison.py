@@ -14,6 +14,7 @@ from wearlaw.errors import InputError, did_you_mean
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
 from wearlaw.fitting.agreement import Agreement, Information, agreement
+from wearlaw.fitting.cross_validation import Folds, cross_validated, folds
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.fitting.result import Fit
 from wearlaw.models.contact_model import Model
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 Predictor: TypeAlias = Pipeline[...] | Fit
 """A pipeline with a law, or a fit of one."""
 
-COUNTS = ("tests", "without_ratio", "fitted")
+COUNTS = ("tests", "in_sample", "without_ratio", "fitted")
 """Columns of whole numbers."""
 
 MARGIN = 0.05
@@ -70,6 +71,7 @@ class Compared:
     pipeline: Pipeline[...]
     predicted: Array
     agreement: Agreement
+    in_sample: int = 0
     information: Information | None = None
 
 
@@ -89,6 +91,8 @@ class Comparison:
         Name of the outcome, such as "wear_rate".
     unit : str
         Its unit in tables and figures.
+    cross_validated : str
+        How fits were cross-validated, "leave-one-out" or such as "5 folds"; "" if they were not.
     """
 
     tests: WearTests
@@ -96,6 +100,7 @@ class Comparison:
     notes: tuple[str, ...]
     outcome: str = WEAR
     unit: str = WEAR_RATE
+    cross_validated: str = ""
 
     @property
     def measured(self) -> Array:
@@ -106,7 +111,8 @@ class Comparison:
         """Return the ranking, a row for each predictor, best first.
 
         The measures are those of `Agreement`, with AIC and AICc of `Information`. A measure that does not exist is
-        blank (NA), never infinite. `fitted` is the number of parameters fitted to these tests.
+        blank (NA), never infinite. `in_sample` is the number of these tests to which the law was fitted, and `fitted`
+        the number of parameters fitted to them here.
         """
         rows = [_row(one, self.unit) for one in self.compared]
         counts = dict.fromkeys(COUNTS, "Int64")
@@ -176,7 +182,8 @@ class Comparison:
         unit = label(self.outcome, units={self.outcome: self.unit}).rpartition(" [")[2].removesuffix("]")
         of = "" if self.outcome == WEAR else f" of {name_of(self.outcome)}"
         shown = f"; rms_error in {unit}" if unit != "-" else ""
-        return "\n  ".join([f"{count}{of}, best first{shown}", *map(str.rstrip, lines)])
+        validated = f", fits cross-validated ({self.cross_validated})" if self.cross_validated else ""
+        return "\n  ".join([f"{count}{of}, best first{validated}{shown}", *map(str.rstrip, lines)])
 
 
 def _row(one: Compared, unit: str) -> dict[str, Any]:
@@ -190,6 +197,7 @@ def _row(one: Compared, unit: str) -> dict[str, Any]:
         "largest_factor": errors.largest_factor,
         f"rms_error [{unit or '-'}]": float(in_unit(np.asarray(errors.rms_error), unit)),
         "tests": errors.tests,
+        "in_sample": one.in_sample,
         "without_ratio": errors.without_ratio,
         "fitted": None if fit is None else fit.parameters,
         "aic": None if fit is None else fit.aic,
@@ -224,6 +232,7 @@ def compare(
     *,
     outcome: str | None = None,
     friction_coefficient: ArrayLike | None = None,
+    cross_validate: Folds | None = None,
 ) -> Comparison:
     """Rank predictors by how well they agree with measured wear rates or another outcome, all on the same tests.
 
@@ -238,6 +247,9 @@ def compare(
         Name of the outcome, such as "rcf_damage"; needed if the predictors share several that the tests measure.
     friction_coefficient : array_like of float, optional
         μ [-] for tests without a friction coefficient.
+    cross_validate : int or "leave-one-out", optional
+        Each `Fit` predicts every test from a fit of its free parameters to other tests: to all others for
+        "leave-one-out", or to those in the other of this number of random folds. Pipelines predict as they are.
 
     Returns
     -------
@@ -249,7 +261,10 @@ def compare(
     Raises
     ------
     InputError
-        If there is no predictor, two have the same name, they share no outcome, or no test has it.
+        If there is no predictor, two have the same name, they share no outcome, or no test has it. For
+        cross-validation, also if no predictor is a `Fit`, or the number of folds is impossible.
+    FitError
+        If the tests outside a fold do not determine the parameters of a fit.
     ConditionsError
         If the friction coefficient is unknown, or a predictor's rig does not take the conditions of the tests.
 
@@ -257,14 +272,15 @@ def compare(
     -----
     A law fitted to these tests follows their scatter too: the more parameters it has, the better it agrees. AIC (see
     `Information`) weighs one against the other. It is blank unless a law was fitted to the wear rates of exactly these
-    tests, and if fits assume different kinds of scatter.
+    tests, and if fits assume different kinds of scatter. A note names the laws that were fitted to these tests, and
+    `in_sample` counts the tests; cross-validation ranks fits by tests that they have not seen.
     """
     given = _given(predictors)
     chosen = _chosen(given, tests, outcome)
     names = _names(given, chosen)
     if isinstance(predictors, Mapping):
         names = [Names(own, own, of_models.contact) for own, of_models in zip(predictors, names, strict=True)]
-    return compare_named(list(zip(names, given, strict=True)), tests, friction_coefficient, chosen)
+    return compare_named(list(zip(names, given, strict=True)), tests, friction_coefficient, chosen, cross_validate)
 
 
 def compare_named(
@@ -272,6 +288,7 @@ def compare_named(
     tests: WearTests,
     friction_coefficient: ArrayLike | None,
     outcome: str | None = None,
+    cross_validate: Folds | None = None,
 ) -> Comparison:
     """Compare predictors that have names already; see `compare`."""
     taken = [names.label for names, _ in named]
@@ -287,11 +304,25 @@ def compare_named(
     notes = Notes()
     used = _with_outcome(tests, outcome, units[0], notes)
     compared = [_compared(*one, used, outcome, friction_coefficient, notes) for one in named]
+    how = ""
+    if cross_validate is not None:
+        if not any(isinstance(one, Fit) for one in given):
+            raise InputError(
+                "cross_validate: fits free parameters anew, but no predictor is a Fit; make one with its free"
+                ' parameters, as in wl.fit(pipeline, tests, free=["q_s"])'
+            )
+        parts = folds(len(used), cross_validate)
+        how = "leave-one-out" if len(parts) == len(used) else f"{len(parts)} folds"
+        compared = [
+            _cross_validated(old, one, used, outcome, parts, friction_coefficient) if isinstance(one, Fit) else old
+            for old, one in zip(compared, given, strict=True)
+        ]
     if len({one.scatter for one in given if isinstance(one, Fit)}) > 1:
         notes.add("AIC is left blank, since the fits take the tests to scatter in different ways")
         compared = [replace(one, information=None) for one in compared]
+    _note_in_sample(compared, used, notes)
     ranked = sorted(compared, key=lambda one: one.agreement.rank)
-    return Comparison(used, tuple(ranked), tuple(notes.texts), outcome, units[0])
+    return Comparison(used, tuple(ranked), tuple(notes.texts), outcome, units[0], how)
 
 
 def _given(predictors: Mapping[str, Predictor] | Sequence[Predictor]) -> list[Predictor]:
@@ -409,7 +440,22 @@ def _compared(
             " ranking"
         )
     worth = _information(names.label, predictor, tests, outcome, notes) if isinstance(predictor, Fit) else None
-    return Compared(names, _pipeline(predictor), predicted, errors, worth)
+    return Compared(names, _pipeline(predictor), predicted, errors, _in_sample(law, tests, outcome), worth)
+
+
+def _cross_validated(
+    old: Compared, fit: Fit, tests: WearTests, outcome: str, parts: list[NDArray[np.intp]], friction: Any
+) -> Compared:
+    """Return a fit with its predictions of each test by fits to tests of other folds."""
+    name = old.names.label
+
+    def predict(again: Fit, held: NDArray[np.intp]) -> Array:
+        own = friction if np.ndim(friction) == 0 else np.asarray(friction)[held]
+        return _predicted(name, again, _law(again, outcome), tests[held], own, Notes())
+
+    predicted = cross_validated(name, fit, tests, parts, predict)
+    errors = agreement(predicted, tests.measured(outcome, _law(fit, outcome).outcome.unit))
+    return replace(old, predicted=predicted, agreement=errors, in_sample=0)
 
 
 def _predicted(name: str, predictor: Predictor, law: Law, tests: WearTests, friction: Any, notes: Notes) -> Array:
@@ -428,6 +474,31 @@ def _predicted(name: str, predictor: Predictor, law: Law, tests: WearTests, fric
     with notes.of("tests"):
         prediction = pipeline.predict(pipeline.posed(conditions, of_one_patch="compare"))
     return np.asarray(prediction[law.outcome.name].to_base_units().magnitude)
+
+
+def _in_sample(law: Law, tests: WearTests, outcome: str) -> int:
+    """Return the number of tests to which a law was fitted, by their digests.
+
+    A law without digests counts as fitted to all tests if its calibration names their source.
+    """
+    if law.fitted_to:
+        known = set(law.fitted_to)
+        return sum(digest in known for digest in tests.digests(outcome, law.outcome.unit))
+    calibration = law.calibration
+    named = calibration is not None and tests.source and tests.source in calibration.source
+    return len(tests) if named else 0
+
+
+def _note_in_sample(compared: Sequence[Compared], tests: WearTests, notes: Notes) -> None:
+    """Note which laws were fitted to tests of the comparison."""
+    found = [one for one in compared if one.in_sample]
+    if not found:
+        return
+    counted = (f"{one.names.label} ({one.in_sample} of {len(tests)})" for one in found)
+    notes.add(
+        f"fitted to these tests, which flatters their rank: {', '.join(counted)}; compare on other tests, or"
+        " cross-validate"
+    )
 
 
 def _information(name: str, fit: Fit, tests: WearTests, outcome: str, notes: Notes) -> Information | None:

@@ -73,7 +73,7 @@ def fit(
     seed : int
         Seed of all random numbers; the same seed gives the same fit.
     confidence : float
-        Confidence level of the intervals.
+        Confidence level of the intervals, and of the tests for lack of fit.
     on_progress : callable, optional
         Called with the number of replicates in each finished batch.
 
@@ -84,6 +84,12 @@ def fit(
         too few tests, no fit is found, or a setting is invalid.
     ConditionsError
         If the rig does not take the conditions of the tests.
+
+    Warns
+    -----
+    FitWarning
+        If the law does not fit the tests (see `LackOfFit`), the fit ends at a bound, a test decides a parameter alone,
+        or the bootstrap is unreliable.
 
     Notes
     -----
@@ -98,8 +104,18 @@ def fit(
         replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
     if overload := task.overload(best):
         overload.warn(stacklevel=2)
-    found = summarise(task, best, replicates, confidence, seed)
-    _warn(task, best, replicates)
+    settings = {
+        "predict": predict,
+        "free": list(free),
+        "friction_coefficient": friction_coefficient,
+        "scatter": scatter,
+        "bounds": bounds,
+        "starts": starts,
+        "seed": seed,
+        "confidence": confidence,
+    }
+    found = summarise(task, best, replicates, confidence, settings)
+    _warn(task, best, replicates, found)
     return found
 
 
@@ -123,9 +139,10 @@ def _check_replicates(bootstrap: int, confidence: float) -> None:
         )
 
 
-def _warn(task: Task, best: Solutions, replicates: Replicates | None) -> None:
+def _warn(task: Task, best: Solutions, replicates: Replicates | None, found: Fit) -> None:
     """Warn the caller of `fit` if the fit is less certain than its intervals say."""
-    for text in (*_at_bounds(task, best), *_decided_alone(task, best), *_unreliable(task, replicates)):
+    poor = (one.warning for one in found.lack_of_fit if one.poor)
+    for text in (*poor, *_at_bounds(task, best), *_decided_alone(task, best), *_unreliable(task, replicates)):
         warnings.warn(text, FitWarning, stacklevel=3)
 
 

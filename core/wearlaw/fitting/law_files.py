@@ -17,6 +17,9 @@ from wearlaw.plugins import loader
 from wearlaw.plugins.fields import specification
 from wearlaw.settings.text_files import read_text
 
+DIGESTS = "digests_of_tests"
+"""The entry of the provenance with the digests of the tests of a fit."""
+
 
 def write_law(path: str | os.PathLike[str], law: Law, provenance: Mapping[str, Any]) -> None:
     """Write a law to a TOML file, whole or not at all; `read_law` reads it.
@@ -27,7 +30,8 @@ def write_law(path: str | os.PathLike[str], law: Law, provenance: Mapping[str, A
         If the file cannot be written.
     """
     target = Path(path)
-    text = tomli_w.dumps({law.kind.replace(" ", "_"): specification(law), "provenance": dict(provenance)})
+    tests = {DIGESTS: list(law.fitted_to)} if law.fitted_to else {}
+    text = tomli_w.dumps({law.kind.replace(" ", "_"): specification(law), "provenance": {**provenance, **tests}})
     temporary = target.with_name(f".{target.name}.{os.getpid()}")
     try:
         try:
@@ -87,6 +91,9 @@ def read_law(path: str | os.PathLike[str]) -> Law:
         raise InputError(f"wear law '{path}' needs a table [wear_law] with the name of the law, as in model = \"usfd\"")
     name = fields.pop("model")
     try:
-        return loader.law(name, **fields) if kind == "law" else loader.wear_law(name, **fields)
+        law = loader.law(name, **fields) if kind == "law" else loader.wear_law(name, **fields)
     except ConfigurationError as error:
         raise InputError(with_problems(f"wear law '{path}' is wrong in:", error.problems)) from None
+    provenance = contents.get("provenance")
+    digests = provenance.get(DIGESTS) if isinstance(provenance, dict) else None
+    return law.with_tests(map(str, digests)) if isinstance(digests, list) else law

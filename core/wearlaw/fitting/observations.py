@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,8 @@ class Observations:
         The tests with this measurement, each with a label.
     measured : ndarray, (n,)
         The measurements in SI.
+    conditions : mapping of str to Quantity or array_like, (n,) or a single value
+        The conditions of the tests, which the rig takes.
     problem : Problem
         The contact problems of the tests, with batch shape (n,).
     scatter : str
@@ -64,6 +66,7 @@ class Observations:
     places: Mapping[str, Place]
     tests: WearTests
     measured: Array
+    conditions: Mapping[str, Any]
     problem: Problem
     scatter: Scatter
     divisor: Array
@@ -225,7 +228,9 @@ def _observe(
     if chosen == "relative" and (law is None or law.zero_in_stick):
         _refuse_rest(observable, selected, problem)
     divisor = _divisor(selected, measured, chosen)
-    return Observations(observable, index, pipeline, free.places, selected, measured, problem, chosen, divisor)
+    return Observations(
+        observable, index, pipeline, free.places, selected, measured, conditions, problem, chosen, divisor
+    )
 
 
 def _divisor(tests: WearTests, measured: Array, scatter: Scatter) -> Array:

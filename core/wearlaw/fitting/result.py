@@ -10,22 +10,26 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pandas as pd
+import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
+from wearlaw.fitting.free_parameters import FRICTION
+from wearlaw.fitting.lack_of_fit import LackOfFit
 from wearlaw.fitting.law_files import write_law
 from wearlaw.fitting.observations import TRACTION, Observations, Scatter, wear_index_density
 from wearlaw.models.law import WEAR, Law
-from wearlaw.units.quantities import Quantity, from_si, in_unit
+from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
 from wearlaw.units.registry import si_factor
-from wearlaw.units.variables import UNITS, label
+from wearlaw.units.variables import UNITS, label, name_of
 from wearlaw.wear_tests.tests import WearTests
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from wearlaw.pipeline.pipeline import Pipeline
 
@@ -79,6 +83,10 @@ class Fit:
         Versions, tests, settings and sums.
     observations : tuple of Observations
         The measurements with their pipeline, and the fitted friction coefficient.
+    lack_of_fit : tuple of LackOfFit
+        A check of the residuals for each kind of measurement, against the scatter of repeated tests if there are any.
+    settings : dict
+        The arguments of `fit`, without the tests and the bootstrap, to make the fit anew.
     """
 
     parameters: dict[str, Quantity]
@@ -96,6 +104,8 @@ class Fit:
     samples: dict[str, Quantity]
     provenance: Mapping[str, Any]
     observations: tuple[Observations, ...]
+    lack_of_fit: tuple[LackOfFit, ...]
+    settings: Mapping[str, Any]
 
     @property
     def standard_errors(self) -> dict[str, Quantity]:
@@ -128,11 +138,16 @@ class Fit:
 
     @property
     def residuals(self) -> pd.DataFrame:
-        """A row for each measurement: test, measured and predicted value, and residual."""
+        """A row for each measurement: test, measured and predicted value, residual, and predicted over measured.
+
+        The ratio is NaN unless both values are positive.
+        """
         rows = []
         for one in self.observations:
             predicted = self._fitted(one)
             shown = one.unit
+            ratio = np.full(predicted.shape, np.nan)
+            np.divide(predicted, one.measured, out=ratio, where=(predicted > 0.0) & (one.measured > 0.0))
             rows.append(
                 pd.DataFrame(
                     {
@@ -142,6 +157,7 @@ class Fit:
                         "measured": from_si(one.measured, shown).magnitude,
                         "predicted": from_si(predicted, shown).magnitude,
                         "residual": one.in_shown_unit(predicted),
+                        "predicted/measured": ratio,
                     }
                 )
             )
@@ -214,7 +230,13 @@ class Fit:
             low, high = (f"{end.magnitude:.3g}" for end in self.intervals[name])
             unit = repr(value).partition(" ")[2]
             lines.append(f"  {name:<21} {value.magnitude:<8.4g} ({low} to {high}) {unit}".rstrip())
-        lines.append(f"  rms residual          {self.rms!r}")
+        first = self.observations[0]
+        factor = f", a factor of {np.exp(self.rms.magnitude):.4g}" if first.scatter == "relative" else ""
+        lines.append(f"  rms residual          {self.rms!r}{factor}")
+        checks = [one for one in self.lack_of_fit if one.p_value is not None or one.poor]
+        for one in checks:
+            of = f" of {name_of(one.observable)}" if len(self.observations) > 1 else ""
+            lines.append(f"  lack of fit           {'yes' if one.poor else 'none'}{of}: {one}")
         lines.append(f"  intervals             {self.confidence:.0%}, {self.interval_method}")
         return "\n".join(lines)
 
@@ -234,7 +256,7 @@ def _figure_data(fit: Fit) -> FigureData:
     band = f"band: {fit.confidence:.0%} of the bootstrap replicates" if fit.samples else "no bootstrap, no band"
     apart = (
         ""
-        if all(_one_series(one.problem) for one in fit.observations)
+        if all(_one_series(one.problem) or _varied(one) for one in fit.observations)
         else "; the tests differ in load, friction or other conditions"
     )
     names = ", ".join(fit.parameters)
@@ -249,17 +271,67 @@ def _figure_data(fit: Fit) -> FigureData:
 
 def _panel(fit: Fit, one: Observations) -> Panel:
     x = "creepage" if one.observable == TRACTION else "wear_index_density"
+    varied = None if _one_series(one.problem) else _varied(one)
+    if varied is not None:
+        return _panel_along(fit, one, varied)
     measured = Curve("measured", _along(fit, one.problem, x), _shown(one, one.measured), colour=BLACK, points=True)
     scale: Literal["log", "linear"] = "log" if one.observable != TRACTION and (one.measured > 0.0).all() else "linear"
     axes = PlotAxis(label(x), scale), PlotAxis(one.label, scale)
     return Panel(*axes, (_fitted(fit, one, x), measured))
 
 
+def _panel_along(fit: Fit, one: Observations, name: str) -> Panel:
+    """Return measured and fitted values against the only condition that differs between the tests."""
+    given = one.conditions[name]
+    unit = f"{given.units:~P}" if isinstance(given, pint.Quantity) else ""
+    values = _numbers(given)
+    order = np.argsort(values, kind="stable")
+    along = _finer(values[order])
+    conditions = {other: _between_tests(value, order) for other, value in one.conditions.items()}
+    problem = one.pipeline.posed(conditions, of_one_patch="fit")
+    if FRICTION in fit.parameters:
+        problem = problem.replaced(
+            friction_coefficient=np.full(problem.batch_shape, one.problem.friction_coefficient[0])
+        )
+    measured = Curve("measured", values, _shown(one, one.measured), colour=BLACK, points=True)
+    axes = PlotAxis(label(name, units={name: unit}), "linear"), PlotAxis(one.label, "linear")
+    return Panel(*axes, (_curve(fit, one, problem, along), measured))
+
+
+def _varied(one: Observations) -> str | None:
+    """Return the only condition that differs between the tests, apart from a measured traction, or None."""
+    names = [name for name, value in one.conditions.items() if name != TRACTION and not _is_one_value(_numbers(value))]
+    return names[0] if len(names) == 1 else None
+
+
+def _numbers(value: Any) -> Array:
+    return real_array(value.magnitude if isinstance(value, pint.Quantity) else value)
+
+
+def _between_tests(value: Any, order: NDArray[np.intp]) -> Any:
+    """Return a condition of the tests in some order and of points between them; a single value stays."""
+    numbers = _numbers(value)
+    if numbers.ndim == 0:
+        return value
+    finer = _finer(numbers[order])
+    return Q(finer, str(value.units)) if isinstance(value, pint.Quantity) else finer
+
+
+def _finer(values: Array) -> Array:
+    """Return values and further ones between them."""
+    places = np.arange(values.size, dtype=np.float64)
+    return np.interp(np.linspace(0.0, places[-1], BETWEEN * (values.size - 1) + 1), places, values)
+
+
 def _fitted(fit: Fit, one: Observations, x: str) -> Curve:
     """Return the fitted values: a curve through the tests, or points if their conditions differ."""
     together = _one_series(one.problem)
     problem = _between(one) if together else one.problem
-    along = _along(fit, problem, x)
+    return _curve(fit, one, problem, _along(fit, problem, x), points=not together)
+
+
+def _curve(fit: Fit, one: Observations, problem: Problem, along: Array, points: bool = False) -> Curve:
+    """Return the fitted values at operating points, with their band."""
     order = np.argsort(along, kind="stable")
 
     def at(values: dict[str, Array]) -> Array:
@@ -273,7 +345,7 @@ def _fitted(fit: Fit, one: Observations, x: str) -> Curve:
         chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).round().astype(int))
         tail = 0.5 - 0.5 * fit.confidence
         low, high = np.quantile(at({name: some[chosen] for name, some in values.items()}), [tail, 1.0 - tail], axis=0)
-    return Curve("fitted", along[order], best, low=low, high=high, points=not together)
+    return Curve("fitted", along[order], best, low=low, high=high, points=points)
 
 
 def _arrays(problem: Problem) -> dict[str, Array]:

@@ -12,7 +12,8 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.errors import ConfigurationError, FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
-from wearlaw.fitting.intervals import Replicates, covariance, student_intervals, studentised_intervals
+from wearlaw.fitting.intervals import Replicates, covariance, leverage, student_intervals, studentised_intervals
+from wearlaw.fitting.lack_of_fit import check_fit
 from wearlaw.fitting.least_squares import Solutions
 from wearlaw.fitting.observations import FLOOR, Observations, test_names, wear_index_density
 from wearlaw.fitting.result import Fit
@@ -33,7 +34,9 @@ DIGITS = 4
 """Significant digits of the stated range of a fitted law, rounded outwards."""
 
 
-def summarise(task: Task, best: Solutions, replicates: Replicates | None, confidence: float, seed: int) -> Fit:
+def summarise(
+    task: Task, best: Solutions, replicates: Replicates | None, confidence: float, settings: Mapping[str, Any]
+) -> Fit:
     """Return the result of a fit.
 
     Raises
@@ -51,7 +54,7 @@ def summarise(task: Task, best: Solutions, replicates: Replicates | None, confid
     samples = {} if replicates is None else free.columns(replicates.theta)
     slopes = free.slopes(theta)
     chi2, aic = _sums(task, best)
-    provenance = _provenance(task, predict, replicates, seed, chi2, confidence)
+    provenance = _provenance(task, predict, replicates, settings["seed"], chi2, confidence)
     return Fit(
         parameters=parameters,
         intervals=_pairs(free, ends),
@@ -68,6 +71,8 @@ def summarise(task: Task, best: Solutions, replicates: Replicates | None, confid
         samples={name: free.quantity(name, one) for name, one in samples.items()},
         provenance=provenance,
         observations=observations,
+        lack_of_fit=check_fit(observations, best.residuals[0] / task.weights, leverage(best), task.groups, confidence),
+        settings=settings,
     )
 
 
@@ -87,7 +92,7 @@ def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observatio
 
 
 def _fitted_pipeline(task: Task, values: Mapping[str, Array], observations: Sequence[Observations]) -> Pipeline[...]:
-    """Return the pipeline with the fitted numbers; each law whose outcome was fitted records its calibration."""
+    """Return the pipeline with the fitted numbers; fitted laws record calibration and tests."""
     given = task.predict
     at_places = {place: float(values[name][0]) for name, place in task.free.places.items()}
     for one in observations:
@@ -106,7 +111,8 @@ def _fitted_pipeline(task: Task, values: Mapping[str, Array], observations: Sequ
     predict = given.model_copy(update={"stages": stages})
     for one in observations:
         if one.law is not None:
-            laws[one.law] = laws[one.law].fitted(_calibration(task, predict, one))
+            law = laws[one.law].fitted(_calibration(task, predict, one))
+            laws[one.law] = law.with_tests(one.tests.digests(one.observable, one.unit))
     return predict.with_law(*laws) if laws else predict
 
 

@@ -4,7 +4,7 @@ import inspect
 import math
 import warnings
 from abc import abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast
@@ -409,6 +409,20 @@ class Law(Model):
     def fitted(self, calibration: Calibration) -> "Law":  # noqa: ARG002
         """Return this law with a record of the fit of its parameters; by default the law keeps no record."""
         return self
+
+    @cached_property
+    def fitted_to(self) -> tuple[str, ...]:
+        """Digests of the tests of a fit (`WearTests.digests`), by which `wl.compare` knows them again.
+
+        This is no field: a copy with other numbers has none, and laws with equal numbers are equal.
+        """
+        return ()
+
+    def with_tests(self, digests: Iterable[str]) -> Self:
+        """Return the same law, fitted to the tests with these digests."""
+        law = self.model_copy()
+        law.__dict__["fitted_to"] = tuple(digests)  # as `cached_property` keeps its value
+        return law
 
     def band(self) -> "tuple[Law, Law, Law] | None":
         """Return the laws at the low end, middle and high end of published parameter ranges, or None without ranges."""

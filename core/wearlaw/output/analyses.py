@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +62,7 @@ def write_fit(
         "intervals": {name: [text_of(end) for end in ends] for name, ends in fit.intervals.items()},
         "interval_method": fit.interval_method,
         "aic": fit.aic,
+        "lack_of_fit": [asdict(one) for one in fit.lack_of_fit],
         "provenance": fit.provenance,
         "predict": fit.predict.model_dump(mode="json"),
         "notes": list(notes),
@@ -88,6 +89,7 @@ def write_comparison(
     record = {
         "wearlaw": __version__,
         "tests": comparison.tests.source,
+        "cross_validated": comparison.cross_validated,
         "predictors": {one.names.label: one.pipeline.model_dump(mode="json") for one in comparison.compared},
         "notes": list(notes),
     }

@@ -6,6 +6,7 @@ only provide the conditions of contact problems.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
 
     from wearlaw.models.contact_model import ContactModel
     from wearlaw.pipeline.pipeline import Rig
+
+DIGEST = 16
+"""Hexadecimal digits of the digest of a test; two of a million tests share one with a probability below 1e-7."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -205,6 +209,28 @@ class WearTests:
             raise DataError(
                 "the tests are wrong in:", [f"{name}: got {_unit(quantity) or '-'}, {error}; give it {need}"]
             ) from None
+
+    def digests(self, name: str, unit: str) -> tuple[str, ...]:
+        """Return a digest of each test: of its conditions and one measurement, without labels and source.
+
+        Parameters
+        ----------
+        name, unit : str
+            The measurement, as for `measured`.
+        """
+        known = (*LOADS, "creepage", "friction_coefficient")
+        given = {column: self._quantity(column) for column in known if column in self.columns}
+        in_si = {
+            condition: np.asarray(value.to_base_units().magnitude if isinstance(value, pint.Quantity) else value)
+            for condition, value in sorted({**given, **self.other_conditions}.items())
+        }
+        in_si["measured"] = self.measured(name, unit)
+        texts = (
+            # Nine digits, so that the rounding of units does not matter.
+            ";".join(f"{column}={values[i]:.8e}" for column, values in in_si.items())
+            for i in range(len(self))
+        )
+        return tuple(hashlib.sha256(text.encode()).hexdigest()[:DIGEST] for text in texts)
 
     def conditions(
         self, model: ContactModel, friction_coefficient: ArrayLike | None = None, rig: Rig | None = None

@@ -1,0 +1,95 @@
+"""Cross-validation: predictions of tests by fits to the other tests."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wearlaw.arrays.array import Array
+from wearlaw.errors import FitError, FitWarning, InputError, PlasticityWarning, RangeWarning
+from wearlaw.fitting.fit import fit as fit_parameters
+from wearlaw.fitting.observations import test_names
+from wearlaw.fitting.result import Fit
+from wearlaw.wear_tests.tests import WearTests
+
+Folds: TypeAlias = int | Literal["leave-one-out"]
+"""Number of folds, or one for each test."""
+
+SEED = 0
+"""Seed of the random order in which tests are dealt to folds, so that a comparison can be repeated."""
+
+
+def folds(count: int, how: Folds) -> list[NDArray[np.intp]]:
+    """Return the indices of the tests in each fold.
+
+    Raises
+    ------
+    InputError
+        If `how` is not a number of folds from 2 to the number of tests, or "leave-one-out".
+    """
+    number: object = count if how == "leave-one-out" else how
+    if isinstance(number, bool) or not isinstance(number, int | np.integer) or not 2 <= number <= count:
+        raise InputError(
+            f'cross_validate: give "leave-one-out" or a number of folds from 2 to the {count} tests, got {how!r}'
+        )
+    dealt = np.random.default_rng(SEED).permutation(count)
+    return [np.sort(dealt[fold::number]) for fold in range(number)]
+
+
+def cross_validated(
+    name: str,
+    fit: Fit,
+    tests: WearTests,
+    parts: list[NDArray[np.intp]],
+    predict: Callable[[Fit, NDArray[np.intp]], Array],
+) -> Array:
+    """Return the prediction of each test by a fit to the tests of the other folds, with the settings of a fit.
+
+    Parameters
+    ----------
+    name : str
+        Name of the fit, for messages.
+    fit : Fit
+        The fit, which is made anew for every fold: from the same pipeline, with the same free parameters.
+    tests : WearTests
+        The tests.
+    parts : list of ndarray
+        The indices of the tests in each fold.
+    predict : callable
+        Returns the predictions of a fit for the tests of some indices.
+
+    Raises
+    ------
+    FitError
+        If the tests outside a fold do not determine the parameters.
+
+    Notes
+    -----
+    M. Stone, J. R. Stat. Soc. B 36 (1974) 111-147.
+    """
+    found = np.empty(len(tests))
+    for held in parts:
+        there = np.zeros(len(tests), dtype=np.bool_)
+        there[held] = True
+        try:
+            # The fit to all tests has warned already; test after test at the edge of the range would repeat it.
+            with warnings.catch_warnings():
+                for kind in (FitWarning, RangeWarning, PlasticityWarning):
+                    warnings.simplefilter("ignore", kind)
+                again = fit_parameters(tests=tests[~there], bootstrap=0, **fit.settings)
+                found[held] = predict(again, held)
+        except FitError as error:
+            raise FitError(
+                f"{name}: cannot be fitted without {test_names(_numbered(tests), there)}: {error}; choose another"
+                " number of folds, or free fewer parameters"
+            ) from error
+    return found
+
+
+def _numbered(tests: WearTests) -> WearTests:
+    labels = tuple(label or f"number {number}" for number, label in enumerate(tests.labels, 1))
+    return WearTests(tests.columns, labels, tests.source, tests.other_conditions, tests.outcomes)
