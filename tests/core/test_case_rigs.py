@@ -236,7 +236,10 @@ BY_LOAD = {"sweep": "braking", "x": "normal_force", "y": "wear_rate"}
     ("spec", "message"),
     [
         ({**BY_LOAD, "x": "half_width"}, "x: 'half_width' cannot be shown"),
-        ({**BY_LOAD, "x": "creepage"}, "x: 'creepage' cannot be shown. It can be: tangential_force"),
+        (
+            {**BY_LOAD, "x": "creepage"},
+            "x: 'creepage' cannot be shown; did you mean 'longitudinal_creepage'? It can be: tangential_force",
+        ),
         ({**BY_LOAD, "x": "friction_coefficient"}, "x: friction_coefficient is the same at all points of the sweep"),
         ({**BY_LOAD, "y": "averaged_wear_index"}, "y: 'averaged_wear_index' cannot be shown; did you mean"),
         ({**BY_LOAD, "body": "rail"}, "body: only wear across the patch is of one body; leave it out"),
