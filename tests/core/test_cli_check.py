@@ -138,7 +138,7 @@ def test_without_hypothesis_the_error_says_what_to_install(monkeypatch: pytest.M
     for name in [name for name in sys.modules if name.startswith("wearlaw.testing")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "hypothesis", None)
-    assert_refused(wearlaw("check", "usfd"), 'pip install "wearlaw[test]"')
+    assert_refused(wearlaw("check", "usfd"), 'pip install "wearlaw[check]"')
 
 
 def test_another_module_that_is_missing_is_not_laid_to_hypothesis(monkeypatch: pytest.MonkeyPatch) -> None:
