@@ -318,6 +318,8 @@ def test_its_uncertainty_is_that_of_direct_samples() -> None:
     assert done.exit_code == 0, done.output
     rates = pd.read_csv("c-uncertainty/wear_rates.csv")
     assert len(rates) == 5
+    figures = {f"one_{pair.replace(' ', '_')}.png" for pair in rates["pair"]}
+    assert {path.name for path in Path("c-uncertainty").glob("*.png")} == figures
     case = load_case("c.toml")
     for _, row in rates.iterrows():
         law, model = row["pair"].split(" on ")
