@@ -122,6 +122,7 @@ def test_a_rig_is_checked_from_the_command_line() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message", "exit_code"),
     [
+        (["steel"], "'steel' is a material, which has no checks; wearlaw show steel explains it", 1),
         (["usdf"], "no model is called 'usdf'; did you mean 'usfd'?", 1),
         (["usfd", "--option", "fited_for=exact"], "usfd: fited_for: unknown field; did you mean 'fitted_for'?", 1),
         (["usfd", "--option", "exact"], "--option: write it as FIELD=VALUE, got 'exact'", 2),
