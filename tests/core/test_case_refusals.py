@@ -112,6 +112,77 @@ def test_every_wrong_field_is_named_once(tmp_path: Path) -> None:
     assert sorted(where) == ["contact_models.0", "rig.diameter", "wear_laws.1"]
 
 
+def places(content: Any, tmp_path: Path) -> list[str]:
+    """Return the paths of the wrong fields of a case, in alphabetical order."""
+    with pytest.raises(wl.CaseError) as refusal:
+        load(tmp_path, content)
+    return sorted(line.strip().split(":")[0] for line in str(refusal.value).splitlines()[1:])
+
+
+def test_every_wrong_condition_of_every_sweep_profile_and_uncertain_point_is_named(tmp_path: Path) -> None:
+    bare = {**cases.POINT, "max_pressure": "1500 N", "creepage": 1}
+    content = table(
+        sweeps={
+            "one": bare,
+            "two": {**cases.POINT, "creepage": {"from": "1 %", "to": "2 %", "points": 1}, "friction_coefficient": -1},
+            "three": {**cases.POINT, "creepage": ["1 %", 2], "max_pressure": 3, "angle": "1 deg"},
+            "four": {**cases.POINT, "max_pressure": ["1 GPa", "-1 GPa"], "creepage": ["2", "200 %"]},
+            "fi ve": cases.POINT,
+        },
+        profiles={"six": bare, "seven": {**cases.POINT, "creepage": ["1 %"]}},
+        uncertainty={"eight": {**bare, "friction_coefficient": {"normal": [0.4, -1]}}},
+        sections=["nope"],
+    )
+    assert places(content, tmp_path) == [
+        "profiles.seven",
+        "profiles.six.creepage",
+        "profiles.six.max_pressure",
+        "sections.0",
+        "sweeps",
+        "sweeps.four.creepage",
+        "sweeps.four.max_pressure",
+        "sweeps.one.creepage",
+        "sweeps.one.max_pressure",
+        "sweeps.three.angle",
+        "sweeps.three.creepage",
+        "sweeps.three.max_pressure",
+        "sweeps.two.creepage.points",
+        "sweeps.two.friction_coefficient",
+        "uncertainty.eight.creepage",
+        "uncertainty.eight.friction_coefficient",
+        "uncertainty.eight.max_pressure",
+    ]
+
+
+def test_a_wrong_condition_lays_no_blame_on_the_others(tmp_path: Path) -> None:
+    """Without the wrong load, none is left, and without the misspelt friction none is given."""
+    loads = {"creepage": "1 %", "max_presure": "1 GPa", "friction_coefficient": 0.4}
+    assert places(table(sweeps={"one": loads}), tmp_path) == ["sweeps.one.max_presure"]
+    assert places(table(sweeps={"one": {**cases.POINT, "max_pressure": "1 N"}}), tmp_path) == [
+        "sweeps.one.max_pressure"
+    ]
+
+
+def test_what_does_not_fit_together_is_named_in_every_place(tmp_path: Path) -> None:
+    content = table(
+        uncertainty={
+            "one": {**cases.POINT, "laws": {"usdf": {"q_s": {"normal": [1, 2]}}, "kth": {"hard": {"normal": [1, 2]}}}}
+        },
+        figures={"a": {"sweep": "nope", "x": "creepage", "y": "wear_rate"}},
+    )
+    assert places(content, tmp_path) == [
+        "figures.a.sweep",
+        "uncertainty.one.laws.kth.hard",
+        "uncertainty.one.laws.usdf",
+    ]
+
+
+def test_every_missing_plugin_is_named(tmp_path: Path) -> None:
+    needed = {"wearlaw-one": ">=1", "wearlaw-two": "", "wearlaw": ">=99"}
+    expected = ["plugins.wearlaw", "plugins.wearlaw-one", "plugins.wearlaw-two"]
+    assert places(table(plugins=needed), tmp_path) == expected
+
+
 def test_tests_that_are_missing_or_wrong_are_refused_with_the_case(tmp_path: Path) -> None:
     path = tmp_path / "own.csv"
     content = table(measured={"label": "m", "tests": "own.csv"})

@@ -264,9 +264,7 @@ def test_a_parameter_set_is_checked_like_a_law(install: Install, monkeypatch: py
     wearlaw("check", "lab_2026", "--option", "m_c=75 ug/m/N")
     assert checked == [wl.wear_law("lab_2026"), wl.wear_law("lab_2026", m_c="75 ug/m/N")]
     refused = wearlaw("check", "lab_2025")
-    assert (
-        "no model is called 'lab_2025'; did you mean 'lab_2026'?" in refused.stderr
-    )
+    assert "no model is called 'lab_2025'; did you mean 'lab_2026'?" in refused.stderr
 
 
 def test_a_parameter_set_with_the_name_of_a_law_is_left_out_by_name(install: Install) -> None:
