@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -175,6 +176,32 @@ def test_what_does_not_fit_together_is_named_in_every_place(tmp_path: Path) -> N
         "uncertainty.one.laws.kth.hard",
         "uncertainty.one.laws.usdf",
     ]
+
+
+WHEEL_RAIL = {"type": "wheel_rail", "wheel_radius": "460 mm", "rail_head_radius": "300 mm", "material": "steel"}
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "advice"),
+    [
+        ("sweeps.creepage.creepage", 1, 'such as "1 %"'),
+        ("sweeps.creepage.max_pressure", [1, 2], 'such as "1.0 MPa"'),
+        ("rig.track_width", 10, 'such as "1.0 mm"'),
+        ("wear_laws", [{"model": "usfd", "q_s": 3}], 'such as "1.0 ug/m/mm^2"'),
+        (
+            "rig",
+            {**WHEEL_RAIL, "rolling_speed": "1 m/s", "wheel_profile_radius": "0 mm"},
+            'a flat body has the radius "inf mm"',
+        ),
+        ("rig", {**WHEEL_RAIL, "rolling_speed": "1 m/s", "contact_angle": "95 deg"}, 'such as "70 deg" on a flange'),
+        ("uncertainty", {"one": {**cases.POINT, "creepage": {"normal": [1, 2]}}}, 'such as "1 %"'),
+    ],
+)
+def test_advice_in_errors_of_a_case_is_toml_and_not_python(tmp_path: Path, path: str, value: Any, advice: str) -> None:
+    with pytest.raises(wl.CaseError) as refusal:
+        load(tmp_path, changed(path, value))
+    assert advice in str(refusal.value)
+    assert not re.search(r"\bQ\(|\bwl\.|\bnp\.", str(refusal.value))
 
 
 def test_every_missing_plugin_is_named(tmp_path: Path) -> None:

@@ -57,9 +57,7 @@ class Uncertain:
         return values if self.unit is None else from_si(values, self.unit)
 
 
-OTHERS = (
-    "\nThe values are samples of its distribution; choose one without such values, such as wl.lognormal or wl.uniform"
-)
+OTHERS = "\nThe values are samples of its distribution; choose one without such values, such as lognormal or uniform"
 """The hint for impossible samples."""
 
 
