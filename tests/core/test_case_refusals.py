@@ -195,6 +195,11 @@ WHEEL_RAIL = {"type": "wheel_rail", "wheel_radius": "460 mm", "rail_head_radius"
         ),
         ("rig", {**WHEEL_RAIL, "rolling_speed": "1 m/s", "contact_angle": "95 deg"}, 'such as "70 deg" on a flange'),
         ("uncertainty", {"one": {**cases.POINT, "creepage": {"normal": [1, 2]}}}, 'such as "1 %"'),
+        (
+            "uncertainty",
+            {"one": {**cases.POINT, "laws": {"usfd": {"q_s": {"normal": [1, 2]}}}}},
+            'such as "1.0 µg/m/mm**2"',
+        ),
     ],
 )
 def test_advice_in_errors_of_a_case_is_toml_and_not_python(tmp_path: Path, path: str, value: Any, advice: str) -> None:
