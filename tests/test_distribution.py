@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import email
+import subprocess
+import sys
 import tomllib
 import zipfile
 from pathlib import Path
@@ -44,3 +46,20 @@ def test_pyproject_names_every_package_wherever_packages_are_named() -> None:
     assert tools["importlinter"]["root_packages"] == names
     assert [one.get("modules") or one["forbidden_modules"] for one in contracts[:2]] == [names[1:]] * 2
     assert contracts[2]["source_modules"] == names[1:]
+
+
+def test_the_small_extra_for_checks_needs_hypothesis_and_pytest_only() -> None:
+    extras = PYPROJECT["project"]["optional-dependencies"]
+    assert [line.split(">=")[0] for line in extras["check"]] == ["hypothesis", "pytest"]
+    assert {*extras["check"]} <= {*extras["test"]}
+    others = {line.split(">=")[0] for name in extras for line in extras[name]} - {"hypothesis", "pytest"}
+    blocked = [name.replace("-", "_").replace("pytest_xdist", "xdist") for name in sorted(others)]
+    code = (
+        f"import sys; sys.modules.update(dict.fromkeys({blocked}))\n"
+        "import wearlaw; from wearlaw.testing import checks, conformance\n"
+        "law = wearlaw.wear_law('kth'); conformance(law)\n"
+        "print(sum(check() is None for check in checks(law)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert int(done.stdout) > 10

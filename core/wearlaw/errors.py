@@ -7,6 +7,7 @@ can catch either.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -151,9 +152,23 @@ class PluginWarning(WearlawWarning):
     """A plugin, or a part of it, could not be used and is left out, or it changed the process while it was loaded."""
 
 
+_WORDS = re.compile(r"[^\W_]{3,}")
+"""The words of a name such as "coefficient.low_speed"; letters such as the "m" of "m_c" are none."""
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return "; did you mean 'x'?" for the nearest known word, or a full stop if no word is near."""
-    near = get_close_matches(word, list(known), n=1)
+    """Return "; did you mean 'x'?" for the nearest known word, or a full stop if no word is near.
+
+    Case does not matter. A word that is part of longer names, such as creepage in longitudinal_creepage, suggests the
+    first of them.
+    """
+    names = list(known)
+    sought = word.lower()
+    parts = set(_WORDS.findall(sought))
+    whole = [name for name in names if name.lower() == sought]
+    longer = [name for name in names if parts and parts <= set(_WORDS.findall(name.lower()))]
+    spelt = {name.lower(): name for name in reversed(names)}  # of equal names, the first counts
+    near = [*whole, *longer, *(spelt[name] for name in get_close_matches(sought, spelt, n=1))]
     return f"; did you mean '{near[0]}'?" if near else "."
 
 

@@ -236,7 +236,10 @@ BY_LOAD = {"sweep": "braking", "x": "normal_force", "y": "wear_rate"}
     ("spec", "message"),
     [
         ({**BY_LOAD, "x": "half_width"}, "x: 'half_width' cannot be shown"),
-        ({**BY_LOAD, "x": "creepage"}, "x: 'creepage' cannot be shown. It can be: tangential_force"),
+        (
+            {**BY_LOAD, "x": "creepage"},
+            "x: 'creepage' cannot be shown; did you mean 'longitudinal_creepage'? It can be: tangential_force",
+        ),
         ({**BY_LOAD, "x": "friction_coefficient"}, "x: friction_coefficient is the same at all points of the sweep"),
         ({**BY_LOAD, "y": "averaged_wear_index"}, "y: 'averaged_wear_index' cannot be shown; did you mean"),
         ({**BY_LOAD, "body": "rail"}, "body: only wear across the patch is of one body; leave it out"),
@@ -315,6 +318,8 @@ def test_its_uncertainty_is_that_of_direct_samples() -> None:
     assert done.exit_code == 0, done.output
     rates = pd.read_csv("c-uncertainty/wear_rates.csv")
     assert len(rates) == 5
+    figures = {f"one_{pair.replace(' ', '_')}.png" for pair in rates["pair"]}
+    assert {path.name for path in Path("c-uncertainty").glob("*.png")} == figures
     case = load_case("c.toml")
     for _, row in rates.iterrows():
         law, model = row["pair"].split(" on ")

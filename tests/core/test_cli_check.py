@@ -122,6 +122,7 @@ def test_a_rig_is_checked_from_the_command_line() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message", "exit_code"),
     [
+        (["steel"], "'steel' is a material, which has no checks; wearlaw show steel explains it", 1),
         (["usdf"], "no model is called 'usdf'; did you mean 'usfd'?", 1),
         (["usfd", "--option", "fited_for=exact"], "usfd: fited_for: unknown field; did you mean 'fitted_for'?", 1),
         (["usfd", "--option", "exact"], "--option: write it as FIELD=VALUE, got 'exact'", 2),
@@ -138,7 +139,7 @@ def test_without_hypothesis_the_error_says_what_to_install(monkeypatch: pytest.M
     for name in [name for name in sys.modules if name.startswith("wearlaw.testing")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "hypothesis", None)
-    assert_refused(wearlaw("check", "usfd"), 'pip install "wearlaw[test]"')
+    assert_refused(wearlaw("check", "usfd"), 'pip install "wearlaw[check]"')
 
 
 def test_another_module_that_is_missing_is_not_laid_to_hypothesis(monkeypatch: pytest.MonkeyPatch) -> None:

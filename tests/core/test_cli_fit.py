@@ -176,3 +176,30 @@ def test_a_number_that_is_fitted_is_not_said_to_be_kept_however_it_is_named() ->
     fit[fit.index("m_m,q_s")] = "usfd.m_m,q_s"
     result = wearlaw(*fit)
     assert "note: fit: not fitted, m_c = 83.70 µg/m/N, tr_sc = 95.00 N/mm²\n" in result.stderr
+
+
+def test_bounds_keep_a_fit_within_them() -> None:
+    """The best q_s is about 55; bounds from 20 to 40 hold it at their upper end, where a note says so."""
+    free = tuple("q_s" if argument == "m_m,q_s" else argument for argument in FIT)
+    done = wearlaw(*free, "--bounds", "q_s=20 ug/m/mm^2:40 ug/m/mm^2")
+    assert done.exit_code == 0, done.output
+    assert "the best fit lies at a bound of q_s" in done.stderr
+    law: Any = wl.read_wear_law("tests-fit/law.toml")
+    assert law.q_s.m_as("ug/m/mm^2") == pytest.approx(40.0, rel=1e-6)  # as near as a fit lies at a bound
+    wide = wearlaw(*free, "--bounds", "q_s=20 ug/m/mm^2:80 ug/m/mm^2", "-o", "wide")
+    assert "at a bound" not in wide.stderr
+
+
+@pytest.mark.parametrize(
+    ("bounds", "message"),
+    [
+        ("q_s", "--bounds: write it as FIELD=LOW:HIGH, got 'q_s'"),
+        ("q_s=40 ug/m/mm^2", "--bounds: write it as FIELD=LOW:HIGH, got 'q_s=40 ug/m/mm^2'"),
+        ("q_x=1:2", "bounds: 'q_x' is not free"),
+        ("q_s=20:40 ug/m/mm^2", "bounds: q_s: got the bare number 20, which has no unit; give q_s in "),
+    ],
+)
+def test_wrong_bounds_are_one_clear_error(bounds: str, message: str) -> None:
+    refused = wearlaw(*FIT, "--bounds", bounds)
+    assert refused.exit_code != 0
+    assert message in refused.stderr

@@ -52,8 +52,11 @@ def test_a_wrong_case_is_one_clear_error_and_nothing_is_written(
         (["run", "c.toml", "-o", "full", "--overwrite"], "output: 'full' does not hold results of wearlaw"),
         (["run", "c.toml", "-o", "."], "output: '.' is the working folder"),
         (["case", "tassini2011"], "there is no case file 'tassini2011'; did you mean 'tassini2010'?"),
-        (["show", "usdf"], "no model is called 'usdf'; did you mean 'usfd'?"),
-        (["show", "polack"], "no model is called 'polack'; did you mean 'polach'?"),
+        (["show", "usdf"], "no model, material, case, test set or section is called 'usdf'; did you mean 'usfd'?"),
+        (
+            ["show", "polack"],
+            "no model, material, case, test set or section is called 'polack'; did you mean 'polach'?",
+        ),
     ],
 )
 def test_a_wrong_argument_is_one_clear_error_and_nothing_is_written(

@@ -22,8 +22,8 @@ from wearlaw.settings.configuration import Configuration
 from wearlaw.study.grid import Axis
 
 STEEL = wl.steel()
-IN_MM = 'give it in mm or another unit of that dimension, such as Q(1.0, "mm") or "1.0 mm"'
-IN_GPA = 'give it in GPa or another unit of that dimension, such as Q(1.0, "GPa") or "1.0 GPa"'
+IN_MM = 'give it in mm or another unit of that dimension, such as "1.0 mm"'
+IN_GPA = 'give it in GPa or another unit of that dimension, such as "1.0 GPa"'
 
 
 def disc(**fields: Any) -> wl.Disc:

@@ -306,3 +306,31 @@ def test_what_a_law_or_a_rig_does_not_keep_is_said(monkeypatch: pytest.MonkeyPat
     install(Pressed)
     assert said(Exempt).endswith("does not keep each_node_wears_by_itself: the hottest node heats the patch")
     assert said(Pressed).endswith("declares: does not keep pressure_carries_the_load: its pressure is not Hertz's")
+
+
+def test_everything_that_is_listed_is_shown_by_its_name() -> None:
+    for kind, name, _ in loader.installed().listing():
+        shown = cases.wearlaw("show", name)
+        assert shown.exit_code == 0, shown.output
+        assert f"{name}: a {kind} of wearlaw" in shown.stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("steel", ["youngs_modulus = 206.47742 GPa", "density = 7850.0 kg/m³", 'material = "steel"']),
+        ("SteelWithHardness", ["hardness (must be given)", 'material = {type = "SteelWithHardness", ...}']),
+        ("tassini2010", ["rig: twin_disc", "laws: usfd, kth, brr", "sweep creepage: 600 values of creepage"]),
+        ("tassini2010", ["measured: lewis2004", "wearlaw run tassini2010", "wearlaw case tassini2010"]),
+        ("lewis2004", ["Proc. IMechE J 218(6) (2004) 467-478", "tests: 8", "columns: creepage [%],normal_force [N]"]),
+        ("tassini2010_claims", ['sections = ["tassini2010_claims"]', "Shipped cases with it: tassini2010"]),
+        ("wheelset", ["a rig of", "a case of", "a section of"]),
+    ],
+)
+def test_what_is_no_model_is_explained_with_its_use(name: str, expected: list[str]) -> None:
+    shown = cases.wearlaw("show", name).stdout
+    assert [text for text in expected if text not in shown] == []
+
+
+def test_a_name_of_another_kind_is_suggested_too() -> None:
+    assert "did you mean 'steel'?" in cases.wearlaw("show", "Steel").stderr

@@ -54,3 +54,24 @@ def test_a_configuration_error_survives_pickling() -> None:
 def test_did_you_mean_names_the_nearest_word_or_ends_the_sentence() -> None:
     assert did_you_mean("exakt", ["fastsim", "exact"]) == "; did you mean 'exact'?"
     assert did_you_mean("zzz", ["fastsim", "exact"]) == "."
+
+
+@pytest.mark.parametrize(
+    ("word", "known", "meant"),
+    [
+        ("FASTSIM", ["exact", "fastsim"], "fastsim"),
+        ("Exakt", ["fastsim", "exact"], "exact"),
+        ("creepage", ["normal_force", "longitudinal_creepage", "lateral_creepage"], "longitudinal_creepage"),
+        ("friction", ["traction_coefficient", "friction_coefficient"], "friction_coefficient"),
+        ("low_speed", ["coefficient.high_speed", "coefficient.low_speed"], "coefficient.low_speed"),
+        ("exact", ["Exact", "exact_line", "exact"], "Exact"),
+    ],
+)
+def test_did_you_mean_sees_through_capitals_and_finds_a_word_in_a_longer_name(
+    word: str, known: list[str], meant: str
+) -> None:
+    assert did_you_mean(word, known) == f"; did you mean '{meant}'?"
+
+
+def test_single_letters_are_no_words_of_a_longer_name() -> None:
+    assert did_you_mean("m", ["m_c", "tr_sc"]) == "."

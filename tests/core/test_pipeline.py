@@ -140,7 +140,7 @@ def test_a_measured_traction_is_used_by_the_global_model_only() -> None:
         with pytest.raises(wl.ConditionsError) as caught:
             predict(**measured)
         assert "traction_coefficient: contact model '" in str(caught.value)
-        assert 'leave traction_coefficient out, or use wl.contact_model("global")' in str(caught.value)
+        assert 'leave traction_coefficient out, or use the contact model "global"' in str(caught.value)
 
 
 @pytest.mark.parametrize("predict", PIPELINES, ids=lambda predict: repr(predict).partition(" | ")[2][:80])

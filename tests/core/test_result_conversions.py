@@ -95,7 +95,7 @@ def test_conversions_refuse_a_wrong_body_or_distance() -> None:
         with pytest.raises(wl.InputError, match="this rig has no 'wheel'; its bodies are 'disc_1' and 'disc_2'"):
             call("wheel")
     for wrong in (10, "10", "10 kg", "-1 km", "0 km"):
-        with pytest.raises(wl.UnitError, match=r'^over: .* such as Q\(1\.0, "km"\) or "1.0 km"$'):
+        with pytest.raises(wl.UnitError, match=r'^over: .* such as "1.0 km"$'):
             result.mass_lost(over=wrong, body="disc_1")  # type: ignore[arg-type]
 
 

@@ -24,7 +24,7 @@ def test_two_flat_discs_are_refused() -> None:
 
 @pytest.mark.parametrize("value", [400, "400", "0 rpm", "-400 rpm", "nan rpm", "400 mm", True])
 def test_a_wrong_rotational_speed_is_refused(value: Any) -> None:
-    with pytest.raises(wl.UnitError, match=r'^rotational_speed: .* such as Q\(1\.0, "rpm"\) or "1.0 rpm"$'):
+    with pytest.raises(wl.UnitError, match=r'^rotational_speed: .* such as "1\.0 rpm"$'):
         wl.TwinDisc.suros(rotational_speed=value)
 
 
@@ -50,9 +50,7 @@ def test_a_wrong_width_or_speed_is_refused(field: str, value: Any) -> None:
     unit = {"track_width": "mm", "rolling_speed": "m/s"}[field]
     wrong = value.format(unit) if isinstance(value, str) else value
     values: dict[str, Any] = {field: wrong}
-    with pytest.raises(
-        wl.ConfigurationError, match=rf'^TwinDisc: {field}: .* such as Q\(1\.0, "{unit}"\) or "1.0 {unit}"$'
-    ):
+    with pytest.raises(wl.ConfigurationError, match=rf'^TwinDisc: {field}: .* such as "1.0 {unit}"$'):
         wl.TwinDisc.suros(**values)
 
 
@@ -82,16 +80,16 @@ WRONG_CONDITIONS: list[tuple[dict[str, Any], type[Exception], list[str]]] = [
     ({"friction_coefficient": None}, wl.ConditionsError, ["friction_coefficient: is missing", "=0.46"]),
     ({"creepge": "1 %"}, wl.ConditionsError, ["creepge: unknown condition", "did you mean 'creepage'?"]),
     ({"speed": "1 m/s"}, wl.ConditionsError, ["speed: unknown condition", "The conditions are: normal_force,"]),
-    ({"normal_force": 7000}, wl.UnitError, ["normal_force: got the bare number 7000", 'Q(1.0, "kN")']),
+    ({"normal_force": 7000}, wl.UnitError, ["normal_force: got the bare number 7000", '"1.0 kN"']),
     ({"normal_force": "0 N"}, wl.UnitError, ["normal_force: must be greater than zero, got 0.000 N"]),
     ({"normal_force": "-5 N"}, wl.UnitError, ["normal_force: must be greater than zero, got -5.000 N"]),
     ({"normal_force": "inf N"}, wl.UnitError, ["normal_force: must be finite, got inf N"]),
     ({"normal_force": "5 mm"}, wl.UnitError, ["normal_force: got 5.000 mm, which does not have the dimension of 'kN'"]),
-    ({"normal_force_per_width": "5 kN"}, wl.UnitError, ["normal_force_per_width: got 5.000 kN", 'Q(1.0, "kN/m")']),
-    ({"max_pressure": "0 MPa"}, wl.UnitError, ["max_pressure: must be greater than zero", 'Q(1.0, "MPa")']),
+    ({"normal_force_per_width": "5 kN"}, wl.UnitError, ["normal_force_per_width: got 5.000 kN", '"1.0 kN/m"']),
+    ({"max_pressure": "0 MPa"}, wl.UnitError, ["max_pressure: must be greater than zero", '"1.0 MPa"']),
     ({"max_pressure": "5 N"}, wl.UnitError, ["max_pressure: got 5.000 N"]),
-    ({"creepage": 1}, wl.UnitError, ["creepage: got the bare number 1", 'Q(1, "%") or "1 %"']),
-    ({"creepage": "1"}, wl.UnitError, ["creepage: '1' is not a number with a unit", 'Q(1, "%") or "1 %"']),
+    ({"creepage": 1}, wl.UnitError, ["creepage: got the bare number 1", 'such as "1 %"']),
+    ({"creepage": "1"}, wl.UnitError, ["creepage: '1' is not a number with a unit", 'such as "1 %"']),
     ({"creepage": "101 %"}, wl.UnitError, ["creepage: must not exceed 1 in magnitude, got 101.0 %"]),
     ({"creepage": Q([0.5, -1.5], "")}, wl.UnitError, ["creepage: must not exceed 1", "got -1.500 at index [1]"]),
     ({"creepage": Q(np.nan, "%")}, wl.UnitError, ["creepage: must be a number, got nan %"]),

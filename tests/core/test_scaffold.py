@@ -63,7 +63,7 @@ def test_a_new_plugin_is_a_whole_distribution(kind: Kind) -> None:
     assert model.name == "TwoSlopes"
     project: Any = tomllib.loads((plugin / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert project["entry-points"] == {"wearlaw": {"two_slopes": "wearlaw_two_slopes"}}
-    assert project["optional-dependencies"] == {"test": ["wearlaw[test]"]}
+    assert project["optional-dependencies"] == {"test": ["wearlaw[check]"]}
     assert project["dependencies"] == [f"wearlaw>={wl.__version__}"]
 
 

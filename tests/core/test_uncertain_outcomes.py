@@ -15,9 +15,9 @@ from tests.core.fits import EXACT
 from tests.core.outcome_laws import MIXED, Damage, Heat, Volume
 from tests.core.test_fit_stages import Balanced, Choosy, Rubbed, Softer
 from wearlaw import Q
-from wearlaw.output.analyses import write_uncertainty
+from wearlaw.output.analyses import LONGEST_NAME, figure_files, write_uncertainty
 from wearlaw.study.pairs import Pair
-from wearlaw.study.uncertainty import uncertainty_of
+from wearlaw.study.uncertainty import UncertainPair, uncertainty_of
 
 EPS = float(np.finfo(np.float64).eps)
 GIVEN: Any = {"max_pressure": Q(1000, "MPa"), "creepage": Q(3, "%"), "friction_coefficient": 0.4}  # full slip
@@ -239,4 +239,14 @@ def test_the_uncertainty_of_a_case_has_rows_for_each_outcome(tmp_path: Path, mon
     assert [one.uncertainty.outcomes for one in found.pairs] == [("wear_rate",), ("heat_flux",)]
     (tmp_path / "results").mkdir()
     names = write_uncertainty(case, found, 0, tmp_path / "results")
-    assert {"wear_rates.csv", "scatter_1.png", "scatter_2.png"} <= set(names)
+    assert {"wear_rates.csv", "scatter_kth_on_exact_wear_rate.png", "scatter_kth_on_exact_heat_flux.png"} <= set(names)
+
+
+def test_figures_are_named_by_pair_also_where_labels_are_long_or_alike() -> None:
+    one = wl.uncertainty(EXACT.with_law(KTH), **GIVEN | {"creepage": wl.uniform("1 %", "2 %")}, samples=2)
+    labels = ["kth(body=rail)", "kth(body rail)", "k" * 300, "µ"]
+    pairs = [UncertainPair("scatter", Pair("exact", label, EXACT), one) for label in labels]
+    files = figure_files(pairs)
+    assert files[:2] == ["scatter_kth_body_rail_on_exact", "scatter_kth_body_rail_on_exact_2"]
+    assert len(files[2]) == LONGEST_NAME
+    assert files[3] == "scatter_µ_on_exact"

@@ -56,9 +56,8 @@ def test_wrong_length_is_refused_with_field_value_unit_and_fix(value: Any, said:
     message = str(caught.value)
     assert message.startswith("track_width: ")
     assert said in message
-    assert message.endswith(
-        'give track_width in mm or another unit of that dimension, such as Q(1.0, "mm") or "1.0 mm"'
-    )
+    example = 'Q([1.0, 2.0], "mm")' if isinstance(value, list | np.ndarray) else '"1.0 mm"'
+    assert message.endswith(f"give track_width in mm or another unit of that dimension, such as {example}")
     assert len(message) < 250
 
 
@@ -75,11 +74,11 @@ def test_wrong_length_is_refused_with_field_value_unit_and_fix(value: Any, said:
         (Q(1, "mm"), "got 1.000 mm, which is not a ratio"),
     ],
 )
-def test_wrong_creepage_is_refused_with_both_ways_to_write_it(value: Any, said: str) -> None:
+def test_wrong_creepage_is_refused_with_a_way_to_write_it(value: Any, said: str) -> None:
     with pytest.raises(wl.UnitError) as caught:
         CREEPAGE.si(value, "creepage")
     assert said in str(caught.value)
-    assert 'such as Q(1, "%") or "1 %"' in str(caught.value)
+    assert 'such as "1 %"' in str(caught.value)
 
 
 @pytest.mark.parametrize("value", [Q(-100, "%"), "0 %", Q(1, ""), "1.0 dimensionless"])

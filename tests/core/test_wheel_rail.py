@@ -110,7 +110,7 @@ WRONG_CONDITIONS: list[tuple[dict[str, Any], str]] = [
     ({"longitudinal_creepage": None}, "longitudinal_creepage: is missing; give longitudinal_creepage=Q(0.2"),
     (
         {"creepage": Q(1, "%")},
-        "creepage: unknown condition; did you mean 'lateral_creepage'? The conditions are: normal_force, ",
+        "creepage: unknown condition; did you mean 'longitudinal_creepage'? The conditions are: normal_force, ",
     ),
     (
         {"max_pressure": Q(1, "GPa")},

@@ -44,7 +44,7 @@ def test_a_missing_hypothesis_is_an_error_that_says_what_to_install() -> None:
         "try:\n    import wearlaw.testing\n"
         "except ModuleNotFoundError as error:\n    print(error)"
     )
-    assert 'pip install "wearlaw[test]"' in run(code)
+    assert 'pip install "wearlaw[check]"' in run(code)
 
 
 @settings(max_examples=10)

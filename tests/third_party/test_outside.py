@@ -207,7 +207,7 @@ def test_new_and_outside_models_are_listed_with_their_distributions_until_they_a
     environment.pip("uninstall", "--yes", *(plugin.name for plugin in generated.values()))
     shown = environment.wearlaw("show", "my_wear_law")
     assert shown.returncode == 1
-    assert shown.stderr.startswith("Error: no model is called 'my_wear_law'.")
+    assert shown.stderr.startswith("Error: no model, material, case, test set or section is called 'my_wear_law'.")
 
 
 def test_broken_distributions_are_named_each_with_its_cause_and_the_others_listed(

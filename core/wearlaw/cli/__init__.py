@@ -31,7 +31,7 @@ COMMANDS = {
     "plugins": _Command("model_commands", "list_plugins", "List what the installed plugins provide."),
     "run": _Command("study_commands", "run", "Run a study and write its results and report."),
     "schema": _Command("case_commands", "schema", "Print the JSON Schema of case files."),
-    "show": _Command("model_commands", "show", "Explain a rig, a contact model or a wear law."),
+    "show": _Command("model_commands", "show", "Explain anything that wearlaw plugins lists."),
     "uncertainty": _Command("study_commands", "uncertainty", "Say how uncertain the predictions of a case are."),
     "wear": _Command("wear_commands", "wear", "Predict the wear of contacts that another program solved."),
 }

@@ -11,12 +11,14 @@ import click
 from wearlaw.cli.shared import (
     CommandT,
     contact_model,
+    fields,
     law_of,
     listed,
     print_notes,
     print_results,
     read_rig,
     stage,
+    value,
     values,
     written_formats,
 )
@@ -84,6 +86,12 @@ stages_option = click.option(
 )
 @click.option("--fixed", metavar="FIELD=VALUE", multiple=True, help="Set a field of the law; may be repeated.")
 @common
+@click.option(
+    "--bounds",
+    metavar="FIELD=LOW:HIGH",
+    multiple=True,
+    help="Least and greatest value of a parameter, with units if it has one; may be repeated.",
+)
 @click.option("--bootstrap", type=int, default=1000, show_default=True, help="Replicates; 0 for quick intervals.")
 @click.option("--confidence", type=float, default=0.95, show_default=True, help="Of the intervals.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Of the random numbers.")
@@ -100,7 +108,8 @@ def fit(
 
     \b
     wearlaw fit my-tests.csv --contact exact --law usfd --free q_s,m_c,tr_sc -o fit/
-    wearlaw fit my-tests.csv --contact exact --free friction_coefficient -o friction/
+    wearlaw fit my-tests.csv --contact exact --law usfd --free q_s --bounds "q_s=20 ug/m/mm^2:80 ug/m/mm^2"
+    wearlaw fit my-tests.csv --contact exact --free friction_coefficient --bounds friction_coefficient=0.2:0.6
     wearlaw fit my-tests.csv --contact exact --stage third_body:reduction=0.9 --free reduction -o layer/
 
     The folder then holds law.toml, the fitted law, to be used wherever a law is asked for; parameters.csv with
@@ -125,6 +134,7 @@ def _fit(
     law: str | None,
     free: str,
     fixed: tuple[str, ...],
+    bounds: tuple[str, ...],
     rig: Path | None,
     friction: float | None,
     bootstrap: int,
@@ -147,10 +157,22 @@ def _fit(
             tests,
             names,
             friction_coefficient=friction,
+            bounds=_bounds(bounds),
             bootstrap=bootstrap,
             on_progress=shown,
             **settings,
         )
+
+
+def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | float]]:
+    """Return the least and greatest values of parameters by name."""
+    found: dict[str, tuple[str | float, str | float]] = {}
+    for field, text in fields("--bounds", settings, "FIELD=LOW:HIGH").items():
+        low, colon, high = text.partition(":")
+        if not colon:
+            raise click.UsageError(f"--bounds: write it as FIELD=LOW:HIGH, got '{field}={text}'")
+        found[field] = value(low.strip()), value(high.strip())
+    return found
 
 
 def _with_law(

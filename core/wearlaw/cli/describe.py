@@ -18,6 +18,7 @@ from wearlaw.models.reader import Reader
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
+from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.units.quantities import Q, from_si, text_of
 from wearlaw.units.registry import symbol
@@ -31,11 +32,7 @@ def describe(model: type[Model], parameter_set: str | None = None) -> str:
     """
     default = _default(model) if parameter_set is None else loader.wear_law(parameter_set)
     lines = [*_headline(model, parameter_set), "", inspect.getdoc(model) or ""]
-    lines += ["", *_wrapped("source: ", model.source), "", "fields:"]
-    schema = model.model_json_schema(by_alias=False).get("properties", {})
-    for name, text in field_docstrings(model).items():
-        lines += _field(name, _value(model, default, name), _choices(schema[name]), text)
-    lines += [] if schema else ["  none"]
+    lines += ["", *wrapped("source: ", model.source), "", "fields:", *fields_of(model, default)]
     if issubclass(model, Rig):
         conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
         declared = ["", "declares:", *(f"  {text}" for text in _not_kept(default))]
@@ -45,6 +42,15 @@ def describe(model: type[Model], parameter_set: str | None = None) -> str:
     of_fields = () if default is None and issubclass(model, Stage) else _declared(default)
     lines += ["", "declares:", *(f"  {text}" for text in (*_of_class(model), *of_fields))]
     return "\n".join(lines)
+
+
+def fields_of(model: type[Configuration], default: Configuration | None) -> Iterator[str]:
+    """Yield lines about each field of a model or material, with the values of `default`, or the class's own."""
+    schema = model.model_json_schema(by_alias=False).get("properties", {})
+    for name, text in field_docstrings(model).items():
+        yield from _field(name, _value(model, default, name), _choices(schema[name]), text)
+    if not schema:
+        yield "  none"
 
 
 def _headline(model: type[Model], parameter_set: str | None) -> Iterator[str]:
@@ -90,7 +96,7 @@ def _default(model: type[Model]) -> Model | None:
         return None
 
 
-def _value(model: type[Model], default: Model | None, name: str) -> str:
+def _value(model: type[Configuration], default: Configuration | None, name: str) -> str:
     """Return the default of a field, or that it must be given."""
     field = model.model_fields[name]
     if default is not None:
@@ -105,7 +111,7 @@ def _field(name: str, value: str, choices: Sequence[str], description: str) -> I
     yield f"  {name} {value}"
     if choices:
         yield f"      one of {', '.join(choices)}"
-    yield from _wrapped("      ", description)
+    yield from wrapped("      ", description)
 
 
 def _shown(value: Any) -> str:
@@ -187,7 +193,7 @@ def _si(variable: str, value: float) -> str:
     return repr(from_si(value, UNITS[variable]))
 
 
-def _wrapped(prefix: str, text: str) -> list[str]:
+def wrapped(prefix: str, text: str) -> list[str]:
     """Return a text with a prefix, wrapped at 100 characters."""
     indent = " " * (len(prefix) if not prefix.strip() else 2)
     return textwrap.wrap(" ".join(text.split()), 100, initial_indent=prefix, subsequent_indent=indent)

@@ -13,7 +13,8 @@ import click
 from rich.console import Console
 from rich.table import Table
 
-from wearlaw.cli.describe import accuracies, describe
+from wearlaw.cli.describe import accuracies
+from wearlaw.cli.explain import explain
 from wearlaw.cli.scaffold import Kind, Licence, next_commands, write_plugin
 from wearlaw.cli.shared import fields, values
 from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
@@ -46,9 +47,12 @@ def list_plugins() -> None:
 @click.command()
 @click.argument("name")
 def show(name: str) -> None:
-    """Explain a model: its fields with units and defaults, its source, and what it declares."""
-    model = _installed(name)
-    click.echo(describe(model) if isinstance(model, type) else describe(type(model), name))
+    """Explain anything that `wearlaw plugins` lists, by its name.
+
+    A model shows its fields with units and defaults, its source, and what it declares; a material its values; a case
+    its models and sweeps; a test set its source and columns; a section the cases that have it.
+    """
+    click.echo(explain(name))
 
 
 @click.command("new-plugin")
@@ -193,5 +197,8 @@ def _installed(name: str) -> type[Model] | WearLaw:
         if name in shelf.providers:
             model: type[Model] | WearLaw = shelf.find(name, found.broken)
             return model
+    for shelf in found.shelves():
+        if name in shelf.providers:
+            raise UnknownModelError(f"'{name}' is a {shelf.kind}, which has no checks; wearlaw show {name} explains it")
     known = [one for shelf in shelves for one in shelf.items()]
     raise UnknownModelError(unknown("model", name, known, found.broken))

@@ -77,10 +77,10 @@ def fields(option: str, settings: tuple[str, ...], form: str = "FIELD=VALUE") ->
 
 def values(option: str, settings: tuple[str, ...]) -> dict[str, str | float]:
     """Return settings such as "q_s=56 ug/m/mm^2" or "strips=20" by field; a number without a unit is a number."""
-    return {field: _value(text) for field, text in fields(option, settings).items()}
+    return {field: value(text) for field, text in fields(option, settings).items()}
 
 
-def _value(text: str) -> str | float:
+def value(text: str) -> str | float:
     """Return the number that a text is, or else the text."""
     try:
         return int(text) if text.lstrip("+-").isdecimal() else float(text)

@@ -135,7 +135,8 @@ def uncertainty(
     """Say how uncertain predictions are: CASE is a case file with tables [uncertainty.NAME].
 
     Every contact model of the case is paired with every law. Written are wear_rates.csv with medians and 95 %
-    intervals, sobol_indices.csv with the share of the variance that each input explains, and a figure of each pair.
+    intervals, sobol_indices.csv with the share of the variance that each input explains, and a figure of each
+    pair, such as scatter_usfd_on_exact.png for the table [uncertainty.scatter].
     """
     loaded = load_case(case)
     folder = output if output is not None else Path(f"{Path(case).stem}-uncertainty")

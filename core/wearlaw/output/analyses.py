@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -19,7 +21,7 @@ from wearlaw.output.results import save_figure, save_table
 from wearlaw.plugins.fields import specification
 from wearlaw.study.case import Case, written
 from wearlaw.study.study import provenance
-from wearlaw.study.uncertainty import CaseUncertainty
+from wearlaw.study.uncertainty import CaseUncertainty, UncertainPair
 from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 
@@ -28,6 +30,9 @@ COMPARISON = "comparison.json"
 UNCERTAINTY = "uncertainty.json"
 WEAR = "wear.json"
 LAW = "law.toml"
+
+LONGEST_NAME = 100
+"""Most characters of a figure's name; file systems allow 255 bytes for a name with its ending."""
 
 
 def write_fit(
@@ -174,10 +179,10 @@ def write_uncertainty(
         names = save_table(found.wear_rates, folder, "wear_rates", latex)
         if len(found.indices):
             names += save_table(found.indices, folder, "sobol_indices", latex)
-        for number, one in enumerate(found.pairs, 1):
+        for file, one in zip(figure_files(found.pairs), found.pairs, strict=True):
             figure = one.uncertainty.figure_data()
             titled = replace(figure, title=f"{one.pair.label}, {one.point}")
-            names += save_figure(titled, folder, f"{one.point}_{number}", figure_formats)
+            names += save_figure(titled, folder, file, figure_formats)
         for name, text in files.items():
             (folder / name).write_text(text, encoding="utf-8")
         text = json.dumps(record, indent=2, ensure_ascii=False)
@@ -185,3 +190,18 @@ def write_uncertainty(
     except OSError as error:
         raise OutputError(f"output: cannot write the results: {error.strerror or error}") from None
     return [*names, *files, UNCERTAINTY]
+
+
+def figure_files(pairs: Sequence[UncertainPair]) -> list[str]:
+    """Return a file name for each figure, such as "scatter_usfd_on_exact" for an operating point called "scatter".
+
+    Pairs with several outcomes add the outcome; names that would be equal add a number.
+    """
+    labels = [f"{one.point} {one.pair.label}" for one in pairs]
+    names: list[str] = []
+    for label, one in zip(labels, pairs, strict=True):
+        text = label if labels.count(label) == 1 else f"{label} {one.uncertainty.outcomes[0]}"
+        name = re.sub(r"\W+", "_", text).strip("_")[:LONGEST_NAME]
+        numbered = (f"{name}_{number}" for number in itertools.count(2))
+        names.append(name if name not in names else next(other for other in numbered if other not in names))
+    return names

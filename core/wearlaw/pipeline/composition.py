@@ -227,5 +227,5 @@ def check_traction(model: ContactModel, problem: Problem) -> None:
     if problem.traction_coefficient is not None and not model.uses_measured_traction:
         raise ConditionsError(
             f"traction_coefficient: contact model '{model.name}' computes the traction itself; leave"
-            ' traction_coefficient out, or use wl.contact_model("global")'
+            ' traction_coefficient out, or use the contact model "global"'
         )

@@ -160,7 +160,7 @@ class WheelRail(Rig):
     @model_validator(mode="after")
     def _touch_in_a_point(self) -> WheelRail:
         if 0.0 in (self.rail_head_radius.magnitude, self.wheel_profile_radius.magnitude):
-            raise ValueError("a radius must not be zero; a flat body has the radius Q(np.inf, 'mm')")
+            raise ValueError('a radius must not be zero; a flat body has the radius "inf mm"')
         across = 1.0 / scalar_si(self.rail_head_radius, "m") + 1.0 / scalar_si(self.wheel_profile_radius, "m")
         if across <= 0.0:
             raise ValueError(
@@ -292,5 +292,5 @@ def _check_angle(angle: Array | float, subject: str = "") -> None:
         first = float(np.asarray(angle)[upright].flat[0])
         raise UnitError(
             f"{subject}must lie between -90 and 90 deg, got {from_si(first, 'deg')!r}; give the angle of the surface to"
-            ' the axle, such as Q(70, "deg") on a flange'
+            ' the axle, such as "70 deg" on a flange'
         )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import tomllib
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
@@ -22,7 +22,9 @@ from pydantic import (
     Field,
     SerializerFunctionWrapHandler,
     TypeAdapter,
+    ValidationError,
     ValidationInfo,
+    ValidatorFunctionWrapHandler,
     field_validator,
     model_serializer,
     model_validator,
@@ -49,7 +51,7 @@ from wearlaw.pipeline.pipeline import Pipeline, Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
 from wearlaw.plugins.shelf import Shelf
-from wearlaw.settings.configuration import Configuration, known_as
+from wearlaw.settings.configuration import Configuration, configuration_error, known_as
 from wearlaw.settings.text_files import beside, read_text, reading
 from wearlaw.study.figure_check import Contents
 from wearlaw.study.figure_spec import FigureSpec
@@ -117,30 +119,61 @@ def _require(needed: Mapping[str, str]) -> None:
 
     Raises
     ------
-    InputError
-        If one is missing, has another version, or its range is not one.
+    ConfigurationError
+        If some are missing, have other versions, or their ranges are not valid.
     """
-    for name, versions in needed.items():
-        try:
-            allowed = SpecifierSet(versions)
-        except InvalidSpecifier:
-            raise InputError(
-                f"plugins.{name}: '{versions}' is not a version range; write one such as '>=1.2,<2'"
-            ) from None
-        try:
-            found = version(name)
-        except PackageNotFoundError:
-            raise InputError(
-                f"plugins.{name}: is not installed; install it with: pip install '{name}{versions}'"
-            ) from None
-        if not allowed.contains(found, prereleases=True):
-            raise InputError(f"plugins.{name}: version {found} is installed, but {versions} is needed")
+    wrong = [Fault(("plugins", name), fault) for name, versions in needed.items() if (fault := _unmet(name, versions))]
+    if wrong:
+        raise ConfigurationError(Case.subject(), wrong)
+
+
+def _unmet(name: str, versions: str) -> str:
+    """Return why a distribution does not meet a range of versions, or "" if it does."""
+    try:
+        allowed = SpecifierSet(versions)
+    except InvalidSpecifier:
+        return f"'{versions}' is not a version range; write one such as '>=1.2,<2'"
+    try:
+        found = version(name)
+    except PackageNotFoundError:
+        return f"is not installed; install it with: pip install '{name}{versions}'"
+    return (
+        "" if allowed.contains(found, prereleases=True) else f"version {found} is installed, but {versions} is needed"
+    )
 
 
 def _section(name: str) -> str:
     found = loader.installed()
     found.sections.find(name, found.broken)
     return name
+
+
+def _read_conditions(
+    name: Any, given: Any, read: Callable[[dict[Any, Any]], dict[Any, Any]], rig: Rig | None
+) -> tuple[Any, list[Fault]]:
+    """Return the conditions of an operating point or grid as `read` makes them, and every fault of theirs.
+
+    Conditions that cannot be read are left out, so that the faults of the others are found too. Without a rig, because
+    it is wrong itself, conditions are only read.
+    """
+    faults: list[Fault] = []
+    left = given
+    while True:
+        try:
+            (found,) = read({name: left}).values()
+            break
+        except ValidationError as error:
+            problems = configuration_error("", Grid, error).problems
+        faults += problems
+        wrong = {problem.path[1] for problem in problems if len(problem.path) > 1}
+        if not (isinstance(left, dict) and wrong & left.keys()):
+            return None, faults
+        left = {key: value for key, value in left.items() if key not in wrong}
+    if rig is None:
+        return (None if faults else found), faults
+    unread = {fault.path[1] for fault in faults}
+    faults += [Fault((name, *fault.path), fault.message) for fault in found.faults(rig, unread)]
+    return (None if faults else found.checked(rig)), faults
 
 
 LISTS = ("stages", "laws", "wear_laws")
@@ -219,19 +252,30 @@ class Case(Configuration):
             raise ConfigurationError(cls.subject(), wrong)
         return laws
 
-    @field_validator("sweeps", "profiles", "uncertainty")
+    @field_validator("sections")
     @classmethod
-    def _fit_the_rig(cls, grids: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
-        """Check conditions when the case is read, not when it runs."""
-        rig = info.data.get("rig")
-        if rig is None:  # the rig itself is wrong
-            return grids
+    def _once(cls, sections: tuple[str, ...]) -> tuple[str, ...]:
+        twice = sorted({name for name in sections if sections.count(name) > 1})
+        if twice:
+            raise InputError(f"{' and '.join(map(repr, twice))} is listed twice; leave one out")
+        return sections
+
+    @field_validator("sweeps", "profiles", "uncertainty", mode="wrap")
+    @classmethod
+    def _fit_the_rig(cls, given: Any, read: ValidatorFunctionWrapHandler, info: ValidationInfo) -> dict[str, Any]:
+        """Check conditions when the case is read, not when it runs; the error names every wrong one."""
+        if not (isinstance(given, dict) and given):
+            found: dict[str, Any] = read(given)
+            return found
         checked, wrong = {}, []
-        for name, grid in grids.items():
-            try:
-                checked[name] = grid.checked(rig)
-            except ConfigurationError as error:
-                wrong += [Fault((name, *problem.path), problem.message) for problem in error.problems]
+        for name, conditions in given.items():
+            if isinstance(name, str) and not name.isidentifier():
+                wrong.append(Fault((), f"the name '{name}' must be made of letters, digits and underscores"))
+            grid, faults = _read_conditions(name, conditions, read, info.data.get("rig"))
+            if grid is not None and info.field_name == "profiles" and grid.axes():
+                faults.append(Fault((name,), "a profile is at one operating point; give each condition one value"))
+            wrong += faults
+            checked[name] = grid
         if wrong:
             raise ConfigurationError(cls.subject(), wrong)
         return checked
@@ -275,43 +319,47 @@ class Case(Configuration):
 
     @model_validator(mode="after")
     def _consistent(self) -> Case:
-        for kind, names in (("sweeps", self.sweeps), ("profiles", self.profiles), ("uncertainty", self.uncertainty)):
-            for name in names:
-                if not name.isidentifier():
-                    raise ValueError(f"{kind}: the name '{name}' must be made of letters, digits and underscores")
-        for name, profile in self.profiles.items():
-            if profile.axes():
-                raise ValueError(f"profiles.{name}: a profile is at one operating point; give each condition one value")
-        labels(self.contact_models)
-        wrong = [*self._wrong_axes(), *self._wrong_outcomes(), *self._wrong_stages()]
+        wrong = [*self._wrong_names(), *self._wrong_units()]
+        if not wrong:  # the others need labels and units
+            wrong = [*self._wrong_axes(), *self._wrong_outcomes(), *self._wrong_stages(), *self._wrong_others()]
         if wrong:
             raise ConfigurationError(self.subject(), wrong)
-        for name, point in self.uncertainty.items():
+        return self
+
+    def _wrong_names(self) -> Iterator[Fault]:
+        """Yield the lists of models in which one is listed twice."""
+        every: tuple[Law, ...] = (*self.wear_laws, *self.laws)
+        lists: dict[str, tuple[Model, ...]] = {"contact_models": self.contact_models, "stages": self.stages, "": every}
+        for path, models in lists.items():
             try:
-                point.check_laws(self.laws_by_label)
+                labels(models)
             except InputError as error:
-                raise ValueError(f"uncertainty.{name}.{error}") from None
-        twice = sorted({name for name in self.sections if self.sections.count(name) > 1})
-        if twice:
-            raise ValueError(f"sections: '{twice[0]}' is listed twice; leave one out")
+                yield Fault((path,) if path else (), str(error))
+
+    def _wrong_units(self) -> Iterator[Fault]:
+        """Yield the conditions that have units of different dimensions in different places."""
         for kind, grids in (("sweeps", self.sweeps), ("profiles", self.profiles)):
             for name, grid in grids.items():
                 try:
                     grid.points(self.units)
                 except InputError as error:
-                    raise ValueError(f"{kind}.{name}.{error}") from None
+                    yield Fault((kind, name), str(error))
+
+    def _wrong_others(self) -> Iterator[Fault]:
+        """Yield the faults of uncertain parameters, measured tests and figures."""
+        for name, point in self.uncertainty.items():
+            for fault in point.wrong_laws(self.laws_by_label):
+                yield Fault(("uncertainty", name, *fault.path), fault.message)
         if self.measured:
             several = several_patches(next(iter(self.sweeps.values())).problem(self.rig), self.rig)
             if several:
-                raise ValueError(f"measured: {several}; leave [measured] out")
-            try:
-                check_rig(self.measured.data, self.rig)
-            except InputError as error:
-                raise ValueError(f"measured: {error}") from None
-        wrong = list(self._contents().problems(self.figures))
-        if wrong:
-            raise ConfigurationError(self.subject(), wrong)
-        return self
+                yield Fault(("measured",), f"{several}; leave [measured] out")
+            else:
+                try:
+                    check_rig(self.measured.data, self.rig)
+                except InputError as error:
+                    yield Fault(("measured",), str(error))
+        yield from self._contents().problems(self.figures)
 
     def _wrong_axes(self) -> Iterator[Fault]:
         """Yield the axes of the rig's patches that results would mix up with other columns."""
@@ -342,11 +390,6 @@ class Case(Configuration):
     def _wrong_stages(self) -> Iterator[Fault]:
         """Yield the stages that fail around a contact model, tried at the first operating point of the first sweep."""
         if not self.stages:
-            return
-        try:
-            labels(self.stages)
-        except InputError as error:
-            yield Fault(("stages",), str(error))
             return
         problem = next(iter(self.sweeps.values())).problem(self.rig)
         for label, model in labelled(self.contact_models).items():

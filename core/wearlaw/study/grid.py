@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
@@ -131,13 +131,23 @@ class Grid(Configuration, extra="allow"):
         ConfigurationError
             If the rig does not take the conditions at both ends of the axes.
         """
-        for end in (np.min, np.max):
-            ends = {name: axis.given(float(end(axis.values))) for name, axis in self._axes.items()}
-            wrong = list(wrong_conditions(rig, {**self.given, **ends}))
-            if wrong:
-                raise ConfigurationError("Grid", wrong)
+        wrong = self.faults(rig)
+        if wrong:
+            raise ConfigurationError("Grid", wrong)
         known = rig.conditions()
         return Grid(**{name: self.given[name] for name in known or self.given if name in self.given})
+
+    def faults(self, rig: Rig, wrong: Collection[str] = ()) -> list[Fault]:
+        """Return what a rig finds wrong at the ends of the axes, one fault for each condition.
+
+        `wrong` holds the names of conditions that were left out because they cannot be read.
+        """
+        found: dict[tuple[str, ...], Fault] = {}
+        for end in (np.min, np.max):
+            ends = {name: axis.given(float(end(axis.values))) for name, axis in self._axes.items()}
+            for fault in wrong_conditions(rig, {**self.given, **ends}, wrong):
+                found.setdefault(fault.path, fault)
+        return list(found.values())
 
     def units(self) -> dict[str, str]:
         """Return the units of the conditions in results: the usual unit of a known variable, else as written."""
@@ -216,24 +226,50 @@ class Grid(Configuration, extra="allow"):
         return _quietly(rig, {**self.given, **first})
 
 
-def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
-    """Yield the faults that a rig finds in the conditions of an operating point, each under its name."""
-    known = rig.conditions()
+def wrong_conditions(rig: Rig, given: Mapping[str, Any], wrong: Collection[str] = ()) -> Iterator[Fault]:
+    """Yield the faults that a rig finds in the conditions of an operating point, each under its name.
+
+    A rig raises an error for the first wrong condition that it meets. To find the next one, the condition takes its
+    value from the rig's example if the rig needs it, and is left out otherwise. What the rig then says of conditions
+    together means nothing and is not yielded.
+
+    Parameters
+    ----------
+    rig : Rig
+    given : mapping of str to object
+        The conditions that could be read.
+    wrong : collection of str, optional
+        Names of further conditions of the point, which could not be read.
+    """
+    known, needed = rig.conditions(), rig.needed()
     unknown = [name for name in given if known and name not in known]
-    missing = [name for name in rig.needed() if name not in given]
+    missing = [name for name in needed if name not in given and name not in wrong]
     for name in unknown:
         hint = did_you_mean(name, known)
         yield Fault((name,), f"unknown condition{hint} The conditions of the rig are: {', '.join(known)}")
     for name in missing:
         yield Fault((name,), "is missing")
-    if unknown or missing:
-        return
-    try:
-        _quietly(rig, given)
-    except WearlawError as error:
-        text = str(error)
-        about = next((name for name in given if text.startswith(f"{name}: ")), None)
-        yield Fault((), text) if about is None else Fault((about,), text.removeprefix(f"{about}: "))
+    tried = {name: value for name, value in given.items() if name not in unknown}
+    tried |= {name: rig.example[name] for name in wrong if name in needed and name in rig.example}
+    suspects, whole = tried.keys() - {*wrong}, not (unknown or missing or wrong)
+    while True:
+        try:
+            _quietly(rig, tried)
+        except WearlawError as error:
+            text = str(error)
+        else:
+            return
+        about = next((name for name in suspects if text.startswith(f"{name}: ")), None)
+        if about is None:
+            if whole:
+                yield Fault((), text)
+            return
+        yield Fault((about,), text.removeprefix(f"{about}: "))
+        suspects, whole = suspects - {about}, False
+        if about in needed and about in rig.example:
+            tried[about] = rig.example[about]
+        else:
+            del tried[about]
 
 
 def _quietly(rig: Rig, conditions: Mapping[str, Any]) -> Any:

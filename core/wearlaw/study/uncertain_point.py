@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -91,19 +91,29 @@ class UncertainPoint(Configuration, extra="allow"):
             If a distribution is impossible, the rig makes several patches, or it does not take the conditions, tried at
             the first number of each distribution.
         """
-        conditions = self.conditions()
-        spread = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
-        middle = {name: one.first for name, one in spread.items()}
-        wrong = list(wrong_conditions(rig, {**conditions, **middle}))
-        if not wrong and (several := several_patches(rig.checked_problem({**conditions, **middle}), rig)):
-            wrong = [Fault((), f"{several}; leave it out")]
-        if not wrong:
-            wrong = [Fault((name,), fault) for name, one in spread.items() if (fault := one.fault())]
+        wrong = self.faults(rig)
         if wrong:
             raise ConfigurationError("UncertainPoint", wrong)
         known = rig.conditions()
         ordered = {name: self.given[name] for name in known or self.given if name in self.given}
         return UncertainPoint(laws=self.laws, **ordered)
+
+    def faults(self, rig: Rig, wrong: Collection[str] = ()) -> list[Fault]:
+        """Return what is wrong with the conditions, tried at the first number of each distribution.
+
+        `wrong` holds the names of conditions that were left out because they cannot be read.
+        """
+        conditions = self.conditions()
+        spread = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
+        middle = {name: one.first for name, one in spread.items()}
+        found = list(wrong_conditions(rig, {**conditions, **middle}, wrong))
+        blamed = {fault.path for fault in found}
+        found += [
+            Fault((name,), fault) for name, one in spread.items() if (name,) not in blamed and (fault := one.fault())
+        ]
+        if not (found or wrong) and (several := several_patches(rig.checked_problem({**conditions, **middle}), rig)):
+            found = [Fault((), f"{several}; leave it out")]
+        return found
 
     def conditions(self) -> dict[str, Any]:
         """Return the conditions as arguments of `uncertainty`."""
@@ -117,23 +127,18 @@ class UncertainPoint(Configuration, extra="allow"):
         """Return the distributed parameters of a law."""
         return {name: _parameter(value) for name, value in self.laws.get(law, {}).items()}
 
-    def check_laws(self, known: Mapping[str, Law]) -> None:
-        """Raise an error for unknown laws, and for unknown or impossible parameters.
-
-        Raises
-        ------
-        InputError
-            If the case has no such law, the law has no such parameter, or it cannot be distributed so.
-        """
+    def wrong_laws(self, known: Mapping[str, Law]) -> Iterator[Fault]:
+        """Yield the unknown laws, and the unknown or impossible parameters of the others."""
         for law in self.laws:
             if law not in known:
                 hint = did_you_mean(law, known)
-                raise InputError(f"laws.{law}: the case has no such law{hint} There are: {', '.join(known)}")
+                yield Fault(("laws", law), f"the case has no such law{hint} There are: {', '.join(known)}")
+                continue
             for name, given in self.parameters(law).items():
                 try:
                     parameter(name, given, known[law])
                 except InputError as error:
-                    raise InputError(f"laws.{law}.{error}") from None
+                    yield Fault(("laws", law, name), str(error).removeprefix(f"{name}: "))
 
 
 def _distribution(value: Any) -> Any:

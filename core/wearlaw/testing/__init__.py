@@ -8,7 +8,7 @@ try:
     import hypothesis as _hypothesis  # noqa: F401  asked for first, so that the message names what to do
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(
-        'wearlaw.testing needs hypothesis; install it with: pip install "wearlaw[test]"', name=error.name
+        'wearlaw.testing needs hypothesis; install it with: pip install "wearlaw[check]"', name=error.name
     ) from error
 
 from wearlaw.testing.kit import Check, checks, conformance

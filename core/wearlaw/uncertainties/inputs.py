@@ -57,9 +57,7 @@ class Uncertain:
         return values if self.unit is None else from_si(values, self.unit)
 
 
-OTHERS = (
-    "\nThe values are samples of its distribution; choose one without such values, such as wl.lognormal or wl.uniform"
-)
+OTHERS = "\nThe values are samples of its distribution; choose one without such values, such as lognormal or uniform"
 """The hint for impossible samples."""
 
 
@@ -166,7 +164,7 @@ def parameter(name: str, given: object, law: Law | Stage) -> Uncertain:
         hint = did_you_mean(name, known)
         raise InputError(f"{law.kind} '{law.name}' has no number '{name}'{hint} There are: {', '.join(known)}")
     number = known[name]
-    unit = Unit(str(number.units), positive=False) if isinstance(number, pint.Quantity) else None
+    unit = Unit(symbol(number.units, "~C"), positive=False) if isinstance(number, pint.Quantity) else None
     return _uncertain(name, given, unit)
 
 

@@ -138,7 +138,7 @@ class Unit:
         try:
             return self._checked(value)[1]
         except UnitError as error:
-            raise UnitError(f"{name}: {error}; {self._fix(name)}") from None
+            raise UnitError(f"{name}: {error}; {self._fix(name, value)}") from None
 
     def _checked(self, value: object) -> tuple[Quantity, NDArray[np.float64]]:
         quantity = self._as_quantity(value)
@@ -191,11 +191,15 @@ class Unit:
             return Q(quantity.magnitude, str(quantity.units))
         return quantity
 
-    def _fix(self, name: str) -> str:
+    def _fix(self, name: str, value: object) -> str:
+        """Return what to do, with an example in a form that Python and TOML share unless the value is an array."""
+        several = isinstance(value, list | tuple | np.ndarray)
         if self.unit == "":
-            return f'give {name} in percent or as a ratio, such as Q(1, "%") or "1 %"'
+            example = 'Q([1, 2], "%")' if several else '"1 %"'
+            return f"give {name} in percent or as a ratio, such as {example}"
         unit = self.unit
-        return f'give {name} in {unit} or another unit of that dimension, such as Q(1.0, "{unit}") or "1.0 {unit}"'
+        example = f'Q([1.0, 2.0], "{unit}")' if several else f'"1.0 {unit}"'
+        return f"give {name} in {unit} or another unit of that dimension, such as {example}"
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
         return core_schema.no_info_plain_validator_function(
@@ -213,7 +217,7 @@ class Unit:
         try:
             quantity, in_si = self._checked(value)
         except UnitError as error:
-            raise UnitError(f"{error}; {self._fix('it')}") from None
+            raise UnitError(f"{error}; {self._fix('it', value)}") from None
         if in_si.ndim != 0:
             raise UnitError(f"must be one value, got an array of shape {in_si.shape}")
         return Q(float(quantity.magnitude), str(quantity.units))
