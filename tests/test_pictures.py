@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import runpy
+import sys
 import tomllib
 from pathlib import Path
 
@@ -77,6 +79,14 @@ def test_the_picture_of_the_readme_is_what_is_drawn_now(tmp_path: Path) -> None:
         ink = np.asarray(new.convert("L")) < 255
     # By rounding, which may differ from processor to processor, a pixel on an edge is lighter or darker by one of 256.
     assert difference[..., :3].mean() <= ink.mean()
+
+
+def test_building_the_documentation_changes_no_tracked_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    files = [path for path in (ROOT / "docs").rglob("*") if path.is_file() and path.suffix in {".png", ".csv", ".md"}]
+    before = {path: path.stat().st_mtime_ns for path in files}
+    runpy.run_path(str(ROOT / "docs" / "conf.py"))
+    assert {path: path.stat().st_mtime_ns for path in files} == before
 
 
 def test_every_axis_of_the_theory_and_of_the_benchmarks_has_its_unit() -> None:
