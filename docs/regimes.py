@@ -1,6 +1,7 @@
 """Draws the picture of the README: three wear laws on one contact, the regimes of wear, and where tests were run."""
 
 import warnings
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -32,7 +33,7 @@ def predicted(law: wl.WearLaw) -> wl.Prediction:
 
 def borders() -> tuple[float, float]:
     """Return Tγ/A [N/mm²] where USFD passes from mild to severe and from severe to catastrophic wear."""
-    usfd = wl.wear_law("usfd", fitted_for="global")
+    usfd: Any = wl.wear_law("usfd", fitted_for="global")
     return (usfd.q_s / usfd.m_m).m_as(DENSITY), usfd.tr_sc.m_as(DENSITY)
 
 
@@ -42,7 +43,8 @@ def tested() -> wl.Array:
     conditions = tests.conditions(CONTACT.contact_model, friction_coefficient=0.46, rig=CONTACT.rig)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.PlasticityWarning)
-        return CONTACT(**conditions).wear_index_density.m_as(DENSITY)
+        density: wl.Array = CONTACT(**conditions).wear_index_density.m_as(DENSITY)
+    return density
 
 
 def picture() -> Figure:
