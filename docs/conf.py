@@ -6,12 +6,6 @@ from pathlib import Path
 import wearlaw
 
 sys.path.insert(0, str(Path(__file__).parent))
-sys.path.insert(0, str(Path(__file__).parents[1]))
-
-from docs import nomenclature, pictures
-
-nomenclature.write()
-pictures.draw()
 
 project = "wearlaw"
 author = "The wearlaw developers"
@@ -22,6 +16,8 @@ myst_heading_anchors = 3
 html_math_renderer = "mathml"
 html_theme = "furo"
 html_title = "wearlaw"
+html_static_path = ["_static"]
+html_css_files = ["wearlaw.css"]
 exclude_patterns = ["_build"]
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"

@@ -19,9 +19,11 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 import wearlaw as wl
+from docs.choosing import picture as models_to_choose_from
 from docs.conventions import conventions
 from docs.laws_compared import DPI
 from docs.laws_compared import picture as laws_compared
+from docs.regimes import picture as regimes
 from docs.wheelset_benchmark import picture as wheelsets_beside_contact
 from docs.wheelset_benchmark import wheelset
 from wearlaw import Q
@@ -34,7 +36,7 @@ FOLDER = Path(__file__).parent / "pictures"
 GALLERY = Path(__file__).parent / "gallery"
 BENCHMARKS = Path(__file__).parent / "accuracy.csv"
 REFERENCE = Path(__file__).parents[1] / "tests" / "data" / "hertz3d_reference.csv"
-OF_STUDY = ("figure_03", "figure_04", "figure_05", "figure_06", "figure_08", "figure_10", "wear_against_load")
+OF_STUDY = ("figure_03", "figure_04", "figure_05", "figure_08", "figure_10", "wear_against_load")
 """The figures of the shipped study that pages show."""
 BOUNDS = ("elliptic", "parabolic")
 FORCES = ("Fx", "Fy")
@@ -47,6 +49,8 @@ def draw() -> None:
         if figure.name in OF_STUDY:
             save(drawing_of(figure), FOLDER / f"{figure.name}.png")
     save(cost_against_error(), FOLDER / "accuracy_cost_against_error.png")
+    save(regimes(), FOLDER / "regimes.png")
+    save(models_to_choose_from(), FOLDER / "choosing.png")
     save(conventions(), FOLDER / "conventions.png")
     save(laws_compared(), FOLDER / "laws_compared.png")
     save(wheelsets_beside_contact(), FOLDER / "wheelset_benchmark.png")

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-import tomllib
+import runpy
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +13,10 @@ from matplotlib.quiver import Quiver
 from PIL import Image
 
 import wearlaw as wl
-from docs import pictures
+from docs import choosing, pictures, regimes
 from docs.conventions import conventions
 from tests.environments import ROOT
-from wearlaw.figures.drawing import draw as drawing_of
-from wearlaw.study.case import Case, case_text
-from wearlaw.study.study import run
+from wearlaw.plugins.loader import installed
 
 
 def test_the_theory_states_the_errors_that_are_computed() -> None:
@@ -64,12 +63,8 @@ def test_pages_show_the_pictures_that_are_there_and_no_other() -> None:
 
 
 def test_the_picture_of_the_readme_is_what_is_drawn_now(tmp_path: Path) -> None:
-    committed, drawn = pictures.FOLDER / "figure_06.png", tmp_path / "figure_06.png"
-    fields = tomllib.loads(case_text("tassini2010"))
-    needed = {"sections": [], "profiles": {}, "contact_models": fields["contact_models"][:1]}
-    needed |= {kind: {name: fields[kind][name]} for kind, name in (("sweeps", "creepage"), ("figures", "figure_06"))}
-    (figure,) = run(Case(**{**fields, **needed})).figures
-    pictures.save(drawing_of(figure), drawn)
+    committed, drawn = pictures.FOLDER / "regimes.png", tmp_path / "regimes.png"
+    pictures.save(regimes.picture(), drawn)
     with Image.open(committed) as old, Image.open(drawn) as new:
         if old.info["Software"] != new.info["Software"]:
             pytest.skip(f"it was drawn by {old.info['Software']}, which places texts elsewhere")
@@ -77,6 +72,42 @@ def test_the_picture_of_the_readme_is_what_is_drawn_now(tmp_path: Path) -> None:
         ink = np.asarray(new.convert("L")) < 255
     # By rounding, which may differ from processor to processor, a pixel on an edge is lighter or darker by one of 256.
     assert difference[..., :3].mean() <= ink.mean()
+
+
+def test_the_picture_of_the_readme_has_the_regimes_laws_and_tests_of_the_papers() -> None:
+    # Table 4 of Tassini et al. (2010), global: 55/5.3 and 77.26 N/mm²
+    assert regimes.borders() == pytest.approx((55.0 / 5.3, 77.26), rel=1e-12)
+    axes = regimes.picture().axes[0]
+    drawn = {str(line.get_label()): np.asarray(line.get_data()) for line in axes.get_lines()}
+    x, rate = drawn[regimes.LAWS["usfd"]]
+    mild = np.minimum(5.3 * x, 55.0)
+    assert rate == pytest.approx(np.where(x < 77.26, mild, 55.0 + 61.9 * (x - 77.26)), rel=1e-9)
+    # Lewis and Dwyer-Joyce (2004): heat over rolling speed is Tγ; Hertz's area is 6.2934532 mm² at 1500 MPa
+    heat = np.array([1.3, 9.2, 25.7, 102.6, 246.0, 327.8, 492.1, 728.4])
+    expected = heat / 0.9843656981248018 / 6.2934532
+    assert drawn["twin-disc tests: energy measured"][0] == pytest.approx(expected, rel=1e-4)  # the load has five digits
+
+
+def test_every_shipped_contact_model_and_law_can_be_chosen() -> None:
+    shown = [name for _, name in (*choosing.MODELS, *choosing.LAWS) if name]
+    plugins = installed()
+    shipped = [
+        name
+        for kind in (plugins.contact_models, plugins.wear_laws, plugins.laws)
+        for name in kind.items()
+        if kind.origin(name).distribution == "wearlaw"
+    ]
+    assert sorted(shown) == sorted({*shipped})
+    page = (ROOT / "docs" / "choosing.md").read_text(encoding="utf-8")
+    assert [name for name in shown if f"`{name}`" not in page] == []
+
+
+def test_building_the_documentation_changes_no_tracked_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    files = [path for path in (ROOT / "docs").rglob("*") if path.is_file() and path.suffix in {".png", ".csv", ".md"}]
+    before = {path: path.stat().st_mtime_ns for path in files}
+    runpy.run_path(str(ROOT / "docs" / "conf.py"))
+    assert {path: path.stat().st_mtime_ns for path in files} == before
 
 
 def test_every_axis_of_the_theory_and_of_the_benchmarks_has_its_unit() -> None:
