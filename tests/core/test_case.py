@@ -245,7 +245,7 @@ def test_the_schema_knows_the_options_of_every_installed_model(install_model: In
     assert not validator.is_valid(table(contact_models=["other"]))
 
 
-REQUIRED = {"archard": {"coefficient": 1e-4}, "energy": {"mass_per_energy": "1 ug/J"}}
+REQUIRED: dict[str, dict[str, Any]] = {"archard": {"coefficient": 1e-4}, "energy": {"mass_per_energy": "1 ug/J"}}
 """Fields without defaults of models that ship with wearlaw."""
 
 

@@ -421,7 +421,7 @@ class Law(Model):
     def with_tests(self, digests: Iterable[str]) -> Self:
         """Return the same law, fitted to the tests with these digests."""
         law = self.model_copy()
-        law.__dict__["fitted_to"] = tuple(digests)  # as `cached_property` keeps its value
+        vars(law)["fitted_to"] = tuple(digests)  # as `cached_property` keeps its value
         return law
 
     def band(self) -> "tuple[Law, Law, Law] | None":
