@@ -73,7 +73,7 @@ def test_a_reader_of_a_plugin_is_found_by_the_ending_and_takes_its_fields(instal
     other = printed(tmp_path, name="one.dat")
     assert wl.read_contact(other, reader="printed").wear_index == contact.wear_index
     with pytest.raises(
-        wl.ConfigurationError, match=r"printed: friction: unknown field. The fields are: friction_coefficient"
+        wl.ConfigurationError, match=r"printed: friction: unknown field; did you mean 'friction_coefficient'"
     ):
         wl.read_contact(upper, friction=0.2)
     listed = wearlaw("plugins").stdout.split()
