@@ -21,6 +21,7 @@ assert_type(predict.laws, tuple[wl.Law, ...])
 
 result = predict(normal_force=Q(7.4143, "kN"), creepage=Q(1, "%"), friction_coefficient=0.46)
 assert_type(result, wl.Prediction)
+assert_type(result[0], wl.Prediction)
 assert_type(result.wear_rate, wl.Quantity)
 assert_type(result.tangential_force, wl.Quantity)
 assert_type(result.averaged_wear_index, wl.Quantity)

@@ -45,7 +45,7 @@ result = predict(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4)
 result.wear  # expect-error
 result.mass_lost(over=10, body="disc_1")  # expect-error
 result.depth_per_distance()  # expect-error
-result[0]  # expect-error
+result[0.5]  # expect-error
 result.outcome()  # expect-error
 result.outcome("rcf_damage", 1)  # expect-error
 result.contact.body().material.hardness  # expect-error
