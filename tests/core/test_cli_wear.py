@@ -84,15 +84,18 @@ def test_fields_of_the_reader_and_several_laws() -> None:
 
 
 def test_a_law_of_the_patch_takes_the_means(folder: Path) -> None:
-    assert_refused(wearlaw("wear", TREAD, "--law", "brr"), "stated for the means of the whole patch")
+    assert_refused(wearlaw("wear", TREAD, "--law", "brr"), "take the means first, contact.patch_mean() or --patch-mean")
     result = wearlaw("wear", TREAD, "--law", "brr", "--patch-mean")
     assert result.exit_code == 0
     assert files(folder / f"{Path(TREAD).stem}-wear") == {"wear.csv", "wear.json", ".wearlaw.json"}
 
 
 def test_mistakes_are_one_message_and_leave_no_folder(folder: Path) -> None:
+    Path("somewhere.py").touch()
     before = files(folder)
-    assert_refused(wearlaw("wear", "nowhere.mat", "--law", "usfd"), "there is no file 'nowhere.mat'")
+    refused = wearlaw("wear", "nowhere.mat", "--law", "usfd")
+    assert_refused(refused, "there is no file 'nowhere.mat'")
+    assert "somewhere.py" not in refused.stderr
     assert_refused(wearlaw("wear", TREAD, "--law", "usfd", "--option", "densty=1"), "did you mean 'density'?")
     assert_refused(wearlaw("wear", TREAD, "--law", "usf"), "no wear law is called 'usf'; did you mean 'usfd'?")
     assert wearlaw("wear", TREAD).exit_code == 2

@@ -262,7 +262,7 @@ def test_what_a_solved_contact_cannot_do_says_so() -> None:
     contact, usfd = wl.read_contact(FILES["tread"]), wl.wear_law("usfd")
     with pytest.raises(wl.InputError, match=r"contact: has no problem, .* use contact \| law"):
         wl.Prediction.of(contact.replaced(problem=None), usfd)
-    with pytest.raises(wl.CompositionError, match=r"resolves it into cells; use contact.patch_mean"):
+    with pytest.raises(wl.CompositionError, match=r"resolves it into cells; take the means first, contact.patch_mean"):
         wl.Prediction.of(contact, wl.wear_law("brr"))
     assert wl.Prediction.of(contact.patch_mean(), wl.wear_law("brr")).wear_rate.m > 0.0
     with pytest.raises(wl.CompositionError, match="both predict 'wear_rate'"):

@@ -31,7 +31,7 @@ APART = 0.01
     required=True,
     multiple=True,
     metavar="LAW",
-    help="Law: usfd, NAME:FIELD=VALUE or a TOML file; repeat it for laws of other outcomes or bodies.",
+    help="Law: usfd, NAME:FIELD=VALUE:FIELD=VALUE or a TOML file; repeat it for other outcomes or bodies.",
 )
 @click.option("--reader", metavar="NAME", help="Reader of the files [default: the one that recognises them].")
 @click.option(

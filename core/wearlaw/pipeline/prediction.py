@@ -135,7 +135,7 @@ class Prediction:
             )
         model = Solved(contact=flat(contact, problem))
         for one in laws:
-            check_scale(model.scale, model, one, "use contact.patch_mean()")
+            check_scale(model.scale, model, one, "take the means first, contact.patch_mean() or --patch-mean")
             one.check_variables()
         check_laws(laws, problem.bodies)
         for one in laws:

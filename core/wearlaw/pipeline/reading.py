@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import os
 from collections.abc import Sequence
+from glob import escape
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -85,7 +86,7 @@ def _head(path: Path) -> bytes:
         with path.open("rb") as file:
             return file.read(HEAD)
     except FileNotFoundError:
-        beside = sorted(one.name for one in path.parent.iterdir()) if path.parent.is_dir() else []
+        beside = sorted(one.name for one in path.parent.glob(f"*{escape(path.suffix)}"))
         raise DataError(f"there is no file '{path}'{did_you_mean(path.name, beside)}") from None
     except (OSError, ValueError) as error:
         reason = "it is a folder" if os.path.isdir(path) else getattr(error, "strerror", None) or error
