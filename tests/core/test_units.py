@@ -14,7 +14,7 @@ from pydantic import TypeAdapter
 import wearlaw as wl
 from tests.core.units import LENGTH, TO_SI
 from wearlaw import Q
-from wearlaw.units.quantities import coefficient, from_si, in_unit, real_array, shortened
+from wearlaw.units.quantities import coefficient, from_si, in_unit, real_array
 
 CREEPAGE = wl.Unit("", positive=False, limit=1.0)
 
@@ -115,11 +115,6 @@ def test_infinity_of_either_sign_is_refused_where_the_sign_is_free(text: str) ->
     with pytest.raises(wl.UnitError, match=f"must be finite, got {text}"):
         wl.Unit("mm", positive=False).si(text, "x")
     assert np.isinf(wl.Unit("mm", positive=False, infinite=True).si(text, "x"))
-
-
-def test_a_value_is_shown_whole_up_to_sixty_characters() -> None:
-    assert shortened("x" * 58) == f"'{'x' * 58}'"
-    assert shortened("x" * 59) == f"'{'x' * 56}..."
 
 
 @pytest.mark.parametrize(("unit", "due"), [("degC", "K"), ("degF", "K"), ("dB", ""), ("dBm", "W")])

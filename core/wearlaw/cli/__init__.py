@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import sys
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from io import TextIOWrapper
 from typing import Any, NamedTuple
 
 import click
 
-from wearlaw.errors import WearlawError, described, message_of
+from wearlaw.errors import WearlawError, described, message_of, printable, readable
 from wearlaw.version import __version__
 
 
@@ -38,6 +40,18 @@ COMMANDS = {
 """All commands. Their modules import pandas, matplotlib and more, so each is loaded when a command of it is used."""
 
 
+@contextmanager
+def _readable_usage_errors() -> Iterator[None]:
+    """Make click's messages readable, which repeat arguments as they are."""
+    try:
+        yield
+    except click.exceptions.NoArgsIsHelpError:  # its message is the help
+        raise
+    except click.UsageError as error:
+        error.message = readable(printable(error.message))  # type: ignore[misc]
+        raise
+
+
 class _Commands(click.Group):
     """The commands. An error of wearlaw, or a plugin that ends the program, prints one clear line."""
 
@@ -55,22 +69,26 @@ class _Commands(click.Group):
         with formatter.section("Commands"):
             formatter.write_dl([(name, command.help) for name, command in COMMANDS.items()])
 
+    def make_context(self, *args: Any, **options: Any) -> click.Context:
+        with _readable_usage_errors():
+            return super().make_context(*args, **options)
+
     def invoke(self, ctx: click.Context) -> Any:
         try:
-            return super().invoke(ctx)
+            with _readable_usage_errors():
+                return super().invoke(ctx)
         except WearlawError as error:
             raise click.ClickException(message_of(error)) from None
         except KeyboardInterrupt as interrupt:
             for note in getattr(interrupt, "__notes__", []):
-                click.echo(note, err=True)
+                click.echo(readable(note), err=True)
             raise
         except Exception:
             raise
         except BaseException as error:  # such as a model's SystemExit(0), which would look like success
             place = traceback.extract_tb(error.__traceback__)[-1]
-            raise click.ClickException(
-                f"the command was ended by {described(error)}, raised in {place.filename}, line {place.lineno}"
-            ) from error
+            reason = f"the command was ended by {described(error)}, raised in {place.filename}, line {place.lineno}"
+            raise click.ClickException(readable(reason)) from error
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})

@@ -6,6 +6,7 @@ import json
 
 import click
 
+from wearlaw.cli.shared import echo_file
 from wearlaw.study.case import case_schema, case_text
 
 
@@ -13,10 +14,10 @@ from wearlaw.study.case import case_schema, case_text
 @click.argument("name")
 def case(name: str) -> None:
     """Print a case file: NAME is the name of a shipped one (tassini2010, wheel_on_rail), or a path."""
-    click.echo(case_text(name).encode(), nl=False)  # TOML is UTF-8, whatever the terminal speaks
+    echo_file(case_text(name))
 
 
 @click.command()
 def schema() -> None:
     """Print the JSON Schema of a case file with the options of the installed models."""
-    click.echo(json.dumps(case_schema(), indent=2, ensure_ascii=False).encode())
+    echo_file(json.dumps(case_schema(), indent=2, ensure_ascii=False) + "\n")

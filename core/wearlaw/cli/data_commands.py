@@ -11,6 +11,7 @@ import click
 from wearlaw.cli.shared import (
     CommandT,
     contact_model,
+    echo,
     fields,
     law_of,
     listed,
@@ -22,7 +23,7 @@ from wearlaw.cli.shared import (
     values,
     written_formats,
 )
-from wearlaw.errors import FitError
+from wearlaw.errors import FitError, quoted
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.fitting.comparison import Comparison, Names, Predictor, compare_named
 from wearlaw.fitting.cross_validation import Folds
@@ -121,7 +122,7 @@ def fit(
         fitted = _fit(tests, notes, **options)
         names = write_fit(fitted, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
-    click.echo(repr(fitted))
+    echo(repr(fitted))
     print_results(folder, names)
 
 
@@ -144,7 +145,7 @@ def _fit(
     names, given = listed("--free", free), values("--fixed", fixed)
     both = [name for name in names if name in given]
     if both:
-        raise click.UsageError(f"--fixed: '{both[0]}' is to be fitted; take it out of --fixed or of --free")
+        raise click.UsageError(f"--fixed: {quoted(both[0])} is to be fitted; take it out of --fixed or of --free")
     tests = _tests(path, friction, "friction_coefficient" in names, notes)
     around = _rig(rig, notes) | contact_model(contact)
     for text in stages:
@@ -239,7 +240,7 @@ def compare(
         comparison = _compare(tests, notes, **options)
         names = write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
-    click.echo(repr(comparison))
+    echo(repr(comparison))
     print_results(folder, names)
 
 
@@ -290,7 +291,7 @@ def _folds(text: str | None) -> Folds | None:
         return int(text)
     except ValueError:
         raise click.UsageError(
-            f"--cross-validate: give leave-one-out or a number of folds, such as 5, got '{text}'"
+            f"--cross-validate: give leave-one-out or a number of folds, such as 5, got {quoted(text)}"
         ) from None
 
 
@@ -300,9 +301,13 @@ def _freed(settings: tuple[str, ...], laws: list[str]) -> dict[str, str]:
     for setting in settings:
         law, _, fields = setting.rpartition("=")
         if law not in laws:
-            raise click.UsageError(f"--free: write it as LAW=FIELDS, with a LAW of {','.join(laws)}, got '{setting}'")
+            raise click.UsageError(
+                f"--free: write it as LAW=FIELDS, with a LAW of {','.join(laws)}, got {quoted(setting)}"
+            )
         if law in found:
-            raise click.UsageError(f"--free: '{law}' is given twice; write all its fields behind one, between commas")
+            raise click.UsageError(
+                f"--free: {quoted(law)} is given twice; write all its fields behind one, between commas"
+            )
         found[law] = fields
     return found
 

@@ -16,8 +16,16 @@ from rich.table import Table
 from wearlaw.cli.describe import accuracies
 from wearlaw.cli.explain import explain
 from wearlaw.cli.scaffold import Kind, Licence, next_commands, write_plugin
-from wearlaw.cli.shared import fields, values
-from wearlaw.errors import ConfigurationError, InputError, PluginWarning, UnknownModelError, message_of
+from wearlaw.cli.shared import echo, fields, values
+from wearlaw.errors import (
+    ConfigurationError,
+    InputError,
+    PluginWarning,
+    UnknownModelError,
+    message_of,
+    printable,
+    quoted,
+)
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
@@ -36,12 +44,12 @@ def list_plugins() -> None:
         found = loader.installed()
     table = Table("kind", "name", "distribution", "version", box=None, pad_edge=False)
     for kind, name, origin in found.listing():
-        table.add_row(kind, name, origin.distribution, origin.version)
+        table.add_row(kind, name, printable(origin.distribution), printable(origin.version))
     Console().print(table)
     for plugin in found.broken:
-        click.echo(f"left out: {plugin}", err=True)
+        echo(f"left out: {plugin}", err=True)
     for remark in found.remarks:
-        click.echo(f"note: {remark}", err=True)
+        echo(f"note: {remark}", err=True)
 
 
 @click.command()
@@ -52,7 +60,7 @@ def show(name: str) -> None:
     A model shows its fields with units and defaults, its source, and what it declares; a material its values; a case
     its models and sweeps; a test set its source and columns; a section the cases that have it.
     """
-    click.echo(explain(name))
+    echo(explain(name))
 
 
 @click.command("new-plugin")
@@ -89,10 +97,10 @@ def new_plugin(name: str, kind: Kind | None, output: Path, licence: Licence) -> 
         *others, last = (f"--{one.replace('_', '-')}" for one in get_args(Kind))
         raise click.UsageError(f"say what the plugin provides: {', '.join(others)} or {last}")
     folder = write_plugin(name, kind, output, licence)
-    click.echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}.py. Next:")
+    echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}.py. Next:")
     commands = (f"cd {shlex.quote(str(folder))}", 'python -m pip install -e ".[test]"', "pytest", "wearlaw plugins")
     for line in dict.fromkeys([*commands, next_commands(name, kind)[-1]]):
-        click.echo(f"  {line}")
+        echo(f"  {line}")
 
 
 @click.command()
@@ -125,12 +133,12 @@ def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> Non
     outcomes = [_outcome(one, reasons.get(one.name), kit.NotRunError) for one in found]
     if isinstance(model, ContactModel):
         for line in accuracies(model):
-            click.echo(line)
+            echo(line)
     for claim, reason in model.exemptions.items():
-        click.echo(f"not claimed {claim}: {reason}")
+        echo(f"not claimed {claim}: {reason}")
     counted: dict[str, int] = {word: outcomes.count(word) for word in OUTCOMES}
     counted["not claimed"] = len(model.exemptions)
-    click.echo(", ".join(f"{count} {word}" for word, count in counted.items() if count or word in ALWAYS_COUNTED))
+    echo(", ".join(f"{count} {word}" for word, count in counted.items() if count or word in ALWAYS_COUNTED))
     if counted["failed"] or counted["not run"]:
         click.get_current_context().exit(1)
 
@@ -176,15 +184,15 @@ def _outcome(check: Check, expected: str | None, not_run: type[AssertionError]) 
         if isinstance(error, not_run):
             return "not run"
         if expected is not None:
-            click.echo(f"failed as expected {check.name}: {expected}")
+            echo(f"failed as expected {check.name}: {expected}")
             return "failed as expected"
         reason = message_of(error) or check.doc
-        click.echo(f"FAILED {check.name}: {reason.strip().splitlines()[0]}")
+        echo(f"FAILED {check.name}: {reason.strip().splitlines()[0]}")
         return "failed"
     if expected is not None:
-        click.echo(f"FAILED {check.name}: it passes, but is expected to fail: {expected}")
+        echo(f"FAILED {check.name}: it passes, but is expected to fail: {expected}")
         return "failed"
-    click.echo(f"ok {check.name}")
+    echo(f"ok {check.name}")
     return "ok"
 
 
@@ -199,6 +207,8 @@ def _installed(name: str) -> type[Model] | WearLaw:
             return model
     for shelf in found.shelves():
         if name in shelf.providers:
-            raise UnknownModelError(f"'{name}' is a {shelf.kind}, which has no checks; wearlaw show {name} explains it")
+            raise UnknownModelError(
+                f"{quoted(name)} is a {shelf.kind}, which has no checks; wearlaw show {name} explains it"
+            )
     known = [one for shelf in shelves for one in shelf.items()]
     raise UnknownModelError(unknown("model", name, known, found.broken))

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
 import click
 
-from wearlaw.errors import ConfigurationError, InputError, with_problems
+from wearlaw.errors import ConfigurationError, InputError, printable, quoted, readable, with_problems
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.fitting.law_files import read_law, read_toml
 from wearlaw.models.contact_model import ContactModel
@@ -56,14 +57,14 @@ def read_rig(path: Path | None) -> Rig:
     try:
         return _WithRig(**read_toml("the rig", path)).rig
     except ConfigurationError as error:
-        raise InputError(with_problems(f"the rig '{path}' is wrong in:", error.problems)) from None
+        raise InputError(with_problems(f"the rig {quoted(path)} is wrong in:", error.problems)) from None
 
 
 def listed(option: str, text: str) -> list[str]:
     """Return the parts between commas, at least one."""
     found = [part for part in (part.strip() for part in text.split(",")) if part]
     if not found:
-        raise click.UsageError(f"{option}: name at least one, got '{text}'")
+        raise click.UsageError(f"{option}: name at least one, got {quoted(text)}")
     return found
 
 
@@ -71,7 +72,7 @@ def fields(option: str, settings: tuple[str, ...], form: str = "FIELD=VALUE") ->
     """Return settings of a form such as "q_s=56 ug/m/mm^2" by field."""
     for setting in settings:
         if "=" not in setting:
-            raise click.UsageError(f"{option}: write it as {form}, got '{setting}'")
+            raise click.UsageError(f"{option}: write it as {form}, got {quoted(setting)}")
     return dict(setting.split("=", 1) for setting in settings)
 
 
@@ -117,14 +118,26 @@ def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
     return loader.law(name, **{**values(text, tuple(settings)), **(fixed or {})})
 
 
+def echo(text: str, err: bool = False) -> None:
+    """Print a text without control characters, which names and labels from outside may have."""
+    click.echo(printable(text, kept="\n\t"), err=err)
+
+
+def echo_file(text: str) -> None:
+    """Print the text of a file: unchanged into a file or pipe, without control characters on a terminal."""
+    if sys.stdout.isatty():
+        echo(text.removesuffix("\n"))
+    else:
+        click.echo(text.encode(), nl=False)  # UTF-8, whatever the terminal speaks
+
+
 def print_notes(notes: Iterable[str]) -> None:
     """Print notes on standard error, a line each."""
     for note in notes:
-        click.echo(f"note: {note}", err=True)
+        click.echo(f"note: {readable(note)}", err=True)
 
 
 def print_results(folder: Path, names: Iterable[str]) -> None:
     """Print where the files of a folder of results are."""
-    click.echo(f"Results in {folder}:")
-    for name in names:
-        click.echo(f"  {folder / name}")
+    for line in (f"Results in {folder}:", *(f"  {folder / name}" for name in names)):
+        click.echo(printable(line))

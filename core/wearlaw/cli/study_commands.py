@@ -13,7 +13,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from wearlaw.cli.shared import print_notes, print_results, written_formats
+from wearlaw.cli.shared import echo, print_notes, print_results, written_formats
+from wearlaw.errors import printable
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.output.analyses import UNCERTAINTY, write_uncertainty
 from wearlaw.output.folder import ElsewhereError, fresh_folder
@@ -84,7 +85,7 @@ def _kept(checkpoint: Checkpoint) -> Iterator[None]:
         raise
     except KeyboardInterrupt:
         if checkpoint.exists:
-            click.echo(f"Finished blocks are kept in '{checkpoint.folder}'; add --resume to go on with it.", err=True)
+            echo(f"Finished blocks are kept in '{checkpoint.folder}'; add --resume to go on with it.", err=True)
         raise
     checkpoint.remove()
 
@@ -96,21 +97,21 @@ def _print_used(study: Study) -> None:
         for name, distribution in names.items():
             provided.setdefault(distribution, []).append(f"{kind} {name}")
     (ours, _), *others = provided.items()
-    click.echo(f"Computed with {ours}")
+    echo(f"Computed with {ours}")
     for distribution, things in others:
-        click.echo(f"  and {distribution}: {', '.join(things)}")
+        echo(f"  and {distribution}: {', '.join(things)}")
 
 
 def _summary(summary: NamedTable) -> Table:
     """Return a short table of an outcome for the screen."""
     what, *values = summary.frame.columns
-    title = Text(f"{summary.title}: {what}")
+    title = Text(printable(f"{summary.title}: {what}"))
     table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE, pad_edge=False)
     table.add_column("", overflow="fold")
     for value in values:
         table.add_column(value, justify="right", no_wrap=True)
     for pair, *values_of_pair in summary.frame.itertuples(index=False, name=None):
-        table.add_row(Text(pair), *("" if value != value else f"{value:.4g}" for value in values_of_pair))
+        table.add_row(Text(printable(pair)), *("" if value != value else f"{value:.4g}" for value in values_of_pair))
     return table
 
 
@@ -146,9 +147,9 @@ def uncertainty(
         shown.stage("writing results")
         names = write_uncertainty(loaded, found, seed, fresh, figure_formats, latex)
     if found.samples != samples:
-        click.echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
+        echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
     print_notes(found.notes)
     for table in (found.wear_rates, found.indices):
         if len(table):
-            click.echo(table.to_string(index=False, float_format=lambda number: f"{number:.4g}"))
+            echo(table.to_string(index=False, float_format=lambda number: f"{number:.4g}"))
     print_results(folder, names)

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 import pandas as pd
 
-from wearlaw.cli.shared import fields, law_of, print_notes, print_results, written_formats
+from wearlaw.cli.shared import echo, fields, law_of, print_notes, print_results, written_formats
 from wearlaw.contact.contact import Contact
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.figures.worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
@@ -112,4 +112,4 @@ def _print(table: pd.DataFrame) -> None:
     """Print a row for each quantity, with a column for each contact."""
     across = table.set_index("contact").T
     across.columns.name = None
-    click.echo(across.to_string(float_format=lambda number: f"{number:.4g}"))
+    echo(across.to_string(float_format=lambda number: f"{number:.4g}"))

@@ -49,7 +49,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, TypeVar
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import InputError, PlasticityWarning
+from wearlaw.errors import InputError, PlasticityWarning, shortened
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -126,7 +126,7 @@ def first_yield(
     too high, for a/b from 1/20 to 20, T/N up to 1 and T/μN from 0.05 on.
     """
     if criterion not in ("von_mises", "tresca"):
-        raise InputError(f'criterion: must be "von_mises" or "tresca", got {criterion!r}')
+        raise InputError(f'criterion: must be "von_mises" or "tresca", got {shortened(criterion)}')
     shear = _peak_of(criterion, float(poisson_ratio), traction_coefficient, friction_coefficient, axis_ratio)
     limit: Array = np.asarray(shear_yield_stress, dtype=np.float64) / shear
     return limit

@@ -19,7 +19,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material
-from wearlaw.errors import CompositionError, InputError, UnitError
+from wearlaw.errors import CompositionError, InputError, UnitError, quoted, shortened
 from wearlaw.units.quantities import QuantityLike, coefficient, real_array, scalar_si
 from wearlaw.units.variables import VARIABLES
 
@@ -490,7 +490,7 @@ class Problem:
         """
         if name not in self.bodies:
             names = " and ".join(repr(one) for one in self.bodies) or "not named"
-            raise InputError(f"body: this rig has no '{name}'; its bodies are {names}")
+            raise InputError(f"body: this rig has no {quoted(name)}; its bodies are {names}")
         return self.bodies[name]
 
     def worn_on(self, body: str | None) -> Self:
@@ -626,5 +626,5 @@ def _poisson_ratio(value: object) -> Array:
     except UnitError as error:
         raise UnitError(f"poisson_ratio: {error}; give a plain number, such as 0.28") from None
     if not ((ratio >= 0.0) & (ratio <= 0.5)).all():
-        raise InputError(f"poisson_ratio: must lie between 0 and 0.5, got {value!r}")
+        raise InputError(f"poisson_ratio: must lie between 0 and 0.5, got {shortened(value)}")
     return ratio

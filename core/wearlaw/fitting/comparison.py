@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import InputError, did_you_mean
+from wearlaw.errors import InputError, did_you_mean, quoted, shortened
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
 from wearlaw.fitting.agreement import Agreement, Information, agreement
@@ -294,7 +294,7 @@ def compare_named(
     taken = [names.label for names, _ in named]
     twice = [label for label in taken if taken.count(label) > 1]
     if twice:
-        raise InputError(f"two predictors are called '{twice[0]}'; give a mapping from names of your own to them")
+        raise InputError(f"two predictors are called {quoted(twice[0])}; give a mapping from names of your own to them")
     given = [predictor for _, predictor in named]
     outcome = _chosen(given, tests, outcome)
     units = [_law(one, outcome).outcome.unit for one in given]
@@ -333,7 +333,7 @@ def _given(predictors: Mapping[str, Predictor] | Sequence[Predictor]) -> list[Pr
     for one in given:
         if not _has_law(one.predict if isinstance(one, Fit) else one):
             raise InputError(
-                f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {one!r}"
+                f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {shortened(one)}"
             )
     return given
 
@@ -356,7 +356,7 @@ def _chosen(given: Sequence[Predictor], tests: WearTests, outcome: str | None) -
             if outcome not in names:
                 hint = did_you_mean(outcome, names)
                 raise InputError(
-                    f"outcome: a predictor does not predict '{outcome}'{hint} It predicts {', '.join(names)}"
+                    f"outcome: a predictor does not predict {quoted(outcome)}{hint} It predicts {', '.join(names)}"
                 )
         return outcome
     shared = [name for name in predicted[0] if all(name in names for names in predicted)]

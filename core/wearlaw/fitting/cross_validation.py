@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import FitError, FitWarning, InputError, PlasticityWarning, RangeWarning
+from wearlaw.errors import FitError, FitWarning, InputError, PlasticityWarning, RangeWarning, shortened
 from wearlaw.fitting.fit import fit as fit_parameters
 from wearlaw.fitting.observations import test_names
 from wearlaw.fitting.result import Fit
@@ -34,7 +34,8 @@ def folds(count: int, how: Folds) -> list[NDArray[np.intp]]:
     number: object = count if how == "leave-one-out" else how
     if isinstance(number, bool) or not isinstance(number, int | np.integer) or not 2 <= number <= count:
         raise InputError(
-            f'cross_validate: give "leave-one-out" or a number of folds from 2 to the {count} tests, got {how!r}'
+            f'cross_validate: give "leave-one-out" or a number of folds from 2 to the {count} tests, got'
+            f" {shortened(how)}"
         )
     dealt = np.random.default_rng(SEED).permutation(count)
     return [np.sort(dealt[fold::number]) for fold in range(number)]

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from wearlaw.errors import FitError, FitWarning
+from wearlaw.errors import FitError, FitWarning, shortened
 from wearlaw.fitting.intervals import DECIDED_ALONE, Replicates, leverage, replicate
 from wearlaw.fitting.least_squares import Solutions
 from wearlaw.fitting.observations import test_names
@@ -121,12 +121,12 @@ def fit(
 
 def _check_settings(scatter: object, confidence: object, **counts: object) -> None:
     if scatter not in ("relative", "absolute"):
-        raise FitError(f'scatter: must be "relative" or "absolute", got {scatter!r}')
+        raise FitError(f'scatter: must be "relative" or "absolute", got {shortened(scatter)}')
     if not (isinstance(confidence, float | np.floating) and 0.0 < confidence < 1.0):
-        raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {confidence!r}")
+        raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {shortened(confidence)}")
     for name, value in counts.items():
         if isinstance(value, bool) or not isinstance(value, Integral) or value < 0:
-            raise FitError(f"{name}: must be a whole number that is not negative, got {value!r}")
+            raise FitError(f"{name}: must be a whole number that is not negative, got {shortened(value)}")
 
 
 def _check_replicates(bootstrap: int, confidence: float) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import tomli_w
 
-from wearlaw.errors import ConfigurationError, InputError, OutputError, with_problems
+from wearlaw.errors import ConfigurationError, InputError, OutputError, quoted, with_problems
 from wearlaw.models.law import Law
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
@@ -40,7 +40,7 @@ def write_law(path: str | os.PathLike[str], law: Law, provenance: Mapping[str, A
         finally:
             temporary.unlink(missing_ok=True)
     except OSError as error:
-        raise OutputError(f"cannot write '{path}': {error.strerror or error}") from None
+        raise OutputError(f"cannot write {quoted(Path(path))}: {error.strerror or error}") from None
 
 
 def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -55,9 +55,9 @@ def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
         return tomllib.loads(read_text(path))
     except (OSError, InputError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise InputError(f"cannot read {subject} '{path}': {reason}") from None
+        raise InputError(f"cannot read {subject} {quoted(Path(path))}: {reason}") from None
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{subject} '{path}' is not valid TOML: {error}") from None
+        raise InputError(f"{subject} {quoted(Path(path))} is not valid TOML: {error}") from None
 
 
 def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
@@ -65,8 +65,8 @@ def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
     found = read_law(path)
     if not isinstance(found, WearLaw):
         raise InputError(
-            f"wear law '{path}' holds law '{found.name}', which predicts {found.outcome.name} and no wear; read it with"
-            " read_law"
+            f"wear law {quoted(Path(path))} holds law {quoted(found.name)}, which predicts"
+            f" {found.outcome.name} and no wear; read it with read_law"
         )
     return found
 
@@ -88,12 +88,14 @@ def read_law(path: str | os.PathLike[str]) -> Law:
     kind = "law" if "law" in contents and "wear_law" not in contents else "wear_law"
     fields = contents.get(kind)
     if not isinstance(fields, dict) or not isinstance(fields.get("model"), str):
-        raise InputError(f"wear law '{path}' needs a table [wear_law] with the name of the law, as in model = \"usfd\"")
+        raise InputError(
+            f'wear law {quoted(Path(path))} needs a table [wear_law] with the name of the law, as in model = "usfd"'
+        )
     name = fields.pop("model")
     try:
         law = loader.law(name, **fields) if kind == "law" else loader.wear_law(name, **fields)
     except ConfigurationError as error:
-        raise InputError(with_problems(f"wear law '{path}' is wrong in:", error.problems)) from None
+        raise InputError(with_problems(f"wear law {quoted(Path(path))} is wrong in:", error.problems)) from None
     provenance = contents.get("provenance")
     digests = provenance.get(DIGESTS) if isinstance(provenance, dict) else None
     return law.with_tests(map(str, digests)) if isinstance(digests, list) else law

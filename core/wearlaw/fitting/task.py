@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.elastic_limit import Overload
-from wearlaw.errors import FitError
+from wearlaw.errors import FitError, shortened
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, free_names
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
@@ -68,7 +68,7 @@ class Task:
         """
         friction = _one_value(friction)
         if not isinstance(predict, Pipeline):
-            raise FitError(f"predict: give a rig with a contact model, and laws or none, not {predict!r}")
+            raise FitError(f"predict: give a rig with a contact model, and laws or none, not {shortened(predict)}")
         if predict.laws:
             predict = predict.with_law(*(law.explicit() for law in predict.laws))
         free = free_names(free)

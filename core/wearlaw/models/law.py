@@ -23,7 +23,16 @@ from wearlaw.contact.contact import (
 )
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Geometry
-from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, UnitError, did_you_mean
+from wearlaw.errors import (
+    CalibrationWarning,
+    CompositionError,
+    InputError,
+    ModelError,
+    UnitError,
+    did_you_mean,
+    quoted,
+    shortened,
+)
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
@@ -84,7 +93,9 @@ class Calibration(Configuration):
         found = {}
         for variable, low, high in self.stated_range:
             if variable not in LAW_VARIABLES:
-                raise InputError(f"stated_range: unknown variable '{variable}'{did_you_mean(variable, LAW_VARIABLES)}")
+                raise InputError(
+                    f"stated_range: unknown variable {quoted(variable)}{did_you_mean(variable, LAW_VARIABLES)}"
+                )
             unit = Unit(UNITS[variable], positive=False)
             found[variable] = float(unit.si(low, variable)), float(unit.si(high, variable))
         return found
@@ -134,9 +145,11 @@ class Outcome:
     def __post_init__(self) -> None:
         """Check the fields."""
         if not (isinstance(self.name, str) and self.name.isidentifier()):
-            raise InputError(f"outcome: its name must be made of letters, digits and underscores, got {self.name!r}")
+            raise InputError(
+                f"outcome: its name must be made of letters, digits and underscores, got {shortened(self.name)}"
+            )
         if self.of not in ("area mean", "patch"):
-            raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {self.of!r}")
+            raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {shortened(self.of)}")
         known = VARIABLES.get(self.name)
         if known is not None:
             if self.name != WEAR:
@@ -315,7 +328,9 @@ class Law(Model):
             If the law is stated for the whole patch, and the contact has more than one node.
         """
         if not isinstance(contact, Contact):
-            raise CompositionError(f"a {self.kind} takes a contact, not {contact!r}; a pipeline begins with a rig")
+            raise CompositionError(
+                f"a {self.kind} takes a contact, not {shortened(contact)}; a pipeline begins with a rig"
+            )
         scale: Scale = "patch" if contact.pressure.size == contact.rolling_speed.size else "cells"
         if self.scale == "patch" and scale != "patch":
             raise CompositionError(

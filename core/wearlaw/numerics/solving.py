@@ -20,7 +20,7 @@ from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Nodes
-from wearlaw.errors import ModelError
+from wearlaw.errors import ModelError, shortened
 from wearlaw.models.contact_model import QUADRATURE, Blame, ContactModel
 from wearlaw.models.law import Law, Numbers
 from wearlaw.models.line_contact_model import LineContactModel
@@ -162,7 +162,7 @@ def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Pr
 def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> None:
     ellipse = problem.geometry != "line"
     if not isinstance(contact, Contact):
-        raise ModelError(f"{model.kind} '{model.name}' returned {contact!r}, not a wearlaw.Contact")
+        raise ModelError(f"{model.kind} '{model.name}' returned {shortened(contact)}, not a wearlaw.Contact")
     if ellipse and not contact.on_strips:
         raise ModelError(
             f"{model.kind} '{model.name}' returned a contact without strips for an ellipse; make it with"

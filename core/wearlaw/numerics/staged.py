@@ -8,7 +8,7 @@ from functools import reduce
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, ModelError
+from wearlaw.errors import CompositionError, ModelError, shortened
 from wearlaw.models.contact_model import Blame, Claim, ContactModel, Scale
 from wearlaw.models.stage import Forces, Solve, Stage
 from wearlaw.numerics.solving import Solver
@@ -65,7 +65,7 @@ class Staged(ContactModel):
         with Blame(self.stage):
             found = self.stage.altered(there, forces)
         if not isinstance(found, Problem):
-            raise ModelError(f"`altered` of stage '{self.name}' returned {found!r}, not a wearlaw.Problem")
+            raise ModelError(f"`altered` of stage '{self.name}' returned {shortened(found)}, not a wearlaw.Problem")
         if (found.geometry, found.batch_shape) != (there.geometry, there.batch_shape):
             raise ModelError(
                 f"`altered` of stage '{self.name}' returned a problem of geometry '{found.geometry}' and shape"

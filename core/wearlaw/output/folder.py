@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from wearlaw.errors import OutputError
+from wearlaw.errors import OutputError, quoted
 from wearlaw.version import __version__
 
 MANIFEST = ".wearlaw.json"
@@ -82,7 +82,7 @@ def fresh_folder(folder: Path, overwrite: bool = False, marker: str | None = Non
             beside = _put_beside(inside, target)
             if beside is None:
                 raise
-            raise ElsewhereError(f"{error}. The results are in '{beside}'") from None
+            raise ElsewhereError(f"{error}. The results are in {quoted(beside)}") from None
     finally:
         shutil.rmtree(inside, ignore_errors=True)
         with suppress(OSError):  # not empty if other files could not be put back
@@ -97,7 +97,7 @@ def _os_errors_of(folder: Path) -> Iterator[None]:
         raise
     except OSError as error:
         raise OutputError(
-            f"output: cannot write to '{folder}': {error.strerror or error}; choose another folder with -o"
+            f"output: cannot write to {quoted(folder)}: {error.strerror or error}; choose another folder with -o"
         ) from None
 
 
@@ -106,17 +106,19 @@ def _earlier(folder: Path, target: Path, overwrite: bool, marker: str | None) ->
     if not target.exists():
         return None
     if not target.is_dir():
-        raise OutputError(f"output: '{folder}' is a file, not a folder; choose another with -o")
+        raise OutputError(f"output: {quoted(folder)} is a file, not a folder; choose another with -o")
     if Path.cwd().is_relative_to(target):
-        raise OutputError(f"output: '{folder}' is the working folder or above it; choose another folder with -o")
+        raise OutputError(f"output: {quoted(folder)} is the working folder or above it; choose another folder with -o")
     if not any(target.iterdir()):
         return None
     files = _listed(target)
     if marker not in files:
         what = "holds results of another command" if files else f"does not hold results of wearlaw (no {MANIFEST})"
-        raise OutputError(f"output: '{folder}' {what}, and will not be overwritten; choose another folder with -o")
+        raise OutputError(
+            f"output: {quoted(folder)} {what}, and will not be overwritten; choose another folder with -o"
+        )
     if not overwrite:
-        raise OutputError(f"output: '{folder}' is not empty; choose another folder with -o, or add --overwrite")
+        raise OutputError(f"output: {quoted(folder)} is not empty; choose another folder with -o, or add --overwrite")
     identity = _identity(target)
     return None if identity is None else _Earlier(files, identity)
 
@@ -149,7 +151,7 @@ def _files(folder: Path) -> list[str]:
 
 
 def _taken(folder: Path) -> OutputError:
-    return OutputError(f"output: '{folder}' was meanwhile taken by another run or program, and is left unchanged")
+    return OutputError(f"output: {quoted(folder)} was meanwhile taken by another run or program, and is left unchanged")
 
 
 def _put(inside: Path, folder: Path, target: Path) -> None:
@@ -202,7 +204,7 @@ def _check_names(folder: Path, others: list[str], new: frozenset[str]) -> None:
     for name in others:
         if name in new or any(one.startswith(f"{name}/") for one in new):
             raise OutputError(
-                f"output: '{folder / name}' was not written by wearlaw, and a new file has its name; move it"
+                f"output: {quoted(folder / name)} was not written by wearlaw, and a new file has its name; move it"
                 " elsewhere, or choose another folder with -o"
             )
 
@@ -212,8 +214,8 @@ def _restore(replaced: Path, folder: Path, target: Path) -> None:
         replaced.rename(target)
     except OSError as error:
         raise OutputError(
-            f"output: the earlier contents of '{folder}' are now in '{replaced}', and could not be moved back:"
-            f" {error.strerror or error}"
+            f"output: the earlier contents of {quoted(folder)} are now in {quoted(replaced)}, and could not be"
+            f" moved back: {error.strerror or error}"
         ) from None
 
 
@@ -226,8 +228,8 @@ def _carry_over(names: list[str], replaced: Path, folder: Path, target: Path) ->
             (replaced / name).rename(target / name)
     except (OSError, KeyboardInterrupt) as error:
         raise OutputError(
-            f"output: the results are in '{folder}', but other files that were there are still in '{replaced}':"
-            f" {str(error) or 'interrupted'}"
+            f"output: the results are in {quoted(folder)}, but other files that were there are still in"
+            f" {quoted(replaced)}: {str(error) or 'interrupted'}"
         ) from None
 
 

@@ -12,7 +12,7 @@ import matplotlib as mpl
 import pandas as pd
 import xarray
 
-from wearlaw.errors import OutputError
+from wearlaw.errors import OutputError, quoted
 from wearlaw.figures.curves import FigureData, FigureFormat
 from wearlaw.figures.drawing import draw
 from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
@@ -197,7 +197,7 @@ def _by_name(kind: str, named: Iterable[tuple[str, T]]) -> dict[str, T]:
                 if name in found
                 else "its name must be made of letters, digits and underscores"
             )
-            raise OutputError(f"output: the {kind} '{name}' cannot be written: {fault}")
+            raise OutputError(f"output: the {kind} {quoted(name)} cannot be written: {fault}")
         found[name] = thing
     return found
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import InputError, did_you_mean
+from wearlaw.errors import InputError, did_you_mean, quoted
 from wearlaw.models.contact_model import Scale
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.datasets import Conditions, Named, dataset
@@ -205,8 +205,8 @@ def _of_patch(prediction: Drawn, name: str | None, ax: Axes | None) -> Axes:
     every = [str(one) for one in fields.data_vars]
     if name is not None and name not in every:
         raise InputError(
-            f"plot: there is one operating point, and '{name}' is no field of its patch{did_you_mean(name, every)}"
-            f" The fields are: {', '.join(every)}"
+            f"plot: there is one operating point, and {quoted(name)} is no field of its patch"
+            f"{did_you_mean(name, every)} The fields are: {', '.join(every)}"
         )
     if not line:
         shown = name or FIELDS[0]

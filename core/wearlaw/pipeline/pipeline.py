@@ -17,7 +17,7 @@ from pydantic import model_validator
 
 from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.problem import Body, CreepForces, Problem
-from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean
+from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, shortened
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.stage import Stage
@@ -155,7 +155,7 @@ class Rig(Model):
             self.check_names(conditions)
             raise
         if not isinstance(problem, Problem):
-            raise ModelError(f"rig '{self.name}' returned {problem!r}, not a wearlaw.Problem")
+            raise ModelError(f"rig '{self.name}' returned {shortened(problem)}, not a wearlaw.Problem")
         if problem.dims:
             self._check_dims(problem)
         for body in problem.bodies.values():
@@ -176,7 +176,7 @@ class Rig(Model):
             If it is no problem, or not one of the same geometry, shape and axes.
         """
         if not isinstance(balanced, Problem):
-            raise ModelError(f"`balanced` of rig '{self.name}' returned {balanced!r}, not a wearlaw.Problem")
+            raise ModelError(f"`balanced` of rig '{self.name}' returned {shortened(balanced)}, not a wearlaw.Problem")
         shapes = [(one.geometry, one.batch_shape, one.dims) for one in (balanced, problem)]
         if shapes[0] != shapes[1]:
             found, given = (f"geometry '{one[0]}', shape {one[1]} and axes {one[2]!r}" for one in shapes)
@@ -253,7 +253,7 @@ class Rig(Model):
         """Return the pipeline that solves this rig's contact with a contact model."""
         if not isinstance(model, ContactModel):
             raise CompositionError(
-                f"a rig is followed by a contact model, not by {model!r};"
+                f"a rig is followed by a contact model, not by {shortened(model)};"
                 ' for example rig | wl.contact_model("fastsim") | wl.wear_law("usfd")'
             )
         assert isinstance(self, Rig)
@@ -343,11 +343,11 @@ class Pipeline(Configuration, Generic[P]):
         """Return the pipeline with one more law, or one more stage around the contact model."""
         if isinstance(part, Stage):
             if self.laws:
-                raise CompositionError(f"a stage stands before the laws, not after them: {part!r}; {ORDER}")
+                raise CompositionError(f"a stage stands before the laws, not after them: {shortened(part)}; {ORDER}")
             return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=(*self.stages, part))
         before, after = ("law", "another law") if self.laws else ("contact model", "a stage or a law")
         if not isinstance(part, Law):
-            raise CompositionError(f"a {before} is followed by {after}, not by {part!r}; {ORDER}")
+            raise CompositionError(f"a {before} is followed by {after}, not by {shortened(part)}; {ORDER}")
         pipeline = self.with_law(*self.laws, part)
         warn_of_calibration(self.rig.patch_geometry, self.contact_model, self.scale, part)
         warn_of_materials(self.rig.bodies, part)
@@ -358,7 +358,9 @@ class Pipeline(Configuration, Generic[P]):
     def __call__(self, *positional: P.args, **conditions: P.kwargs) -> Prediction:
         """Return the contact and the wear under the given conditions; see the rig's `problem` for the conditions."""
         if positional:
-            raise ConditionsError(f"{positional[0]!r}: is given without a name; write creepage=..., for example")
+            raise ConditionsError(
+                f"{shortened(positional[0])}: is given without a name; write creepage=..., for example"
+            )
         found = self.predict(self.posed(conditions), stacklevel=3)
         found._given = conditions
         return found

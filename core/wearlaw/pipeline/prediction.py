@@ -17,7 +17,7 @@ from wearlaw.arrays.array import Array, same
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
-from wearlaw.errors import CompositionError, InputError
+from wearlaw.errors import CompositionError, InputError, shortened
 from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.models.line_contact_model import LineContactModel
@@ -594,7 +594,7 @@ class Prediction:
                 ' resolves it, such as wl.contact_model("fastsim")'
             )
         if strips is not None and (isinstance(strips, bool) or not isinstance(strips, int) or strips < 2):
-            raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
+            raise InputError(f"strips: must be a whole number from 2, such as 101; got {shortened(strips)}")
         index = self._wear_law(body)
         self._warn_of(index, body, stacklevel=3)
         across = self._across(index, body, strips)

@@ -10,7 +10,17 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema, create_model
 
 from wearlaw.contact.material import TYPE, Material
-from wearlaw.errors import ConfigurationError, Fault, InputError, PluginWarning, WearlawError, described, did_you_mean
+from wearlaw.errors import (
+    ConfigurationError,
+    Fault,
+    InputError,
+    PluginWarning,
+    WearlawError,
+    described,
+    did_you_mean,
+    quoted,
+    shortened,
+)
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
@@ -18,7 +28,6 @@ from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import Configuration, known_name
 from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.units.quantities import shortened
 
 if TYPE_CHECKING:
     from pydantic import GetJsonSchemaHandler
@@ -88,7 +97,7 @@ def _rig(value: Any) -> Any:
         return _rig_of_table(value)
     if isinstance(value, str):
         if value not in loader.rigs() and value in known_presets():
-            raise InputError(f"'{value}' is a preset; write {{preset = \"{value}\"}}")
+            raise InputError(f'{quoted(value)} is a preset; write {{preset = "{value}"}}')
         return loader.rig(value)
     if not _is_rig(value):
         raise InputError(f"must be a rig, its name, or a table of its name and fields; got {shortened(value)}")
@@ -153,22 +162,24 @@ def _of_preset(kind: str | None, preset: str, given: Mapping[str, Any]) -> Any:
     except WearlawError:
         raise
     except Exception as error:
-        raise InputError(f"preset '{preset}' of rig '{rig.name}' failed: {described(error)}") from error
+        raise InputError(f"preset {quoted(preset)} of rig '{rig.name}' failed: {described(error)}") from error
     if not _is_rig(made):
-        raise InputError(f"preset '{preset}' of rig '{rig.name}' must return a rig, got {shortened(made)}")
+        raise InputError(f"preset {quoted(preset)} of rig '{rig.name}' must return a rig, got {shortened(made)}")
     return made
 
 
 def _no_preset(kind: str | None, preset: str, presets: Mapping[str, list[type[Any]]]) -> Fault:
     if preset in presets:
         names = " and ".join(rig.name for rig in presets[preset])
-        return Fault(("preset",), f"'{preset}' is a preset of {names}; add the type")
+        return Fault(("preset",), f"{quoted(preset)} is a preset of {names}; add the type")
     if kind is not None and kind not in loader.rigs():
         rigs = loader.rigs()
-        return Fault(("type",), f"no rig is called '{kind}'{did_you_mean(kind, rigs)} Installed: {', '.join(rigs)}")
-    of = f"rig '{kind}' has no preset" if kind else "no rig has a preset"
+        return Fault(
+            ("type",), f"no rig is called {quoted(kind)}{did_you_mean(kind, rigs)} Installed: {', '.join(rigs)}"
+        )
+    of = f"rig {quoted(kind)} has no preset" if kind else "no rig has a preset"
     known = ", ".join(presets) or "none"
-    return Fault(("preset",), f"{of} '{preset}'{did_you_mean(preset, presets)} There are: {known}")
+    return Fault(("preset",), f"{of} {quoted(preset)}{did_you_mean(preset, presets)} There are: {known}")
 
 
 def preset_fields(rig: type[Any], preset: str) -> type[Configuration]:

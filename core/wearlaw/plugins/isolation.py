@@ -16,7 +16,7 @@ from typing import IO, Any, NamedTuple, TextIO
 
 import numpy as np
 
-from wearlaw.units.quantities import shortened
+from wearlaw.errors import printable, shortened
 
 PATIENCE = 2.0
 """Time after which a plugin that still loads is named on standard error [s]."""
@@ -123,7 +123,7 @@ class Isolation:
             if wait <= 0.0:
                 named, wait = loading, PATIENCE
                 if sys.stderr is not None:
-                    print(f"wearlaw is still loading {plugin}", file=sys.stderr, flush=True)
+                    print(printable(f"wearlaw is still loading {plugin}"), file=sys.stderr, flush=True)
 
 
 class _Output:

@@ -21,7 +21,7 @@ from packaging.utils import canonicalize_name
 
 from wearlaw import hookspecs
 from wearlaw.contact.material import Material
-from wearlaw.errors import PluginWarning, UnknownModelError, described
+from wearlaw.errors import PluginWarning, UnknownModelError, described, shortened
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
 from wearlaw.models.reader import Reader
@@ -301,7 +301,7 @@ def _name_and_version(distribution: Distribution) -> tuple[str, str]:
 
 def _check_interface(needed: object) -> None:
     if not isinstance(needed, int) or isinstance(needed, bool):
-        raise TypeError(f"wearlaw_interface must be a whole number, got {needed!r}")
+        raise TypeError(f"wearlaw_interface must be a whole number, got {shortened(needed)}")
     if needed != hookspecs.INTERFACE_VERSION:
         behind = "wearlaw" if needed > hookspecs.INTERFACE_VERSION else "the plugin"
         raise TypeError(
@@ -390,7 +390,7 @@ def _add_material(name: object, item: object, origin: Origin, found: Installed) 
     if isinstance(item, type):
         cls: type[Any] = item
         if not issubclass(cls, Material):
-            raise TypeError(f"material {name!r} must be a Material or a class derived from it, got {item!r}")
+            raise TypeError(f"material {name!r} must be a Material or a class derived from it, got {shortened(item)}")
         if name != cls.__name__:
             raise TypeError(f"a class of materials goes by its own name: write {cls.__name__!r} in place of {name!r}")
     else:

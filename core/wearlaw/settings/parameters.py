@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 import pint
 
-from wearlaw.errors import InputError, did_you_mean
+from wearlaw.errors import InputError, did_you_mean, quoted
 from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import Quantity, Unit, from_si
 from wearlaw.units.registry import si_factor, unit_in_si
@@ -75,7 +75,8 @@ def changed(record: ConfigurationT, values: Mapping[str, Quantity | float]) -> C
         if name not in known:
             hint = did_you_mean(name, known)
             raise InputError(
-                f"{record.subject()}: '{name}' is not a number among its fields{hint} There are: {', '.join(known)}"
+                f"{record.subject()}: {quoted(name)} is not a number among its fields{hint} There are:"
+                f" {', '.join(known)}"
             )
         outer, _, inner = name.partition(".")
         if inner:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
 import tomli_w
@@ -40,6 +41,8 @@ from wearlaw.errors import (
     WearlawWarning,
     described,
     did_you_mean,
+    quoted,
+    shortened,
     with_problems,
 )
 from wearlaw.models.contact_model import ContactModel, Model
@@ -73,13 +76,13 @@ LISTED = "must be a list of names, or of tables with a name and options"
 
 def _models(value: Any) -> Any:
     if not isinstance(value, (list, tuple)):
-        raise InputError(f"{LISTED}; got {value!r}")
+        raise InputError(f"{LISTED}; got {shortened(value)}")
     return value
 
 
 def _some_models(value: Any) -> Any:
     if not _models(value):
-        raise InputError(f"{LISTED}; got {value!r}")
+        raise InputError(f"{LISTED}; got {shortened(value)}")
     return value
 
 
@@ -132,7 +135,7 @@ def _unmet(name: str, versions: str) -> str:
     try:
         allowed = SpecifierSet(versions)
     except InvalidSpecifier:
-        return f"'{versions}' is not a version range; write one such as '>=1.2,<2'"
+        return f"{quoted(versions)} is not a version range; write one such as '>=1.2,<2'"
     try:
         found = version(name)
     except PackageNotFoundError:
@@ -244,7 +247,9 @@ class Case(Configuration):
         bodies = tuple(info.data["rig"].bodies) if named and "rig" in info.data else ()
         has = f"Its bodies are {' and '.join(bodies)}"
         wrong = [
-            Fault((str(number), "body"), f"the rig has no body '{law.body}'{did_you_mean(law.body, bodies)} {has}")
+            Fault(
+                (str(number), "body"), f"the rig has no body {quoted(law.body)}{did_you_mean(law.body, bodies)} {has}"
+            )
             for number, law in enumerate(laws)
             if law.body is not None and bodies and law.body not in bodies
         ]
@@ -270,7 +275,7 @@ class Case(Configuration):
         checked, wrong = {}, []
         for name, conditions in given.items():
             if isinstance(name, str) and not name.isidentifier():
-                wrong.append(Fault((), f"the name '{name}' must be made of letters, digits and underscores"))
+                wrong.append(Fault((), f"the name {quoted(name)} must be made of letters, digits and underscores"))
             grid, faults = _read_conditions(name, conditions, read, info.data.get("rig"))
             if grid is not None and info.field_name == "profiles" and grid.axes():
                 faults.append(Fault((name,), "a profile is at one operating point; give each condition one value"))
@@ -366,7 +371,9 @@ class Case(Configuration):
         conditions = {name for grid in (*self.sweeps.values(), *self.profiles.values()) for name in grid.given}
         for axis in next(iter(self.sweeps.values())).problem(self.rig).dims:
             if axis in (*RESERVED, "node", *conditions):
-                yield Fault(("rig",), f"its axis '{axis}' has the name of another column of results; rename the axis")
+                yield Fault(
+                    ("rig",), f"its axis {quoted(axis)} has the name of another column of results; rename the axis"
+                )
 
     def _wrong_outcomes(self) -> Iterator[Fault]:
         """Yield the laws whose results would be mixed up with others."""
@@ -440,10 +447,12 @@ def case_text(name_or_path: str) -> str:
         return read_text(name_or_path)
     except FileNotFoundError:
         hint = did_you_mean(name_or_path, known)
-        raise CaseError(f"there is no case file '{name_or_path}'{hint} Shipped cases: {', '.join(known)}") from None
+        raise CaseError(
+            f"there is no case file {quoted(Path(name_or_path))}{hint} Shipped cases: {', '.join(known)}"
+        ) from None
     except (OSError, InputError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise CaseError(f"cannot read the case file '{name_or_path}': {reason}") from None
+        raise CaseError(f"cannot read the case file {quoted(Path(name_or_path))}: {reason}") from None
 
 
 def case_schema() -> dict[str, Any]:
@@ -501,7 +510,7 @@ def _left_out(shelf: Shelf[Any], name: str) -> Iterator[None]:
     except KeyboardInterrupt:
         raise
     except BaseException as error:
-        reason = f"{shelf.kind} '{name}' of {shelf.origin(name)} is left out of the schema: {described(error)}"
+        reason = f"{shelf.kind} {quoted(name)} of {shelf.origin(name)} is left out of the schema: {described(error)}"
         warnings.warn(reason, PluginWarning, stacklevel=4)
 
 
@@ -581,9 +590,9 @@ def load_case(name_or_path: str) -> Case:
         with reading(name_or_path):
             return Case(**_beside(fields))
     except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"case '{name_or_path}' is not valid TOML: {error}") from None
+        raise CaseError(f"case {quoted(Path(name_or_path))} is not valid TOML: {error}") from None
     except ConfigurationError as error:
-        raise CaseError(with_problems(f"case '{name_or_path}' is wrong in:", error.problems)) from None
+        raise CaseError(with_problems(f"case {quoted(Path(name_or_path))} is wrong in:", error.problems)) from None
 
 
 def _beside(fields: dict[str, Any]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 from wearlaw.contact.conditions import LOADS
-from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean
+from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean, quoted
 from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import WEAR, Law, Outcome
 from wearlaw.models.stage import Stage
@@ -230,7 +230,7 @@ class Contents:
         body = f"{window.body or bodies[0]}_" if across and bodies else ""
         units = {name: known.units[f"{body}{name}"] for name in window.shown if f"{body}{name}" in known.units}
         if across and not units and any(f"{one}_depth" in known.units for one in bodies):
-            yield "body", f"no wear law of the case is for '{window.body or bodies[0]}'; name another body"
+            yield "body", f"no wear law of the case is for {quoted(window.body or bodies[0])}; name another body"
         if len(set(units.values())) > 1:
             each = ", ".join(f"{variable} in {unit or 'no unit'}" for variable, unit in units.items())
             yield "y", f"one axis has one unit, but these are {each}; give each a panel of its own"
@@ -269,7 +269,7 @@ class Contents:
         refused = {f"{law} on {model}": refusal for (model, law), refusal in refusals.items() if refusal}
         unknown = [pair for pair in spec.pairs or () if pair not in pairs]
         for pair in unknown:
-            why = f"'{pair}': {refused[pair]}" if pair in refused else f"there is no {_choice(pair, pairs)}"
+            why = f"{quoted(pair)}: {refused[pair]}" if pair in refused else f"there is no {_choice(pair, pairs)}"
             yield "pairs", why
         if spec.pairs and not unknown:
             for message in self._of_pairs(spec, shown, {pair: pairs[pair] for pair in spec.pairs}):
@@ -283,13 +283,13 @@ class Contents:
         predicted = {pair: law.outcome.name for pair, law in chosen.items()}
         for pair, outcome in predicted.items():
             if shown and outcome not in shown:
-                yield f"'{pair}' predicts {outcome}, which the figure does not show; leave it out"
+                yield f"{quoted(pair)} predicts {outcome}, which the figure does not show; leave it out"
         for outcome in sorted(shown - {*predicted.values()}):
             yield f"none of them predicts {outcome}, which the figure shows; add one that does"
         for window in spec.windows():
             body = window.body or next(iter(self.rig.bodies), None)
             if "depth" in window.shown and all(law.body not in (None, body) for law in chosen.values()):
-                yield f"none of them has a law for '{body}', whose depth the figure shows; add one that does"
+                yield f"none of them has a law for {quoted(body)}, whose depth the figure shows; add one that does"
 
     def _refusal(self, model: str, law: str, spec: FigureSpec, grid: Grid) -> str:
         """Return why a pair has no results for the figure, or "" if it has."""
@@ -314,8 +314,8 @@ class Contents:
 def _unknown(path: str, given: Collection[str], known: Collection[str]) -> Iterator[tuple[str, str]]:
     for name in given:
         if name not in known:
-            yield path, f"'{name}' cannot be shown{did_you_mean(name, known)} It can be: {', '.join(known)}"
+            yield path, f"{quoted(name)} cannot be shown{did_you_mean(name, known)} It can be: {', '.join(known)}"
 
 
 def _choice(asked: str, known: Collection[str]) -> str:
-    return f"'{asked}'{did_you_mean(asked, known)} There are: {', '.join(known) or 'none'}"
+    return f"{quoted(asked)}{did_you_mean(asked, known)} There are: {', '.join(known) or 'none'}"

@@ -13,7 +13,17 @@ import pint
 from pydantic import BeforeValidator, Field, model_validator
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import ConfigurationError, Fault, InputError, UnitError, WearlawError, WearlawWarning, did_you_mean
+from wearlaw.errors import (
+    ConfigurationError,
+    Fault,
+    InputError,
+    UnitError,
+    WearlawError,
+    WearlawWarning,
+    did_you_mean,
+    quoted,
+    shortened,
+)
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.settings.configuration import Configuration
 from wearlaw.sweeping.points import Points, Varying
@@ -28,7 +38,9 @@ MOST_POINTS = 10_000_000
 def _value(value: Any) -> Any:
     """Raise an error unless this may be a value of a condition."""
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise InputError(f"must be a value, a list of values, or a table with from, to and points; got {value!r}")
+        raise InputError(
+            f"must be a value, a list of values, or a table with from, to and points; got {shortened(value)}"
+        )
     if isinstance(value, float) and not np.isfinite(value):
         raise InputError(f"must be finite, got {value}")
     return value
@@ -314,13 +326,14 @@ def _in_one_unit(values: tuple[float | str, ...]) -> tuple[Array, str | None]:
         if not isinstance(value, str):
             with_unit = next(one for one in values if isinstance(one, str))
             raise UnitError(
-                f"got the bare number {value!r}, which has no unit, beside {with_unit!r}; give all values one"
+                f"got the bare number {shortened(value)}, which has no unit, beside {shortened(with_unit)}; give all"
+                " values one"
             )
     quantities = [parse(str(value)) for value in values]
     unit = _symbol(quantities[0])
     for quantity, value in zip(quantities, values, strict=True):
         if not quantity.is_compatible_with(quantities[0]):
-            raise UnitError(f"'{values[0]}' and '{value}' are not of one dimension")
+            raise UnitError(f"{quoted(values[0])} and {quoted(value)} are not of one dimension")
     numbers = [quantity.to(quantities[0].units).magnitude for quantity in quantities]
     return np.array(numbers, dtype=np.float64), unit
 

@@ -24,6 +24,7 @@ from wearlaw.errors import (
     WearlawWarning,
     described,
     message_of,
+    shortened,
 )
 from wearlaw.models.contact_model import Model
 from wearlaw.models.law import WEAR
@@ -148,7 +149,7 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
         with notes.of(f"section '{name}'"):
             section = make(study)
         if not isinstance(section, Section):
-            raise TypeError(f"it must be a Section, got {section!r}")
+            raise TypeError(f"it must be a Section, got {shortened(section)}")
     except WearlawError as error:
         raise InputError(
             f"{subject}: {message_of(error)}\nTo run the case without this section, take '{name}' out of `sections`"

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from wearlaw.errors import ConfigurationError, Fault, InputError, did_you_mean
+from wearlaw.errors import ConfigurationError, Fault, InputError, did_you_mean, shortened
 from wearlaw.models.law import Law
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig
@@ -56,7 +56,7 @@ def _uncertain(value: Any) -> Any:
         return Spread(**value)
     if isinstance(value, Spread | str | float | int) and not isinstance(value, bool):
         return value
-    raise InputError(f"must be a value, or a table such as {{uniform = [0.3, 0.5]}}; got {value!r}")
+    raise InputError(f"must be a value, or a table such as {{uniform = [0.3, 0.5]}}; got {shortened(value)}")
 
 
 Condition = Annotated[float | str | Spread, BeforeValidator(_uncertain)]

@@ -13,7 +13,7 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import OutputError
+from wearlaw.errors import OutputError, quoted
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.variables import outcome_units
 from wearlaw.sweeping.evaluation import Job
@@ -59,11 +59,13 @@ class Checkpoint:
         if not self.exists:
             return
         if not (folder / RUN).is_file():
-            raise OutputError(f"output: '{folder}' is in the way, and holds no unfinished run; remove or rename it")
+            raise OutputError(
+                f"output: {quoted(folder)} is in the way, and holds no unfinished run; remove or rename it"
+            )
         if not resume:
             raise OutputError(
-                f"output: '{folder}' holds the finished blocks of an interrupted run, or of one that is still running;"
-                " add --resume to go on with it, remove it, or choose another folder with -o"
+                f"output: {quoted(folder)} holds the finished blocks of an interrupted run, or of one that is still"
+                " running; add --resume to go on with it, remove it, or choose another folder with -o"
             )
         check_same(folder, self._before(), self._run)
 
@@ -87,11 +89,12 @@ class Checkpoint:
             write_whole(self.folder / RUN, json.dumps(self._run))
         except FileExistsError:
             raise OutputError(
-                f"output: '{self.folder}' was meanwhile created by another run; choose another folder with -o"
+                f"output: {quoted(self.folder)} was meanwhile created by another run; choose another folder with -o"
             ) from None
         except OSError as error:
             raise OutputError(
-                f"output: cannot write to '{self.folder}': {error.strerror or error}; choose another folder with -o"
+                f"output: cannot write to {quoted(self.folder)}: {error.strerror or error}; choose another folder with"
+                " -o"
             ) from None
 
     def notes(self) -> list[str]:
@@ -105,7 +108,7 @@ class Checkpoint:
         except (OSError, ValueError):
             path = self.folder / RUN
             raise OutputError(
-                f"output: '{path}' is not the record of a run; remove '{self.folder}' to start again"
+                f"output: {quoted(path)} is not the record of a run; remove {quoted(self.folder)} to start again"
             ) from None
         return run
 

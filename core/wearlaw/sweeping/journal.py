@@ -16,7 +16,7 @@ import pint
 from pydantic import TypeAdapter
 
 from wearlaw.arrays.kernels import WORTHWHILE, accelerated
-from wearlaw.errors import OutputError
+from wearlaw.errors import OutputError, quoted
 from wearlaw.models.contact_model import Model
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import parts
@@ -83,7 +83,7 @@ def check_same(where: Path, before: Run, now: Run) -> None:
     changes = list(_changes("", before, now))
     if changes:
         raise OutputError(
-            f"'{where}' holds another run and cannot be resumed, since these have changed:"
+            f"{quoted(where)} holds another run and cannot be resumed, since these have changed:"
             + "".join(f"\n  {change}" for change in changes)
             + "\nChange them back, or choose another place"
         )
@@ -160,7 +160,8 @@ class Journal:
             done = dict(line_type.validate_json(line, strict=True) for line in lines)
         except ValueError:
             raise OutputError(
-                f"'{path}' is not the journal of a sweep that can be resumed; remove it and '{where}' to start again"
+                f"{quoted(path)} is not the journal of a sweep that can be resumed; remove it and {quoted(where)} to"
+                " start again"
             ) from None
         check_same(where, before, run)
         if len(whole) < len(text):
@@ -195,7 +196,9 @@ class Journal:
                 file.flush()
                 os.fsync(file.fileno())
         except OSError as error:
-            raise OutputError(f"'{self.path}': finished blocks cannot be kept: {error.strerror or error}") from None
+            raise OutputError(
+                f"{quoted(self.path)}: finished blocks cannot be kept: {error.strerror or error}"
+            ) from None
 
     def close(self) -> None:
         """Write the remaining lines; the file stays."""

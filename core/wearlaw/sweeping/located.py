@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import DataError, InputError
+from wearlaw.errors import DataError, InputError, quoted
 from wearlaw.sweeping.points import Points
 from wearlaw.units.variables import VARIABLES
 
@@ -70,13 +70,13 @@ def _located(
     else:
         head = points.varying[name].origin.rpartition(" of ")[0]
         texts = [one.text for one in file.heads]
-        place, column = texts.index(head.removeprefix("-") if head not in texts else head), f", column '{head}'"
+        place, column = texts.index(head.removeprefix("-") if head not in texts else head), f", column {quoted(head)}"
         if points.varying[name].unit is None and "has no unit" in message:
             message += f"; the column {advice(name, head)}"
     if low == 0 and len(numbers) > 1 and last is not None and str(last) == str(first):  # so is every row
-        return DataError(f"table '{file.path}'{column}: {message}")
+        return DataError(f"table {quoted(file.path)}{column}: {message}")
     ((where, _),) = file.places_of([(numbers[low], place)])
-    return DataError(f"table '{file.path}', {where}{column}: {message}")
+    return DataError(f"table {quoted(file.path)}, {where}{column}: {message}")
 
 
 def advice(name: str, text: str) -> str:

@@ -18,7 +18,7 @@ import xarray
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
-from wearlaw.errors import InputError, OutputError
+from wearlaw.errors import InputError, OutputError, quoted
 from wearlaw.sweeping.evaluation import BlockRecord, Job, checksum, load_zarr, zarr_group
 from wearlaw.sweeping.journal import Journal, Run, check_same, run_of, sync_file
 from wearlaw.sweeping.points import ITEM, Block, Points
@@ -155,8 +155,8 @@ class Files(Arrays):
         except OSError as error:
             where = error.filename or folder
             raise OutputError(
-                f"output: finished blocks cannot be kept in '{where}': {error.strerror or error};"
-                f" remove '{folder}' to start again"
+                f"output: finished blocks cannot be kept in {quoted(where)}: {error.strerror or error};"
+                f" remove {quoted(folder)} to start again"
             ) from None
         self.arrays = dict(self._maps)
         self._take_over(journal)
@@ -276,18 +276,18 @@ def finished(job: Job, points: Points, path: Path, resume: bool) -> xarray.Datas
     """
     load_zarr()
     if path.exists() and not path.is_dir():
-        raise OutputError(f"store: '{path}' is a file, not a folder; choose another name")
+        raise OutputError(f"store: {quoted(path)} is a file, not a folder; choose another name")
     if not path.is_dir() or not any(path.iterdir()):
         return None
     if _beside(path).exists():
         if not resume:
-            raise OutputError(f"store: '{path}' holds an unfinished sweep; add resume=True, or remove it")
+            raise OutputError(f"store: {quoted(path)} holds an unfinished sweep; add resume=True, or remove it")
         return None
     found = _attributes(path)
     if found.get("status") != COMPLETE or "provenance" not in found:
-        raise OutputError(f"store: '{path}' is not empty, and holds no sweep of wearlaw; choose another folder")
+        raise OutputError(f"store: {quoted(path)} is not empty, and holds no sweep of wearlaw; choose another folder")
     if not resume:
-        raise OutputError(f"store: '{path}' holds the results of a sweep; choose another folder, or remove it")
+        raise OutputError(f"store: {quoted(path)} holds the results of a sweep; choose another folder, or remove it")
     check_same(path, json.loads(found["provenance"]), run_of(job, points))
     return _opened(path)
 
@@ -346,7 +346,7 @@ def _number(value: Any) -> Any:
 
 def damage(damaged: int, listed: int, where: Path) -> str:
     """Return the message about damaged blocks on disk."""
-    return f"{damaged} of the {listed} blocks kept in '{where}' were damaged, and are computed again"
+    return f"{damaged} of the {listed} blocks kept in {quoted(where)} were damaged, and are computed again"
 
 
 def attributes(run: Run, notes: Sequence[str]) -> dict[str, str]:
@@ -381,7 +381,7 @@ def check_disk(size: int, path: Path) -> None:
     there = shutil.disk_usage(nearest).free
     if size > there:
         raise InputError(
-            f"the results need {size / GIB:.3g} GiB on disk, but '{nearest}' has {there / GIB:.3g} GiB free;"
+            f"the results need {size / GIB:.3g} GiB on disk, but {quoted(nearest)} has {there / GIB:.3g} GiB free;"
             " choose another disk, fewer outputs or fewer points"
         )
 

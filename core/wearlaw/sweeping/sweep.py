@@ -16,7 +16,15 @@ import numpy as np
 import xarray
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConditionsError, InputError, ModelError, ResumeWarning, WearlawWarning, WorkerWarning
+from wearlaw.errors import (
+    ConditionsError,
+    InputError,
+    ModelError,
+    ResumeWarning,
+    WearlawWarning,
+    WorkerWarning,
+    shortened,
+)
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig
 from wearlaw.pipeline.prediction import unsolved
@@ -29,7 +37,6 @@ from wearlaw.sweeping.progress import Bar
 from wearlaw.sweeping.storage import Memory, Store, Target, damage, finished
 from wearlaw.sweeping.tables import from_table
 from wearlaw.sweeping.workers import Done, in_processes, on_cluster
-from wearlaw.units.quantities import shortened
 
 if TYPE_CHECKING:
     import pandas
@@ -114,7 +121,7 @@ def sweep(
         If workers die again and again.
     """
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
-        raise InputError(f"workers: must be the number of processes, at least 1; got {workers!r}")
+        raise InputError(f"workers: must be the number of processes, at least 1; got {shortened(workers)}")
     if not isinstance(store, str | os.PathLike | None):
         raise InputError(f'store: must be the path of a folder, such as "map.zarr"; got {shortened(store)}')
     with _points(predict, table, conditions, columns, keep, store, progress) as points:
@@ -178,7 +185,7 @@ def _checked_job(
     """
     names = list(outputs) if isinstance(outputs, Iterable) and not isinstance(outputs, str) else []
     if outputs is not None and not (names and all(isinstance(name, str) for name in names)):
-        raise InputError(f'outputs: must be a list of names, such as ["wear_rate"], got {outputs!r}')
+        raise InputError(f'outputs: must be a list of names, such as ["wear_rate"], got {shortened(outputs)}')
     if elsewhere:
         check_importable(pipeline)
     one = first.flatten()[:1]

@@ -17,10 +17,10 @@ import pandas as pd
 import xarray
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import DataError, described
+from wearlaw.errors import DataError, described, quoted, shortened
 from wearlaw.settings.csv_files import kind_of, preamble, rows
 from wearlaw.settings.text_files import UTF_16, decoded
-from wearlaw.units.quantities import HEAD, shortened
+from wearlaw.units.quantities import HEAD
 
 ROWS = 100_000
 """Rows read at a time."""
@@ -117,7 +117,7 @@ class TableFile(ABC):
     def failed(self, error: BaseException) -> DataError:
         """Return the error for a file that another package could not read."""
         reason = getattr(error, "strerror", None) or described(error)
-        return DataError(f"table: '{self.path}' cannot be read as {self.kind}: {reason}")
+        return DataError(f"table: {quoted(self.path)} cannot be read as {self.kind}: {reason}")
 
 
 def open_table(path: str | os.PathLike[str]) -> TableFile:
@@ -135,7 +135,7 @@ def open_table(path: str | os.PathLike[str]) -> TableFile:
         with path.open("rb") as file:
             start = file.read(START)
     except OSError as error:
-        raise DataError(f"table: cannot read '{path}': {error.strerror or error}") from None
+        raise DataError(f"table: cannot read {quoted(path)}: {error.strerror or error}") from None
     if start.startswith(b"PAR1"):
         return ParquetFile(path)
     if start.startswith((b"\x89HDF", b"CDF")):
@@ -169,13 +169,13 @@ class CsvFile(TableFile):
         if kind is None and b"\0" in start and not start.startswith(UTF_16):
             kind = "no text"
         if kind is not None:
-            raise DataError(f"table: '{path}' is {kind}; give a file in CSV, parquet, netCDF or zarr")
+            raise DataError(f"table: {quoted(path)} is {kind}; give a file in CSV, parquet, netCDF or zarr")
         self.size = path.stat().st_size
         self.encoding = self._encoding(start)
         with self._opened() as file:
             source = preamble(itertools.islice(file, START))
         if source.header is None:
-            raise DataError(f"table: '{path}' is empty")
+            raise DataError(f"table: {quoted(path)} is empty")
         self.separator = source.separator
         try:
             with self._opened() as file:
@@ -253,7 +253,7 @@ class CsvFile(TableFile):
             if len(row.cells) < self.width or beyond:
                 hint = "; with decimal commas, separate cells by ';'" if beyond and self.separator == "," else ""
                 raise DataError(
-                    f"table '{self.path}', line {row.line}: has {len(row.cells)} cells, but the header has"
+                    f"table {quoted(self.path)}, line {row.line}: has {len(row.cells)} cells, but the header has"
                     f" {self.width}{hint}"
                 )
 
@@ -309,7 +309,7 @@ class ParquetFile(TableFile):
             import pyarrow.parquet
         except ImportError:
             raise DataError(
-                f"table: '{self.path}' is a parquet file, which pyarrow reads; install it with"
+                f"table: {quoted(self.path)} is a parquet file, which pyarrow reads; install it with"
                 ' python -m pip install "wearlaw[parquet]", or give the table as CSV or netCDF'
             ) from None
         return pyarrow
@@ -321,7 +321,9 @@ class ParquetFile(TableFile):
             for place in places:
                 kind = file.schema_arrow.field(place).type
                 if not (pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_decimal(kind)):
-                    raise DataError(f"table '{self.path}', column '{self.heads[place].text}': is {kind}, not numbers")
+                    raise DataError(
+                        f"table {quoted(self.path)}, column {quoted(self.heads[place].text)}: is {kind}, not numbers"
+                    )
             names = [self.heads[place].text for place in places]
             try:
                 for batch in file.iter_batches(ROWS, columns=list(dict.fromkeys(names)), use_threads=False):
@@ -361,14 +363,14 @@ class XarrayFile(TableFile):
         heads = [self.heads[place].text for place in places]
         dims = {self._dims[head] for head in heads}
         if len(dims) != 1 or len(next(iter(dims))) != 1:
-            laid_out = ", ".join(f"'{head}' along {' × '.join(self._dims[head]) or 'none'}" for head in heads)
-            raise DataError(f"table '{self.path}': its columns must all lie along one dimension, got {laid_out}")
+            laid_out = ", ".join(f"{quoted(head)} along {' × '.join(self._dims[head]) or 'none'}" for head in heads)
+            raise DataError(f"table {quoted(self.path)}: its columns must all lie along one dimension, got {laid_out}")
         ((self.dim,),) = dims
         self.size = self._sizes[self.dim]
         with self._opened() as dataset:
             for head in heads:
                 if dataset.variables[head].dtype.kind not in "iuf":
-                    raise DataError(f"table '{self.path}', column '{head}': holds no numbers")
+                    raise DataError(f"table {quoted(self.path)}, column {quoted(head)}: holds no numbers")
             for start in range(0, self.size, ROWS):
                 part = {self.dim: slice(start, start + ROWS)}
                 values = [np.asarray(dataset.variables[head].isel(part).values, dtype=np.float64) for head in heads]
@@ -387,6 +389,7 @@ def faults(file: TableFile, cells: Iterable[tuple[int, int]]) -> list[str]:
     """Return a message for each cell without a number, given by row and column."""
     cells = list(cells)
     return [
-        f"{where}, column '{file.heads[place].text}': {f'{shortened(text)} is not a number' if text else 'is missing'}"
+        f"{where}, column {quoted(file.heads[place].text)}: "
+        + (f"{shortened(text)} is not a number" if text else "is missing")
         for (_, place), (where, text) in zip(cells, file.places_of(cells), strict=True)
     ]

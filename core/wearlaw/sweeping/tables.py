@@ -14,12 +14,12 @@ import numpy as np
 import pint
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import ConditionsError, DataError, UnitError, did_you_mean
+from wearlaw.errors import ConditionsError, DataError, UnitError, did_you_mean, quoted, shortened
 from wearlaw.sweeping.located import advice
 from wearlaw.sweeping.points import OnDisk, Points, Varying, axis, split
 from wearlaw.sweeping.progress import Bar
 from wearlaw.sweeping.table_files import ROW, Head, TableFile, faults, open_table, state
-from wearlaw.units.quantities import HEAD, Q, shortened
+from wearlaw.units.quantities import HEAD, Q
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import VARIABLES
 
@@ -94,7 +94,7 @@ def uses(label: str, heads: Sequence[Head], columns: Columns | None, keep: Colum
     names = [one.name for one in found]
     wrong += [f"{name} is given twice; keep one" for name in dict.fromkeys(names) if names.count(name) > 1]
     if wrong:
-        listed = ", ".join(f"'{head.text}'" for head in heads[:LISTED])
+        listed = ", ".join(f"{quoted(head.text)}" for head in heads[:LISTED])
         more = f" and {len(heads) - LISTED} more" if len(heads) > LISTED else ""
         missing = any("there is no column" in one for one in wrong)
         raise DataError(f"{label} is wrong in:", [*wrong, *([f"its columns are {listed}{more}"] if missing else [])])
@@ -104,12 +104,14 @@ def uses(label: str, heads: Sequence[Head], columns: Columns | None, keep: Colum
 def _wanted(heads: Sequence[Head], argument: str, columns: Columns, wrong: list[str]) -> list[Use]:
     """Return the columns of a mapping; note the faults."""
     if not isinstance(columns, Mapping) or not all(isinstance(one, str) for pair in columns.items() for one in pair):
-        raise DataError(f'{argument}: must map names to columns, such as {{"normal_force": "Fz [N]"}}, got {columns!r}')
+        raise DataError(
+            f'{argument}: must map names to columns, such as {{"normal_force": "Fz [N]"}}, got {shortened(columns)}'
+        )
     found = []
     for name, text in columns.items():
         place, sign, given = _column(heads, text)
         if not name.isidentifier():
-            wrong.append(f"{argument}: '{name}' is no name; use letters, digits and underscores")
+            wrong.append(f"{argument}: {quoted(name)} is no name; use letters, digits and underscores")
         elif isinstance(place, str):
             wrong.append(f"{name}: {place}")
         else:
@@ -119,7 +121,7 @@ def _wanted(heads: Sequence[Head], argument: str, columns: Columns, wrong: list[
                     raise UnitError(advice(name, text))
                 found.append(Use(name, place, unit, sign, argument == KEPT))
             except (UnitError, DataError) as error:
-                wrong.append(f"{name}: column '{heads[place].text}' {error}")
+                wrong.append(f"{name}: column {quoted(heads[place].text)} {error}")
     return found
 
 
@@ -134,11 +136,11 @@ def _column(heads: Sequence[Head], text: str) -> tuple[int | str, float, str | N
             [place for place, one in enumerate(heads) if one.name == name],
         ):
             if len(places) > 1:
-                return f"the column '{rest}' is there {len(places)} times; rename all but one", sign, None
+                return f"the column {quoted(rest)} is there {len(places)} times; rename all but one", sign, None
             if places:
                 return places[0], sign, unit
     near = did_you_mean(text.removeprefix("-"), [*texts, *(head.name for head in heads)])
-    return f"there is no column '{text}'{near.rstrip('.')}", 1.0, None
+    return f"there is no column {quoted(text)}{near.rstrip('.')}", 1.0, None
 
 
 def _agreed(head: Head, given: str | None, kept: bool) -> str | None:
@@ -166,7 +168,7 @@ def _agreed(head: Head, given: str | None, kept: bool) -> str | None:
     unit = _known(given)
     try:
         if written is not None and Q(1.0, _known(written)) != Q(1.0, unit):
-            raise DataError(f"has the unit '{written}', but '{given}' is stated; keep one of the two")
+            raise DataError(f"has the unit {quoted(written)}, but {quoted(given)} is stated; keep one of the two")
     except UnitError:
         pass  # the file's unit is unknown, so that the user states it
     return unit
@@ -199,7 +201,9 @@ def _unit(head: Head) -> str | None:
     if within is None:
         return head.unit if head.unit != "-" else ""
     if head.unit is not None and head.unit != within:
-        raise DataError(f"table: column '{head.text}' has the unit '{head.unit}' as well; keep one of the two")
+        raise DataError(
+            f"table: column {quoted(head.text)} has the unit {quoted(head.unit)} as well; keep one of the two"
+        )
     return "" if within == "-" else within
 
 
@@ -245,12 +249,12 @@ def from_table(
         yield _in_memory(table, fixed, columns, keep)
         return
     file = open_table(table)
-    used = uses(f"table '{file.path}'", file.heads, columns, keep)
+    used = uses(f"table {quoted(file.path)}", file.heads, columns, keep)
     for one in used:
         if one.name in fixed:
-            raise DataError(f"table '{file.path}': {one.name} is given twice; keep one")
+            raise DataError(f"table {quoted(file.path)}: {one.name} is given twice; keep one")
     if all(one.kept for one in used):
-        raise DataError(f"table '{file.path}': none of its columns is a condition; name them in columns={{...}}")
+        raise DataError(f"table {quoted(file.path)}: none of its columns is a condition; name them in columns={{...}}")
     check({**fixed, **{one.name: None for one in used if not one.kept}})
     with ExitStack() as stack:
         collected = _read(file, used, None if on_disk is None else _files(on_disk, len(used), stack), progress)
@@ -284,7 +288,9 @@ def _read(file: TableFile, used: Sequence[Use], into: Sequence[IO[bytes]] | None
                 for row in np.flatnonzero(_without_number(one, values, text))[: DataError.MOST]
             ]
             if wrong:
-                raise DataError(f"table '{file.path}' is wrong in:", faults(file, sorted(wrong)[: DataError.MOST]))
+                raise DataError(
+                    f"table {quoted(file.path)} is wrong in:", faults(file, sorted(wrong)[: DataError.MOST])
+                )
             for number, (one, values) in enumerate(zip(used, piece.values, strict=True)):
                 signed = np.ascontiguousarray(values if one.sign > 0 else -values)
                 if into is None:
@@ -294,9 +300,9 @@ def _read(file: TableFile, used: Sequence[Use], into: Sequence[IO[bytes]] | None
             rows += piece.values[0].size
             bar(piece.done)
     if rows == 0:
-        raise DataError(f"table '{file.path}': has no rows")
+        raise DataError(f"table {quoted(file.path)}: has no rows")
     if state(file.path) != before:
-        raise DataError(f"table '{file.path}': was changed while it was read; wait until it is complete")
+        raise DataError(f"table {quoted(file.path)}: was changed while it was read; wait until it is complete")
     if into is None:
         return [np.concatenate(some) for some in pieces]
     return [cast(Array, OnDisk(one)) for one in into]  # in the place of arrays, of which it has what is used
@@ -333,7 +339,7 @@ def _column_of(head: str, one: Use, dim: str, values: Any) -> Varying:
     except ConditionsError:
         raise DataError("table: has no rows") from None
     except UnitError as error:
-        raise DataError(f"table: column '{head}': {error}; leave out columns that are not conditions") from None
+        raise DataError(f"table: column {quoted(head)}: {error}; leave out columns that are not conditions") from None
     return found if one.sign > 0 else Varying(dim, -found.values, found.unit)
 
 

@@ -10,8 +10,8 @@ import pint
 import scipy
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import InputError, UnitError
-from wearlaw.units.quantities import Q, Quantity, QuantityLike, coefficient, parse, real_array, shortened, shown
+from wearlaw.errors import InputError, UnitError, shortened
+from wearlaw.units.quantities import Q, Quantity, QuantityLike, coefficient, parse, real_array, shown
 
 Value = Quantity | float
 """A quantity, or a plain number if it has no unit."""

@@ -11,14 +11,14 @@ import numpy as np
 import pint
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import InputError, did_you_mean
+from wearlaw.errors import InputError, did_you_mean, quoted, shortened
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.named_numbers import Kind, NamedNumbers, Place
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange, uniform
-from wearlaw.units.quantities import Unit, coefficient, from_si, shortened
+from wearlaw.units.quantities import Unit, coefficient, from_si
 from wearlaw.units.registry import symbol
 
 
@@ -133,10 +133,12 @@ def numbers_of(predict: Pipeline[...], kind: Kind, given: Mapping[str, Any]) -> 
             if len(parts) > 1 or not named.known:
                 some = "laws have" if kind == "law" else "stages have"
                 hint = did_you_mean(name, named.known)
-                raise InputError(f"the {some} no number '{name}'{hint} There are: {', '.join(named.known) or 'none'}")
+                raise InputError(
+                    f"the {some} no number {quoted(name)}{hint} There are: {', '.join(named.known) or 'none'}"
+                )
             place = Place(kind, 0, name)  # its own error
         if place in found:
-            raise InputError(f"'{name}' is given twice, as '{found[place].name}' too")
+            raise InputError(f"{quoted(name)} is given twice, as {quoted(found[place].name)} too")
         one = parameter(place.field, one, parts[place.index])
         found[place] = replace(one, name=name, part=(kind, place.index))
     return list(found.values())
@@ -162,7 +164,7 @@ def parameter(name: str, given: object, law: Law | Stage) -> Uncertain:
     known = numbers(law.explicit() if isinstance(law, Law) else law)
     if name not in known:
         hint = did_you_mean(name, known)
-        raise InputError(f"{law.kind} '{law.name}' has no number '{name}'{hint} There are: {', '.join(known)}")
+        raise InputError(f"{law.kind} '{law.name}' has no number {quoted(name)}{hint} There are: {', '.join(known)}")
     number = known[name]
     unit = Unit(symbol(number.units, "~C"), positive=False) if isinstance(number, pint.Quantity) else None
     return _uncertain(name, given, unit)

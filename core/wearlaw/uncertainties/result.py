@@ -15,7 +15,7 @@ import scipy
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import Known, broadcast
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import InputError, did_you_mean
+from wearlaw.errors import InputError, did_you_mean, shortened
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
 from wearlaw.models.law import WEAR, Numbers, named_outcomes
@@ -26,7 +26,7 @@ from wearlaw.pipeline.named_numbers import Kind, Place, check_loads_stay, staged
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
 from wearlaw.uncertainties.inputs import OTHERS, Uncertain, check_samples, numbers_of, split
-from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, shortened
+from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si
 from wearlaw.units.variables import UNITS, label, name_of
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ class Uncertainty:
         stage: Mapping[str, Distribution] | None = None,
     ) -> None:
         if isinstance(samples, bool) or not isinstance(samples, int) or not 2 <= samples <= MOST_SAMPLES:
-            raise InputError(f"samples: must be a whole number from 2 to {MOST_SAMPLES}, got {samples!r}")
+            raise InputError(f"samples: must be a whole number from 2 to {MOST_SAMPLES}, got {shortened(samples)}")
         if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
             raise InputError(f"seed: must be a whole number, zero or positive; got {shortened(seed)}")
         if not predict.laws:
@@ -182,7 +182,7 @@ class Uncertainty:
             Share of the samples inside, between 0 and 1.
         """
         if not 0.0 < confidence < 1.0:
-            raise InputError(f"confidence: must lie between 0 and 1, such as 0.95; got {confidence!r}")
+            raise InputError(f"confidence: must lie between 0 and 1, such as 0.95; got {shortened(confidence)}")
         return self._quantile(0.5 - 0.5 * confidence), self._quantile(0.5 + 0.5 * confidence)
 
     def table(self) -> pd.DataFrame:
@@ -268,7 +268,7 @@ class Uncertainty:
         known = named_outcomes(self._laws)
         if outcome not in known:
             hint = did_you_mean(outcome, known) if isinstance(outcome, str) else "."
-            raise InputError(f"no law predicts {outcome!r}{hint} The outcomes are: {', '.join(known)}")
+            raise InputError(f"no law predicts {shortened(outcome)}{hint} The outcomes are: {', '.join(known)}")
         return known[outcome]
 
     @property

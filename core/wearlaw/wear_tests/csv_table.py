@@ -8,11 +8,12 @@ import re
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from wearlaw.errors import DataError, UnitError, did_you_mean
+from wearlaw.errors import DataError, UnitError, did_you_mean, quoted
 from wearlaw.settings.csv_files import Row, preamble, rows
 from wearlaw.units.quantities import HEAD, Q
 from wearlaw.units.registry import symbol
@@ -81,7 +82,7 @@ class Problems:
         """Add a fault, unless its cell already has one."""
         if not column or (line, column) not in self.cells:
             self.cells.add((line, column))
-            where = f"line {line}, column '{column}'" if column else f"line {line}"
+            where = f"line {line}, column {quoted(column)}" if column else f"line {line}"
             self.found.append((line, f"{where}: {message}"))
 
     def texts(self) -> list[str]:
@@ -101,14 +102,17 @@ def table_of(
     try:
         found = [] if start is None else list(rows(lines[start:], start, separator))
     except csv.Error as error:
-        raise DataError(f"the tests '{name}' cannot be read as CSV: {error}") from None
+        raise DataError(f"the tests {quoted(Path(name))} cannot be read as CSV: {error}") from None
     if not found:
-        raise DataError(f"the tests '{name}' are empty; begin with a header such as: {head('creepage')}, ...")
+        raise DataError(
+            f"the tests {quoted(Path(name))} are empty; begin with a header such as: {head('creepage')}, ..."
+        )
     heads = _heads(found[0], wrong, conditions, outcomes)
     if not any(one.name for one in heads):
         known = ", ".join([*map(head, COLUMNS), *TEXTS])
         raise DataError(
-            f"the tests '{name}' are wrong in:", [f"line {found[0].line}: is not a header; the columns are: {known}"]
+            f"the tests {quoted(Path(name))} are wrong in:",
+            [f"line {found[0].line}: is not a header; the columns are: {known}"],
         )
     table = Table(source, separator, heads, [])
     table.rows.extend(row for row in found[1:] if any(map(str.strip, row.cells)) and _fits(row, table, wrong))

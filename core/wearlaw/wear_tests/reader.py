@@ -11,11 +11,11 @@ from typing import NoReturn
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import DataError, did_you_mean
+from wearlaw.errors import DataError, did_you_mean, quoted, shortened
 from wearlaw.plugins import loader
 from wearlaw.settings.csv_files import kind_of
 from wearlaw.settings.text_files import UTF_16, decoded
-from wearlaw.units.quantities import Q, shortened
+from wearlaw.units.quantities import Q
 from wearlaw.wear_tests.columns import faulty, with_traction
 from wearlaw.wear_tests.csv_table import TEXTS, Head, Problems, Table, table_of
 from wearlaw.wear_tests.tests import WearTests
@@ -68,14 +68,14 @@ def text_of_tests(path_or_name: str | Path) -> str:
         _refuse_missing(path, list(found.test_sets.items()))
     except (OSError, ValueError) as error:
         reason = "it is a folder" if os.path.isdir(path) else getattr(error, "strerror", None) or error
-        raise DataError(f"cannot read the tests '{path}': {reason}; give a CSV file") from None
+        raise DataError(f"cannot read the tests {quoted(path)}: {reason}; give a CSV file") from None
     return _decoded(content, path)
 
 
 def _refuse_missing(path: Path, shipped: list[str]) -> NoReturn:
     beside = sorted(one.name for one in path.parent.glob("*.csv")) if path.parent.is_dir() else []
     hint = did_you_mean(path.name, [*beside, *shipped])
-    raise DataError(f"there is no file '{path}'{hint} Shipped tests: {', '.join(shipped) or 'none'}")
+    raise DataError(f"there is no file {quoted(path)}{hint} Shipped tests: {', '.join(shipped) or 'none'}")
 
 
 def _decoded(content: bytes, path: Path) -> str:
@@ -84,11 +84,13 @@ def _decoded(content: bytes, path: Path) -> str:
     if kind is None and b"\0" in content and not content.startswith(UTF_16):
         kind = "no text"
     if kind is not None:
-        raise DataError(f"cannot read the tests '{path}': it is {kind}; save it as CSV and give that file")
+        raise DataError(f"cannot read the tests {quoted(path)}: it is {kind}; save it as CSV and give that file")
     try:
         return decoded(content, otherwise="cp1252")
     except UnicodeDecodeError:
-        raise DataError(f"cannot read the tests '{path}': it is not text in UTF-8; save it as CSV in UTF-8") from None
+        raise DataError(
+            f"cannot read the tests {quoted(path)}: it is not text in UTF-8; save it as CSV in UTF-8"
+        ) from None
 
 
 def parse_tests(text: str, name: str, outcomes: Collection[str] = ()) -> WearTests:
@@ -118,7 +120,7 @@ def parse_tests(text: str, name: str, outcomes: Collection[str] = ()) -> WearTes
     if not wrong.found:
         _check_duplicates([*columns.values(), *texts.values()], table, wrong)
     if wrong.found:
-        raise DataError(f"the tests '{name}' are wrong in:", wrong.texts())
+        raise DataError(f"the tests {quoted(Path(name))} are wrong in:", wrong.texts())
     labels = texts.get("label", [""] * len(table.rows))
     others = {
         one.name: columns[one.name] if one.unit is None else Q(columns[one.name], one.unit)
@@ -153,7 +155,7 @@ def _number(line: int, text: str, one: Head, separator: str, wrong: Problems) ->
         hint = "; the unit goes into the header" if _NUMBER.match(text) else ""
         wrong.add(line, one.text, f"{shortened(text)} is not a number{hint}")
     elif separator == "," and "," in text:
-        wrong.add(line, one.text, f"'{text}' has a decimal comma; write a point, or separate cells by ';'")
+        wrong.add(line, one.text, f"{quoted(text)} has a decimal comma; write a point, or separate cells by ';'")
     else:
         return float(text.replace(",", ".").replace("\u2212", "-"))
     return np.nan

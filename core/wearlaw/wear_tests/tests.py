@@ -17,7 +17,7 @@ import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import LOADS
-from wearlaw.errors import ConditionsError, DataError, UnitError
+from wearlaw.errors import ConditionsError, DataError, UnitError, shortened
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, parse, real_array
 from wearlaw.units.registry import si_factor, symbol
 from wearlaw.wear_tests.columns import COLUMNS, factor, faulty, faulty_columns, head, with_traction
@@ -144,7 +144,7 @@ class WearTests:
         ]
         count = len(next(iter(arrays.values())))
         if labels is not None and (isinstance(labels, str) or len(labels) != count):
-            faults.append(f"labels: give one text for each of the {count} tests, got {labels!r}")
+            faults.append(f"labels: give one text for each of the {count} tests, got {shortened(labels)}")
         if faults:
             raise DataError("the tests are wrong in:", faults)
         named = tuple(map(str, [""] * count if labels is None else labels))

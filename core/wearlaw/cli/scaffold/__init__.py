@@ -15,7 +15,7 @@ from typing import Any, Literal, TypeAlias
 
 from packaging.utils import canonicalize_name
 
-from wearlaw.errors import InputError, OutputError
+from wearlaw.errors import InputError, OutputError, quoted, shortened
 from wearlaw.output.folder import fresh_folder
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import Shelf
@@ -112,7 +112,7 @@ def write_plugin(name: str, kind: Kind, parent: Path, licence: Licence = "none")
     _check_name(name, kind)
     folder = parent / f"wearlaw-{name}"
     if os.path.lexists(folder):
-        raise OutputError(f"output: '{folder}' exists and is left as it is; choose another parent folder with -o")
+        raise OutputError(f"output: {quoted(folder)} exists and is left as it is; choose another parent folder with -o")
     contents = _files(name, kind, licence)
     with fresh_folder(folder) as fresh:
         _write(contents, fresh)
@@ -133,15 +133,15 @@ def _check_name(name: str, kind: Kind) -> None:
     if not _NAME.fullmatch(name) or keyword.iskeyword(name):
         raise InputError(
             f"name: must be a Python name of lower-case letters, digits and single underscores between them,"
-            f" such as 'zobory', got {name!r}"
+            f" such as 'zobory', got {shortened(name)}"
         )
     if len(name) > LONGEST_NAME:
-        raise InputError(f"name: must have at most {LONGEST_NAME} characters, got {len(name)}: {name!r}")
+        raise InputError(f"name: must have at most {LONGEST_NAME} characters, got {len(name)}: {shortened(name)}")
     made = _class_name(name)
     if made.startswith("Test") or made in RESERVED:
         raise InputError(f"name: {name!r} would name its class {made}, which means something else; choose another")
     for taker in _takers(name, kind):
-        raise InputError(f"name: '{name}' is taken by {taker}; choose another")
+        raise InputError(f"name: {quoted(name)} is taken by {taker}; choose another")
 
 
 def _takers(name: str, kind: Kind) -> Iterator[str]:
