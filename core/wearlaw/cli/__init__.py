@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 import traceback
 from importlib import import_module
 from io import TextIOWrapper
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 
 import click
 
@@ -38,8 +39,24 @@ COMMANDS = {
 """All commands. Their modules import pandas, matplotlib and more, so each is loaded when a command of it is used."""
 
 
+ARGUMENTS = "wearlaw.arguments"
+"""Name under which click's context keeps the arguments of the command line."""
+
+LEFT = "wearlaw.left"
+"""Name under which click's context keeps a function that says what an interrupted command leaves."""
+
+
+class _Stopped(click.ClickException):
+    """The line that an interrupted command prints."""
+
+    exit_code = 128 + signal.SIGINT
+
+    def show(self, file: IO[Any] | None = None) -> None:
+        click.echo(self.message, file=file, err=True)
+
+
 class _Commands(click.Group):
-    """The commands. An error of wearlaw, or a plugin that ends the program, prints one clear line."""
+    """The commands. An error of wearlaw, an interrupt, or a plugin that ends the program, prints one clear line."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
         return list(COMMANDS)
@@ -55,15 +72,18 @@ class _Commands(click.Group):
         with formatter.section("Commands"):
             formatter.write_dl([(name, command.help) for name, command in COMMANDS.items()])
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        ctx.meta[ARGUMENTS] = list(args)
+        return super().parse_args(ctx, args)
+
     def invoke(self, ctx: click.Context) -> Any:
         try:
             return super().invoke(ctx)
         except WearlawError as error:
             raise click.ClickException(message_of(error)) from None
         except KeyboardInterrupt as interrupt:
-            for note in getattr(interrupt, "__notes__", []):
-                click.echo(note, err=True)
-            raise
+            left = ctx.meta.get(LEFT, lambda: "nothing was written")()
+            raise _Stopped("; ".join(["Stopped", *getattr(interrupt, "__notes__", []), left])) from None
         except Exception:
             raise
         except BaseException as error:  # such as a model's SystemExit(0), which would look like success
