@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import shutil
 from collections.abc import Callable
 from functools import cache
@@ -37,8 +38,11 @@ def interrupted(case: str, monkeypatch: pytest.MonkeyPatch, blocks: int = 6) -> 
     with monkeypatch.context() as patched:
         interrupted_after(blocks, patched)
         result = wearlaw("run", case, "-o", "out")
-    assert result.exit_code == 1
-    assert "Finished blocks are kept in 'out.partial'; add --resume to go on with it." in result.stderr
+    assert result.exit_code == 130
+    again = f"wearlaw run --resume {shlex.quote(case)} -o out"
+    assert result.stderr.splitlines()[-1] == (
+        f"Stopped; finished blocks are kept in 'out.partial', go on with: {again}"
+    )
     assert not Path("out").exists()
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from io import TextIOWrapper
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 
 import click
 
@@ -52,8 +53,24 @@ def _readable_usage_errors() -> Iterator[None]:
         raise
 
 
+ARGUMENTS = "wearlaw.arguments"
+"""Name under which click's context keeps the arguments of the command line."""
+
+LEFT = "wearlaw.left"
+"""Name under which click's context keeps a function that says what an interrupted command leaves."""
+
+
+class _Stopped(click.ClickException):
+    """The line that an interrupted command prints."""
+
+    exit_code = 128 + signal.SIGINT
+
+    def show(self, file: IO[Any] | None = None) -> None:
+        click.echo(readable(self.message), file=file, err=True)
+
+
 class _Commands(click.Group):
-    """The commands. An error of wearlaw, or a plugin that ends the program, prints one clear line."""
+    """The commands. An error of wearlaw, an interrupt, or a plugin that ends the program, prints one clear line."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
         return list(COMMANDS)
@@ -73,6 +90,10 @@ class _Commands(click.Group):
         with _readable_usage_errors():
             return super().make_context(*args, **options)
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        ctx.meta[ARGUMENTS] = list(args)
+        return super().parse_args(ctx, args)
+
     def invoke(self, ctx: click.Context) -> Any:
         try:
             with _readable_usage_errors():
@@ -80,9 +101,8 @@ class _Commands(click.Group):
         except WearlawError as error:
             raise click.ClickException(message_of(error)) from None
         except KeyboardInterrupt as interrupt:
-            for note in getattr(interrupt, "__notes__", []):
-                click.echo(readable(note), err=True)
-            raise
+            left = ctx.meta.get(LEFT, lambda: "nothing was written")()
+            raise _Stopped("; ".join(["Stopped", *getattr(interrupt, "__notes__", []), left])) from None
         except Exception:
             raise
         except BaseException as error:  # such as a model's SystemExit(0), which would look like success

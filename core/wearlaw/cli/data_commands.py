@@ -18,6 +18,7 @@ from wearlaw.cli.shared import (
     print_notes,
     print_results,
     read_rig,
+    results_folder,
     stage,
     value,
     values,
@@ -30,7 +31,6 @@ from wearlaw.fitting.cross_validation import Folds
 from wearlaw.fitting.fit import fit as fit_parameters
 from wearlaw.fitting.result import Fit
 from wearlaw.output.analyses import COMPARISON, FIT, write_comparison, write_fit
-from wearlaw.output.folder import fresh_folder
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.parameters import numbers
@@ -118,7 +118,7 @@ def fit(
     """  # noqa: D301
     folder = output if output is not None else Path(f"{Path(tests).stem}-fit")
     notes = Notes()
-    with fresh_folder(folder, overwrite, FIT) as fresh:
+    with results_folder(folder, overwrite, FIT) as fresh:
         fitted = _fit(tests, notes, **options)
         names = write_fit(fitted, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
@@ -236,7 +236,7 @@ def compare(
     """  # noqa: D301
     folder = output if output is not None else Path(f"{Path(tests).stem}-comparison")
     notes = Notes()
-    with fresh_folder(folder, overwrite, COMPARISON) as fresh:
+    with results_folder(folder, overwrite, COMPARISON) as fresh:
         comparison = _compare(tests, notes, **options)
         names = write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)

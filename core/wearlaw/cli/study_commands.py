@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import shlex
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -13,12 +16,14 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from wearlaw.cli.shared import echo, print_notes, print_results, written_formats
-from wearlaw.errors import printable
+from wearlaw.cli import ARGUMENTS
+from wearlaw.cli.shared import print_notes, print_results, results_folder, written_formats
+from wearlaw.errors import printable, quoted
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.output.analyses import UNCERTAINTY, write_uncertainty
-from wearlaw.output.folder import ElsewhereError, fresh_folder
+from wearlaw.output.folder import ElsewhereError, identity
 from wearlaw.output.results import RESULTS, check_room, without_csv, write
+from wearlaw.output.temporary import discard
 from wearlaw.report.tables import NamedTable, summaries
 from wearlaw.study.case import load_case
 from wearlaw.study.study import Study, evaluations, provenance, used
@@ -60,7 +65,7 @@ def run(
     loaded = load_case(case)
     folder = output if output is not None else Path(f"{Path(case).stem}-results")
     checkpoint = Checkpoint(folder.parent / f"{folder.name}.partial", provenance(loaded), resume)
-    with _kept(checkpoint), fresh_folder(folder, overwrite, RESULTS) as fresh:
+    with _kept(checkpoint, folder), results_folder(folder, overwrite, RESULTS, _how_to_go_on(checkpoint)) as fresh:
         left_out = without_csv(loaded, csv)
         check_room(loaded, folder, left_out is None)
         with Bar(evaluations(loaded)) as shown:
@@ -76,18 +81,27 @@ def run(
 
 
 @contextmanager
-def _kept(checkpoint: Checkpoint) -> Iterator[None]:
-    """Remove the checkpoint once the results are in a folder; after an interrupt, say where it is."""
+def _kept(checkpoint: Checkpoint, folder: Path) -> Iterator[None]:
+    """Keep the checkpoint until the results are in a folder."""
+    before, elsewhere = identity(folder), False
     try:
         yield
     except ElsewhereError:
-        checkpoint.remove()
+        elsewhere = True
         raise
-    except KeyboardInterrupt:
-        if checkpoint.exists:
-            echo(f"Finished blocks are kept in '{checkpoint.folder}'; add --resume to go on with it.", err=True)
-        raise
-    checkpoint.remove()
+    finally:
+        checkpoint.close()
+        if checkpoint.exists and (elsewhere or identity(folder) != before):
+            discard(checkpoint.folder, folder)
+
+
+def _how_to_go_on(checkpoint: Checkpoint) -> Callable[[], str | None]:
+    """Return a function that says how to go on with finished blocks, once there are any."""
+    command, *arguments = click.get_current_context().meta[ARGUMENTS]
+    again = ["wearlaw", command, "--resume", *(one for one in arguments if one != "--resume")]
+    text = subprocess.list2cmdline(again) if sys.platform == "win32" else shlex.join(again)
+    kept = f"finished blocks are kept in {quoted(checkpoint.folder)}, go on with: {text}"
+    return lambda: kept if checkpoint.exists else None
 
 
 def _print_used(study: Study) -> None:
@@ -142,7 +156,7 @@ def uncertainty(
     loaded = load_case(case)
     folder = output if output is not None else Path(f"{Path(case).stem}-uncertainty")
     total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.laws_by_label)
-    with fresh_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as shown:
+    with results_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as shown:
         found = uncertainty_of(loaded, samples, seed, shown)
         shown.stage("writing results")
         names = write_uncertainty(loaded, found, seed, fresh, figure_formats, latex)

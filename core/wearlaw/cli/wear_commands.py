@@ -8,13 +8,12 @@ from pathlib import Path
 import click
 import pandas as pd
 
-from wearlaw.cli.shared import echo, fields, law_of, print_notes, print_results, written_formats
+from wearlaw.cli.shared import echo, fields, law_of, print_notes, print_results, results_folder, written_formats
 from wearlaw.contact.contact import Contact
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.figures.worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
 from wearlaw.models.law import Law
 from wearlaw.output.analyses import WEAR, write_wear
-from wearlaw.output.folder import fresh_folder
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.reading import read_contact
@@ -71,7 +70,7 @@ def wear(
     notes, chosen = Notes(), [law_of(text) for text in laws]
     given = fields("--option", options)
     labels = _labels(files)
-    with fresh_folder(folder, overwrite, WEAR) as fresh:
+    with results_folder(folder, overwrite, WEAR) as fresh:
         contact = read_contact(files if others else first, reader=reader, **given)
         found = _predicted(contact.patch_mean() if patch_mean else contact, chosen, notes)
         if not others and found.problem.batch_shape:

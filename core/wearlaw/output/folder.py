@@ -5,15 +5,15 @@ from __future__ import annotations
 import itertools
 import json
 import os
-import shutil
-import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from wearlaw.errors import OutputError, quoted
+from wearlaw.output.temporary import Temporary, tidy_up
 from wearlaw.version import __version__
 
 MANIFEST = ".wearlaw.json"
@@ -63,30 +63,35 @@ def fresh_folder(folder: Path, overwrite: bool = False, marker: str | None = Non
     """
     with _os_errors_of(folder):
         target = folder.resolve()
+        tidy_up(folder, target)
         earlier = _earlier(folder, target, overwrite, marker)
-        nearest = next(parent for parent in target.parents if parent.exists())
-        temporary = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=nearest))
-    inside, replaced = temporary / "results", temporary / "replaced"
+    temporary = Temporary(target)
     try:
-        inside.mkdir()  # a folder inside, since mkdtemp makes one that only the user may enter
+        with _os_errors_of(folder):
+            temporary.make()
+        inside = temporary.fresh
         yield inside
         try:
             with _os_errors_of(folder):
                 if marker is not None:
                     _write_manifest(inside)
                 if earlier is None:
-                    _put(inside, folder, target)
+                    _uninterrupted(lambda: _put(inside, folder, target))
                 else:
-                    _replace(inside, folder, target, replaced, earlier)
+                    _uninterrupted(lambda: _replace(inside, folder, target, temporary.replaced, earlier))
         except OutputError as error:
             beside = _put_beside(inside, target)
             if beside is None:
                 raise
             raise ElsewhereError(f"{error}. The results are in {quoted(beside)}") from None
     finally:
-        shutil.rmtree(inside, ignore_errors=True)
-        with suppress(OSError):  # not empty if other files could not be put back
-            temporary.rmdir()
+        temporary.remove()
+
+
+def _uninterrupted(step: Callable[[], None]) -> None:
+    """Take a step to its end in a thread of its own: Ctrl-C interrupts the main thread only."""
+    with ThreadPoolExecutor(1) as thread:
+        thread.submit(step).result()
 
 
 @contextmanager
@@ -119,8 +124,8 @@ def _earlier(folder: Path, target: Path, overwrite: bool, marker: str | None) ->
         )
     if not overwrite:
         raise OutputError(f"output: {quoted(folder)} is not empty; choose another folder with -o, or add --overwrite")
-    identity = _identity(target)
-    return None if identity is None else _Earlier(files, identity)
+    known = identity(target)
+    return None if known is None else _Earlier(files, known)
 
 
 def _listed(folder: Path) -> frozenset[str]:
@@ -132,7 +137,7 @@ def _listed(folder: Path) -> frozenset[str]:
         return frozenset()
 
 
-def _identity(folder: Path) -> tuple[int, ...] | None:
+def identity(folder: Path) -> tuple[int, ...] | None:
     """Return inode and time of a folder's manifest, or None without one."""
     try:
         found = (folder / MANIFEST).stat()
@@ -169,14 +174,14 @@ def _put(inside: Path, folder: Path, target: Path) -> None:
 
 def _replace(inside: Path, folder: Path, target: Path, replaced: Path, earlier: _Earlier) -> None:
     """Replace earlier results by new ones; the earlier ones stay if that fails."""
-    if _identity(target) != earlier.identity:
+    if identity(target) != earlier.identity:
         raise _taken(folder)
     try:
         target.rename(replaced)
     except FileNotFoundError:
         raise _taken(folder) from None
     try:
-        if _identity(replaced) != earlier.identity:  # another run was faster since the lines above
+        if identity(replaced) != earlier.identity:  # another run was faster since the lines above
             raise _taken(folder)
         new = frozenset(_files(inside))
         others = list(_others(replaced, earlier.files, new))

@@ -18,12 +18,16 @@ from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.variables import outcome_units
 from wearlaw.sweeping.evaluation import Job
 from wearlaw.sweeping.journal import Run, check_same, write_whole
+from wearlaw.sweeping.lock import HeldError, Lock
 from wearlaw.sweeping.points import Points
 from wearlaw.sweeping.storage import Arrays, Files, Memory, damage
 from wearlaw.sweeping.sweep import check_importable, run
 from wearlaw.units.variables import UNITS
 
 RUN = "run.json"
+
+LOCK = "lock"
+"""File that is locked while a run uses the folder."""
 
 
 class Checkpoint:
@@ -55,19 +59,28 @@ class Checkpoint:
         self.folder = folder
         self.listed = self.damaged = 0
         self._run: Run = json.loads(json.dumps(run))
+        self._lock: Lock | None = None
         self.exists = os.path.lexists(folder)
+        if self.exists and self._only_begun():
+            shutil.rmtree(folder, ignore_errors=True)
+            self.exists = os.path.lexists(folder)
         if not self.exists:
             return
         if not (folder / RUN).is_file():
             raise OutputError(
                 f"output: {quoted(folder)} is in the way, and holds no unfinished run; remove or rename it"
             )
-        if not resume:
-            raise OutputError(
-                f"output: {quoted(folder)} holds the finished blocks of an interrupted run, or of one that is still"
-                " running; add --resume to go on with it, remove it, or choose another folder with -o"
-            )
-        check_same(folder, self._before(), self._run)
+        self._hold()
+        try:
+            if not resume:
+                raise OutputError(
+                    f"output: {quoted(folder)} holds the finished blocks of an interrupted run; add --resume to go on with"
+                    " it, remove it, or choose another folder with -o"
+                )
+            check_same(folder, self._before(), self._run)
+        except OutputError:
+            self.close()
+            raise
 
     def target(self, key: str, job: Job, points: Points) -> Arrays:
         """Return the target for the results of the sweep named `key` in the run."""
@@ -86,6 +99,7 @@ class Checkpoint:
             self.folder.parent.mkdir(parents=True, exist_ok=True)
             self.folder.mkdir()
             self.exists = True
+            self._hold()
             write_whole(self.folder / RUN, json.dumps(self._run))
         except FileExistsError:
             raise OutputError(
@@ -112,10 +126,29 @@ class Checkpoint:
             ) from None
         return run
 
-    def remove(self) -> None:
-        """Remove the folder once the results are elsewhere."""
-        if self.exists:
-            shutil.rmtree(self.folder, ignore_errors=True)
+    def _only_begun(self) -> bool:
+        """Return whether a run was killed between its first steps, before it had anything to keep."""
+        if not self.folder.is_dir() or not {one.name for one in self.folder.iterdir()} <= {LOCK, f"{RUN}.partial"}:
+            return False
+        lock = Lock.given_up(self.folder / LOCK)
+        if lock is not None:
+            lock.close()
+        return lock is not None
+
+    def _hold(self) -> None:
+        """Keep other runs out of the folder; raise an error if another run is using it."""
+        try:
+            self._lock = Lock(self.folder / LOCK)
+        except HeldError:
+            raise OutputError(
+                f"output: {quoted(self.folder)} belongs to a run that is still going on; wait for its end, or choose another"
+                " folder with -o"
+            ) from None
+
+    def close(self) -> None:
+        """Let other runs use the folder."""
+        if self._lock is not None:
+            self._lock.close()
 
 
 class Evaluator:

@@ -142,7 +142,12 @@ def sweep(
             if target.damaged:
                 warnings.warn(damage(target.damaged, target.listed, path), ResumeWarning, stacklevel=2)
         with closing(target), Bar(points.size, progress) as bar:
-            found = run(target, bar, workers, client)
+            try:
+                found = run(target, bar, workers, client)
+            except KeyboardInterrupt as interrupt:
+                if store is not None:
+                    interrupt.add_note(f"finished blocks are kept in '{store}'; the same call with resume=True goes on")
+                raise
             for warning in found:
                 warnings.warn(warning, stacklevel=2)
             return target.finish([*notes, *(str(warning) for warning in found)])

@@ -15,8 +15,10 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from contextlib import contextmanager, suppress
+from threading import Thread
 from typing import IO, Any, BinaryIO, TypeAlias
 
 from wearlaw.arrays.array import Array
@@ -27,7 +29,8 @@ from wearlaw.sweeping.points import Block, Points
 ATTEMPTS = 3
 """Attempts to evaluate a block whose worker dies."""
 
-START = "import pickle, sys; sys.path[:] = pickle.load(sys.stdin.buffer);"
+START = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN);"  # the parent process handles Ctrl-C
+START += " import pickle, sys; sys.path[:] = pickle.load(sys.stdin.buffer);"
 START += " from wearlaw.sweeping.workers import serve; serve()"
 
 PIPE = 2**20
@@ -55,15 +58,19 @@ class _Worker:
 
     def __init__(self) -> None:
         command = [sys.executable, "-c", START]
-        try:
-            self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, pipesize=PIPE)
-        except PermissionError:  # the user's limit for pipes is used up
-            self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        self._send(sys.path)
+        with _ctrl_c_held_back():
+            try:
+                self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, pipesize=PIPE)
+            except PermissionError:  # the user's limit for pipes is used up
+                self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self._greeted = False
 
     def evaluate(self, task: bytes, into: list[Array]) -> BlockRecord | Exception:
         """Return the record of a block, with its outputs in their places, or the exception that it raised."""
         try:
+            if not self._greeted:
+                self._send(sys.path)
+                self._greeted = True
             self._send(task)
             answer: BlockRecord | Exception = pickle.load(_given(self._process.stdout))
             if isinstance(answer, BlockRecord):
@@ -86,12 +93,30 @@ class _Worker:
                 raise EOFError
             missing = missing[count:]
 
-    def close(self) -> None:
-        """End the process."""
+    def kill(self) -> None:
+        """End the process, also while another thread waits for its answer."""
         self._process.kill()
+
+    def close(self) -> None:
+        """End the process and close its pipes."""
+        self.kill()
         self._process.wait()
         for pipe in (self._process.stdin, self._process.stdout):
-            _given(pipe).close()
+            with suppress(OSError):  # a rest that the process did not read
+                _given(pipe).close()
+
+
+@contextmanager
+def _ctrl_c_held_back() -> Iterator[None]:
+    """Let a process that starts here inherit that Ctrl-C waits: it reaches all processes of a terminal."""
+    if not hasattr(signal, "pthread_sigmask"):  # on Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _given(pipe: IO[bytes] | None) -> IO[bytes]:
@@ -106,39 +131,67 @@ _idle: queue.SimpleQueue[_Worker] = queue.SimpleQueue()
 def in_processes(
     workers: int, job: bytes, store: str | None, points: Points, blocks: Iterable[Block], into: Into
 ) -> Generator[Done, None, None]:
-    """Evaluate blocks in worker processes and yield them as they finish, in any order."""
+    """Evaluate blocks in worker processes and yield them as they finish, in any order.
+
+    Nobody waits for the blocks in work if the sweep is interrupted: their processes are killed.
+    """
+    team = _Team()
 
     def evaluate(block: Block) -> Done:
         task = pickle.dumps((job, block, points.part(block.slices), store))
-        return _evaluated_by_worker(block, task, into(block))
+        return team.evaluated(block, task, into(block))
 
     with ThreadPoolExecutor(workers) as threads:
-        futures: list[Future[Done]] = [threads.submit(evaluate, block) for block in blocks]
         try:
+            futures: list[Future[Done]] = [threads.submit(evaluate, block) for block in blocks]
             for future in as_completed(futures):
                 yield future.result()
+        except Exception:
+            raise
+        except BaseException:
+            team.disband()
+            raise
         finally:
             threads.shutdown(cancel_futures=True)
 
 
-def _evaluated_by_worker(block: Block, task: bytes, into: list[Array]) -> Done:
-    deaths: list[str] = []
-    while len(deaths) < ATTEMPTS:
-        worker = _worker()
-        try:
-            answer = worker.evaluate(task, into)
-        except _DeathError as death:
-            worker.close()
-            deaths.append(f"a worker process died ({death}) at block {block.number}, which is evaluated again")
-            continue
-        _idle.put(worker)
-        if isinstance(answer, Exception):
-            raise answer
-        return block, answer, deaths
-    raise SweepError(
-        f"block {block.number} was given up, since the worker processes died in all {ATTEMPTS} attempts to evaluate it;"
-        " does it need more memory than there is?"
-    )
+class _Team:
+    """The workers that evaluate blocks of one sweep."""
+
+    def __init__(self) -> None:
+        self._busy: set[_Worker] = set()
+        self._disbanded = False
+
+    def evaluated(self, block: Block, task: bytes, into: list[Array]) -> Done:
+        """Return a block that one of the workers has evaluated."""
+        deaths: list[str] = []
+        while len(deaths) < ATTEMPTS and not self._disbanded:
+            worker = _worker()
+            self._busy.add(worker)
+            if self._disbanded:  # after `disband` has seen who is busy
+                worker.kill()
+            try:
+                answer = worker.evaluate(task, into)
+            except _DeathError as death:
+                worker.close()
+                deaths.append(f"a worker process died ({death}) at block {block.number}, which is evaluated again")
+                continue
+            finally:
+                self._busy.discard(worker)
+            _idle.put(worker)
+            if isinstance(answer, Exception):
+                raise answer
+            return block, answer, deaths
+        raise SweepError(
+            f"block {block.number} was given up, since the worker processes died in all {ATTEMPTS} attempts to evaluate"
+            " it; does it need more memory than there is?"
+        )
+
+    def disband(self) -> None:
+        """Kill the workers that are busy."""
+        self._disbanded = True
+        for worker in list(self._busy):
+            worker.kill()
 
 
 def _worker() -> _Worker:
@@ -158,16 +211,29 @@ def _close() -> None:
 
 
 def serve() -> None:
-    """Take blocks from standard input and answer on standard output until there are no more: the worker process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
-    tasks, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
+    """Take blocks from standard input and answer on standard output: the worker process.
+
+    It ends as soon as its input does, be it in the middle of a block: then the parent process is gone.
+    """
+    waiting: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    Thread(target=_take, args=(sys.stdin.buffer, waiting), daemon=True).start()
+    answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # output of a model must not mix with the answers
     while True:
+        task = waiting.get()
         try:
-            task: bytes = pickle.load(tasks)
-        except EOFError:
-            return
-        _answer(task, answers)
+            _answer(task, answers)
+        except BrokenPipeError:
+            os._exit(0)
+
+
+def _take(tasks: BinaryIO, waiting: queue.SimpleQueue[bytes]) -> None:
+    """Put the tasks from the parent process into a queue, and end this process with it."""
+    try:
+        while True:
+            waiting.put(pickle.load(tasks))
+    finally:
+        os._exit(0)
 
 
 def _answer(task: bytes, answers: BinaryIO) -> None:
