@@ -27,6 +27,13 @@ def deep(session: nox.Session) -> None:
 
 
 @nox.session(python="3.11", default=False)
+def fuzz(session: nox.Session) -> None:
+    """Call wearlaw in random ways and damage its files: `nox -s fuzz -- --seconds 3600`."""
+    session.install("-e", ".[test]")
+    session.run("python", "-m", "tests.fuzz", *session.posargs)
+
+
+@nox.session(python="3.11", default=False)
 def minimum(session: nox.Session) -> None:
     """Test with the lowest version of each dependency that is declared to do."""
     project = PYPROJECT["project"]

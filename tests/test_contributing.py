@@ -33,6 +33,8 @@ def test_a_command_is_one_that_the_project_runs(command: str) -> None:
         assert f"\ndef {session[1]}(session: nox.Session)" in text_of("noxfile.py")
     elif script := re.fullmatch(r"\.venv/bin/python (?:-m pytest )?(\S+\.py)", command):
         assert (ROOT / script[1]).is_file()
+    elif module := re.match(r"\.venv/bin/python -m (tests\.\w+)", command):
+        assert (ROOT / module[1].replace(".", "/") / "__main__.py").is_file()
     else:
         assert re.search(rf"{re.escape(command)}$", known_commands(), re.MULTILINE)
 
