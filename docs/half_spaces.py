@@ -278,15 +278,15 @@ def grids_in_words() -> str:
 
 
 def energies_in_words() -> str:
-    """Return the sentence about which energy of FASTSIM is nearer, over all points with spin."""
+    """Return the rows that show which energy of FASTSIM is nearer, over all points with spin."""
     found = table()
     spin = (found["phi"] != 0.0) & (np.arange(found["phi"].size) < sum(DRAWS))
     parts = []
     for name, bound in zip(list(MODELS)[:2], ("parabolic", "elliptic"), strict=True):
         missed = errors(found, MODELS[name])
         cells, total = (100.0 * rms(error[spin]) for error in (missed.cells, missed.wear_index))
-        parts.append(f"{cells:.0f} % in the cells and {total:.0f} % in Tγ with the {bound} bound")
-    return f"At random points with spin the root mean square error is {parts[0]}, {parts[1]}"
+        parts.append(f"| {bound} | {cells:.0f} % | {total:.0f} % |")
+    return " ".join(parts)
 
 
 def as_csv(rows: Rows) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ import wearlaw as wl
 from tests.core.fits import FRICTION, GLOBAL, PRESSURE, made_up, sloping, usfd
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.fitting.lack_of_fit import f_test
+from wearlaw.fitting.lack_of_fit import SAME, f_test, repeats
 
 CREEPAGE = [0.2, 0.4, 0.6, 0.8]
 """All within the mild regime of USFD, where wear is m_m times the wear-index density."""
@@ -54,6 +55,39 @@ def test_f_is_that_of_nested_linear_models() -> None:
     assert degrees == (3.0, 4.0)
     assert p == pytest.approx(stats.f.sf(expected, 3, 4), rel=1e4 * EPS)
     assert scatter == pytest.approx(np.sqrt(means @ means / 4), rel=1e3 * EPS)
+
+
+@pytest.mark.parametrize(
+    ("points", "spent", "degrees"),
+    [([0, 0, 1, 1, 2], 2.0, (1.0, 2.0)), ([0, 0, 1, 2], 1.0, (2.0, 1.0)), ([0, 0, 1, 1], 2.0 - 1e-9, None)],
+)
+def test_one_degree_of_freedom_is_enough_and_none_is_no_test(points: Any, spent: float, degrees: Any) -> None:
+    residuals = np.array([0.1, -0.2, 0.3, 0.2, -0.1])[: len(points)]
+    f, found, p, scatter = f_test(residuals, np.array(points), spent)
+    if degrees is None:
+        assert p is scatter is None
+    else:
+        assert found == degrees
+        assert p == pytest.approx(stats.f.sf(f, *degrees), rel=1e4 * EPS)
+
+
+@pytest.mark.parametrize(("scatter", "tested"), [(0.9 * SAME, False), (1.1 * SAME, True)])
+def test_repeats_are_copies_by_their_standard_deviation(scatter: float, tested: bool) -> None:
+    """Two tests off their mean by ±d have a standard deviation of √2 d."""
+    off = scatter / np.sqrt(2.0)
+    mean = np.arange(8.0)
+    residuals = np.concatenate([np.repeat(mean[:4], 2) + off * np.tile([1.0, -1.0], 4), mean[4:]])
+    points = np.concatenate([np.repeat([0, 1, 2, 3], 2), [4, 5, 6, 7]])
+    found = f_test(residuals, points, 1.0)[3]
+    assert found == (pytest.approx(scatter, rel=1e-9) if tested else None)
+
+
+def test_tests_repeat_each_other_if_every_condition_agrees_to_its_thousandth() -> None:
+    force = [7000.0, 7006.9, 7007.1, 7000.0, 7000.0, 7006.9]  # [N]
+    creepage, lateral = [0.01, 0.01, 0.01, 0.01002, 0.01, 0.00999], [0.0, 0.0, 0.0, 0.0, 1e-9, 0.0]
+    conditions = {"normal_force": Q(force, "N"), "creepage": np.array(creepage), "lateral_creepage": np.array(lateral)}
+    one: Any = SimpleNamespace(conditions={**conditions, "friction_coefficient": 0.46}, measured=np.ones(6))
+    assert repeats(one).tolist() == [0, 0, 1, 2, 3, 0]
 
 
 def test_p_is_uniform_if_the_model_is_right() -> None:
@@ -141,6 +175,7 @@ def test_without_repeats_a_typical_factor_of_two_is_poor(scale: float, poor: boo
         np.exp(scale * np.array([-1.0, 1.0, 1.0, -1.0])), rel=1e-6
     )
     assert f", a factor of {np.exp(scale):.4g}\n" in repr(fit)
+    assert str(check) == f"typical factor {np.exp(scale):.3g}, limit 2"
 
 
 def test_copies_of_a_test_do_not_count_as_repeats() -> None:
@@ -159,6 +194,7 @@ def test_absolute_scatter_without_repeats_is_held_against_half_the_measurements(
     ):
         (check,) = wl.fit(predict, spikes, ["slope"], scatter="absolute", bootstrap=0).lack_of_fit
     assert check.method == "share"
+    assert str(check) == f"rms residual {check.value:.0%} of the rms measurement, limit 50%"
 
 
 def test_each_kind_of_measurement_is_checked() -> None:

@@ -1,0 +1,147 @@
+"""The README: what it promises beside its examples, which `conftest.py` runs."""
+
+from __future__ import annotations
+
+import ast
+import re
+import shlex
+import shutil
+from collections.abc import Iterator
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+
+import wearlaw as wl
+from tests.core.cases import wearlaw
+from tests.core.cli_data import rates, rows, write_tests
+from tests.environments import ROOT
+from wearlaw import hookspecs
+from wearlaw.plugins import loader
+from wearlaw.study.case import load_case
+
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+SENTENCES = " ".join(TEXT.split())
+PLUGINS = sorted((ROOT / "plugins").glob("wearlaw_*"))
+
+
+def imported(path: Path) -> Iterator[tuple[str, str]]:
+    """Yield what a file imports from wearlaw, as module and name, and the attributes that it takes from it."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, "") for alias in node.names if alias.name.split(".")[0] == "wearlaw")
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "wearlaw":
+            yield from ((str(node.module), alias.name) for alias in node.names)
+        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "wl":
+            yield "wearlaw", node.attr
+
+
+@pytest.mark.parametrize("folder", PLUGINS, ids=lambda folder: folder.name)
+def test_the_plugins_of_wearlaw_use_only_names_that_are_public(folder: Path) -> None:
+    """`wl.testing` is public too; it needs the packages for tests, so `dir` does not show it."""
+    public = {"", "testing", *dir(wl)}
+    found = {one for path in folder.rglob("*.py") for one in imported(path)}
+    assert ("wearlaw", "") in found
+    assert {(module, name) for module, name in found if module != "wearlaw" or name not in public} == set()
+
+
+def test_everything_that_comes_with_wearlaw_comes_by_the_hooks_of_plugins(monkeypatch: pytest.MonkeyPatch) -> None:
+    ours = [one for one in entry_points(group="wearlaw") if one.dist is not None and one.dist.name == "wearlaw"]
+    hooks = {name for name in dir(hookspecs) if hasattr(getattr(hookspecs, name), "wearlaw_spec")}
+    implemented = {
+        name: {hook for hook in dir(module) if hasattr(getattr(module, hook), "wearlaw_impl")}
+        for name, module in ((one.name, one.load()) for one in ours)
+    }
+    assert {name for name, found in implemented.items() if not found or found - hooks} == set()
+    monkeypatch.setattr(loader, "_entry_points", lambda: iter(()))
+    loader._search.cache_clear()
+    try:
+        assert loader.installed().listing() == []
+    finally:
+        loader._search.cache_clear()
+
+
+def shipped_laws() -> dict[str, type[wl.Law]]:
+    return {
+        name: law
+        for shelf in (loader.installed().wear_laws, loader.installed().laws)
+        for name, law in shelf.items().items()
+        if shelf.origin(name).distribution == "wearlaw"
+    }
+
+
+def test_three_laws_have_their_numbers_and_two_need_those_of_the_user() -> None:
+    assert "three published laws with their numbers (USFD, KTH and BRR)" in SENTENCES
+    assert "two for numbers of your own (Archard's law and wear by energy)" in SENTENCES
+    needs = {}
+    for name in wl.wear_laws():
+        try:
+            wl.wear_law(name)
+        except wl.ConfigurationError:
+            needs[name] = True
+        else:
+            needs[name] = False
+    assert needs == {"usfd": False, "kth": False, "brr": False, "archard": True, "energy": True}
+
+
+def test_no_published_numbers_are_stated_for_water_grease_or_sand() -> None:
+    """Look for the words in all texts of the shipped laws and parameter sets, those of their records included."""
+    assert "None of its published numbers is stated for water, grease or sand" in SENTENCES
+    numbers = [*wl.parameter_sets().values(), *(wl.wear_law(name) for name in ("kth", "brr"))]
+    numbers += [wl.wear_law("usfd", fitted_for=name) for name in ("global", "exact", "fastsim")]
+    texts = [repr(law.calibration) for law in numbers]
+    texts += [f"{law.__doc__} {law.source}" for law in shipped_laws().values()]
+    assert all(text.strip() for text in texts)
+    found = re.findall(r"\w*(?:water|grease|sand\b|wet\b|lubric)\w*", " ".join(texts), re.IGNORECASE)
+    assert found == []
+
+
+def test_kth_names_no_materials_and_brr_no_range() -> None:
+    assert "KTH names no materials and BRR no range" in SENTENCES
+    records = {name: wl.wear_law(name).calibration for name in ("usfd", "kth", "brr")}
+    assert {name: (bool(one and one.bodies), bool(one and one.stated_range)) for name, one in records.items()} == {
+        "usfd": (True, True),
+        "kth": (False, True),
+        "brr": (True, False),
+    }
+
+
+def test_the_prediction_of_the_readme_is_warned_of() -> None:
+    assert "wearlaw also gives a `PlasticityWarning`: 1500 MPa is beyond the [shakedown limit]" in SENTENCES
+    predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact")
+    with pytest.warns(wl.PlasticityWarning, match="1500 MPa at T/N = 0.444 is beyond the shakedown limit"):
+        predict(normal_force="7.4143 kN", creepage="1 %", friction_coefficient=0.46)
+
+
+COMMANDS = re.findall(r"^- `wearlaw ([^`]+)`", TEXT, re.MULTILINE)
+ELSEWHERE = {"run": "`.ci/run` runs the study", "check": "needs the plugin installed; tests/third_party does it"}
+
+
+@pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
+def test_the_commands_in_the_list_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_tests(rows(rates()))
+    Path("tests.csv").rename("my-tests.csv")
+    shutil.copy(ROOT / "tests/plugins/contact_results/carter.0001.mat", "case.0001.mat")
+    for command in COMMANDS:
+        line, _, into = command.partition(" > ")
+        words = shlex.split(line.replace("NAME", "usfd"))
+        if words[0] not in ELSEWHERE:
+            result = wearlaw(*words)
+            assert result.exit_code == 0, f"{command}: {result.output}"
+            if into:
+                Path(into).write_text(result.stdout, encoding="utf-8")
+    assert load_case("my-case.toml").title == load_case("tassini2010").title
+    found = {path.name for path in tmp_path.iterdir()}
+    assert {"my-case.toml", "wearlaw-mine", "case.0001-wear"} <= found
+    assert {line.split()[0] for line in COMMANDS} >= {"case", "show", "schema", "fit", "compare", "wear", *ELSEWHERE}
+
+
+def test_the_status_is_that_of_the_package() -> None:
+    assert "**Status: alpha.**" in TEXT
+    assert "Development Status :: 3 - Alpha" in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+
+
+def test_it_needs_nothing_but_the_python_of_the_package() -> None:
+    assert "nothing but Python 3.11 or later" in SENTENCES
+    assert '\nrequires-python = ">=3.11"\n' in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
