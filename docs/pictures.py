@@ -36,7 +36,7 @@ FOLDER = Path(__file__).parent / "pictures"
 GALLERY = Path(__file__).parent / "gallery"
 BENCHMARKS = Path(__file__).parent / "accuracy.csv"
 REFERENCE = Path(__file__).parents[1] / "tests" / "data" / "hertz3d_reference.csv"
-OF_STUDY = ("figure_03", "figure_04", "figure_05", "figure_08", "figure_10", "wear_against_load")
+OF_STUDY = ("figure_03", "figure_04", "figure_05", "figure_08", "figure_10", "wear_over_load")
 """The figures of the shipped study that pages show."""
 BOUNDS = ("elliptic", "parabolic")
 FORCES = ("Fx", "Fy")

@@ -55,9 +55,9 @@ class Archard(wl.WearLaw):
     source: ClassVar[str] = "J. F. Archard, J. Appl. Phys. 24 (1953) 981-988"
     monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("pressure", "slip")
 
-    coefficient: Annotated[float, Field(gt=0.0, strict=True)]
+    coefficient: Annotated[float, Field(gt=0.0, strict=True, examples=["1e-4"])]
     """Wear coefficient of V = k N s / H, k [-]."""
-    hardness: wl.Stress | None = None
+    hardness: wl.Stress | None = Field(default=None, examples=["2.6 GPa"])
     """Hardness of the body that wears, H [Pa]; None for that of its material."""
     fitted_for: wl.Calibration | None = None
     """Record of the tests that the coefficient is from, with their range; None if there is none."""

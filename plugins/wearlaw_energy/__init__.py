@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 import wearlaw as wl
 from wearlaw import Array
@@ -37,7 +37,7 @@ class Energy(wl.WearLaw):
     )
     monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("wear_index_density",)
 
-    mass_per_energy: MassPerEnergy
+    mass_per_energy: Annotated[MassPerEnergy, Field(examples=["1 ug/J"])]
     """Mass lost per energy of friction, in mild wear if there is a limit [µg/J]."""
     severe_mass_per_energy: MassPerEnergy | None = None
     """Mass lost per energy of friction in severe wear [µg/J]."""

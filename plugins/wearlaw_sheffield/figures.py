@@ -86,7 +86,7 @@ def measured_index(bench: Bench, tests: tuple[Array, Array]) -> wl.FigureData:
     inside = bench.creepage <= TESTED[1]
     rates = bench.rate_at_index(law, measured_wear_index(bench, tests))
     curve = wl.Curve("USFD at the modelled Tγ", bench.creepage[inside], bench.rate("global", law)[inside])
-    points = wl.Curve("USFD at the measured Tγ of the tests", tests[0], rates, colour=6, points=True)
+    points = wl.Curve("USFD at the measured Tγ of the tests", tests[0], rates, colour=6, points=True, hollow=True)
     return wl.FigureData(
         name="figure_09_measured",
         title="Figure 9 with USFD at the measured Tγ",

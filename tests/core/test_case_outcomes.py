@@ -209,16 +209,16 @@ def test_tables_and_default_figures_are_of_each_outcome() -> None:
     assert rows == ["damage on exact", "damage on global"]
     axes = {figure.name: (figure.panels[0].y.label, figure.panels[0].y.scale) for figure in study.figures}
     assert axes == {
-        "creepage_wear_rate_against_wear_index": ("wear rate [µg/m/mm²]", "log"),
-        "creepage_wear_rate_against_creepage": ("wear rate [µg/m/mm²]", "log"),
-        "creepage_rcf_damage_against_wear_index": ("rcf damage [-]", "linear"),  # it has a sign
-        "creepage_rcf_damage_against_creepage": ("rcf damage [-]", "linear"),
-        "creepage_heat_flux_against_wear_index": ("heat flux [W/mm²]", "log"),
-        "creepage_heat_flux_against_creepage": ("heat flux [W/mm²]", "log"),
-        "creepage_traction_against_creepage": ("traction coefficient T/N [-]", "linear"),
+        "creepage_wear_rate_over_wear_index": ("wear rate [µg/m/mm²]", "log"),
+        "creepage_wear_rate_over_creepage": ("wear rate [µg/m/mm²]", "log"),
+        "creepage_rcf_damage_over_wear_index": ("rcf damage [-]", "linear"),  # it has a sign
+        "creepage_rcf_damage_over_creepage": ("rcf damage [-]", "linear"),
+        "creepage_heat_flux_over_wear_index": ("heat flux [W/mm²]", "log"),
+        "creepage_heat_flux_over_creepage": ("heat flux [W/mm²]", "log"),
+        "creepage_traction_over_creepage": ("traction coefficient T/N [-]", "linear"),
         "partial_slip_along_the_patch": ("pressure p, traction q, traction bound [MPa]", "linear"),
     }
-    (figure,) = (one for one in study.figures if one.name == "creepage_rcf_damage_against_creepage")
+    (figure,) = (one for one in study.figures if one.name == "creepage_rcf_damage_over_creepage")
     assert [curve.label for curve in figure.panels[0].curves] == ["damage on exact = damage on global"]
     assert min(figure.panels[0].curves[0].y) < 0.0, "signs stay"
     assert {"damage", "kth"} <= {*parameters(study).frame["of"]}

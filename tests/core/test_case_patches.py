@@ -313,11 +313,11 @@ def test_without_figures_of_its_own_a_case_has_the_usual_ones() -> None:
     study = small()
     shown = by_name(study)
     assert list(shown) == [
-        "moving_wear_rate_against_wear_index", "moving_wear_rate_against_displacement",
-        "moving_traction_against_displacement", "flanging_wear_rate_against_patch", "flanging_traction_against_patch",
+        "moving_wear_rate_over_wear_index", "moving_wear_rate_over_displacement",
+        "moving_traction_over_displacement", "flanging_wear_rate_over_patch", "flanging_traction_over_patch",
     ]  # fmt: skip
-    assert one_panel(shown["moving_wear_rate_against_displacement"]).x.scale == "linear"
-    assert one_panel(shown["moving_wear_rate_against_displacement"]).x.label == "displacement [mm]"
+    assert one_panel(shown["moving_wear_rate_over_displacement"]).x.scale == "linear"
+    assert one_panel(shown["moving_wear_rate_over_displacement"]).x.label == "displacement [mm]"
 
 
 def test_the_ground_is_grey_where_a_shown_patch_is_beyond_a_limit() -> None:

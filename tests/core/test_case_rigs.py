@@ -398,7 +398,7 @@ def test_a_rig_of_a_plugin_has_a_study_as_the_discs_have(roller: Any, tmp_path: 
     figures = by_name(study)
     caption = figures["oil_wear_rate"].caption
     assert caption.startswith("At mass 0.3 t, creepage 1 %, lubricant oil."), "as the case writes them"
-    assert figures["load_wear_rate_against_creepage"].panels[0].title == "mass 400 kg"
+    assert figures["load_wear_rate_over_creepage"].panels[0].title == "mass 400 kg"
     profile = study.profiles["partial_slip"]
     expected = direct(roller, "exact", "kth", **ON_ROLLER["profiles"]["partial_slip"]).profile
     np.testing.assert_array_equal(profile.traction.sel(contact_model="exact"), expected.traction)
@@ -575,9 +575,9 @@ def test_a_rig_of_a_plugin_may_make_ellipses_and_leave_out_what_it_need_not_give
         assert any(note.startswith(said) for note in study.notes), said
     assert list(by_name(study)) == [
         "one_wear_rate",
-        "many_wear_rate_against_wear_index",
-        "many_wear_rate_against_sliding",
-        "many_traction_against_sliding",
+        "many_wear_rate_over_wear_index",
+        "many_wear_rate_over_sliding",
+        "many_traction_over_sliding",
     ]
     assert len(summaries(study)) == 2
     assert list(results_table(study)["mass [t]"]) == [5.0] * 3

@@ -90,6 +90,7 @@ def test_the_figure_has_a_panel_for_each_contact_model_with_measured_over_predic
         assert (panel.x.scale, panel.y.scale) == ("log", "log")
         assert panel.x.ends is not None
         assert panel.x.ends == panel.y.ends
+        assert all(curve.hollow for curve in panel.curves if curve.points), "only measurements have filled markers"
         for curve in (curve for curve in panel.curves if curve.points):
             predicted = by_label(comparison)[f"{curve.label} on {panel.title}"].predicted
             np.testing.assert_allclose(curve.x, predicted * 1e3, rtol=4 * EPS)

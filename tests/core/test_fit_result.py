@@ -258,7 +258,7 @@ def test_a_law_fitted_down_to_no_creepage_is_stated_from_zero() -> None:
     assert highest <= high <= highest * 1.001
 
 
-def test_tests_at_several_loads_are_drawn_as_points() -> None:
+def test_tests_at_several_loads_are_drawn_against_the_fit() -> None:
     predict = usfd("exact")
     conditions: Any = {
         "creepage": Q(np.geomspace(0.2, 8.0, 8), "%"),
@@ -268,9 +268,18 @@ def test_tests_at_several_loads_are_drawn_as_points() -> None:
     tests = wl.WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * np.linspace(0.9, 1.1, 8))
     fit = wl.fit(predict, tests, free=["m_m"], bootstrap=0)
     figure = fit.figure_data()
-    fitted = figure.panels[0].curves[0]
-    assert fitted.points
-    assert fitted.low is None
+    (panel,) = figure.panels
+    *guides, shown = panel.curves
+    assert [(curve.label, float(curve.y[0] / curve.x[0])) for curve in guides] == [
+        ("predicted = measured", 1.0), ("factor of two", 0.5), ("factor of two", 2.0)
+    ]  # fmt: skip
+    assert all(curve.is_line for curve in guides)
+    assert (shown.points, shown.hollow) == (True, True)
+    np.testing.assert_array_equal(shown.x, fit.residuals["predicted"])
+    np.testing.assert_array_equal(shown.y, fit.residuals["measured"])
+    assert [(axis.label, axis.scale) for axis in (panel.x, panel.y)] == [
+        ("predicted wear rate [µg/m/mm²]", "log"), ("measured wear rate [µg/m/mm²]", "log")
+    ]  # fmt: skip
     assert "differ in load" in figure.caption
     assert isinstance(fit.plot(), Figure)
 

@@ -141,7 +141,7 @@ def test_results_hold_the_marks_of_each_pair_and_the_limits_of_each_contact_mode
 
 
 def test_curves_are_marked_where_the_law_is_outside(study: Study) -> None:
-    (panel,) = by_name(study)["load_wear_rate_against_max_pressure"].panels
+    (panel,) = by_name(study)["load_wear_rate_over_max_pressure"].panels
     curves = by_label(panel)
     for pair in ("usfd on global", "usfd on exact"):
         outside = study.sweeps["load"].outside_range.sel(pair=pair).values > 0
@@ -153,7 +153,7 @@ def test_curves_are_marked_where_the_law_is_outside(study: Study) -> None:
     np.testing.assert_array_equal(outside, curves["kth on global"].x > 2100.0 * 4.0 / np.pi)
 
 
-@pytest.mark.parametrize("name", ["load_wear_rate_against_max_pressure", "creepage_traction_against_creepage"])
+@pytest.mark.parametrize("name", ["load_wear_rate_over_max_pressure", "creepage_traction_over_creepage"])
 def test_panels_are_shaded_where_the_contact_of_any_model_is_beyond_a_limit(study: Study, name: str) -> None:
     (panel,) = by_name(study)[name].panels
     sweep = study.sweeps[name.partition("_")[0]]

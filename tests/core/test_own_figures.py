@@ -87,7 +87,7 @@ def texts(figure: Figure) -> str:
 def test_axes_have_the_units_of_the_case(given: dict[str, Any], label: str, ends: tuple[float, float]) -> None:
     (name,) = given
     conditions = {key: value for key, value in AT.items() if key != "normal_force" or name == key}
-    axes = one(ran(sweeps={"own": {**conditions, **given}}), f"own_wear_rate_against_{name}")
+    axes = one(ran(sweeps={"own": {**conditions, **given}}), f"own_wear_rate_over_{name}")
     assert axes.get_xlabel() == label
     assert axes.get_xscale() == axes.get_yscale() == "linear"
     for line in lines(axes).values():
@@ -96,7 +96,7 @@ def test_axes_have_the_units_of_the_case(given: dict[str, Any], label: str, ends
 
 def test_shades_stand_where_the_limit_is_in_the_units_of_the_case() -> None:
     study = ran(normal_force=LOADS)
-    axes = one(study, "own_wear_rate_against_normal_force")
+    axes = one(study, "own_wear_rate_over_normal_force")
     first = next(patch for patch in axes.patches if patch.get_label() == "beyond first yield")
     sweep = study.sweeps["own"]
     beyond = (sweep.max_pressure > sweep.first_yield).any("contact_model").values
@@ -151,7 +151,7 @@ SLOW = {"from": "1 %", "to": "19 %", "points": 7}
 def test_a_jump_of_a_law_is_drawn_where_it_is_and_upright(x: str) -> None:
     """KTH jumps at a slip speed of 0.2 m/s, 10 % creepage at 2 m/s; BRR at 200 N, 12.5 % of 1600 N."""
     study = ran(creepage=SLOW)
-    axes = one(study, f"own_wear_rate_against_{x}")
+    axes = one(study, f"own_wear_rate_over_{x}")
     width = np.ptp(axes.get_xlim())
     for label, at in (("kth on global", 10.0), ("brr on global", 12.5)):
         points = lines(axes)[label]
@@ -170,7 +170,7 @@ def test_a_jump_of_a_law_is_drawn_where_it_is_and_upright(x: str) -> None:
 
 
 def test_the_band_jumps_with_its_law() -> None:
-    axes = one(ran(creepage=SLOW), "own_wear_rate_against_creepage")
+    axes = one(ran(creepage=SLOW), "own_wear_rate_over_creepage")
     (band,) = axes.collections
     corners = np.asarray(band.get_paths()[0].vertices)
     there = abs(corners[:, 0] - 10.0) < 1e-4
@@ -179,16 +179,16 @@ def test_the_band_jumps_with_its_law() -> None:
 
 def test_a_law_without_jumps_has_the_points_of_the_sweep_alone() -> None:
     study = ran(creepage=SLOW)
-    points = lines(one(study, "own_wear_rate_against_creepage"))["usfd on global"]
+    points = lines(one(study, "own_wear_rate_over_creepage"))["usfd on global"]
     np.testing.assert_array_equal(points[:, 0], study.sweeps["own"].creepage)
 
 
 def test_lines_that_coincide_are_one_line_with_the_names_of_all() -> None:
     study = ran(("global", "exact"), wear_laws=["usfd", "kth"], creepage={"from": "2 %", "to": "5 %", "points": 4})
     found = drawings(study)
-    traction = found["own_traction_against_creepage"].axes[0]
+    traction = found["own_traction_over_creepage"].axes[0]
     assert [*lines(traction)] == ["global = exact"]
-    (axes,) = found["own_wear_rate_against_creepage"].axes
+    (axes,) = found["own_wear_rate_over_creepage"].axes
     names = [*lines(axes)]
     assert sorted(" = ".join(names).replace(" ≈ ", " = ").split(" = ")) == sorted(study.sweeps["own"].pair.values)
     shapes = list(lines(axes).values())
@@ -281,7 +281,7 @@ def test_two_axes_make_a_map_of_the_users_spacing_and_units_for_each_pair() -> N
 
 def test_few_values_along_an_axis_make_no_map() -> None:
     study = ran(creepage={"from": "1 %", "to": "5 %", "points": 5}, friction_coefficient=[0.2, 0.4])
-    assert not any("_over_" in figure.name for figure in study.figures)
+    assert not any(panel.map for figure in study.figures for panel in figure.panels)
 
 
 def test_a_case_can_ask_for_a_map_of_any_variable() -> None:

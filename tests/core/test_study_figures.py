@@ -22,11 +22,11 @@ def study() -> Study:
 
 def test_a_case_that_asks_for_no_figures_has_one_of_each_kind(study: Study) -> None:
     assert list(by_name(study)) == [
-        "creepage_wear_rate_against_wear_index",
-        "creepage_wear_rate_against_creepage",
-        "creepage_traction_against_creepage",
-        "load_wear_rate_against_wear_index",
-        "load_wear_rate_against_max_pressure",
+        "creepage_wear_rate_over_wear_index",
+        "creepage_wear_rate_over_creepage",
+        "creepage_traction_over_creepage",
+        "load_wear_rate_over_wear_index",
+        "load_wear_rate_over_max_pressure",
         "partial_slip_along_the_patch",
     ]
 
@@ -34,10 +34,10 @@ def test_a_case_that_asks_for_no_figures_has_one_of_each_kind(study: Study) -> N
 @pytest.mark.parametrize(
     ("name", "x", "label"),
     [
-        ("creepage_wear_rate_against_creepage", "creepage", "creepage [%]"),
-        ("creepage_wear_rate_against_wear_index", "wear_index", "wear index Tγ [N]"),
-        ("load_wear_rate_against_max_pressure", "max_pressure", "maximum pressure [MPa]"),
-        ("load_wear_rate_against_wear_index", "wear_index", "wear index Tγ [N]"),
+        ("creepage_wear_rate_over_creepage", "creepage", "creepage [%]"),
+        ("creepage_wear_rate_over_wear_index", "wear_index", "wear index Tγ [N]"),
+        ("load_wear_rate_over_max_pressure", "max_pressure", "maximum pressure [MPa]"),
+        ("load_wear_rate_over_wear_index", "wear_index", "wear index Tγ [N]"),
     ],
 )
 def test_wear_rate_is_shown_for_every_pair_as_the_dataset_has_it(study: Study, name: str, x: str, label: str) -> None:
@@ -72,7 +72,7 @@ def test_colour_tells_the_law_and_line_style_the_contact_model_in_all_figures(st
 
 
 def test_the_band_of_a_law_is_shown_and_only_where_there_is_one(study: Study) -> None:
-    curves = by_label(one_panel(by_name(study)["creepage_wear_rate_against_creepage"]))
+    curves = by_label(one_panel(by_name(study)["creepage_wear_rate_over_creepage"]))
     sweep = study.sweeps["creepage"]
     for pair, curve in curves.items():
         if pair.startswith("kth"):
@@ -84,7 +84,7 @@ def test_the_band_of_a_law_is_shown_and_only_where_there_is_one(study: Study) ->
 
 
 def test_traction_is_shown_for_every_contact_model(study: Study) -> None:
-    panel = one_panel(by_name(study)["creepage_traction_against_creepage"])
+    panel = one_panel(by_name(study)["creepage_traction_over_creepage"])
     assert (panel.x.label, panel.y.label) == ("creepage [%]", "traction coefficient T/N [-]")
     assert (panel.x.scale, panel.y.scale) == ("log", "linear")
     assert panel.y.ends is not None
@@ -97,7 +97,7 @@ def test_traction_is_shown_for_every_contact_model(study: Study) -> None:
 
 def test_contact_models_that_differ_have_a_colour_and_a_line_style_each() -> None:
     figures = by_name(run(case(contact_models=["exact", "fastsim"], wear_laws=["kth"], profiles={})))
-    panel = one_panel(figures["creepage_traction_against_creepage"])
+    panel = one_panel(figures["creepage_traction_over_creepage"])
     assert [(curve.label, curve.colour, curve.dash) for curve in panel.curves] == [("exact", 0, 0), ("fastsim", 1, 1)]
 
 
@@ -146,37 +146,37 @@ def test_a_model_with_nodes_of_its_own_is_shown_on_these(install_model: InstallM
 )
 def test_axes_are_spaced_as_the_values_of_the_sweep(creepage: Any, scale: str) -> None:
     figures = by_name(run(case(sweeps={"s": {**cases.POINT, "creepage": creepage}}, profiles={})))
-    for name in ("s_wear_rate_against_creepage", "s_wear_rate_against_wear_index"):
+    for name in ("s_wear_rate_over_creepage", "s_wear_rate_over_wear_index"):
         panel, (axes,) = one_panel(figures[name]), draw(figures[name]).axes
         assert (panel.x.scale, axes.get_xscale(), axes.get_yscale()) == (scale, scale, panel.y.scale)
         assert panel.y.scale == scale or scale == "linear"
-    assert one_panel(figures["s_traction_against_creepage"]).x.scale == scale
+    assert one_panel(figures["s_traction_over_creepage"]).x.scale == scale
 
 
 def test_over_a_linear_sweep_wear_rates_that_differ_much_stand_on_a_logarithmic_axis() -> None:
     far = {"from": "0.1 %", "to": "20 %", "points": 5}
     figures = by_name(run(case(sweeps={"s": {**cases.POINT, "creepage": far}}, profiles={})))
-    panel = one_panel(figures["s_wear_rate_against_creepage"])
+    panel = one_panel(figures["s_wear_rate_over_creepage"])
     assert (panel.x.scale, panel.y.scale) == ("linear", "log")
 
 
 def test_a_sweep_shows_magnitudes() -> None:
     back = run(case(sweeps={"back": {**cases.POINT, "creepage": ["-2 %", "-1 %"]}}, profiles={}))
-    for curve in one_panel(by_name(back)["back_traction_against_creepage"]).curves:
+    for curve in one_panel(by_name(back)["back_traction_over_creepage"]).curves:
         np.testing.assert_array_equal(curve.x, [2.0, 1.0])
         assert (curve.y > 0.0).all()
 
 
 def test_a_measured_traction_coefficient_that_is_an_axis_is_shown_at_its_middle() -> None:
     conditions = {**cases.POINT, "creepage": ["1 %", "2 %"], "traction_coefficient": [0.1, 0.2]}
-    panel = one_panel(by_name(run(case(sweeps={"m": conditions}, profiles={})))["m_traction_against_creepage"])
+    panel = one_panel(by_name(run(case(sweeps={"m": conditions}, profiles={})))["m_traction_over_creepage"])
     assert panel.title == "traction coefficient T/N 0.2"
     assert_shows(panel.curves[0], [1.0, 2.0], [0.2, 0.2])
 
 
 def test_a_caption_that_is_not_given_tells_the_conditions(study: Study) -> None:
     captions = {name: figure.caption for name, figure in by_name(study).items()}
-    assert captions["creepage_wear_rate_against_creepage"] == "At maximum pressure 1500 MPa, friction coefficient 0.46."
-    assert captions["load_wear_rate_against_wear_index"] == "At creepage 0.5 %, friction coefficient 0.4."
+    assert captions["creepage_wear_rate_over_creepage"] == "At maximum pressure 1500 MPa, friction coefficient 0.46."
+    assert captions["load_wear_rate_over_wear_index"] == "At creepage 0.5 %, friction coefficient 0.4."
     at_one_point = "At maximum pressure 1500 MPa, creepage 0.5 %, friction coefficient 0.46."
     assert captions["partial_slip_along_the_patch"] == at_one_point

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -24,12 +25,13 @@ from wearlaw.cli.shared import (
     values,
     written_formats,
 )
-from wearlaw.errors import FitError, quoted
+from wearlaw.errors import FitError, PlasticityWarning, quoted
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.fitting.comparison import Comparison, Names, Predictor, compare_named
 from wearlaw.fitting.cross_validation import Folds
 from wearlaw.fitting.fit import fit as fit_parameters
 from wearlaw.fitting.result import Fit
+from wearlaw.models.law import Law
 from wearlaw.output.analyses import COMPARISON, FIT, write_comparison, write_fit
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
@@ -65,6 +67,12 @@ def common(command: CommandT) -> CommandT:
     return command
 
 
+bounds_option = click.option(
+    "--bounds",
+    metavar="FIELD=LOW:HIGH",
+    multiple=True,
+    help="Least and greatest value of a free parameter, with units if it has one; may be repeated.",
+)
 stages_option = click.option(
     "--stage",
     "stages",
@@ -87,12 +95,7 @@ stages_option = click.option(
 )
 @click.option("--fixed", metavar="FIELD=VALUE", multiple=True, help="Set a field of the law; may be repeated.")
 @common
-@click.option(
-    "--bounds",
-    metavar="FIELD=LOW:HIGH",
-    multiple=True,
-    help="Least and greatest value of a parameter, with units if it has one; may be repeated.",
-)
+@bounds_option
 @click.option("--bootstrap", type=int, default=1000, show_default=True, help="Replicates; 0 for quick intervals.")
 @click.option("--confidence", type=float, default=0.95, show_default=True, help="Of the intervals.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Of the random numbers.")
@@ -208,6 +211,7 @@ def _with_law(
     help="Rank fits by tests that they have not seen: leave-one-out, or a number of folds; needs --free.",
 )
 @common
+@bounds_option
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-comparison]."
 )
@@ -254,6 +258,7 @@ def _compare(
     free: tuple[str, ...],
     rig: Path | None,
     friction: float | None,
+    bounds: tuple[str, ...],
     scatter: str,
     cross_validate: str | None,
 ) -> Comparison:
@@ -272,11 +277,15 @@ def _compare(
     predictors: list[tuple[Names, Predictor]] = [
         (Names(pair.label, pair.law, pair.contact_model), pair.pipeline) for pair in pairs
     ]
-    for law, freed in _freed(free, list(named)).items():
+    freed, ends = _freed(free, named), _bounds(bounds)
+    for field in ends.keys() - {field for fields_of_law in freed.values() for field in fields_of_law}:
+        raise click.UsageError(f"--bounds: '{field}' is not free; add it to --free, as in --free LAW={field}")
+    for law, fields_of_law in freed.items():
         of_law = [pair for pair in pairs if pair.law == law]
-        fits = _fits(of_law, listed("--free", freed), tests, notes, friction_coefficient=friction, scatter=scatter)
+        own = {field: ends[field] for field in fields_of_law if field in ends}
+        fits = _fits(of_law, fields_of_law, tests, notes, friction_coefficient=friction, scatter=scatter, bounds=own)
         predictors += [(Names(f"{law} fitted on {contact}", f"{law} fitted", contact), one) for contact, one in fits]
-    comparison = compare_named(predictors, tests, friction, cross_validate=parts)
+    comparison = compare_named(predictors, tests, friction, cross_validate=parts, progress=True)
     for note in comparison.notes:
         notes.add(note)
     return comparison
@@ -295,20 +304,23 @@ def _folds(text: str | None) -> Folds | None:
         ) from None
 
 
-def _freed(settings: tuple[str, ...], laws: list[str]) -> dict[str, str]:
-    """Return the fields to fit, as the option gives them, by law."""
-    found: dict[str, str] = {}
+def _freed(settings: tuple[str, ...], laws: Mapping[str, Law]) -> dict[str, list[str]]:
+    """Return the fields to fit by law, as --laws writes it; the name alone will do if only one law has it."""
+    texts = {law.name: text for text, law in laws.items()} | {text: text for text in laws}
+    alone = [one.name for one in laws.values()]
+    found: dict[str, list[str]] = {}
     for setting in settings:
-        law, _, fields = setting.rpartition("=")
-        if law not in laws:
+        name, _, freed = setting.rpartition("=")
+        text = texts.get(name, "")
+        if not text or (text != name and alone.count(name) > 1):
             raise click.UsageError(
                 f"--free: write it as LAW=FIELDS, with a LAW of {','.join(laws)}, got {quoted(setting)}"
             )
-        if law in found:
+        if text in found:
             raise click.UsageError(
-                f"--free: {quoted(law)} is given twice; write all its fields behind one, between commas"
+                f"--free: {quoted(name)} is given twice; write all its fields behind one, between commas"
             )
-        found[law] = fields
+        found[text] = listed("--free", freed)
     return found
 
 
@@ -326,7 +338,8 @@ def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **
         for pair in pairs:
             name = f"{pair.law} fitted on {pair.contact_model}"
             try:
-                with notes.of(name):
+                with notes.of(name), warnings.catch_warnings():
+                    warnings.simplefilter("ignore", PlasticityWarning)  # the comparison says it once, of the tests
                     fitted = fit_parameters(pair.pipeline, tests, free, bootstrap=0, **settings)
                 found.append((pair.contact_model, fitted))
             except FitError as error:

@@ -143,7 +143,23 @@ def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
         law = read_law(text)
         return law.model_copy(update=fixed) if fixed else law
     name, *settings = text.split(":")
-    return loader.law(name, **{**values(text, tuple(settings)), **(fixed or {})})
+    given = {**values(text, tuple(settings)), **(fixed or {})}
+    try:
+        return loader.law(name, **given)
+    except ConfigurationError as error:
+        if not any(problem.message == "is missing" for problem in error.problems):
+            raise
+        raise InputError(f"{error}; write the law as {_form(name, given)}") from None
+
+
+def _form(name: str, given: Mapping[str, str | float]) -> str:
+    """Return a law with its required fields, and those with an example, as it stands on the command line."""
+    parts = [name]
+    for field, about in {**loader.wear_laws(), **loader.laws()}[name].model_fields.items():
+        if field in given or about.is_required() or about.examples:
+            shown = given.get(field, (about.examples or ["VALUE"])[0])
+            parts.append(f'{field}="{shown}"' if " " in str(shown) else f"{field}={shown}")
+    return ":".join(parts)
 
 
 def echo(text: str, err: bool = False) -> None:

@@ -17,7 +17,7 @@ from rich.table import Table
 from rich.text import Text
 
 from wearlaw.cli import ARGUMENTS
-from wearlaw.cli.shared import print_notes, print_results, results_folder, written_formats
+from wearlaw.cli.shared import echo, print_notes, print_results, results_folder, written_formats
 from wearlaw.errors import printable, quoted
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.output.analyses import UNCERTAINTY, write_uncertainty

@@ -34,6 +34,8 @@ class Curve:
         Ends of a band around it.
     points : bool
         Whether it is a set of points, not joined by a line. Predictions are lines or bars, measurements points.
+    hollow : bool
+        Whether the markers of points are hollow: predictions that no line can join.
     bars : float
         Thickness of bars in place of a line, in values of the axis with names; 0 for a line. Bars begin at zero.
     outside : ndarray of bool, (points,), or None
@@ -50,6 +52,7 @@ class Curve:
     points: bool = False
     outside: NDArray[np.bool_] | None = None
     bars: float = 0.0
+    hollow: bool = False
 
     @property
     def is_line(self) -> bool:
@@ -177,6 +180,17 @@ class FigureData:
 def has_band(figure: FigureData) -> bool:
     """Return whether any line of a figure has a band; points and bars have error bars."""
     return any(curve.low is not None and curve.is_line for panel in figure.panels for curve in panel.curves)
+
+
+HOLLOW = "hollow markers: predictions"
+"""Title of a legend that explains hollow markers."""
+
+
+def head_of_legend(figure: FigureData) -> str:
+    """Return the title of the legend of a figure, which explains bands and hollow markers; "" without them."""
+    hollow = any(curve.points and curve.hollow for panel in figure.panels for curve in panel.curves)
+    parts = [f"bands: {figure.bands}" if has_band(figure) else "", HOLLOW if hollow else ""]
+    return "; ".join(filter(None, parts))
 
 
 OUTSIDE = "outside the range of the law"

@@ -1,8 +1,8 @@
 """Figures drawn with matplotlib in one style, for print.
 
 The palette is safe for colour-blind readers (Okabe and Ito, 2008). Lines that would differ only in colour get a line
-style each, for prints in grey. Only measurements have markers. The legend stands below the panels, where it covers no
-curve.
+style each, for prints in grey. Only measurements have filled markers. The legend stands below the panels, where it
+covers no curve.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from wearlaw.figures.curves import OUTSIDE, has_band, in_parts, lone_points, shows_outside
+from wearlaw.figures.curves import OUTSIDE, head_of_legend, in_parts, lone_points, shows_outside
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -260,7 +260,8 @@ def _looks(curve: Curve, style: int) -> dict[str, Any]:
     number = curve.colour % len(PALETTE)
     looks: dict[str, Any] = {"color": PALETTE[number]}
     if curve.points:
-        return {**looks, "marker": MARKERS[number], "linestyle": "", "markersize": 4, "zorder": 3}
+        looks |= {"marker": MARKERS[number], "linestyle": "", "markersize": 4, "zorder": 3}
+        return {**looks, "markerfacecolor": "none"} if curve.hollow else looks
     # Sparser lines lie over denser ones, which show in their gaps.
     looks |= {"linestyle": LINES[style], "zorder": 2.0 + 0.1 * style}
     alone = lone_points(curve)
@@ -336,7 +337,7 @@ def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
         loc="outside lower center",
         handlelength=3.0,  # a whole period of every line style
         ncols=len(entries) if sum(widths) <= LEGEND_WIDTH else max(1, LEGEND_WIDTH // max(widths)),
-        title=_literal(f"bands: {figure.bands}") if has_band(figure) else None,
+        title=_literal(head_of_legend(figure)) or None,
     )
 
 

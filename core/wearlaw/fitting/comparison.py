@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 import pandas as pd
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, did_you_mean, quoted, shortened
-from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.curves import BLACK, Curve, FigureData
+from wearlaw.figures.parity import parity_panels
 from wearlaw.figures.plot import plot
 from wearlaw.fitting.agreement import Agreement, Information, agreement
 from wearlaw.fitting.cross_validation import Folds, cross_validated, folds
@@ -22,6 +23,7 @@ from wearlaw.models.labels import labels
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.sweeping.progress import Bar
 from wearlaw.units.quantities import WEAR_RATE, in_unit
 from wearlaw.units.variables import label, name_of
 from wearlaw.wear_tests.tests import WearTests
@@ -36,9 +38,6 @@ Predictor: TypeAlias = Pipeline[...] | Fit
 
 COUNTS = ("tests", "in_sample", "without_ratio", "fitted")
 """Columns of whole numbers."""
-
-MARGIN = 0.05
-"""Margin of linear axes, as a share of the range of the values."""
 
 
 class Names(NamedTuple):
@@ -133,23 +132,19 @@ class Comparison:
         axes are linear and show all tests.
         """
         measured, linear = self.measured, self._has_negative
-        values = np.concatenate([measured, *(one.predicted for one in self.compared)])
-        ends = _ends(in_unit(values if linear else values[values > 0], self.unit), linear)
         laws = list(dict.fromkeys(one.names.law for one in self.compared))
         panels: dict[str, list[Curve]] = {}
         for one in self.compared:
             shown = np.full(measured.shape, linear) | ((one.predicted > 0) & (measured > 0))
             x, y = (in_unit(some[shown], self.unit) for some in (one.predicted, measured))
-            curve = Curve(one.names.law, x, y, colour=laws.index(one.names.law) % BLACK, points=True)
+            curve = Curve(one.names.law, x, y, colour=laws.index(one.names.law) % BLACK, points=True, hollow=True)
             panels.setdefault(one.names.contact, []).append(curve)
+        values = in_unit(np.concatenate([measured, *(one.predicted for one in self.compared)]), self.unit)
         name = label(self.outcome, units={self.outcome: self.unit})
-        scale: Literal["linear", "log"] = "linear" if linear else "log"
-        across, up = (PlotAxis(f"{kind} {name}", scale, ends) for kind in ("predicted", "measured"))
-        guides = _guides(ends)[: 1 if linear else None]
         return FigureData(
             name="measured_against_predicted",
             title=f"Measured against predicted {name_of(self.outcome)}",
-            panels=tuple(Panel(across, up, (*guides, *curves), name) for name, curves in panels.items()),
+            panels=parity_panels(name, list(panels.items()), values, linear),
             caption=self._caption(),
         )
 
@@ -209,21 +204,6 @@ def _cell(value: object) -> str:
     if value is None:
         return ""
     return f"{value:.4g}" if isinstance(value, float) else str(value)
-
-
-def _ends(values: Array, linear: bool) -> tuple[float, float]:
-    """Return the ends of both axes: a factor of two around all values, since whole decades would waste space."""
-    if linear:
-        margin = MARGIN * float(np.ptp(values))
-        return float(values.min()) - margin, float(values.max()) + margin
-    return (0.5 * values.min(), 2.0 * values.max()) if values.size else (0.1, 10.0)
-
-
-def _guides(ends: tuple[float, float]) -> list[Curve]:
-    """Return the lines of equality and of a factor of two either way."""
-    x = np.array(ends)
-    lines = (("predicted = measured", 1.0, 0), ("factor of two", 0.5, 2), ("factor of two", 2.0, 2))
-    return [Curve(name, x, factor * x, colour=BLACK, dash=dash) for name, factor, dash in lines]
 
 
 def compare(
@@ -289,8 +269,9 @@ def compare_named(
     friction_coefficient: ArrayLike | None,
     outcome: str | None = None,
     cross_validate: Folds | None = None,
+    progress: bool = False,
 ) -> Comparison:
-    """Compare predictors that have names already; see `compare`."""
+    """Compare predictors that have names already; see `compare`. With `progress`, show that of cross-validation."""
     taken = [names.label for names, _ in named]
     twice = [label for label in taken if taken.count(label) > 1]
     if twice:
@@ -313,10 +294,14 @@ def compare_named(
             )
         parts = folds(len(used), cross_validate)
         how = "leave-one-out" if len(parts) == len(used) else f"{len(parts)} folds"
-        compared = [
-            _cross_validated(old, one, used, outcome, parts, friction_coefficient) if isinstance(one, Fit) else old
-            for old, one in zip(compared, given, strict=True)
-        ]
+        with Bar(len(parts) * sum(isinstance(one, Fit) for one in given), progress) as shown:
+            shown.stage("cross-validating")
+            compared = [
+                _cross_validated(old, one, used, outcome, parts, friction_coefficient, shown)
+                if isinstance(one, Fit)
+                else old
+                for old, one in zip(compared, given, strict=True)
+            ]
     if len({one.scatter for one in given if isinstance(one, Fit)}) > 1:
         notes.add("AIC is left blank, since the fits take the tests to scatter in different ways")
         compared = [replace(one, information=None) for one in compared]
@@ -444,7 +429,7 @@ def _compared(
 
 
 def _cross_validated(
-    old: Compared, fit: Fit, tests: WearTests, outcome: str, parts: list[NDArray[np.intp]], friction: Any
+    old: Compared, fit: Fit, tests: WearTests, outcome: str, parts: list[NDArray[np.intp]], friction: Any, shown: Bar
 ) -> Compared:
     """Return a fit with its predictions of each test by fits to tests of other folds."""
     name = old.names.label
@@ -453,7 +438,7 @@ def _cross_validated(
         own = friction if np.ndim(friction) == 0 else np.asarray(friction)[held]
         return _predicted(name, again, _law(again, outcome), tests[held], own, Notes())
 
-    predicted = cross_validated(name, fit, tests, parts, predict)
+    predicted = cross_validated(name, fit, tests, parts, predict, shown)
     errors = agreement(predicted, tests.measured(outcome, _law(fit, outcome).outcome.unit))
     return replace(old, predicted=predicted, agreement=errors, in_sample=0)
 

@@ -47,6 +47,7 @@ def cross_validated(
     tests: WearTests,
     parts: list[NDArray[np.intp]],
     predict: Callable[[Fit, NDArray[np.intp]], Array],
+    on_fold: Callable[[int], None] = lambda _: None,
 ) -> Array:
     """Return the prediction of each test by a fit to the tests of the other folds, with the settings of a fit.
 
@@ -62,6 +63,8 @@ def cross_validated(
         The indices of the tests in each fold.
     predict : callable
         Returns the predictions of a fit for the tests of some indices.
+    on_fold : callable, optional
+        Called with 1 after each fold, to show progress.
 
     Raises
     ------
@@ -88,6 +91,7 @@ def cross_validated(
                 f"{name}: cannot be fitted without {test_names(_numbered(tests), there)}: {error}; choose another"
                 " number of folds, or free fewer parameters"
             ) from error
+        on_fold(1)
     return found
 
 

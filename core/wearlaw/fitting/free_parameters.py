@@ -195,6 +195,11 @@ def free_names(free: Any) -> Sequence[str]:
     return names
 
 
+def give_bounds(name: str) -> str:
+    """Return the advice to give bounds of a parameter, as Python and the command line take them."""
+    return f"give bounds, as in bounds={{'{name}': (low, high)}} or --bounds {name}=LOW:HIGH"
+
+
 def _ends(
     name: str, like: Quantity | float, allowed: tuple[float, float, bool], given: tuple[Any, Any] | None
 ) -> tuple[float, float]:
@@ -207,7 +212,7 @@ def _ends(
     if given is None:
         if first == 0.0:
             raise FitError(
-                f"bounds: the first value of {quoted(name)} is zero, which says nothing of its size; give bounds"
+                f"bounds: the first value of {quoted(name)} is zero, which says nothing of its size; {give_bounds(name)}"
             )
         low, high = (
             (first / FACTOR, first * FACTOR) if positive else (first - FACTOR * abs(first), first + FACTOR * abs(first))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConfigurationError, FitError, ModelError
-from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
+from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, give_bounds
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces, integrate_laws, patch_area
 from wearlaw.pipeline.named_numbers import Place, check_loads_stay, staged_models
@@ -127,7 +127,7 @@ class Observations:
                 raise
             raise FitError(
                 f"the search for the best fit has met values of {' and '.join(names)} that the stage or the contact"
-                f" model does not accept; give bounds: {error}"
+                f" model does not accept; {give_bounds(names[0])}: {error}"
             ) from error
         return found
 

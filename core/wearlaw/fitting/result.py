@@ -16,6 +16,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.parity import parity_panels
 from wearlaw.figures.plot import plot
 from wearlaw.fitting.free_parameters import FRICTION
 from wearlaw.fitting.lack_of_fit import LackOfFit
@@ -251,33 +252,46 @@ def _counted(one: Observations) -> str:
 
 
 def _figure_data(fit: Fit) -> FigureData:
-    """Return a panel for each kind of measurement: outcomes of laws against Tγ/A, tractions against creepage."""
+    """Return a panel for each kind of measurement: outcomes over Tγ/A, tractions over creepage, or parity."""
     panels = tuple(_panel(fit, one) for one in fit.observations)
-    band = f"band: {fit.confidence:.0%} of the bootstrap replicates" if fit.samples else "no bootstrap, no band"
     apart = (
         ""
         if all(_one_series(one.problem) or _varied(one) for one in fit.observations)
-        else "; the tests differ in load, friction or other conditions"
+        else "; the tests differ in load, friction or other conditions, so no curve runs through them"
     )
+    drawn = any(curve.low is not None for panel in panels for curve in panel.curves)
     names = ", ".join(fit.parameters)
+    band = "; no bootstrap, no band" if not fit.samples else ""
+    if drawn:
+        band = f"; band: {fit.confidence:.0%} of the bootstrap replicates"
     return FigureData(
         "fit",
         f"Fit of {names}",
         panels,
-        f"{names} fitted to {fit.tests.source or 'tests'}; {band}{apart}.",
+        f"{names} fitted to {fit.tests.source or 'tests'}{band}{apart}.",
         f"{fit.confidence:.0%} of the bootstrap replicates",
     )
 
 
 def _panel(fit: Fit, one: Observations) -> Panel:
     x = "creepage" if one.observable == TRACTION else "wear_index_density"
-    varied = None if _one_series(one.problem) else _varied(one)
-    if varied is not None:
-        return _panel_along(fit, one, varied)
+    if not _one_series(one.problem):
+        varied = _varied(one)
+        return _parity(fit, one) if varied is None else _panel_along(fit, one, varied)
     measured = Curve("measured", _along(fit, one.problem, x), _shown(one, one.measured), colour=BLACK, points=True)
     scale: Literal["log", "linear"] = "log" if one.observable != TRACTION and (one.measured > 0.0).all() else "linear"
     axes = PlotAxis(label(x), scale), PlotAxis(one.label, scale)
-    return Panel(*axes, (_fitted(fit, one, x), measured))
+    problem = _between(one)
+    return Panel(*axes, (_curve(fit, one, problem, _along(fit, problem, x)), measured))
+
+
+def _parity(fit: Fit, one: Observations) -> Panel:
+    """Return measured against fitted values of tests that differ in several conditions."""
+    fitted, measured = (_shown(one, values) for values in (one.predicted(fit.values_in_si())[0], one.measured))
+    tests = Curve("tests", fitted, measured, points=True, hollow=True)
+    values = np.concatenate([fitted, measured])
+    (panel,) = parity_panels(one.label, [("", [tests])], values, bool((values <= 0.0).any()))
+    return panel
 
 
 def _panel_along(fit: Fit, one: Observations, name: str) -> Panel:
@@ -323,14 +337,7 @@ def _finer(values: Array) -> Array:
     return np.interp(np.linspace(0.0, places[-1], BETWEEN * (values.size - 1) + 1), places, values)
 
 
-def _fitted(fit: Fit, one: Observations, x: str) -> Curve:
-    """Return the fitted values: a curve through the tests, or points if their conditions differ."""
-    together = _one_series(one.problem)
-    problem = _between(one) if together else one.problem
-    return _curve(fit, one, problem, _along(fit, problem, x), points=not together)
-
-
-def _curve(fit: Fit, one: Observations, problem: Problem, along: Array, points: bool = False) -> Curve:
+def _curve(fit: Fit, one: Observations, problem: Problem, along: Array) -> Curve:
     """Return the fitted values at operating points, with their band."""
     order = np.argsort(along, kind="stable")
 
@@ -345,7 +352,7 @@ def _curve(fit: Fit, one: Observations, problem: Problem, along: Array, points: 
         chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).round().astype(int))
         tail = 0.5 - 0.5 * fit.confidence
         low, high = np.quantile(at({name: some[chosen] for name, some in values.items()}), [tail, 1.0 - tail], axis=0)
-    return Curve("fitted", along[order], best, low=low, high=high, points=points)
+    return Curve("fitted", along[order], best, low=low, high=high)
 
 
 def _arrays(problem: Problem) -> dict[str, Array]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from wearlaw.arrays.array import Array
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.errors import FitError, shortened
-from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, free_names
+from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, free_names, give_bounds
 from wearlaw.fitting.identification import refuse_undetermined, where_tested
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
 from wearlaw.fitting.observations import Observations, Scatter, observe
@@ -114,7 +114,8 @@ class Task:
                 best = refine(self.model, target, best.theta[0], bounds)
             fits = [refine(self.model, target, one.theta[0], bounds) for one in fits]
         if not best.converged[0]:
-            raise FitError("the fit has not converged; give bounds, or a law whose parameters are nearer to the tests")
+            advice = give_bounds(self.free.names[0])
+            raise FitError(f"the fit has not converged; {advice}, or a law whose parameters are nearer to the tests")
         refuse_undetermined(best, fits, self.free, where_tested(self.observations))
         return best
 

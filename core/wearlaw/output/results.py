@@ -17,6 +17,7 @@ from wearlaw.figures.curves import FigureData, FigureFormat
 from wearlaw.figures.drawing import draw
 from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw.report.latex import latex_table
+from wearlaw.report.main_result import main_figure, main_result
 from wearlaw.report.page import report
 from wearlaw.report.tables import tables
 from wearlaw.study.case import CASE_FILE, Case, written
@@ -170,7 +171,9 @@ def write_figures(
     """Write all figures of a study and return the names of the files."""
     names = []
     (folder / FIGURES).mkdir()
-    every = (*study.figures, *(figure for section in study.sections for figure in section.figures))
+    first = main_figure(main_result(study))
+    own = study.figures if any(one is first for one in study.figures) else (first, *study.figures)
+    every = (*own, *(figure for section in study.sections for figure in section.figures))
     for name, figure in _by_name("figure", ((figure.name, figure) for figure in every)).items():
         on_stage(f"drawing {name}")
         names += save_figure(figure, folder, os.path.join(FIGURES, name), formats)

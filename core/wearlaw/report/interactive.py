@@ -18,7 +18,7 @@ from wearlaw.figures.curves import (
     Map,
     Panel,
     PlotAxis,
-    has_band,
+    head_of_legend,
     in_parts,
     lone_points,
     shows_outside,
@@ -87,7 +87,7 @@ def plotly_figure(figure: FigureData) -> Json:
         "hovermode": "closest",
         "uirevision": figure.name,  # keeps zoom and what is switched off when the colours change
         "margin": {"l": 70, "r": 20, "t": 40, "b": 60},
-        "legend": {"tracegroupgap": 0, **below, **_bands(figure)},
+        "legend": {"tracegroupgap": 0, **below, **_head(figure)},
         "annotations": [_heading(panel, number) for number, panel in numbered if panel.title],
         "shapes": [shape for number, panel in numbered for shape in _shapes(panel, number)],
     }
@@ -128,9 +128,10 @@ def _explained(figure: FigureData) -> list[Json]:
     return [{**nowhere, "name": literal(label), "legendgroup": literal(label), **look} for label, look in looks.items()]
 
 
-def _bands(figure: FigureData) -> Json:
-    """Return the title of the legend, which explains the bands, if there are any."""
-    return {"title": {"text": literal(f"bands: {figure.bands}")}} if has_band(figure) else {}
+def _head(figure: FigureData) -> Json:
+    """Return the title of the legend, if there is anything to explain."""
+    head = head_of_legend(figure)
+    return {"title": {"text": literal(head)}} if head else {}
 
 
 def literal(text: str) -> str:
@@ -262,7 +263,8 @@ def _map(shown: Map, number: str, ends: Ends) -> list[Json]:
 
 def _marker(curve: Curve, colour: str) -> Json:
     if curve.points:
-        return {"color": colour, "symbol": SYMBOLS[MARKERS[curve.colour % len(MARKERS)]], "size": 7}
+        symbol = SYMBOLS[MARKERS[curve.colour % len(MARKERS)]]
+        return {"color": colour, "symbol": f"{symbol}-open" if curve.hollow else symbol, "size": 7}
     return {"color": colour, "symbol": "circle", "size": 5}
 
 

@@ -12,6 +12,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.figures.curves import FigureData
 from wearlaw.models.law import WEAR
 from wearlaw.pipeline.variables import MASS
+from wearlaw.study.figure_kinds import axes_of_map
 from wearlaw.study.figure_spec import FigureSpec, Scale
 from wearlaw.study.figures import figures_of
 from wearlaw.study.grid import Axis
@@ -29,6 +30,9 @@ from wearlaw.units.variables import readable
 
 MANY_CURVES = 6
 """Number of curves beyond which the figure shows the pairs of one contact model only."""
+
+MANY_MAPS = 2
+"""Number of maps that the first screen has room for."""
 
 WIDE = 30.0
 """Ratio of the largest outcome to the smallest beyond which the figure has a logarithmic axis."""
@@ -106,16 +110,32 @@ def main_figure(main: MainResult) -> FigureData:
 
 def _contents(figure: FigureData) -> list[Any]:
     """Return the labels of what a figure shows."""
-    return [(panel.x.label, panel.y.label, {curve.label for curve in panel.curves}) for panel in figure.panels]
+    return [
+        (
+            panel.x.label,
+            panel.y.label,
+            {curve.label for curve in panel.curves},
+            panel.map and (panel.map.label, panel.title),
+        )
+        for panel in figure.panels
+    ]
 
 
 def _drawn(main: MainResult) -> FigureData:
-    """Return the figure of the outcome along the main axis."""
+    """Return the figure of the outcome: a map over two long axes, otherwise curves along the main axis."""
     study, pairs, more = main.study, main.pairs, ""
-    if len(pairs) > MANY_CURVES:
+    plane = axes_of_map(main.sweep, study.case.rig.creepage)
+    if len(pairs) > (MANY_CURVES if plane is None else MANY_MAPS):
         first = study.pair(pairs[0]).contact_model
         pairs = tuple(pair for pair in pairs if study.pair(pair).contact_model == first)
         more = f" Only the pairs with {first} are shown; the tables hold all."
+    if plane is not None:
+        if len(pairs) > MANY_MAPS:
+            pairs = pairs[:MANY_MAPS]
+            more = f" Only {' and '.join(pairs)} are shown; the results hold all."
+        x, y = plane
+        name = f"{main.outcome}_over_{x}_and_{y}"
+        return _figure(main, name, FigureSpec(sweep=main.name, x=x, y=(y,), map=main.outcome, pairs=pairs), more)
     given = study.case.sweeps[main.name].given.get(main.axis)
     spec = FigureSpec(
         sweep=main.name,
@@ -125,7 +145,15 @@ def _drawn(main: MainResult) -> FigureData:
         y_scale=_scale(main.sweep[main.outcome].sel(pair=list(pairs)).values),
         pairs=pairs,
     )
-    case = study.case.model_copy(update={"figures": {f"{main.outcome}_over_{main.axis}": spec}})
+    return _figure(main, f"{main.outcome}_over_{main.axis}", spec, more)
+
+
+def _figure(main: MainResult, name: str, spec: FigureSpec, more: str) -> FigureData:
+    """Return a figure of the main result under a name that no figure of the case has."""
+    study, name = main.study, f"main_{name}"
+    while name in study.case.figures:
+        name = f"main_{name}"
+    case = study.case.model_copy(update={"figures": {name: spec}})
     (figure,) = figures_of(replace(study, case=case, sweeps={main.name: main.sweep}))
     if patch_axes(study.sweeps[main.name]):
         more += f" {'The sum over' if main.outcome == MASS else 'The largest of'} all patches."

@@ -103,11 +103,11 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
             for x in (first,) if first == BY_PATCH else ("wear_index", first):
                 y_scale: Scale = "log" if log else "linear"
                 spec = FigureSpec(sweep=name, x=x, y=(outcome.name,), x_scale=spacing, y_scale=y_scale)
-                yield f"{name}_{outcome.name}_against_{x}", spec
+                yield f"{name}_{outcome.name}_over_{x}", spec
         if axis == creepage:
             measured = results.case.measured is not None
             spec = FigureSpec(sweep=name, x=first, y=("traction_coefficient",), x_scale=spacing, measured=measured)
-            yield f"{name}_traction" if point and not several else f"{name}_traction_against_{first}", spec
+            yield f"{name}_traction" if point and not several else f"{name}_traction_over_{first}", spec
     for name, profile in results.profiles.items():
         if "y" in profile:
             bodies = [body for body in results.case.rig.bodies if f"{body}_depth" in profile]
@@ -238,7 +238,7 @@ def _over_sweep(results: Results, spec: FigureSpec, window: Window, axis: str) -
             step = TOGETHER / len(found) if found else 0.0
             beside = step * (np.arange(len(found)) - 0.5 * (len(found) - 1))
             # Bars begin at zero, which a logarithmic axis does not have.
-            look: dict[str, Any] = {"points": True} if window.y_scale == "log" else {"bars": 0.9 * step}
+            look: dict[str, Any] = {"points": True, "hollow": True} if window.y_scale == "log" else {"bars": 0.9 * step}
             found = [
                 replace(curve, x=curve.x + shift, colour=number, dash=0, **look)
                 for number, (curve, shift) in enumerate(zip(found, beside, strict=True))

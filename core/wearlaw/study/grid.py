@@ -72,7 +72,9 @@ class Axis(Configuration):
         """
         (first, last), unit = _in_one_unit((self.start, self.stop))
         if not math.isfinite(float(last) - float(first)):
-            raise InputError(f"the ends of an axis and their distance must be finite, got '{self.start}' and '{self.stop}'")
+            raise InputError(
+                f"the ends of an axis and their distance must be finite, got '{self.start}' and '{self.stop}'"
+            )
         if self.spacing == "linear":
             return np.linspace(first, last, self.points), unit
         if np.sign(first) * np.sign(last) <= 0:

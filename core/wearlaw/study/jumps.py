@@ -51,13 +51,18 @@ def with_jumps(results: Results, sweep: str, axis: str, x: str, y: str, pair: st
         found: Array = predicted(values, chosen).outcome(y).to(units[y]).magnitude
         return found
 
+    points, known = grid.values_along(axis), results.pair(pair).jumps
+    key = (sweep, axis, y, points.tobytes(), curve.y.tobytes(), curve.low is None)
     try:
-        sides, behind = jumps_of(grid.values_along(axis), curve.y, outcome)
-        if not sides.size:
+        if key not in known:
+            sides, behind = jumps_of(points, curve.y, outcome)
+            new = predicted(sides) if sides.size else None
+            band = () if new is None or curve.low is None else _band(law)
+            known[key] = sides, behind, new, [outcome(sides, pipeline.with_law(end)) for end in band]
+        sides, behind, new, ends = known[key]
+        if new is None:
             return curve
-        new = predicted(sides)
         along = grid.in_units(axis, sides, units) if x == axis else getattr(new, x).to(units[x]).magnitude
-        ends = [] if curve.low is None else [outcome(sides, pipeline.with_law(end)) for end in _band(law)]
     except WearlawError:  # a rig may not take the values between those of the sweep
         return curve
     low, high = ends or (None, None)
