@@ -74,8 +74,8 @@ class Checkpoint:
         try:
             if not resume:
                 raise OutputError(
-                    f"output: {quoted(folder)} holds the finished blocks of an interrupted run; add --resume to go on with"
-                    " it, remove it, or choose another folder with -o"
+                    f"output: {quoted(folder)} holds the finished blocks of an interrupted run; add --resume to go on"
+                    " with it, remove it, or choose another folder with -o"
                 )
             check_same(folder, self._before(), self._run)
         except OutputError:
@@ -141,8 +141,8 @@ class Checkpoint:
             self._lock = Lock(self.folder / LOCK)
         except HeldError:
             raise OutputError(
-                f"output: {quoted(self.folder)} belongs to a run that is still going on; wait for its end, or choose another"
-                " folder with -o"
+                f"output: {quoted(self.folder)} belongs to a run that is still going on; wait for its end, or choose"
+                " another folder with -o"
             ) from None
 
     def close(self) -> None:
