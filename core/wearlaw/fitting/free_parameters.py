@@ -212,7 +212,8 @@ def _ends(
     if given is None:
         if first == 0.0:
             raise FitError(
-                f"bounds: the first value of {quoted(name)} is zero, which says nothing of its size; {give_bounds(name)}"
+                f"bounds: the first value of {quoted(name)} is zero, which says nothing of its size;"
+                f" {give_bounds(name)}"
             )
         low, high = (
             (first / FACTOR, first * FACTOR) if positive else (first - FACTOR * abs(first), first + FACTOR * abs(first))

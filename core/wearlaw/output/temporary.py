@@ -91,8 +91,8 @@ def tidy_up(folder: Path, target: Path) -> None:
             _remove(left, lock)
         if replaced.exists() and not (left / LOCK).exists():
             raise OutputError(
-                f"output: {quoted(replaced)} holds what an earlier run has moved out of {quoted(folder)} and could not put"
-                f" back; move it to where it belongs, and remove {quoted(left)}"
+                f"output: {quoted(replaced)} holds what an earlier run has moved out of {quoted(folder)} and could not"
+                f" put back; move it to where it belongs, and remove {quoted(left)}"
             )
 
 
