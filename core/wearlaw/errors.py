@@ -20,7 +20,7 @@ from difflib import get_close_matches
 VALUE, PATH, LINE, LINES = 100, 400, 2000, 50
 """Most characters that a message shows of a value, of a path and in a line, and most lines."""
 
-_CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+_CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
 """Characters that steer a terminal, break a line, reverse the direction of the text after them, or are none at all."""
 
 UNWRITABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")

@@ -14,6 +14,7 @@ from wearlaw.cli.shared import (
     contact_model,
     echo,
     fields,
+    folder_for,
     law_of,
     listed,
     print_notes,
@@ -119,11 +120,12 @@ def fit(
     The folder then holds law.toml, the fitted law, to be used wherever a law is asked for; parameters.csv with
     confidence intervals; residuals.csv; a figure; and fit.json with all that the fit comes from.
     """  # noqa: D301
-    folder = output if output is not None else Path(f"{Path(tests).stem}-fit")
+    folder = output if output is not None else folder_for(tests, "fit")
     notes = Notes()
     with results_folder(folder, overwrite, FIT) as fresh:
         fitted = _fit(tests, notes, **options)
-        names = write_fit(fitted, notes.texts, fresh, figure_formats, latex)
+        with notes.of("figure"):
+            names = write_fit(fitted, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
     echo(repr(fitted))
     print_results(folder, names)
@@ -238,11 +240,12 @@ def compare(
     contact. The folder then holds ranking.csv, the table that is printed; predictions.csv; a figure of measured against
     predicted wear rates; and comparison.json with all models.
     """  # noqa: D301
-    folder = output if output is not None else Path(f"{Path(tests).stem}-comparison")
+    folder = output if output is not None else folder_for(tests, "comparison")
     notes = Notes()
     with results_folder(folder, overwrite, COMPARISON) as fresh:
         comparison = _compare(tests, notes, **options)
-        names = write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
+        with notes.of("figure"):
+            names = write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
     echo(repr(comparison))
     print_results(folder, names)

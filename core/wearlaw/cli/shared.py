@@ -162,14 +162,24 @@ def _form(name: str, given: Mapping[str, str | float]) -> str:
     return ":".join(parts)
 
 
+def folder_for(path: str, ending: str) -> Path:
+    """Return the folder for the results of a file unless the user names one, such as "case-results"."""
+    stem = "".join(letter if printable(letter) == letter else "_" for letter in Path(path).stem)
+    return Path(f"{stem}-{ending}")
+
+
 def echo(text: str, err: bool = False) -> None:
     """Print a text without control characters, which names and labels from outside may have."""
     click.echo(printable(text, kept="\n\t"), err=err)
 
 
+def _is_terminal() -> bool:
+    return sys.stdout.isatty()
+
+
 def echo_file(text: str) -> None:
     """Print the text of a file: unchanged into a file or pipe, without control characters on a terminal."""
-    if sys.stdout.isatty():
+    if _is_terminal():
         echo(text.removesuffix("\n"))
     else:
         click.echo(text.encode(), nl=False)  # UTF-8, whatever the terminal speaks

@@ -17,13 +17,14 @@ from rich.table import Table
 from rich.text import Text
 
 from wearlaw.cli import ARGUMENTS
-from wearlaw.cli.shared import echo, print_notes, print_results, results_folder, written_formats
+from wearlaw.cli.shared import echo, folder_for, print_notes, print_results, results_folder, written_formats
 from wearlaw.errors import printable, quoted
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.output.analyses import UNCERTAINTY, write_uncertainty
 from wearlaw.output.folder import ElsewhereError, identity
 from wearlaw.output.results import RESULTS, check_room, without_csv, write
 from wearlaw.output.temporary import discard
+from wearlaw.pipeline.notes import Notes
 from wearlaw.report.tables import NamedTable, summaries
 from wearlaw.study.case import load_case
 from wearlaw.study.study import Study, evaluations, provenance, used
@@ -63,7 +64,8 @@ def run(
     spelt out.
     """
     loaded = load_case(case)
-    folder = output if output is not None else Path(f"{Path(case).stem}-results")
+    folder = output if output is not None else folder_for(case, "results")
+    notes = Notes()
     checkpoint = Checkpoint(folder.parent / f"{folder.name}.partial", provenance(loaded), resume)
     with _kept(checkpoint, folder), results_folder(folder, overwrite, RESULTS, _how_to_go_on(checkpoint)) as fresh:
         left_out = without_csv(loaded, csv)
@@ -72,8 +74,9 @@ def run(
             study = run_case(loaded, shown, workers, checkpoint)
             if left_out is not None:
                 study = replace(study, notes=(*study.notes, left_out))
-            names = write(study, fresh, figure_formats, latex, shown.stage, left_out is None)
-    print_notes([*study.notes, *checkpoint.notes()])
+            with notes.of("figures"):
+                names = write(study, fresh, figure_formats, latex, shown.stage, left_out is None)
+    print_notes([*study.notes, *checkpoint.notes(), *notes.texts])
     for table in summaries(study):
         Console().print(_summary(table))
     _print_used(study)
@@ -154,15 +157,17 @@ def uncertainty(
     pair, such as scatter_usfd_on_exact.png for the table [uncertainty.scatter].
     """
     loaded = load_case(case)
-    folder = output if output is not None else Path(f"{Path(case).stem}-uncertainty")
+    folder = output if output is not None else folder_for(case, "uncertainty")
     total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.laws_by_label)
+    notes = Notes()
     with results_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as shown:
         found = uncertainty_of(loaded, samples, seed, shown)
         shown.stage("writing results")
-        names = write_uncertainty(loaded, found, seed, fresh, figure_formats, latex)
+        with notes.of("figures"):
+            names = write_uncertainty(loaded, found, seed, fresh, figure_formats, latex)
     if found.samples != samples:
         echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
-    print_notes(found.notes)
+    print_notes([*found.notes, *notes.texts])
     for table in (found.wear_rates, found.indices):
         if len(table):
             echo(table.to_string(index=False, float_format=lambda number: f"{number:.4g}"))

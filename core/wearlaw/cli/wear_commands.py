@@ -8,8 +8,18 @@ from pathlib import Path
 import click
 import pandas as pd
 
-from wearlaw.cli.shared import echo, fields, law_of, print_notes, print_results, results_folder, written_formats
+from wearlaw.cli.shared import (
+    echo,
+    fields,
+    folder_for,
+    law_of,
+    print_notes,
+    print_results,
+    results_folder,
+    written_formats,
+)
 from wearlaw.contact.contact import Contact
+from wearlaw.errors import printable
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.figures.worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
 from wearlaw.models.law import Law
@@ -66,7 +76,7 @@ def wear(
     printed; a table and a figure of the wear across each patch; and wear.json with the laws and the notes.
     """  # noqa: D301
     first, *others = files
-    folder = output if output is not None else Path(f"{Path(first).stem}-wear")
+    folder = output if output is not None else folder_for(first, "wear")
     notes, chosen = Notes(), [law_of(text) for text in laws]
     given = fields("--option", options)
     labels = _labels(files)
@@ -80,7 +90,8 @@ def wear(
             figure = worn_figure(found, labels, " and ".join(law.name for law in chosen))
             tables = {"wear": table, **profile_tables(found, labels)}
         _note_powers(table, notes)
-        names = write_wear(tables, figure, chosen, notes.texts, fresh, figure_formats, latex)
+        with notes.of("figure"):
+            names = write_wear(tables, figure, chosen, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
     _print(table)
     print_results(folder, names)
@@ -94,7 +105,7 @@ def _predicted(contact: Contact, laws: Sequence[Law], notes: Notes) -> Predictio
 def _labels(files: Sequence[str]) -> list[str]:
     """Return the names of the files without their folders, or the paths if names are equal."""
     names = [Path(one).name for one in files]
-    return names if len({*names}) == len(names) else list(files)
+    return [printable(one) for one in (names if len({*names}) == len(names) else files)]
 
 
 def _note_powers(table: pd.DataFrame, notes: Notes) -> None:

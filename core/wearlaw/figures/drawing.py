@@ -7,7 +7,6 @@ covers no curve.
 
 from __future__ import annotations
 
-import textwrap
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
@@ -20,6 +19,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from wearlaw.figures.curves import OUTSIDE, head_of_legend, in_parts, lone_points, shows_outside
+from wearlaw.figures.texts import drawable, warn_of_boxes, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,6 +56,8 @@ TITLE, LINE = 0.26, 0.17
 """Height of a line of the title, and of the conditions below it, in inches."""
 TITLE_LETTERS, LETTERS = 72, 105
 """Letters of the title, and of the conditions, that fit across a figure."""
+PANEL_LETTERS = 76
+"""Letters of the title of a panel that fit across a figure."""
 SHADES = ("#f7f7f7", "#ececec")
 """Greys of the levels of shades."""
 BAND, EDGE = 0.07, 0.4
@@ -70,17 +72,23 @@ TICKS = 3
 """Fewest labelled ticks on a logarithmic axis."""
 
 
-def draw(figure: FigureData) -> Figure:
-    """Draw a figure: panels in rows of two, an odd first panel over a whole row."""
+def draw(figure: FigureData, warn: bool = False) -> Figure:
+    """Draw a figure: panels in rows of two, an odd first panel over a whole row.
+
+    Letters that no installed font has become boxes, and with `warn` a warning names them.
+    """
+    if warn:
+        warn_of_boxes([figure])
+    figure, families = drawable(figure)
     count = len(figure.panels)
     cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
     rows: Any = [cells[start : start + 2] for start in range(0, len(cells), 2)]
     heights = [max(_height(figure.panels[cell], WIDTH / len(set(row))) for cell in row) for row in rows]
-    title = textwrap.wrap(figure.title, TITLE_LETTERS)
-    conditions = textwrap.wrap(figure.conditions, LETTERS)
+    title = wrapped(figure.title, TITLE_LETTERS)
+    conditions = wrapped(figure.conditions, LETTERS)
     head = TITLE * len(title) + LINE * len(conditions) + 0.08
     height = 0.9 + head + sum(heights)
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(STYLE | {"font.family": families}):
         drawn = Figure(figsize=(WIDTH, height), layout="constrained")
         engine: Any = drawn.get_layout_engine()
         engine.set(rect=(0.0, 0.0, 1.0, 1.0 - head / height))
@@ -89,7 +97,8 @@ def draw(figure: FigureData) -> Figure:
         for number, panel in enumerate(figure.panels):
             if panel.map is not None:
                 _mesh(axes[number], panel.map, norm)
-            _fill(axes[number], panel, styles)
+            across = 1 if len(set(rows[-1])) == 1 or (count % 2 and not number) else 2
+            _fill(axes[number], panel, styles, PANEL_LETTERS // across)
         if norm is not None:
             bar = drawn.colorbar(
                 ScalarMappable(norm, COLOURS), ax=list(axes.values()), label=_literal(_maps(figure)[0].label)
@@ -139,7 +148,7 @@ def style_of(curve: Curve, styles: Styles) -> int:
     return styles.get(_kind(curve), 0)
 
 
-def _fill(axes: Axes, panel: Panel, styles: Styles) -> None:
+def _fill(axes: Axes, panel: Panel, styles: Styles, letters: int) -> None:
     for shade in panel.shades:
         for number, (low, high) in enumerate(shade.spans):
             label = "_" if number else _literal(shade.label)
@@ -149,7 +158,8 @@ def _fill(axes: Axes, panel: Panel, styles: Styles) -> None:
             _bars(axes, curve, panel)
         else:
             _plot(axes, curve, style_of(curve, styles))
-    axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label), title=_literal(panel.title))
+    axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label))
+    axes.set_title(_literal("\n".join(wrapped(panel.title, letters))))
     axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
     if panel.map is not None:
         _borders(axes, panel.map)

@@ -14,6 +14,7 @@ import pandas as pd
 
 from wearlaw.errors import OutputError
 from wearlaw.figures.curves import FigureData, FigureFormat
+from wearlaw.figures.texts import warn_of_boxes
 from wearlaw.fitting.comparison import Comparison
 from wearlaw.fitting.result import Fit
 from wearlaw.models.law import Law
@@ -145,7 +146,9 @@ def _write(
     """Write tables, a figure if there is one, and a JSON record."""
     try:
         names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
-        names += save_figure(figure, folder, figure.name, figure_formats) if figure is not None else []
+        if figure is not None:
+            warn_of_boxes([figure])
+            names += save_figure(figure, folder, figure.name, figure_formats)
         text = json.dumps(record, indent=2, ensure_ascii=False)
         (folder / marker).write_text(text + "\n", encoding="utf-8")
     except OSError as error:
@@ -179,10 +182,12 @@ def write_uncertainty(
         names = save_table(found.wear_rates, folder, "wear_rates", latex)
         if len(found.indices):
             names += save_table(found.indices, folder, "sobol_indices", latex)
-        for file, one in zip(figure_files(found.pairs), found.pairs, strict=True):
-            figure = one.uncertainty.figure_data()
-            titled = replace(figure, title=f"{one.pair.label}, {one.point}")
-            names += save_figure(titled, folder, file, figure_formats)
+        figures = [
+            replace(one.uncertainty.figure_data(), title=f"{one.pair.label}, {one.point}") for one in found.pairs
+        ]
+        warn_of_boxes(figures)
+        for file, figure in zip(figure_files(found.pairs), figures, strict=True):
+            names += save_figure(figure, folder, file, figure_formats)
         for name, text in files.items():
             (folder / name).write_text(text, encoding="utf-8")
         text = json.dumps(record, indent=2, ensure_ascii=False)

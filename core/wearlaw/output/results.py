@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -15,6 +16,7 @@ import xarray
 from wearlaw.errors import OutputError, quoted
 from wearlaw.figures.curves import FigureData, FigureFormat
 from wearlaw.figures.drawing import draw
+from wearlaw.figures.texts import warn_of_boxes
 from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw.report.latex import latex_table
 from wearlaw.report.main_result import main_figure, main_result
@@ -141,11 +143,34 @@ def write(
 
 def _write_csv(rows: pd.DataFrame, path: Path, on_stage: Callable[[str], None]) -> None:
     """Write the table of results, with progress if it is long."""
-    with path.open("w", encoding="utf-8", newline="") as file:
+    with path.open("w", encoding="utf-8", errors="replace", newline="") as file:
         for start in range(0, len(rows), CHUNK):
             if start:
                 on_stage(f"writing {path.name}, {start / len(rows):.0%}")
-            rows[start : start + CHUNK].to_csv(file, index=False, header=start == 0)
+            disarmed(rows[start : start + CHUNK]).to_csv(file, index=False, header=start == 0)
+
+
+_FORMULA = re.compile(r"(?:^|(?<=[;\t\r\n]))(?=[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20])")
+"""The places where a spreadsheet would read a formula in a text; a semicolon or tab can begin a cell of it."""
+
+_NUMBER = re.compile(r"[+\-]?(\d[\d.]*|\.\d+|inf|nan)([eE][+\-]?\d+)?( [\w%°·/*^.²³⁻¹-]*)?")
+"""A number, with a unit or without."""
+
+
+def disarmed(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return a table for a spreadsheet, in which an apostrophe keeps a text such as "=1+1" from being a formula.
+
+    Numbers stay as they are. Such a text comes from outside, as in the labels of wear tests.
+    """
+    found = frame.rename(columns=_disarmed)
+    for number, dtype in enumerate(frame.dtypes):
+        if not pd.api.types.is_numeric_dtype(dtype):
+            found.isetitem(number, frame.iloc[:, number].map(_disarmed))
+    return found
+
+
+def _disarmed(value: Any) -> Any:
+    return _FORMULA.sub("'", value) if isinstance(value, str) and not _NUMBER.fullmatch(value) else value
 
 
 def _write_tables(study: Study, folder: Path, latex: bool) -> list[str]:
@@ -158,7 +183,7 @@ def _write_tables(study: Study, folder: Path, latex: bool) -> list[str]:
 
 def save_table(frame: pd.DataFrame, folder: Path, name: str, latex: bool, footnotes: Sequence[str] = ()) -> list[str]:
     """Write a table as CSV, and for LaTeX with its footnotes if asked for, and return the names of the files."""
-    frame.to_csv(folder / f"{name}.csv", index=False)
+    disarmed(frame).to_csv(folder / f"{name}.csv", index=False, encoding="utf-8", errors="replace")
     if not latex:
         return [f"{name}.csv"]
     (folder / f"{name}.tex").write_text(latex_table(frame, footnotes), encoding="utf-8")
@@ -174,6 +199,7 @@ def write_figures(
     first = main_figure(main_result(study))
     own = study.figures if any(one is first for one in study.figures) else (first, *study.figures)
     every = (*own, *(figure for section in study.sections for figure in section.figures))
+    warn_of_boxes(every)
     for name, figure in _by_name("figure", ((figure.name, figure) for figure in every)).items():
         on_stage(f"drawing {name}")
         names += save_figure(figure, folder, os.path.join(FIGURES, name), formats)

@@ -17,7 +17,7 @@ from pydantic import model_validator
 
 from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.problem import Body, CreepForces, Problem
-from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, shortened
+from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, excerpt, shortened
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.stage import Stage
@@ -243,7 +243,8 @@ class Rig(Model):
         for name in conditions if known else ():
             if name not in known:
                 raise ConditionsError(
-                    f"{name}: unknown condition{did_you_mean(name, known)} The conditions are: {', '.join(known)}"
+                    f"{excerpt(name)}: unknown condition{did_you_mean(name, known)} The conditions are:"
+                    f" {', '.join(known)}"
                 )
         for name in self.needed():
             if name not in conditions:

@@ -9,6 +9,7 @@ from typing import Any
 
 import pandas as pd
 
+from wearlaw.errors import printable
 from wearlaw.report import tables
 
 _GREEK = {
@@ -70,7 +71,8 @@ def cell(value: Any) -> str:
 
 def escaped(text: str) -> str:
     """Escape a text for LaTeX."""
-    text = re.sub("-(?=-)", "-{}", " ".join(text.split()).translate(_SYMBOLS))  # two hyphens would become a dash
+    plain = printable(" ".join(text.split()))
+    text = re.sub("-(?=-)", "-{}", plain.translate(_SYMBOLS))  # two hyphens would become a dash
     text = _RAISED_TEXT.sub(lambda found: rf"\textsuperscript{{{found[0].translate(_RAISED)}}}", text)
     return _LOWERED_TEXT.sub(lambda found: rf"\textsubscript{{{found[0].translate(_LOWERED)}}}", text)
 

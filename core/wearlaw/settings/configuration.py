@@ -16,6 +16,7 @@ from wearlaw.errors import (
     FrozenError,
     WearlawError,
     did_you_mean,
+    excerpt,
     message_of,
     printable,
     quoted,
@@ -123,7 +124,9 @@ class Configuration(BaseModel):
         fields = type(self).model_fields
         if name not in fields:
             hint = did_you_mean(name, fields)
-            return FrozenError(f"{self.subject()}: {name}: unknown field{hint} The fields are: {', '.join(fields)}")
+            return FrozenError(
+                f"{self.subject()}: {excerpt(name)}: unknown field{hint} The fields are: {', '.join(fields)}"
+            )
         return FrozenError(
             f"{self.subject()}: {name}: cannot be changed, since it is frozen; make a changed copy with"
             f" .model_copy(update={{{quoted(name)}: ...}})"

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 from wearlaw.contact.conditions import LOADS
-from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean, quoted
+from wearlaw.errors import CompositionError, Fault, WearlawError, WearlawWarning, did_you_mean, excerpt, quoted
 from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import WEAR, Law, Outcome
 from wearlaw.models.stage import Stage
@@ -119,7 +119,7 @@ class Contents:
         missing = sorted(shown.difference(self.measured))
         if spec.measured and missing:
             has = f"have only {', '.join(self.measured)}" if self.measured else "are missing; add [measured]"
-            yield "measured", f"cannot show {' and '.join(missing)} of the measured tests, which {has}"
+            yield "measured", f"cannot show {' and '.join(map(excerpt, missing))} of the measured tests, which {has}"
 
     def _of_map(self, spec: FigureSpec, grid: Grid, known: Variables) -> Iterator[tuple[str, str]]:
         """Yield the faults of a map."""

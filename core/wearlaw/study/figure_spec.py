@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from wearlaw.contact.conditions import LOADS
-from wearlaw.errors import ConfigurationError, Fault, UnitError
+from wearlaw.errors import ConfigurationError, Fault, UnitError, excerpt
 from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw.settings.configuration import Configuration
 from wearlaw.study.grid import Grid
@@ -149,7 +149,7 @@ class FigureSpec(Window):
                 "the figure does not show wear_rate or another outcome; choose among contact_models instead",
             )
         if self.contact_models and shown and not shown & OF_CONTACTS and not shown & {*ACROSS}:
-            only = " and ".join(sorted(shown))
+            only = " and ".join(map(excerpt, sorted(shown)))
             yield ("contact_models",), f"the figure shows only {only}; choose among pairs instead"
         if self.measured and self.profile:
             yield ("measured",), "tests are measured over the whole patch; show them in a figure of a sweep"
@@ -177,9 +177,9 @@ def wrong_range(variable: str, unit: str, given: Range | None, scale: Scale | No
         yield str(error)
         return
     if low >= high:
-        yield f"must run from the lower end to the higher one, got {given[0]} to {given[1]}"
+        yield f"must run from the lower end to the higher one, got {excerpt(given[0])} to {excerpt(given[1])}"
     if scale == "log" and low <= 0.0:
-        yield f"a logarithmic axis must begin above zero, got {given[0]}"
+        yield f"a logarithmic axis must begin above zero, got {excerpt(given[0])}"
 
 
 def ends(variable: str, unit: str, given: Range) -> tuple[float, float]:

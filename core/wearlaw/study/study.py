@@ -24,6 +24,7 @@ from wearlaw.errors import (
     WearlawWarning,
     described,
     message_of,
+    quoted,
     shortened,
 )
 from wearlaw.models.contact_model import Model
@@ -106,7 +107,7 @@ class Study(Results):
             for row, those in rows.items()
             if those
         ]
-        return "\n".join([f"Study of '{self.case.title}'", *shown])
+        return "\n".join([f"Study of {quoted(self.case.title)}", *shown])
 
 
 def run(

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pint
 
-from wearlaw.errors import VALUE, UnitError, quoted
+from wearlaw.errors import VALUE, UnitError, printable, quoted
 
 _SIGNIFICANT_DIGITS = 4
 
@@ -46,7 +46,7 @@ _UNBOUNDED = re.compile(r"(?<![.\d])\d{3,}|(\*\*|\^)[^a-zA-Zµμ°%*/]*(\*\*|\^)
 @functools.lru_cache(maxsize=512)
 def parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
     """Return the unit of a text, or raise a `UnitError`."""
-    if len(unit) > 10 * VALUE or _UNBOUNDED.search(unit):
+    if len(unit) > 10 * VALUE or printable(unit) != unit or _UNBOUNDED.search(unit):
         raise UnitError(f"{quoted(unit)} is not a unit")
     try:
         return registry.Unit(unit)
