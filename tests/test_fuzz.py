@@ -86,7 +86,7 @@ class Small:
 
 def found_by(function: Callable[[str], object], text: str = "valid") -> str | None:
     found = finding(Small(function), {"a.txt": text.encode()})
-    return found and found.kind
+    return found.kind if found else None
 
 
 def fail(error: BaseException) -> NoReturn:
@@ -103,7 +103,7 @@ FOUND: dict[str, Callable[[str], object]] = {
     "SystemExit": lambda _: fail(SystemExit(0)),
     "RecursionError": lambda _: fail(RecursionError()),
     "UserWarning": lambda _: warnings.warn("of another", stacklevel=1),
-    "result: five is four": lambda _: check(4 == 5, "five is four"),
+    "result: five is four": lambda _: check(False, "five is four"),
     "message too long": lambda _: fail(wl.DataError("x" * 2001)),
     "control characters in a message": lambda _: warnings.warn("\x1b[31m", wl.RangeWarning, stacklevel=1),
     "file left half written": lambda _: Path("results.csv.partial").touch(),
@@ -120,6 +120,16 @@ def test_what_is_wrong_is_a_finding(kind: str, monkeypatch: pytest.MonkeyPatch) 
 def test_an_error_and_a_warning_of_wearlaw_are_none() -> None:
     assert found_by(lambda _: fail(wl.DataError("run.csv: line 2: is wrong\n  here"))) is None
     assert found_by(lambda _: warnings.warn("beyond", wl.RangeWarning, stacklevel=1)) is None
+
+
+def test_a_failure_of_a_model_that_ships_is_one() -> None:
+    def failed(_: str) -> None:
+        try:
+            raise KeyError("x")
+        except KeyError as error:
+            raise wl.ModelError("reader 'contact_mat' failed") from error
+
+    assert found_by(failed) == "ModelError after KeyError"
 
 
 def test_an_error_of_wearlaw_for_a_valid_case_is_one() -> None:
@@ -146,7 +156,7 @@ Patch = Callable[[pytest.MonkeyPatch], None]
 
 def broken_spelling(module: str) -> Patch:
     def patch(monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(f"{module}.did_you_mean", lambda *_: {}["planted"])
+        monkeypatch.setattr(f"{module}.did_you_mean", lambda *_: fail(KeyError("planted")))
 
     return patch
 
@@ -176,7 +186,7 @@ def lowered_copies(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def broken_refusals(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fail where a number of a file is refused."""
-    monkeypatch.setattr("wearlaw_contact_files._table.Table.wrong", lambda *_: {}["planted"])
+    monkeypatch.setattr("wearlaw_contact_files._table.Table.wrong", lambda *_: fail(KeyError("planted")))
 
 
 PLANTED: dict[str, tuple[Patch, str]] = {
@@ -207,8 +217,8 @@ def test_each_target_has_a_fault_planted() -> None:
 
 
 def run(monkeypatch: pytest.MonkeyPatch, folder: Path, *arguments: str) -> int:
-    monkeypatch.setattr(program.resource, "setrlimit", lambda *_: None)
-    monkeypatch.setattr(program.logging, "disable", lambda: None)
+    monkeypatch.setattr("resource.setrlimit", lambda *_: None)
+    monkeypatch.setattr("logging.disable", lambda: None)
     monkeypatch.setattr(sys, "argv", ["fuzz", *arguments, "--folder", str(folder)])
     return program.main()
 

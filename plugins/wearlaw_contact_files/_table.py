@@ -26,6 +26,10 @@ NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdD]?([+-]\d+)|[eEdD](\d+))
 """A number of Fortran; it drops the E before an exponent of three digits."""
 
 
+HUGE = 1e30
+"""What no number of a contact exceeds in magnitude, in any unit."""
+
+
 @dataclass(frozen=True)
 class Table:
     """The rows of a file.
@@ -76,7 +80,7 @@ def table_of(path: Path) -> Table:
     Raises
     ------
     DataError
-        If the file is none of CONTACT's, is cut short, or holds anything but finite numbers.
+        If the file is none of CONTACT's, is cut short, or holds anything but numbers that a contact can have.
     """
     rows = list(_rows(path))
     if not rows:
@@ -91,12 +95,14 @@ def table_of(path: Path) -> Table:
         values = np.array([cells for _, cells in rows], dtype=np.float64)
     except ValueError:
         values = np.array([[_number(cell) for cell in cells] for _, cells in rows])
-    if not np.isfinite(values).all():
+    possible = np.abs(values) <= HUGE
+    if not possible.all():
         problems = []
-        for row, column in np.argwhere(~np.isfinite(values)):
+        for row, column in np.argwhere(~possible):
             text = rows[row][1][column]
+            what = f"exceeds {HUGE:g} in magnitude" if np.isfinite(values[row, column]) else "is no finite number"
             full = " (Fortran writes this if the number needs more room)" if "*" in text else ""
-            problems.append(f"line {lines[row]}, column {column + 1}: '{text[:40]}' is no finite number{full}")
+            problems.append(f"line {lines[row]}, column {column + 1}: '{text[:40]}' {what}{full}")
         raise wl.DataError(f"'{path}' is wrong in:", problems)
     return Table(path, values, lines)
 

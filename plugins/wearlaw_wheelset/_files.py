@@ -138,12 +138,17 @@ def _text_of(path: Path) -> str:
     raise FileError("it is not text in UTF-8; save it in UTF-8")
 
 
+HUGE = 1e12
+"""What no number of a file exceeds in magnitude, and no unit of one."""
+
+
 def _number(text: str, line: int, what: str) -> float:
-    """Return a finite number."""
+    """Return a number of a magnitude that a profile can have."""
     if NUMBER.fullmatch(text):
         value = float(text.translate({ord("d"): "e", ord("D"): "e"}))
-        if math.isfinite(value):
+        if abs(value) <= HUGE:
             return value
+        raise FileError(f"line {line}: {what} must be at most {HUGE:g} in magnitude, got '{text[:40]}'")
     comma = "; write decimals with a point" if NUMBER.fullmatch(text.replace(",", ".")) else ""
     raise FileError(f"line {line}: {what} must be a number, got '{text[:40]}'{comma}")
 
@@ -260,6 +265,8 @@ def _positive(values: dict[str, float], key: str, otherwise: float) -> float:
     value = values.get(key, otherwise)
     if value <= 0.0:
         raise FileError(f"{key} must be positive, got {value:g}")
+    if value < 1.0 / HUGE:
+        raise FileError(f"{key} must be at least {1.0 / HUGE:g}, got {value:g}")
     return value
 
 

@@ -53,12 +53,17 @@ def check_points(y: Array, z: Array, name: Name) -> None:
     if not FEWEST <= y.size <= MOST:
         raise wl.InputError(f"a profile needs {FEWEST} to {MOST} points, got {y.size}")
     _refuse(~(np.isfinite(y) & np.isfinite(z)), y, z, name, "is not finite", "leave it out")
-    width = y.max() - y.min()
+    with np.errstate(over="ignore"):  # an infinite extent is refused
+        width, height = y.max() - y.min(), z.max() - z.min()
     if not NARROWEST <= width <= WIDEST:
         hint = "; were they in metres? Give their unit" if width < 1e-2 * NARROWEST else ""
         hint = "; is their unit right?" if width > WIDEST else hint
         raise wl.InputError(
             f"the points are {_mm(width)} wide, but a profile has {1e3 * NARROWEST:g} to {1e3 * WIDEST:g} mm{hint}"
+        )
+    if height > WIDEST:
+        raise wl.InputError(
+            f"the points are {_mm(height)} high, but a profile has at most {1e3 * WIDEST:g} mm; is their unit right?"
         )
     step_y, step_z = np.diff(y), np.diff(z)
     step = np.hypot(step_y, step_z)

@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -59,7 +60,7 @@ def header(random: random.Random, text: str) -> str:
 def run() -> None:
     """Read a profile, write it in every format, and read these files."""
     (path,) = Path().iterdir()
-    kind = path.stem
+    kind: Literal["wheel", "rail"] = "wheel" if path.stem == "wheel" else "rail"
     profile = ws.read_profile(path, kind=kind)
     repr(profile)
     y, z = (values.magnitude for values in profile.points)

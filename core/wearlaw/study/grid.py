@@ -56,12 +56,16 @@ class Axis(Configuration):
         Raises
         ------
         InputError
-            If the ends have different dimensions, or a log axis touches zero.
+            If the ends have different dimensions, are not finite, or are too far apart, or a log axis touches zero.
         """
         (first, last), unit = _in_one_unit((self.start, self.stop))
+        if not math.isfinite(float(last) - float(first)):
+            raise InputError(
+                f"the ends of an axis and their distance must be finite, got '{self.start}' and '{self.stop}'"
+            )
         if self.spacing == "linear":
             return np.linspace(first, last, self.points), unit
-        if first * last <= 0:
+        if np.sign(first) * np.sign(last) <= 0:
             raise InputError("a log axis cannot touch or cross zero; use spacing = 'linear'")
         return np.geomspace(first, last, self.points), unit
 
