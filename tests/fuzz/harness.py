@@ -30,7 +30,7 @@ HANG_S = 4.0
 LONGEST = 2000
 """Characters of the longest message that a reader bears."""
 
-SHRINK_S = 10.0
+SHRINK_S = 3.0
 """Seconds spent on making a finding smaller."""
 
 OURS = re.compile(r".*[/\\](wearlaw\w*[/\\].*\.py)")
