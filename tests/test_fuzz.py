@@ -30,7 +30,36 @@ pytest.importorskip("zarr")
 CORPUS = ROOT / "tests" / "fuzz" / "corpus"
 ENTRIES = sorted(f"{path.parent.name}/{path.name}" for path in CORPUS.glob("*/*"))
 
-OPEN: dict[str, str] = {}
+CUT = "messages repeat long values and control characters"
+OVERFLOW = "a number that overflows in SI or in a formula makes numpy warn"
+
+OPEN: dict[str, str] = {
+    "api/body-that-cannot-be-hashed": "the name of a body may be anything",
+    "api/contact-file-named-nul": CUT,
+    "api/escape-in-a-radius": CUT,
+    "api/load-of-5000-characters": CUT,
+    "api/number-of-a-text": "wl.scalar_si takes anything",
+    "api/parse-of-a-quantity": "wl.parse takes anything",
+    "api/pressure-that-overflows-in-si": OVERFLOW,
+    "api/profile-named-escape": CUT,
+    "api/rail-head-of-1e300-m": OVERFLOW,
+    "api/tests-named-nul": CUT,
+    "case_files/escape-in-a-key": CUT,
+    "case_files/stage-of-2000-brackets": CUT,
+    "contact_result_files/escape-in-a-cell": CUT,
+    "journal/control-character-in-a-version": CUT,
+    "journal/many-changes": "the list of changes has no end",
+    "profiles/cell-of-2000-characters": CUT,
+    "profiles/escape-in-a-cell": CUT,
+    "sweep_tables/escape-in-a-head": CUT,
+    "sweep_tables/head-of-3000-characters": CUT,
+    "sweep_tables/load-that-overflows-in-si": OVERFLOW,
+    "wear_test_csv/column-named-self": "a condition cannot have the name of an argument of Python's",
+    "wear_test_csv/control-characters-in-a-head": CUT,
+    "wear_test_csv/friction-that-overflows": OVERFLOW,
+    "wear_test_csv/row-joined-to-the-head": "each unknown column repeats the known ones",
+    "wear_test_csv/traction-that-overflows": OVERFLOW,
+}
 """Entries of the corpus that still show what was found, with what is missing."""
 
 

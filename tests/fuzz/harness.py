@@ -147,7 +147,7 @@ def _of_message(said: BaseException | str, place: str) -> Finding | None:
     text = str(said)
     if len(text) > LONGEST:
         return Finding("message too long", place, f"{len(text)} characters: {text[:LONGEST]}")
-    raw = sorted({one for one in text if one != "\n" and unicodedata.category(one) in ("Cc", "Cs")})
+    raw = sorted({one for one in text if one not in "\n\t" and unicodedata.category(one) in ("Cc", "Cs")})
     return Finding("control characters in a message", place, f"{raw} in {text!r}") if raw else None
 
 

@@ -1,0 +1,5 @@
+rig = wl.TwinDisc.suros()
+predict = rig | wl.contact_model("fastsim") | wl.stage("third_body", reduction=1) | wl.wear_law("usfd")
+given = dict(normal_force=Q([0.9, 2, 8], "N"), creepage=Q([0, 6, 8], "%"), friction_coefficient=[5, 8, 7])
+found = predict(**given)
+found.mass_per_cycle([])

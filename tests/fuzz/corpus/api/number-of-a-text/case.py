@@ -1,0 +1,1 @@
+wl.scalar_si("", "")

@@ -1,0 +1,1 @@
+ws.read_profile("\1", kind="")

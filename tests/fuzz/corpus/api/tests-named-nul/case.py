@@ -1,0 +1,1 @@
+wl.read_tests("\0")
