@@ -284,13 +284,13 @@ class _Script:
 
 def seeds() -> Iterator[Files]:
     for text in SEEDS:
-        yield {"case.py": text.encode()}
+        yield {"script.txt": text.encode()}
 
 
 def draw(random: random.Random) -> Files:
     script = _Script(random)
     if random.random() < 0.1:
-        return {"case.py": f"{script.other()}\n".encode("utf-8", "surrogatepass")}
+        return {"script.txt": f"{script.other()}\n".encode("utf-8", "surrogatepass")}
     rig, conditions, body = script.rig()
     parts = [script.odd(script.model("WheelRail" in rig))]
     if random.random() < 0.15:
@@ -299,7 +299,7 @@ def draw(random: random.Random) -> Files:
         parts += [script.odd(script.law(body)) for _ in range(random.choice([1, 1, 1, 2]))]
     given = script.call("dict", conditions)
     lines = [f"rig = {rig}", f"predict = rig | {' | '.join(parts)}", f"given = {given}", "found = predict(**given)"]
-    return {"case.py": "\n".join([*lines, script.asked(body), ""]).encode()}
+    return {"script.txt": "\n".join([*lines, script.asked(body), ""]).encode()}
 
 
 def run() -> None:
@@ -307,7 +307,7 @@ def run() -> None:
     names: dict[str, Any] = {"wl": wl, "ws": ws, "Q": wl.Q, "np": np, "pd": pd, "xr": xr, "pickle": pickle}
     names |= {"Decimal": decimal.Decimal, "Fraction": fractions.Fraction}
     try:
-        exec(compile(Path("case.py").read_text(encoding="utf-8"), "<case>", "exec"), names)
+        exec(compile(Path("script.txt").read_text(encoding="utf-8"), "<case>", "exec"), names)
     except wl.WearlawError:
         raise
     except Exception as error:
