@@ -35,7 +35,9 @@ OVERFLOW = "a number that overflows in SI or in a formula makes numpy warn"
 
 OPEN: dict[str, str] = {
     "api/body-that-cannot-be-hashed": "the name of a body may be anything",
+    "api/case-named-nul": "the name of a file may be impossible",
     "api/contact-file-named-nul": CUT,
+    "api/disc-of-a-text": "a disc may be anything",
     "api/escape-in-a-radius": CUT,
     "api/load-of-5000-characters": CUT,
     "api/number-of-a-text": "wl.scalar_si takes anything",
@@ -45,10 +47,10 @@ OPEN: dict[str, str] = {
     "api/rail-head-of-1e300-m": OVERFLOW,
     "api/tests-named-nul": CUT,
     "case_files/escape-in-a-key": CUT,
+    "case_files/list-nested-3000-deep": "Python's reader of TOML is recursive",
     "case_files/stage-of-2000-brackets": CUT,
     "contact_result_files/escape-in-a-cell": CUT,
     "journal/control-character-in-a-version": CUT,
-    "journal/many-changes": "the list of changes has no end",
     "profiles/cell-of-2000-characters": CUT,
     "profiles/escape-in-a-cell": CUT,
     "sweep_tables/escape-in-a-head": CUT,
@@ -57,7 +59,6 @@ OPEN: dict[str, str] = {
     "wear_test_csv/column-named-self": "a condition cannot have the name of an argument of Python's",
     "wear_test_csv/control-characters-in-a-head": CUT,
     "wear_test_csv/friction-that-overflows": OVERFLOW,
-    "wear_test_csv/row-joined-to-the-head": "each unknown column repeats the known ones",
     "wear_test_csv/traction-that-overflows": OVERFLOW,
 }
 """Entries of the corpus that still show what was found, with what is missing."""
@@ -133,7 +134,8 @@ FOUND: dict[str, Callable[[str], object]] = {
     "RecursionError": lambda _: fail(RecursionError()),
     "UserWarning": lambda _: warnings.warn("of another", stacklevel=1),
     "result: five is four": lambda _: check(False, "five is four"),
-    "message too long": lambda _: fail(wl.DataError("x" * 2001)),
+    "message too long": lambda _: fail(wl.DataError("x" * 1001)),
+    "message too long in lines": lambda _: fail(wl.DataError("x\n" * 30)),
     "control characters in a message": lambda _: warnings.warn("\x1b[31m", wl.RangeWarning, stacklevel=1),
     "file left half written": lambda _: Path("results.csv.partial").touch(),
     "Hang": lambda _: spin(),
@@ -143,7 +145,7 @@ FOUND: dict[str, Callable[[str], object]] = {
 @pytest.mark.parametrize("kind", FOUND)
 def test_what_is_wrong_is_a_finding(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(harness, "HANG_S", 0.2)
-    assert found_by(FOUND[kind]) == kind
+    assert found_by(FOUND[kind]) == kind.removesuffix(" in lines")
 
 
 def test_an_error_and_a_warning_of_wearlaw_are_none() -> None:

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType, ModuleType
-from typing import NoReturn, Protocol, cast
+from typing import Any, NoReturn, Protocol, cast
 
 import wearlaw as wl
 
@@ -27,8 +27,8 @@ Files = Mapping[str, bytes]
 HANG_S = 4.0
 """Seconds of a processor after which a case counts as hanging."""
 
-LONGEST = 2000
-"""Characters of the longest message that a reader bears."""
+LONGEST, MOST_LINES = 1000, 30
+"""Characters of the longest line of a message that a reader bears, and how many lines: some list 20 problems."""
 
 SHRINK_S = 3.0
 """Seconds spent on making a finding smaller."""
@@ -110,7 +110,7 @@ def finding(of: Target, files: Files, valid: bool = False) -> Finding | None:
 def _judged(of: Target, valid: bool) -> Finding | None:
     found: list[Finding] = []
 
-    def heed(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: object) -> None:
+    def heed(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: Any, **__: Any) -> None:
         if not issubclass(category, wl.WearlawWarning):
             stack = traceback.extract_stack()[:-1]
             text = warnings.formatwarning(message, category, filename, lineno)
@@ -120,7 +120,7 @@ def _judged(of: Target, valid: bool) -> Finding | None:
 
     with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
         warnings.simplefilter("always")
-        warnings.showwarning = heed
+        warnings.showwarning = heed  # `catch_warnings` puts it back
         try:
             with _limited():
                 of.run()
@@ -145,7 +145,7 @@ def _judged(of: Target, valid: bool) -> Finding | None:
 def _of_message(said: BaseException | str, place: str) -> Finding | None:
     """Return what is wrong with a message that a reader sees."""
     text = str(said)
-    if len(text) > LONGEST:
+    if max(map(len, text.split("\n"))) > LONGEST or text.count("\n") >= MOST_LINES:
         return Finding("message too long", place, f"{len(text)} characters: {text[:LONGEST]}")
     raw = sorted({one for one in text if one not in "\n\t" and unicodedata.category(one) in ("Cc", "Cs")})
     return Finding("control characters in a message", place, f"{raw} in {text!r}") if raw else None
