@@ -30,7 +30,37 @@ pytest.importorskip("zarr")
 CORPUS = ROOT / "tests" / "fuzz" / "corpus"
 ENTRIES = sorted(f"{path.parent.name}/{path.name}" for path in CORPUS.glob("*/*"))
 
-OPEN: dict[str, str] = {}
+CUT = "messages repeat long values and control characters"
+OVERFLOW = "a number that overflows in SI or in a formula makes numpy warn"
+
+OPEN: dict[str, str] = {
+    "api/body-that-cannot-be-hashed": "the name of a body may be anything",
+    "api/case-named-nul": "the name of a file may be impossible",
+    "api/contact-file-named-nul": CUT,
+    "api/disc-of-a-text": "a disc may be anything",
+    "api/escape-in-a-radius": CUT,
+    "api/load-of-5000-characters": CUT,
+    "api/number-of-a-text": "wl.scalar_si takes anything",
+    "api/parse-of-a-quantity": "wl.parse takes anything",
+    "api/pressure-that-overflows-in-si": OVERFLOW,
+    "api/profile-named-escape": CUT,
+    "api/rail-head-of-1e300-m": OVERFLOW,
+    "api/tests-named-nul": CUT,
+    "case_files/escape-in-a-key": CUT,
+    "case_files/list-nested-3000-deep": "Python's reader of TOML is recursive",
+    "case_files/stage-of-2000-brackets": CUT,
+    "contact_result_files/escape-in-a-cell": CUT,
+    "journal/control-character-in-a-version": CUT,
+    "profiles/cell-of-2000-characters": CUT,
+    "profiles/escape-in-a-cell": CUT,
+    "sweep_tables/escape-in-a-head": CUT,
+    "sweep_tables/head-of-3000-characters": CUT,
+    "sweep_tables/load-that-overflows-in-si": OVERFLOW,
+    "wear_test_csv/column-named-self": "a condition cannot have the name of an argument of Python's",
+    "wear_test_csv/control-characters-in-a-head": CUT,
+    "wear_test_csv/friction-that-overflows": OVERFLOW,
+    "wear_test_csv/traction-that-overflows": OVERFLOW,
+}
 """Entries of the corpus that still show what was found, with what is missing."""
 
 
@@ -86,7 +116,7 @@ class Small:
 
 def found_by(function: Callable[[str], object], text: str = "valid") -> str | None:
     found = finding(Small(function), {"a.txt": text.encode()})
-    return found and found.kind
+    return found.kind if found else None
 
 
 def fail(error: BaseException) -> NoReturn:
@@ -103,8 +133,9 @@ FOUND: dict[str, Callable[[str], object]] = {
     "SystemExit": lambda _: fail(SystemExit(0)),
     "RecursionError": lambda _: fail(RecursionError()),
     "UserWarning": lambda _: warnings.warn("of another", stacklevel=1),
-    "result: five is four": lambda _: check(4 == 5, "five is four"),
-    "message too long": lambda _: fail(wl.DataError("x" * 2001)),
+    "result: five is four": lambda _: check(False, "five is four"),
+    "message too long": lambda _: fail(wl.DataError("x" * 1001)),
+    "message too long in lines": lambda _: fail(wl.DataError("x\n" * 30)),
     "control characters in a message": lambda _: warnings.warn("\x1b[31m", wl.RangeWarning, stacklevel=1),
     "file left half written": lambda _: Path("results.csv.partial").touch(),
     "Hang": lambda _: spin(),
@@ -114,12 +145,22 @@ FOUND: dict[str, Callable[[str], object]] = {
 @pytest.mark.parametrize("kind", FOUND)
 def test_what_is_wrong_is_a_finding(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(harness, "HANG_S", 0.2)
-    assert found_by(FOUND[kind]) == kind
+    assert found_by(FOUND[kind]) == kind.removesuffix(" in lines")
 
 
 def test_an_error_and_a_warning_of_wearlaw_are_none() -> None:
     assert found_by(lambda _: fail(wl.DataError("run.csv: line 2: is wrong\n  here"))) is None
     assert found_by(lambda _: warnings.warn("beyond", wl.RangeWarning, stacklevel=1)) is None
+
+
+def test_a_failure_of_a_model_that_ships_is_one() -> None:
+    def failed(_: str) -> None:
+        try:
+            raise KeyError("x")
+        except KeyError as error:
+            raise wl.ModelError("reader 'contact_mat' failed") from error
+
+    assert found_by(failed) == "ModelError after KeyError"
 
 
 def test_an_error_of_wearlaw_for_a_valid_case_is_one() -> None:
@@ -146,7 +187,7 @@ Patch = Callable[[pytest.MonkeyPatch], None]
 
 def broken_spelling(module: str) -> Patch:
     def patch(monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(f"{module}.did_you_mean", lambda *_: {}["planted"])
+        monkeypatch.setattr(f"{module}.did_you_mean", lambda *_: fail(KeyError("planted")))
 
     return patch
 
@@ -176,7 +217,7 @@ def lowered_copies(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def broken_refusals(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fail where a number of a file is refused."""
-    monkeypatch.setattr("wearlaw_contact_files._table.Table.wrong", lambda *_: {}["planted"])
+    monkeypatch.setattr("wearlaw_contact_files._table.Table.wrong", lambda *_: fail(KeyError("planted")))
 
 
 PLANTED: dict[str, tuple[Patch, str]] = {
@@ -207,8 +248,8 @@ def test_each_target_has_a_fault_planted() -> None:
 
 
 def run(monkeypatch: pytest.MonkeyPatch, folder: Path, *arguments: str) -> int:
-    monkeypatch.setattr(program.resource, "setrlimit", lambda *_: None)
-    monkeypatch.setattr(program.logging, "disable", lambda: None)
+    monkeypatch.setattr("resource.setrlimit", lambda *_: None)
+    monkeypatch.setattr("logging.disable", lambda: None)
     monkeypatch.setattr(sys, "argv", ["fuzz", *arguments, "--folder", str(folder)])
     return program.main()
 

@@ -148,7 +148,8 @@ def _number(text: str, line: int, what: str) -> float:
         value = float(text.translate({ord("d"): "e", ord("D"): "e"}))
         if abs(value) <= HUGE:
             return value
-        raise FileError(f"line {line}: {what} must be at most {HUGE:g} in magnitude, got '{text[:40]}'")
+        if math.isfinite(value):
+            raise FileError(f"line {line}: {what} must be at most {HUGE:g} in magnitude, got '{text[:40]}'")
     comma = "; write decimals with a point" if NUMBER.fullmatch(text.replace(",", ".")) else ""
     raise FileError(f"line {line}: {what} must be a number, got '{text[:40]}'{comma}")
 

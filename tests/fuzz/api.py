@@ -239,7 +239,7 @@ class _Script:
                 "(found.stick_ratio, found.mean_slip, found.averaged_wear_index)",
                 "(found.shakedown_limit, found.first_yield, found.outside_range)",
                 "repr(found)",
-                "found == found, hash(found), list(found)",
+                "found == found, hash(found)",
                 "pickle.loads(pickle.dumps(predict)) == predict",
                 "type(predict).model_validate_json(predict.model_dump_json())",
                 "wl.sweep(predict, **given)",
@@ -284,13 +284,13 @@ class _Script:
 
 def seeds() -> Iterator[Files]:
     for text in SEEDS:
-        yield {"case.py": text.encode()}
+        yield {"script.txt": text.encode()}
 
 
 def draw(random: random.Random) -> Files:
     script = _Script(random)
     if random.random() < 0.1:
-        return {"case.py": f"{script.other()}\n".encode("utf-8", "surrogatepass")}
+        return {"script.txt": f"{script.other()}\n".encode("utf-8", "surrogatepass")}
     rig, conditions, body = script.rig()
     parts = [script.odd(script.model("WheelRail" in rig))]
     if random.random() < 0.15:
@@ -299,7 +299,7 @@ def draw(random: random.Random) -> Files:
         parts += [script.odd(script.law(body)) for _ in range(random.choice([1, 1, 1, 2]))]
     given = script.call("dict", conditions)
     lines = [f"rig = {rig}", f"predict = rig | {' | '.join(parts)}", f"given = {given}", "found = predict(**given)"]
-    return {"case.py": "\n".join([*lines, script.asked(body), ""]).encode()}
+    return {"script.txt": "\n".join([*lines, script.asked(body), ""]).encode()}
 
 
 def run() -> None:
@@ -307,7 +307,7 @@ def run() -> None:
     names: dict[str, Any] = {"wl": wl, "ws": ws, "Q": wl.Q, "np": np, "pd": pd, "xr": xr, "pickle": pickle}
     names |= {"Decimal": decimal.Decimal, "Fraction": fractions.Fraction}
     try:
-        exec(compile(Path("case.py").read_text(encoding="utf-8"), "<case>", "exec"), names)
+        exec(compile(Path("script.txt").read_text(encoding="utf-8"), "<case>", "exec"), names)
     except wl.WearlawError:
         raise
     except Exception as error:
@@ -337,8 +337,9 @@ def _check(found: wl.Prediction) -> None:
     for name, one in values.items():
         check(np.isfinite(one[there]).all(), f"{name} is not finite")
     limit = problem.friction_coefficient * load
+    within = model.accuracy if problem.geometry == "line" else model.elliptic_accuracy
     if problem.traction_coefficient is None and model.name != "linear":  # which knows no friction
-        check((np.abs(values["tangential_force"]) <= limit * OVER)[there].all(), "force beyond friction")
+        check((np.abs(values["tangential_force"]) <= limit * (OVER + within))[there].all(), "force beyond friction")
     check((values["wear_index"] >= -1e-9 * limit)[there].all(), "the wear index is negative")
     for law in found.laws:
         if law.outcome.name == "wear_rate" and law.body is None:
@@ -347,9 +348,8 @@ def _check(found: wl.Prediction) -> None:
             check((rate >= 0.0).all(), "the wear rate is negative")
     if found.scale == "cells" and load.size:
         contact = found.contact
-        within = model.accuracy if problem.geometry == "line" else model.elliptic_accuracy
         carried = contact.integral(contact.pressure)
-        check((np.abs(carried - load) <= within * load)[there].all(), "the nodes do not carry the load")
+        check((np.abs(carried - load) <= (OVER - 1.0 + within) * load)[there].all(), "the nodes do not carry the load")
         beyond = np.abs(contact.traction) > contact.traction_bound * OVER
         check(not beyond[there].any(), "traction beyond friction")
 

@@ -93,7 +93,7 @@ def draw(random: random.Random) -> Files:
 def run() -> None:
     """Read a case; run it or write its results if its name says so and it is small."""
     (path,) = Path().iterdir()
-    case = wl.load_case(path)
+    case = wl.load_case(str(path))
     if path.stem == "load" or evaluations(case) > MOST:
         return
     if path.stem == "write":

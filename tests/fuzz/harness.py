@@ -6,20 +6,20 @@ import contextlib
 import io
 import os
 import random
+import re
 import signal
 import tempfile
 import time
 import traceback
 import unicodedata
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType, ModuleType
-from typing import NoReturn, Protocol, cast
+from typing import Any, NoReturn, Protocol, cast
 
 import wearlaw as wl
-from tests.environments import ROOT
 
 Files = Mapping[str, bytes]
 """A case: the contents of its files by their names."""
@@ -27,28 +27,26 @@ Files = Mapping[str, bytes]
 HANG_S = 4.0
 """Seconds of a processor after which a case counts as hanging."""
 
-LONGEST = 2000
-"""Characters of the longest message that a reader bears."""
+LONGEST, MOST_LINES = 1000, 30
+"""Characters of the longest line of a message that a reader bears, and how many lines: some list 20 problems."""
 
-SHRINK_S = 10.0
+SHRINK_S = 3.0
 """Seconds spent on making a finding smaller."""
 
-OURS = tuple(f"{ROOT / part}{os.sep}" for part in ("core", "plugins"))
+OURS = re.compile(r".*[/\\](wearlaw\w*[/\\].*\.py)")
+"""Files of wearlaw and its plugins, wherever they are installed."""
 
 
 class Target(Protocol):
     """A module of this package that fuzzes one part of wearlaw."""
 
-    @staticmethod
-    def seeds() -> Iterator[Files]:
+    def seeds(self) -> Iterator[Files]:
         """Yield valid cases, to begin with."""
 
-    @staticmethod
-    def draw(random: random.Random) -> Files:
+    def draw(self, random: random.Random) -> Files:
         """Return a random case."""
 
-    @staticmethod
-    def run() -> None:
+    def run(self) -> None:
         """Use the files in the working folder; raise `Broken` if what comes out cannot be true."""
 
 
@@ -110,35 +108,46 @@ def finding(of: Target, files: Files, valid: bool = False) -> Finding | None:
 
 
 def _judged(of: Target, valid: bool) -> Finding | None:
-    with warnings.catch_warnings(record=True) as remarks, contextlib.redirect_stdout(io.StringIO()):
-        warnings.simplefilter("error")
-        warnings.simplefilter("always", wl.WearlawWarning)
+    found: list[Finding] = []
+
+    def heed(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: Any, **__: Any) -> None:
+        if not issubclass(category, wl.WearlawWarning):
+            stack = traceback.extract_stack()[:-1]
+            text = warnings.formatwarning(message, category, filename, lineno)
+            found.append(Finding(category.__name__, _innermost(stack), text + "".join(traceback.format_list(stack))))
+        elif wrong := _of_message(message, category.__name__):
+            found.append(wrong)
+
+    with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
+        warnings.simplefilter("always")
+        warnings.showwarning = heed  # `catch_warnings` puts it back
         try:
             with _limited():
                 of.run()
         except wl.WearlawError as error:
             if valid:
                 return Finding(type(error).__name__, _place(error), "".join(traceback.format_exception(error)))
-            if found := _of_message(error, _place(error)):
-                return found
+            failed = error.__cause__ or error.__context__
+            if isinstance(error, wl.ModelError) and failed and not isinstance(failed, wl.WearlawError):  # that ships
+                details = "".join(traceback.format_exception(error))
+                return Finding(f"ModelError after {type(failed).__name__}", _place(failed), details)
+            if wrong := _of_message(error, _place(error)):
+                return wrong
         except KeyboardInterrupt:
             raise
         except Broken as broken:
             return Finding(f"result: {broken}", "", "".join(traceback.format_exception(broken)))
         except BaseException as error:
             return Finding(type(error).__name__, _place(error), "".join(traceback.format_exception(error)))
-    for remark in remarks:
-        if found := _of_message(remark.message, remark.category.__name__):
-            return found
-    return None
+    return found[0] if found else None
 
 
 def _of_message(said: BaseException | str, place: str) -> Finding | None:
     """Return what is wrong with a message that a reader sees."""
     text = str(said)
-    if len(text) > LONGEST:
+    if max(map(len, text.split("\n"))) > LONGEST or text.count("\n") >= MOST_LINES:
         return Finding("message too long", place, f"{len(text)} characters: {text[:LONGEST]}")
-    raw = sorted({one for one in text if one != "\n" and unicodedata.category(one) in ("Cc", "Cs")})
+    raw = sorted({one for one in text if one not in "\n\t" and unicodedata.category(one) in ("Cc", "Cs")})
     return Finding("control characters in a message", place, f"{raw} in {text!r}") if raw else None
 
 
@@ -150,8 +159,12 @@ def _left_behind(folder: Path) -> Finding | None:
 
 def _place(error: BaseException) -> str:
     """Return the innermost function of wearlaw in a traceback."""
-    frames = [one for one in traceback.extract_tb(error.__traceback__) if one.filename.startswith(OURS)]
-    return f"{Path(frames[-1].filename).relative_to(ROOT)}:{frames[-1].name}" if frames else ""
+    return _innermost(traceback.extract_tb(error.__traceback__))
+
+
+def _innermost(frames: Sequence[traceback.FrameSummary]) -> str:
+    found = ((OURS.fullmatch(one.filename), one.name) for one in reversed(frames))
+    return next((f"{path[1]}:{name}" for path, name in found if path), "")
 
 
 @contextlib.contextmanager
@@ -175,7 +188,7 @@ def _limited() -> Iterator[None]:
 
 def smaller(of: Target, files: Files, found: Finding, seconds: float = SHRINK_S) -> Files:
     """Leave out parts of the files, as long as what was found stays and the time lasts."""
-    end, kept = time.monotonic() + seconds, dict(files)
+    end, kept = time.process_time() + seconds, dict(files)
 
     def still(tried: Files) -> bool:
         again = finding(of, tried)
@@ -183,9 +196,9 @@ def smaller(of: Target, files: Files, found: Finding, seconds: float = SHRINK_S)
 
     for name in files:
         size = len(kept[name]) // 2
-        while size and time.monotonic() < end:
+        while size and time.process_time() < end:
             start = 0
-            while start < len(kept[name]) and time.monotonic() < end:
+            while start < len(kept[name]) and time.process_time() < end:
                 tried = {**kept, name: kept[name][:start] + kept[name][start + size :]}
                 if still(tried):
                     kept = tried

@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -14,7 +15,12 @@ import wearlaw_wheelset as ws
 from tests.fuzz import mutations
 from tests.fuzz.harness import Files, check
 
-ENDINGS = {"wheel": (".prw", ".whl", ".csv", ".txt"), "rail": (".prr", ".ban", ".csv", ".txt")}
+Kind = Literal["wheel", "rail"]
+
+ENDINGS: dict[Kind, tuple[str, ...]] = {
+    "wheel": (".prw", ".whl", ".csv", ".txt"),
+    "rail": (".prr", ".ban", ".csv", ".txt"),
+}
 EVERY = 40
 """The seeds have one of so many points of a profile by formula."""
 
@@ -23,7 +29,7 @@ EVERY = 40
 def valid() -> dict[str, bytes]:
     """Return files by their names."""
     found = {}
-    formulas = {"wheel": ws.Profile.s1002(), "rail": ws.Profile.uic60()}
+    formulas: dict[Kind, ws.Profile] = {"wheel": ws.Profile.s1002(), "rail": ws.Profile.uic60()}
     with tempfile.TemporaryDirectory() as folder:
         for kind, endings in ENDINGS.items():
             y, z = (values[::EVERY] for values in formulas[kind].points)
@@ -59,7 +65,7 @@ def header(random: random.Random, text: str) -> str:
 def run() -> None:
     """Read a profile, write it in every format, and read these files."""
     (path,) = Path().iterdir()
-    kind = path.stem
+    kind: Kind = "wheel" if path.stem == "wheel" else "rail"
     profile = ws.read_profile(path, kind=kind)
     repr(profile)
     y, z = (values.magnitude for values in profile.points)
