@@ -327,6 +327,7 @@ def test_scales_follow_the_spacing_of_the_sweep_and_the_spread_of_the_outcome() 
         ([0.01, 0.02, 0.4], "log"),
         ([1.0, 2.0, 29.0], "linear"),
         ([0.0, 1.0, 40.0], "log"),
+        ([0.0, 1.0, 20.0], "linear"),
         ([np.nan, 1.0, 40.0], "log"),
         ([-0.5, 1.0, 40.0], "linear"),
         ([0.0, 0.0, 0.0], "linear"),

@@ -35,7 +35,7 @@ def frame() -> Any:
 
 def dataset() -> Any:
     units = {"Fz": "N", "slip": "1"}
-    given = {"Fz": LOAD, "slip": -CREEPAGE}
+    given = {"Fz": LOAD.copy(), "slip": -CREEPAGE}  # xarray would share the memory
     along = {name: ("time", values, {"units": units[name]}) for name, values in given.items()}
     return xr.Dataset(along, {"Time": ("time", TIME, {"units": "s"})})
 
