@@ -137,11 +137,14 @@ def test_the_commands_in_the_list_run(tmp_path: Path, monkeypatch: pytest.Monkey
     assert {line.split()[0] for line in COMMANDS} >= {"case", "show", "schema", "fit", "compare", "wear", *ELSEWHERE}
 
 
-def test_the_status_is_that_of_the_package() -> None:
-    assert "**Status: alpha.**" in TEXT
-    assert "Development Status :: 3 - Alpha" in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-
-
-def test_it_needs_nothing_but_the_python_of_the_package() -> None:
-    assert "nothing but Python 3.11 or later" in SENTENCES
-    assert '\nrequires-python = ">=3.11"\n' in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+@pytest.mark.parametrize(
+    ("sentence", "line"),
+    [
+        ("**Status: alpha.**", '"Development Status :: 3 - Alpha",'),
+        ("nothing but Python 3.11 or later", 'requires-python = ">=3.11"'),
+        ("The licence is [BSD-3-Clause](LICENSE)", 'license = "BSD-3-Clause"'),
+    ],
+)
+def test_status_python_and_licence_are_those_of_the_package(sentence: str, line: str) -> None:
+    assert sentence in SENTENCES
+    assert re.search(rf"^ *{re.escape(line)}$", (ROOT / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE)

@@ -18,7 +18,7 @@ from tests.core.outcome_laws import BRONZE
 from wearlaw.pipeline.variables import MASS
 from wearlaw.report.main_result import MANY_CURVES, MainResult, main_figure, main_result, together
 from wearlaw.report.sentences import number, sentences
-from wearlaw.study.results import beyond_limits
+from wearlaw.study.results import LIMITS, beyond_limits
 from wearlaw.study.study import Study, run
 
 POINT: dict[str, Any] = {"max_pressure": "0.9 GPa", "creepage": "0.3 %", "friction_coefficient": 0.2}
@@ -137,6 +137,21 @@ def test_contact_models_are_named_where_a_law_depends_on_them() -> None:
     partial = {**POINT, "creepage": ["0.1 %", "0.2 %"]}
     rates = said(study_of(partial, contact_models=["global", "exact"], wear_laws=["kth"]))[0]
     assert rates.startswith("The most wear comes from kth on global and the least from kth on exact at every creepage")
+
+
+def test_contact_models_with_the_same_results_stand_together() -> None:
+    models = ["global", "exact", {"model": "fastsim", "bound": "elliptic"}]
+    study = with_rates(study_of(THREE_POINTS, contact_models=models), usfd=[1.0, np.nan, 3.0])
+    study.sweeps["one"]["wear_rate"].loc[{"pair": "usfd on global"}] = [2.0, np.nan, 9.0]
+    assert said(study)[0].startswith(
+        "The most wear, 9 µg/m/mm², comes from usfd on global at a creepage of 4 %, where the least, 3 µg/m/mm², comes"
+        " from usfd on exact and fastsim: a factor of 3"
+    )
+
+
+def test_values_on_an_axis_have_four_digits() -> None:
+    study = with_rates(study_of({**POINT, "creepage": ["1.23456 %", "2 %"]}), usfd=[1.0, 3.0])
+    assert "at a creepage of 1.235 % to" in said(study)[0]
 
 
 def test_regimes_change_where_the_means_over_the_patch_cross_the_borders_of_a_law() -> None:
@@ -259,9 +274,29 @@ def test_values_along_several_patches_are_summed_and_marked_if_any_patch_is(inst
 
 def test_an_outcome_that_cannot_be_added_is_the_largest_of_all_patches(install: Install) -> None:
     install(*AXLES)
+    study = run(wl.Case(**{**ON_AXLE, "profiles": {}}))
+    main, sweep = main_result(study), study.sweeps["moving"]
+    largest = together(sweep, "wear_rate")
+    found = np.nanmax(sweep.wear_rate.transpose(..., "side", "patch"), axis=(-2, -1))
+    np.testing.assert_array_equal(largest.wear_rate, found)
+    assert main_figure(main).caption.endswith(" The sum over all patches.")
+    of_rates = replace(main, outcome="wear_rate", sweep=largest)
+    assert main_figure(of_rates).caption.endswith(" The largest of all patches.")
+
+
+def test_limits_of_several_patches_are_those_of_the_patch_furthest_beyond(install: Install) -> None:
+    install(*AXLES)
     sweep = run(wl.Case(**{**ON_AXLE, "profiles": {}})).sweeps["moving"]
-    found = together(sweep, "wear_rate").wear_rate
-    np.testing.assert_array_equal(found, np.nanmax(sweep.wear_rate.transpose(..., "side", "patch"), axis=(-2, -1)))
+    whole = together(sweep, MASS)
+    for limit in LIMITS:
+        found = whole.max_pressure / whole[limit]
+        xarray.testing.assert_allclose(found, (sweep.max_pressure / sweep[limit]).max(["side", "patch"]), rtol=1e-14)
+
+
+def test_the_main_outcome_is_wear_beside_other_outcomes() -> None:
+    points = {"threshold": "5 N", "peak": "50 N", "balance": "175 N", "peak_damage": 1e-5, "beyond": "zero"}
+    main = main_result(study_of(POINT, laws=[{"model": "wlrm", **points}]))
+    assert (main.outcome, main.pairs) == ("wear_rate", ("usfd on global",))
 
 
 def test_the_figure_shows_one_contact_model_if_all_would_be_too_many() -> None:
@@ -273,16 +308,36 @@ def test_the_figure_shows_one_contact_model_if_all_would_be_too_many() -> None:
     assert many.caption.endswith("Only the pairs with global are shown; the tables hold all.")
 
 
-def test_scales_follow_the_spacing_of_the_sweep_and_the_spread_of_the_outcome() -> None:
-    other = {"traction": {"sweep": "one", "x": "creepage", "y": "traction_coefficient"}}
+OTHER = {"traction": {"sweep": "one", "x": "creepage", "y": "traction_coefficient"}}
 
+
+def test_scales_follow_the_spacing_of_the_sweep_and_the_spread_of_the_outcome() -> None:
     def scales(sweep: dict[str, Any]) -> tuple[str, str]:
-        (panel,) = main_figure(main_result(study_of(sweep, figures=other))).panels
+        (panel,) = main_figure(main_result(study_of(sweep, figures=OTHER))).panels
         return panel.x.scale, panel.y.scale
 
     linear = {"from": "1 %", "to": "2 %", "points": 5}
     assert scales({**POINT, "creepage": linear}) == ("linear", "linear")
     assert scales(FINE) == ("log", "log")
+
+
+@pytest.mark.parametrize(
+    ("rates", "scale"),
+    [
+        ([0.01, 0.02, 0.4], "log"),
+        ([1.0, 2.0, 29.0], "linear"),
+        ([0.0, 1.0, 40.0], "log"),
+        ([0.0, 1.0, 20.0], "linear"),
+        ([np.nan, 1.0, 40.0], "log"),
+        ([-0.5, 1.0, 40.0], "linear"),
+        ([0.0, 0.0, 0.0], "linear"),
+    ],
+)
+def test_outcomes_of_one_sign_that_differ_by_more_than_thirty_have_a_logarithmic_axis(
+    rates: list[float], scale: str
+) -> None:
+    figure = main_figure(main_result(with_rates(study_of(THREE_POINTS, figures=OTHER), usfd=rates)))
+    assert figure.panels[0].y.scale == scale
 
 
 @pytest.mark.parametrize(

@@ -35,7 +35,7 @@ def frame() -> Any:
 
 def dataset() -> Any:
     units = {"Fz": "N", "slip": "1"}
-    given = {"Fz": LOAD, "slip": -CREEPAGE}
+    given = {"Fz": LOAD.copy(), "slip": -CREEPAGE}  # xarray would share the memory
     along = {name: ("time", values, {"units": units[name]}) for name, values in given.items()}
     return xr.Dataset(along, {"Time": ("time", TIME, {"units": "s"})})
 
@@ -78,12 +78,17 @@ def write_netcdf(path: Path) -> None:
     dataset().to_netcdf(path)
 
 
+def write_netcdf_3(path: Path) -> None:
+    dataset().to_netcdf(path, engine="scipy")
+
+
 def write_zarr(path: Path) -> None:
     pytest.importorskip("zarr")
     dataset().to_zarr(path, consolidated=False, zarr_format=3)
 
 
-WRITERS = [write_csv, write_spreadsheet, write_tabs, write_commas_at_ends, write_parquet, write_netcdf, write_zarr]
+WRITERS = [write_csv, write_spreadsheet, write_tabs, write_commas_at_ends, write_parquet]
+WRITERS += [write_netcdf, write_netcdf_3, write_zarr]
 
 
 @pytest.mark.usefixtures("small_blocks")
@@ -121,6 +126,20 @@ def test_columns_named_as_conditions_need_no_mapping(tmp_path: Path) -> None:
     table.to_csv(tmp_path / "run.csv", index=False)
     ds = wl.sweep(predictor(), tmp_path / "run.csv", **FRICTION)
     assert ds.wear_rate.to_numpy().tolist() == expected().wear_rate.magnitude.tolist()
+
+
+def test_a_comma_at_the_end_of_each_line_makes_no_column(tmp_path: Path) -> None:
+    text = "creepage [-],normal_force [N],\n0.01,5000,\n"
+    (tmp_path / "run.csv").write_text(text, encoding="utf-8")
+    ds = wl.sweep(predictor(), tmp_path / "run.csv", **FRICTION)
+    assert ds.normal_force.to_numpy().tolist() == [5000.0]
+
+
+def test_heads_of_old_spreadsheets_are_read_with_their_letters(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_bytes("creepage [-];Höhe [m];Kraft [N]\n0,01;0,5;5000\n".encode("cp1252"))
+    mapped = {"creepage": "creepage", "normal_force": "Kraft"}
+    ds = wl.sweep(predictor(), tmp_path / "run.csv", columns=mapped, keep={"height": "Höhe"}, **FRICTION)
+    assert ds.height.to_numpy().tolist() == [0.5]
 
 
 @pytest.mark.parametrize("column", ["Fz [kN]", "Fz"])

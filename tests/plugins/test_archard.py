@@ -226,3 +226,9 @@ def test_it_is_smooth_and_needs_no_estimate() -> None:
 def test_a_wrong_value_is_one_clear_error(fields: dict[str, Any], message: str) -> None:
     with pytest.raises(wl.ConfigurationError, match=message):
         wl.wear_law("archard", **fields)
+
+
+@pytest.mark.parametrize("ratio", [-0.1, 0.51, "0.28"])
+def test_a_wrong_poisson_ratio_of_a_steel_with_a_hardness_is_refused(ratio: Any) -> None:
+    with pytest.raises(wl.ConfigurationError, match="poisson_ratio"):
+        wl.material("SteelWithHardness", hardness="2 GPa", poisson_ratio=ratio)

@@ -168,6 +168,7 @@ def test_its_points_can_be_fitted() -> None:
         ({"balance": Q(65, "N")}, "threshold, peak and balance must rise; got 20.00 N, 65.00 N and 65.00 N"),
         ({"threshold": Q(-1, "N")}, "threshold"),
         ({"peak_damage": 0.0}, "peak_damage"),
+        ({"peak_damage": float("inf")}, "peak_damage"),
         ({"beyond": "wear"}, "beyond: input should be 'falls' or 'zero', got 'wear'"),
         ({"traction": "pulling"}, "traction: input should be 'either', 'driving' or 'braking', got 'pulling'"),
     ],
