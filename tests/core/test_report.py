@@ -87,7 +87,15 @@ def page(written: str) -> Page:
 
 def test_the_order_is_results_first_and_where_they_come_from_last(page: Page) -> None:
     headings = [attributes["id"] for tag, attributes in page.elements if tag == "h2"]
-    expected = ["title-main_wear_rate_over_creepage", "contents", "figures", "claims", "results", "section-1", "parameters"]
+    expected = [
+        "title-main_wear_rate_over_creepage",
+        "contents",
+        "figures",
+        "claims",
+        "results",
+        "section-1",
+        "parameters",
+    ]
     assert headings == [*expected, "notes", "case", "provenance"]
 
 

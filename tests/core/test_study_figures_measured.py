@@ -79,6 +79,4 @@ def test_the_area_and_width_of_the_patch_in_a_test_are_those_of_its_load(measure
 
 def test_measured_traction_is_shown_without_being_asked_for_by_a_case_without_figures(measured: dict[str, Any]) -> None:
     figures = by_name(run(case(measured=measured)))
-    assert [c.label for c in one_panel(figures["creepage_traction_over_creepage"]).curves if c.points] == [
-        "my tests"
-    ]
+    assert [c.label for c in one_panel(figures["creepage_traction_over_creepage"]).curves if c.points] == ["my tests"]

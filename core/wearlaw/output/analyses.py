@@ -23,6 +23,7 @@ from wearlaw.study.case import Case, written
 from wearlaw.study.study import provenance
 from wearlaw.study.uncertainty import CaseUncertainty, UncertainPair
 from wearlaw.units.quantities import text_of
+from wearlaw.units.variables import name_of
 from wearlaw.version import __version__
 
 FIT = "fit.json"
@@ -181,7 +182,8 @@ def write_uncertainty(
             names += save_table(found.indices, folder, "sobol_indices", latex)
         for file, one in zip(figure_files(found.pairs), found.pairs, strict=True):
             figure = one.uncertainty.figure_data()
-            titled = replace(figure, title=f"{one.pair.label}, {one.point}")
+            name = name_of(one.uncertainty.outcomes[0])
+            titled = replace(figure, title=f"{name[:1].upper()}{name[1:]} by {one.pair.label}: {one.point}")
             names += save_figure(titled, folder, file, figure_formats)
         for name, text in files.items():
             (folder / name).write_text(text, encoding="utf-8")
