@@ -163,3 +163,49 @@ def test_cross_validation_that_cannot_be_is_refused(options: tuple[str, ...], sa
     result = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", LAW, *options)
     assert result.exit_code != 0
     assert says in " ".join(result.output.replace("│", " ").split())
+
+
+ARCHARD = "archard:coefficient=1e-4:hardness=2.6 GPa"
+
+
+def test_a_law_with_options_is_freed_by_its_name_alone_within_bounds() -> None:
+    command = ("compare", "tests.csv", "--contacts", "exact", "--laws", f"usfd,{ARCHARD}", "--free")
+    result = wearlaw(*command, "archard=coefficient", "--bounds", "coefficient=1e-9:1e-8", "-o", "cmp")
+    assert result.exit_code == 0
+    assert f"{ARCHARD} fitted on exact" in pd.read_csv("cmp/ranking.csv").predictor.tolist()
+    assert "the best fit lies at a bound of coefficient" in result.stderr
+    twice = wearlaw(*command[:5], f"{ARCHARD},archard:coefficient=1e-3:hardness=2 GPa", "--free", "archard=coefficient")
+    assert "--free: write it as LAW=FIELDS, with a LAW of archard:coefficient=1e-4" in twice.stderr
+    other = wearlaw(*command, "archard=coefficient", "--bounds", "q_s=1:2")
+    assert "--bounds: 'q_s' is not free; add it to --free, as in --free LAW=q_s" in other.stderr
+
+
+def test_cross_validation_shows_its_progress(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[tuple[int, list[int], list[str]]] = []
+
+    class Seen:
+        def __init__(self, total: int, shown: bool = True) -> None:
+            made.append((total if shown else 0, [], []))
+
+        def __enter__(self) -> Seen:
+            return self
+
+        def __exit__(self, *_: object) -> None:
+            pass
+
+        def __call__(self, points: int) -> None:
+            made[-1][1].append(points)
+
+        def stage(self, text: str) -> None:
+            made[-1][2].append(text)
+
+    monkeypatch.setattr("wearlaw.fitting.comparison.Bar", Seen)
+    command = ("compare", "tests.csv", "--contacts", "exact,global", "--laws", "usfd", "--free", "usfd=q_s")
+    assert wearlaw(*command, "--cross-validate", "3", "-o", "cv").exit_code == 0
+    assert made == [(6, 6 * [1], ["cross-validating"])]
+
+
+def test_a_note_of_the_tests_is_not_repeated_for_each_fit() -> None:
+    command = ("compare", "tests.csv", "--contacts", "exact,global", "--laws", "usfd", "--free", "usfd=q_s")
+    notes = wearlaw(*command, "-o", "cmp").stderr.splitlines()
+    assert [note.partition(": the")[0] for note in notes if "shakedown" in note] == ["note: tests"]

@@ -151,3 +151,16 @@ def test_fewer_tests_than_parameters_are_refused(folder: Path) -> None:
     result = wearlaw(*FIT[:-3], "m_m,q_s", "-o", "out")
     assert_refused(result, "2 measurements cannot tell 2 parameters")
     assert files(folder) == {"tests.csv"}
+
+
+@pytest.mark.parametrize(
+    ("law", "form"),
+    [
+        ("archard", 'archard:coefficient=1e-4:hardness="2.6 GPa"'),
+        ("archard:hardness=3 GPa", 'archard:coefficient=1e-4:hardness="3 GPa"'),
+        ("energy", 'energy:mass_per_energy="1 ug/J"'),
+    ],
+)
+def test_a_missing_field_of_a_law_shows_the_form_of_the_command_line(law: str, form: str) -> None:
+    result = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", law, "-o", "out")
+    assert_refused(result, f"is missing; write the law as {form}")

@@ -195,3 +195,22 @@ def test_what_failed_to_load_is_named_once_with_its_cause(install: Install) -> N
     assert crumbling == "left out: crumbling 1.2.3 (plugin 'crumbling'): RuntimeError: no licence found"
     assert misspelt.startswith("left out: misspelt 1.2.3 (plugin 'misspelt'): ")
     assert "wearlaw_wear_law" in misspelt
+
+
+def test_a_rig_of_discs_shows_the_fields_of_a_disc_once() -> None:
+    shown = wearlaw("show", "twin_disc").stdout
+    assert shown.count("Diameter, D [m]") == 1
+    assert "      a table with these fields:\n        diameter (must be given)\n" in shown
+    assert "      a table with the fields of disc_1\n" in shown
+
+
+def test_a_misspelt_command_suggests_one() -> None:
+    result = wearlaw("rnu")
+    assert result.exit_code == 2
+    assert "there is no command 'rnu'; did you mean 'run'? wearlaw --help lists the commands" in result.stderr
+
+
+@pytest.mark.parametrize("command", ["case", "run"])
+def test_help_names_every_shipped_case(command: str) -> None:
+    text = " ".join(wearlaw(command, "--help").stdout.split())
+    assert "(tassini2010, wheel_on_rail, wheelset)" in text

@@ -340,6 +340,16 @@ def test_uncertainty_of_a_case_is_that_of_its_pairs_with_samples_rounded_up_and_
     assert contents(folder / "out") == contents(folder / "again")
 
 
+def test_a_note_that_all_pairs_share_is_printed_once(folder: Path) -> None:
+    alike = {name: value for name, value in SCATTER.items() if name != "laws"}
+    path = write(
+        folder / "case.toml",
+        table(contact_models=["exact"], wear_laws=["kth", "usfd"], uncertainty={"scatter": alike}),
+    )
+    notes = wearlaw("uncertainty", str(path), "--samples", "64", "-o", "out").stderr.splitlines()
+    assert [note.partition(": the")[0] for note in notes if "shakedown" in note] == ["note: scatter"]
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [

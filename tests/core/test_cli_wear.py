@@ -109,3 +109,17 @@ def test_a_reader_is_shown_with_its_fields() -> None:
     assert shown.startswith("contact_mat: a reader of wearlaw")
     assert "  cksi = None\n      Longitudinal creepage as CONTACT prints it, CKSI [-]; None to derive it." in shown
     assert_refused(wearlaw("check", "contact_mat"), "checks: needs a rig, a contact model, a stage or a law")
+
+
+def test_many_files_are_printed_in_blocks_as_wide_as_the_terminal(folder: Path) -> None:
+    names = [f"flange.{number:04}.mat" for number in range(15)]
+    for name in names:
+        shutil.copy(FLANGE, folder / name)
+    result = wearlaw("wear", *names, "--law", "kth", "-o", "many")
+    assert result.exit_code == 0
+    table, _, _ = result.stdout.partition("Results in")
+    lines = table.splitlines()
+    assert max(map(len, lines)) <= 100, "the width of the tests' terminal"
+    assert [line.split() for line in lines if "flange" in line] == [names[:4], names[4:8], names[8:12]]
+    assert lines[-1] == "... and 3 more contacts in wear.csv"
+    assert len(pd.read_csv("many/wear.csv")) == 15

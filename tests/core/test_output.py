@@ -18,6 +18,7 @@ from tests.core import cases, report_data
 from tests.core.cases import case, tree
 from wearlaw.output.results import CSV, RESULTS, table, write
 from wearlaw.pipeline.variables import OF_CONTACT
+from wearlaw.report.main_result import main_figure, main_result
 from wearlaw.report.tables import tables
 from wearlaw.study.case import CASE_FILE, Case, load_case
 from wearlaw.study.sections import Section
@@ -60,6 +61,7 @@ def test_the_names_returned_are_the_files_written(study: Study, written: tuple[P
     assert sorted(names) == sorted(name for name in tree(folder) if name not in ("figures", "tables"))
     assert names[:4] == ["report.html", "results.nc", "results.csv", "case.toml"]
     drawn = [name for name in names if name.startswith("figures")]
+    assert main_figure(main_result(study)) in study.figures
     assert [Path(name).stem for name in drawn] == [figure.name for figure in study.figures]
     assert all((folder / name).read_bytes().startswith(b"\x89PNG") for name in drawn)
     assert [Path(name).stem for name in names if name.startswith("tables")] == [one.name for one in tables(study)]
@@ -114,7 +116,8 @@ def test_a_table_of_a_name_that_is_taken_or_no_file_name_is_refused(
 def test_what_is_written_next_is_said(tmp_path: Path, point: Study) -> None:
     stages: list[str] = []
     write(point, tmp_path, on_stage=stages.append)
-    names = [figure.name for figure in point.figures]
+    first = main_figure(main_result(point)).name
+    names = [*dict.fromkeys([first, *(figure.name for figure in point.figures)])]
     assert stages == ["writing results", *(f"drawing {name}" for name in names), "writing the report"]
 
 

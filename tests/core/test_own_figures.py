@@ -16,8 +16,11 @@ from tests.core.cases import case
 from wearlaw import Q
 from wearlaw.errors import ConfigurationError
 from wearlaw.figures.coinciding import united
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.drawing import draw
 from wearlaw.report.interactive import plotly_figure
+from wearlaw.report.main_result import main_figure, main_result
+from wearlaw.study.jumps import jumps_of
 from wearlaw.study.study import Study, run
 
 ROLLERS: dict[str, Any] = {
@@ -311,3 +314,44 @@ def test_a_map_that_is_not_possible_says_why(changes: dict[str, Any], message: s
     fields = {"rig": ROLLERS, "contact_models": ["global"], "sweeps": sweeps, "profiles": {}, "figures": {"mine": spec}}
     with pytest.raises(ConfigurationError, match=message):
         case(**fields)
+
+
+def test_the_main_figure_of_two_axes_is_a_map_that_the_first_screen_has_room_for() -> None:
+    both = {"normal_force": LOADS, "creepage": {"from": "0.1 %", "to": "20 %", "points": 6}}
+    study = ran(("global", "exact"), wear_laws=["usfd", "kth"], **both)
+    figure = main_figure(main_result(study))
+    assert figure.name == "main_wear_rate_over_creepage_and_normal_force"
+    assert [panel.title for panel in figure.panels if panel.map] == ["usfd on global", "kth on global"]
+    assert figure.caption.endswith("Only the pairs with global are shown; the tables hold all.")
+    small = ran(wear_laws=["usfd", "kth"], **both)
+    assert any(main_figure(main_result(small)) is one for one in small.figures), "the study's own map, shown once"
+
+
+def test_jumps_are_looked_for_once_for_all_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    sought: list[int] = []
+
+    def counted(points: Any, *others: Any) -> Any:
+        sought.append(points.size)
+        return jumps_of(points, *others)
+
+    monkeypatch.setattr("wearlaw.study.jumps.jumps_of", counted)
+    study = ran(wear_laws=["kth"], creepage={"from": "1 %", "to": "60 %", "points": 7})
+    shown = [one for one in study.figures if "wear_rate" in one.name]
+    assert len(shown) == 2
+    assert sought == [7]
+    assert all(one.panels[0].curves[0].x.size > 7 for one in shown), "both have the jump"
+    main_figure(main_result(study))
+    assert sought == [7]
+
+
+def test_hollow_markers_are_explained_in_both_drawings() -> None:
+    x = np.array([1.0, 2.0])
+    curves = (Curve("law", x, x, points=True, hollow=True), Curve("measured", x, x, colour=6, points=True))
+    figure = FigureData("f", "F", (Panel(PlotAxis("x"), PlotAxis("y"), curves),))
+    drawn = draw(figure)
+    hollow, filled = drawn.axes[0].get_lines()
+    assert (hollow.get_markerfacecolor(), filled.get_markerfacecolor()) == ("none", filled.get_color())
+    assert drawn.legends[0].get_title().get_text() == "hollow markers: predictions"
+    interactive = plotly_figure(figure)
+    assert [trace["marker"]["symbol"] for trace in interactive["data"]] == ["square-open", "circle"]
+    assert interactive["layout"]["legend"]["title"]["text"] == "hollow markers: predictions"

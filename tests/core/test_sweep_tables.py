@@ -470,3 +470,19 @@ def test_the_mapping_of_a_table_is_checked_as_a_whole() -> None:
         tables.Use("other", 1, None, 1.0, True),
         tables.Use("normal_force", 0, "N", -1.0, False),
     ]
+
+
+def test_a_file_that_is_no_table_is_named(tmp_path: Path) -> None:
+    text = tmp_path / "notes.txt"
+    text.write_text("hello world\nthis is text\n")
+    with pytest.raises(wl.ConditionsError, match=r"table '.*notes\.txt', column 'hello world': unknown condition"):
+        wl.sweep(predictor(), text, **FRICTION)
+    csv = tmp_path / "good.csv"
+    csv.write_text("normal_force [N]\n5000\n")
+    with pytest.raises(wl.ConditionsError, match=r"^crepage: unknown condition; did you mean 'creepage'"):
+        wl.sweep(predictor(), csv, crepage="1 %", **FRICTION)
+
+
+def test_a_folder_that_is_no_zarr_store_is_named(tmp_path: Path) -> None:
+    with pytest.raises(wl.DataError, match=r"'.*' is a folder and no zarr store; give the path of a file or of a"):
+        wl.sweep(predictor(), tmp_path, **FRICTION)

@@ -180,11 +180,13 @@ def test_samples_are_rounded_up_to_a_power_of_two(asked: int, taken: int) -> Non
 def test_the_figure_shows_median_and_interval() -> None:
     u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=64)
     (panel,) = u.figure_data().panels
-    distribution, marks = panel.curves
+    distribution, median = panel.curves
     assert np.all(np.diff(distribution.x) >= 0)
-    assert marks.x == pytest.approx(
-        [in_microgram(u.interval()[0]), in_microgram(u.median), in_microgram(u.interval()[1])]
-    )
+    assert all(curve.is_line for curve in panel.curves), "only measurements have markers"
+    assert median.x == pytest.approx(2 * [in_microgram(u.median)])
+    (shade,) = panel.shades
+    assert shade.spans == (pytest.approx([in_microgram(end) for end in u.interval()]),)
+    assert u.figure_data().conditions == "64 samples of friction_coefficient uniform(0.3, 0.5)"
     assert panel.x.label == "wear rate [µg/m/mm²]"
     assert u.plot().axes[0].get_xlabel() == panel.x.label
 

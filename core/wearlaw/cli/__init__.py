@@ -13,7 +13,7 @@ from typing import IO, Any, NamedTuple
 
 import click
 
-from wearlaw.errors import WearlawError, described, message_of, printable, readable
+from wearlaw.errors import WearlawError, described, did_you_mean, message_of, printable, readable
 from wearlaw.version import __version__
 
 
@@ -81,6 +81,14 @@ class _Commands(click.Group):
         module, function, _ = COMMANDS[cmd_name]
         command: click.Command = getattr(import_module(f"{__name__}.{module}"), function)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and not args[0].startswith("-") and args[0] not in COMMANDS:
+            hint = did_you_mean(args[0], COMMANDS)
+            raise click.UsageError(f"there is no command '{args[0]}'{hint} wearlaw --help lists the commands", ctx)
+        return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
         with formatter.section("Commands"):

@@ -13,7 +13,7 @@ from wearlaw.study.case import case_schema, case_text
 @click.command()
 @click.argument("name")
 def case(name: str) -> None:
-    """Print a case file: NAME is the name of a shipped one (tassini2010, wheel_on_rail), or a path."""
+    """Print a case file: NAME is the name of a shipped one (tassini2010, wheel_on_rail, wheelset), or a path."""
     echo_file(case_text(name))
 
 

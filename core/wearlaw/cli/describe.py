@@ -6,10 +6,11 @@ import inspect
 import json
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeGuard
 
 import pint
 
+from wearlaw.contact.material import Material
 from wearlaw.contact.problem import PATCHES
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel, Model
@@ -47,10 +48,26 @@ def describe(model: type[Model], parameter_set: str | None = None) -> str:
 def fields_of(model: type[Configuration], default: Configuration | None) -> Iterator[str]:
     """Yield lines about each field of a model or material, with the values of `default`, or the class's own."""
     schema = model.model_json_schema(by_alias=False).get("properties", {})
+    shown: dict[type, str] = {}
     for name, text in field_docstrings(model).items():
         yield from _field(name, _value(model, default, name), _choices(schema[name]), text)
+        part = model.model_fields[name].annotation
+        if not _is_table(part):
+            continue
+        if part in shown:
+            yield f"      a table with the fields of {shown[part]}"
+        else:
+            shown[part] = name
+            yield from ("      a table with these fields:", *(f"      {line}" for line in fields_of(part, None)))
     if not schema:
         yield "  none"
+
+
+def _is_table(part: Any) -> TypeGuard[type[Configuration]]:
+    """Return whether a field is a table of fields of its own in a file; models and materials have names too."""
+    if not (isinstance(part, type) and issubclass(part, Configuration)) or issubclass(part, Model | Material):
+        return False
+    return field_docstrings(part).keys() <= part.model_json_schema(by_alias=False).get("properties", {}).keys()
 
 
 def _headline(model: type[Model], parameter_set: str | None) -> Iterator[str]:

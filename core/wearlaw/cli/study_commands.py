@@ -57,7 +57,7 @@ def run(
     figure_formats: tuple[FigureFormat, ...],
     latex: bool,
 ) -> None:
-    """Run a study: CASE is a case file, or the name of one that is shipped (tassini2010, wheel_on_rail).
+    """Run a study: CASE is a case file, or the name of one that is shipped (tassini2010, wheel_on_rail, wheelset).
 
     Every contact model of the case is paired with every law. Results are written as report.html, a page to open in a
     browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default

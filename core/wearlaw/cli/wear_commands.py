@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -27,6 +28,12 @@ from wearlaw.output.analyses import WEAR, write_wear
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.reading import read_contact
+
+NUMBER = 10
+"""Most characters of a printed number."""
+
+BLOCKS = 3
+"""Most blocks of columns that are printed."""
 
 APART = 0.01
 """Share by which the two powers may differ without a note."""
@@ -119,7 +126,16 @@ def _note_powers(table: pd.DataFrame, notes: Notes) -> None:
 
 
 def _print(table: pd.DataFrame) -> None:
-    """Print a row for each quantity, with a column for each contact."""
+    """Print a row for each quantity, with a column for each contact: in blocks as wide as the terminal, at most a few.
+
+    The file holds all contacts.
+    """
     across = table.set_index("contact").T
     across.columns.name = None
-    echo(across.to_string(float_format=lambda number: f"{number:.4g}"))
+    space = shutil.get_terminal_size((80, 24)).columns - max(map(len, across.index))
+    count = max(1, space // (2 + max(NUMBER, *map(len, across.columns))))
+    shown = min(across.shape[1], BLOCKS * count)
+    blocks = [across.iloc[:, start : start + count] for start in range(0, shown, count)]
+    echo("\n\n".join(block.to_string(float_format=lambda number: f"{number:.4g}") for block in blocks))
+    if shown < across.shape[1]:
+        echo(f"... and {across.shape[1] - shown} more contacts in wear.csv")

@@ -326,6 +326,8 @@ def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
             label = str(artist.get_label())
             if not label.startswith("_") and label not in named_by_axis:
                 entries[label] = artist
+        for shade in panel.shades:  # the lightest grey needs an edge to be seen
+            entries[_literal(shade.label)] = Patch(facecolor=SHADES[shade.level - 1], edgecolor="0.6", linewidth=0.5)
         for number, (label, region) in enumerate(panel.map.borders.items() if panel.map else ()):
             if region.any() and not region.all():
                 entries[label] = Line2D([], [], color="black", linewidth=1.2, linestyle=LINES[number % len(LINES)])

@@ -24,6 +24,7 @@ from wearlaw.study.case import Case, written
 from wearlaw.study.study import provenance
 from wearlaw.study.uncertainty import CaseUncertainty, UncertainPair
 from wearlaw.units.quantities import text_of
+from wearlaw.units.variables import name_of
 from wearlaw.version import __version__
 
 FIT = "fit.json"
@@ -182,9 +183,11 @@ def write_uncertainty(
         names = save_table(found.wear_rates, folder, "wear_rates", latex)
         if len(found.indices):
             names += save_table(found.indices, folder, "sobol_indices", latex)
-        figures = [
-            replace(one.uncertainty.figure_data(), title=f"{one.pair.label}, {one.point}") for one in found.pairs
-        ]
+        figures = []
+        for one in found.pairs:
+            figure = one.uncertainty.figure_data()
+            name = name_of(one.uncertainty.outcomes[0])
+            figures.append(replace(figure, title=f"{name[:1].upper()}{name[1:]} by {one.pair.label}: {one.point}"))
         warn_of_boxes(figures)
         for file, figure in zip(figure_files(found.pairs), figures, strict=True):
             names += save_figure(figure, folder, file, figure_formats)

@@ -48,6 +48,9 @@ GAP = 0.14
 ROW_HEIGHT = 380
 """Of a row of panels, in pixels."""
 
+EDGED = {"color": "rgb(128, 128, 128)", "width": 0.5}
+"""Edge of a shade in the legend: the lightest grey would not be seen without."""
+
 LONG = 30
 """Letters of a label beyond which the legend stands below the panels."""
 
@@ -119,7 +122,7 @@ def _explained(figure: FigureData) -> list[Json]:
     """Return traces without points that explain shades and thin lines in the legend."""
     shades = {shade.label: shade.level for panel in figure.panels for shade in panel.shades}
     looks: dict[str, Json] = {
-        label: {"mode": "markers", "marker": {"symbol": "square", "size": 12, "color": _grey(level)}}
+        label: {"mode": "markers", "marker": {"symbol": "square", "size": 12, "color": _grey(level), "line": EDGED}}
         for label, level in shades.items()
     }
     if shows_outside(figure):

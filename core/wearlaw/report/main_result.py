@@ -18,6 +18,7 @@ from wearlaw.study.figures import figures_of
 from wearlaw.study.grid import Axis
 from wearlaw.study.results import (
     LIMITS,
+    axes_of,
     main_axis,
     outcomes_of,
     patch_axes,
@@ -145,7 +146,8 @@ def _drawn(main: MainResult) -> FigureData:
         y_scale=_scale(main.sweep[main.outcome].sel(pair=list(pairs)).values),
         pairs=pairs,
     )
-    return _figure(main, f"{main.outcome}_over_{main.axis}", spec, more)
+    name = f"{main.outcome}_over_{main.axis}" if axes_of(main.sweep) else main.outcome
+    return _figure(main, name, spec, more)
 
 
 def _figure(main: MainResult, name: str, spec: FigureSpec, more: str) -> FigureData:

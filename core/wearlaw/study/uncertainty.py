@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -110,7 +110,22 @@ def uncertainty_of(
     if only_wear:
         ends = {name: f"{name} [{WEAR_RATE}]" for name in medians.columns.drop(["point", "pair"])}
         medians = medians.drop(columns=["outcome", "unit"]).rename(columns=ends)
-    return CaseUncertainty(tuple(found), medians, shares, found[0].uncertainty.samples, tuple(notes.texts))
+    return CaseUncertainty(tuple(found), medians, shares, found[0].uncertainty.samples, _folded(notes.texts, found))
+
+
+def _folded(texts: Sequence[str], pairs: Sequence[UncertainPair]) -> tuple[str, ...]:
+    """Return notes with one in place of those that all pairs of an operating point share."""
+    subjects: dict[str, list[str]] = {}
+    for one in pairs:
+        subjects.setdefault(one.point, []).append(f"{one.point}: {one.pair.label}: ")
+    shared: dict[str, str] = {}
+    for point, heads in subjects.items():
+        every = dict.fromkeys(heads)
+        for text in texts:
+            rest = text.removeprefix(next(iter(every)))
+            if rest != text and all(head + rest in texts for head in every):
+                shared |= {head + rest: f"{point}: {rest}" for head in every}
+    return tuple(dict.fromkeys(shared.get(text, text) for text in texts))
 
 
 def _interval(one: Uncertainty) -> dict[str, str | float]:

@@ -34,6 +34,9 @@ START = 2**16
 BUFFER = 2**20
 """Bytes of a CSV file read at a time."""
 
+ZARR = ("zarr.json", ".zgroup", ".zmetadata")
+"""Files of which a zarr store has one."""
+
 DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?", re.ASCII)
 
 
@@ -130,6 +133,8 @@ def open_table(path: str | os.PathLike[str]) -> TableFile:
     """
     path = Path(path)
     if path.is_dir():
+        if not any((path / name).exists() for name in ZARR):
+            raise DataError(f"table: '{path}' is a folder and no zarr store; give the path of a file or of a store")
         return XarrayFile(path)
     try:
         with path.open("rb") as file:

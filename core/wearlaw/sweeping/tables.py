@@ -255,7 +255,13 @@ def from_table(
             raise DataError(f"table {quoted(file.path)}: {one.name} is given twice; keep one")
     if all(one.kept for one in used):
         raise DataError(f"table {quoted(file.path)}: none of its columns is a condition; name them in columns={{...}}")
-    check({**fixed, **{one.name: None for one in used if not one.kept}})
+    try:
+        check({**fixed, **{one.name: None for one in used if not one.kept}})
+    except ConditionsError as error:
+        name, _, fault = str(error).partition(": ")
+        if name not in {one.name for one in used}:
+            raise
+        raise ConditionsError(f"table {quoted(file.path)}, column {quoted(name)}: {fault}") from None
     with ExitStack() as stack:
         collected = _read(file, used, None if on_disk is None else _files(on_disk, len(used), stack), progress)
         found = {

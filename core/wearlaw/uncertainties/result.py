@@ -16,7 +16,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import Known, broadcast
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shortened
-from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis, Shade
 from wearlaw.figures.plot import plot
 from wearlaw.models.law import WEAR, Numbers, named_outcomes
 from wearlaw.numerics.blocks import Columns
@@ -403,8 +403,9 @@ def _figure_data(uncertainty: Uncertainty) -> FigureData:
     """Return the cumulative distribution of one operating point, or the band along the axis of several."""
     inputs = ", ".join(f"{one.name} {one.shown}" for one in uncertainty.inputs)
     panel = _cumulative(uncertainty) if math.prod(uncertainty.shape) == 1 else _along_axis(uncertainty)
-    caption = f"{uncertainty.samples} samples of {inputs}."
-    return FigureData("uncertainty", uncertainty.title, (panel,), caption, f"{CONFIDENCE:.0%} of the samples")
+    samples = f"{uncertainty.samples} samples of {inputs}"
+    band = f"{CONFIDENCE:.0%} of the samples"
+    return FigureData("uncertainty", uncertainty.title, (panel,), f"{samples}.", band, samples)
 
 
 def _cumulative(uncertainty: Uncertainty) -> Panel:
@@ -413,14 +414,13 @@ def _cumulative(uncertainty: Uncertainty) -> Panel:
     share = (np.arange(STEPS) + 0.5) / STEPS
     low, high = (np.ravel(end.magnitude) for end in uncertainty.interval(CONFIDENCE))
     median = np.ravel(uncertainty.median.magnitude)
-    tail = 0.5 - 0.5 * CONFIDENCE
     curves = (
         Curve(name_of(name), np.quantile(values, share), share),
-        Curve(f"median and {CONFIDENCE:.0%} of the samples", np.concatenate([low, median, high]),
-              np.array([tail, 0.5, 1.0 - tail]), colour=1, points=True),
-    )  # fmt: skip
+        Curve("median", np.repeat(median, 2), np.array([0.0, 0.5]), colour=1, dash=1),
+    )
+    inside = Shade(f"{CONFIDENCE:.0%} of the samples", 2, ((float(low[0]), float(high[0])),))
     y = PlotAxis("share of the samples below [-]", ends=(0.0, 1.0))
-    return Panel(PlotAxis(_label(uncertainty)), y, curves)
+    return Panel(PlotAxis(_label(uncertainty)), y, curves, shades=(inside,))
 
 
 def _along_axis(uncertainty: Uncertainty) -> Panel:
