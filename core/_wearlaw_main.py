@@ -11,7 +11,8 @@ import signal
 import sys
 import time
 from contextlib import suppress
-from threading import Thread
+from importlib import import_module
+from threading import Thread, Timer
 from types import FrameType
 from typing import TYPE_CHECKING, NoReturn
 
@@ -24,6 +25,9 @@ TIDYING_S = 5.0
 TWICE_S = 0.5
 """A signal within so many seconds of the first is the same one: `timeout` and terminals send theirs twice."""
 
+AGAIN_S = 0.01
+"""Time after which an interrupt that got lost is raised again, in seconds."""
+
 AT_ONCE = "Stopped at once; the next run with the same output says what is left of this one"
 
 
@@ -32,13 +36,14 @@ def main() -> None:
     stop = _Stop()
     try:
         stop.listen()
-        from wearlaw.cli import main as commands
-
-        commands()
+        import_module("wearlaw.cli").main()
     except KeyboardInterrupt:  # before the command itself
         print("Stopped; nothing was written", file=sys.stderr)
     finally:
         stop.end_if_asked()
+
+
+_main_thread = _thread.get_ident()
 
 
 class _Stop:
@@ -77,7 +82,9 @@ class _Stop:
         """Raise the interrupt again if it came where Python drops exceptions, such as in `__del__`."""
         if self._signal is not None and issubclass(what.exc_type, KeyboardInterrupt):
             self._lost = True
-            _thread.interrupt_main(self._signal)
+            again = Timer(AGAIN_S, _interrupt_again, [self._signal])  # what this function raises is dropped too
+            again.daemon = True
+            again.start()
         else:
             sys.__unraisablehook__(what)
 
@@ -97,6 +104,13 @@ class _Stop:
                 signal.signal(number, signal.SIG_DFL)
         if self._signal is not None:
             _end(self._signal)
+
+
+def _interrupt_again(number: int) -> None:
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(_main_thread, number)  # wakes the thread if it waits
+    else:  # on Windows
+        _thread.interrupt_main(number)
 
 
 def _say(text: str) -> None:

@@ -23,7 +23,7 @@ from wearlaw.figures.curves import FigureFormat
 from wearlaw.output.analyses import UNCERTAINTY, write_uncertainty
 from wearlaw.output.folder import ElsewhereError, identity
 from wearlaw.output.results import RESULTS, check_room, without_csv, write
-from wearlaw.output.temporary import discard
+from wearlaw.output.temporary import discard, to_the_end
 from wearlaw.pipeline.notes import Notes
 from wearlaw.report.tables import NamedTable, summaries
 from wearlaw.study.case import load_case
@@ -95,7 +95,7 @@ def _kept(checkpoint: Checkpoint, folder: Path) -> Iterator[None]:
     finally:
         checkpoint.close()
         if checkpoint.exists and (elsewhere or identity(folder) != before):
-            discard(checkpoint.folder, folder)
+            to_the_end(lambda: discard(checkpoint.folder, folder))
 
 
 def _how_to_go_on(checkpoint: Checkpoint) -> Callable[[], str | None]:

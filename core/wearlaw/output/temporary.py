@@ -6,6 +6,7 @@ import os
 import re
 import secrets
 import shutil
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
@@ -50,11 +51,16 @@ class Temporary:
 
     def remove(self) -> None:
         """Remove the folder, but not earlier contents of the target that could not be put back."""
-        try:
-            _remove(self.path, self._lock)
-        except KeyboardInterrupt:
-            _remove(self.path, self._lock)
-            raise
+        to_the_end(lambda: _remove(self.path, self._lock))
+
+
+def to_the_end(step: Callable[[], None]) -> None:
+    """Take a step that may be taken twice, and take it again if Ctrl-C interrupts it."""
+    try:
+        step()
+    except KeyboardInterrupt:
+        step()
+        raise
 
 
 def _nearest(target: Path) -> Path:
