@@ -33,6 +33,7 @@ COMMANDS = {
     "schema": _Command("case_commands", "schema", "Print the JSON Schema of case files."),
     "show": _Command("model_commands", "show", "Explain anything that wearlaw plugins lists."),
     "uncertainty": _Command("study_commands", "uncertainty", "Say how uncertain the predictions of a case are."),
+    "verify": _Command("verify_commands", "verify", "Check that results are as they were written."),
     "wear": _Command("wear_commands", "wear", "Predict the wear of contacts that another program solved."),
 }
 """All commands. Their modules import pandas, matplotlib and more, so each is loaded when a command of it is used."""

@@ -86,7 +86,10 @@ def _kept(checkpoint: Checkpoint) -> Iterator[None]:
         if checkpoint.exists:
             click.echo(f"Finished blocks are kept in '{checkpoint.folder}'; add --resume to go on with it.", err=True)
         raise
-    checkpoint.remove()
+    else:
+        checkpoint.remove()
+    finally:
+        checkpoint.close()
 
 
 def _print_used(study: Study) -> None:

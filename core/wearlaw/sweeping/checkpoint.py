@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
+from typing import IO
 
 from pydantic import TypeAdapter
 
@@ -18,6 +19,7 @@ from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.variables import outcome_units
 from wearlaw.sweeping.evaluation import Job
 from wearlaw.sweeping.journal import Run, check_same, write_whole
+from wearlaw.sweeping.lock import open_locked
 from wearlaw.sweeping.points import Points
 from wearlaw.sweeping.storage import Arrays, Files, Memory, damage
 from wearlaw.sweeping.sweep import check_importable, run
@@ -54,18 +56,24 @@ class Checkpoint:
     def __init__(self, folder: Path, run: Run, resume: bool) -> None:
         self.folder = folder
         self.listed = self.damaged = 0
+        self._locked: IO[bytes] | None = None
         self._run: Run = json.loads(json.dumps(run))
         self.exists = os.path.lexists(folder)
         if not self.exists:
             return
         if not (folder / RUN).is_file():
             raise OutputError(f"output: '{folder}' is in the way, and holds no unfinished run; remove or rename it")
-        if not resume:
-            raise OutputError(
-                f"output: '{folder}' holds the finished blocks of an interrupted run, or of one that is still running;"
-                " add --resume to go on with it, remove it, or choose another folder with -o"
-            )
-        check_same(folder, self._before(), self._run)
+        self._lock()
+        try:
+            if not resume:
+                raise OutputError(
+                    f"output: '{folder}' holds the finished blocks of an interrupted run; add --resume to go on with it,"
+                    " remove it, or choose another folder with -o"
+                )
+            check_same(folder, self._before(), self._run)
+        except BaseException:
+            self.close()
+            raise
 
     def target(self, key: str, job: Job, points: Points) -> Arrays:
         """Return the target for the results of the sweep named `key` in the run."""
@@ -93,6 +101,19 @@ class Checkpoint:
             raise OutputError(
                 f"output: cannot write to '{self.folder}': {error.strerror or error}; choose another folder with -o"
             ) from None
+        self._lock()
+
+    def _lock(self) -> None:
+        """Keep other runs out of the folder until this process ends, or closes the checkpoint."""
+        try:
+            self._locked = open_locked(self.folder / RUN)
+        except OSError as error:
+            if isinstance(error, OutputError):
+                raise OutputError(f"output: {error}, or choose another folder with -o") from None
+            raise OutputError(
+                f"output: '{self.folder / RUN}' cannot be opened: {error.strerror or error}; remove '{self.folder}' to"
+                " start again"
+            ) from None
 
     def notes(self) -> list[str]:
         """Return a remark about damaged blocks, if there were any."""
@@ -101,7 +122,8 @@ class Checkpoint:
     def _before(self) -> Run:
         """Return the description of the run in the folder."""
         try:
-            run = TypeAdapter(Run).validate_json((self.folder / RUN).read_bytes())
+            assert self._locked is not None
+            run = TypeAdapter(Run).validate_json(self._locked.read())
         except (OSError, ValueError):
             path = self.folder / RUN
             raise OutputError(
@@ -109,10 +131,18 @@ class Checkpoint:
             ) from None
         return run
 
+    def close(self) -> None:
+        """Let other runs go on with the folder."""
+        if self._locked is not None:
+            self._locked.close()
+
     def remove(self) -> None:
         """Remove the folder once the results are elsewhere."""
+        if os.name == "nt":  # where a file in use cannot be removed
+            self.close()
         if self.exists:
             shutil.rmtree(self.folder, ignore_errors=True)
+        self.close()
 
 
 class Evaluator:

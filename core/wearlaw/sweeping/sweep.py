@@ -278,7 +278,7 @@ def run(target: Target, on_block: Callable[[int], None], workers: int = 1, clien
                 warnings.warn(death, WorkerWarning, stacklevel=3)
             if several:
                 on_block(block.size)
-    return range_warnings(target.job, target.done.values())
+    return range_warnings(target.job, (target.done[number] for number in sorted(target.done)))
 
 
 def _elsewhere(target: Target, blocks: list[Block], workers: int, client: Any) -> Generator[Done, None, None]:
