@@ -73,7 +73,6 @@ def serve() -> None:
     from matplotlib.figure import Figure
 
     import wearlaw as wl
-    from wearlaw.cli import main
     from wearlaw.output import results
     from wearlaw.sweeping import journal, points
 

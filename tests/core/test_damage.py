@@ -19,12 +19,6 @@ def made() -> Iterator[Trials]:
         yield found
 
 
-@pytest.mark.validates(
-    "reproducibility",
-    "A run or sweep that was killed at a random moment, damaged at random and resumed",
-    source="the same run without a kill",
-    held_to="to the byte, or an error that says what to remove",
-)
 @pytest.mark.parametrize(("kind", "seed"), [(kind, seed) for seed in range(6) for kind in ("run", "store")])
 def test_a_run_that_was_killed_and_damaged_resumes_to_the_same_bytes_or_says_what_to_remove(
     made: Trials, kind: str, seed: int

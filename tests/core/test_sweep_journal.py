@@ -145,7 +145,7 @@ def test_the_checksums_are_those_of_what_was_seen_and_of_each_output_in_their_or
     a, b = np.arange(6.0), np.arange(6.0, 10.0)
     sums = (zlib.crc32(a.tobytes()), zlib.crc32(b.tobytes()))
     seen = BlockRecord(24, OVERLOAD, {"slip_speed": (0.1, np.inf, 3)}, 0, sums, ("climbs",))
-    text = '[24, [true, 1.5, 1000000000.0, 0.3], {"slip_speed": [0.1, Infinity, 3]}, [%d, %d], ["climbs"]]' % sums
+    text = '[24, [true, 1.5, 1000000000.0, 0.3], {"slip_speed": [0.1, Infinity, 3]}, ' + f'{[*sums]}, ["climbs"]]'
     assert record_checksum(seen) == zlib.crc32(text.encode())
     seen = replace(seen, checksum=record_checksum(seen))
     assert is_undamaged(seen, [a, b])

@@ -158,11 +158,11 @@ def test_the_second_of_two_sweeps_into_a_store_is_refused_and_changes_nothing(
             sweep()
     before = contents(tmp_path)
     with held(tmp_path / "map.zarr.journal"):
-        with pytest.raises(wl.OutputError, match="map.zarr.journal' is in use by another run that is still going on"):
+        with pytest.raises(wl.OutputError, match=r"map.zarr.journal' is in use by another run that is still going on"):
             sweep(resume=True)
         assert contents(tmp_path) == before
         shutil.move(store, tmp_path / "elsewhere")  # as before the first block of the other sweep
-        with pytest.raises(wl.OutputError, match="map.zarr.journal' is in use by another run that is still going on"):
+        with pytest.raises(wl.OutputError, match=r"map.zarr.journal' is in use by another run that is still going on"):
             sweep()
         shutil.move(tmp_path / "elsewhere", store)
     assert contents(tmp_path) == before

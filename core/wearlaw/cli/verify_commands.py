@@ -14,8 +14,8 @@ from wearlaw.output.verification import verify as verified
 def verify(folder: Path) -> None:
     """Check that results are as they were written: FOLDER holds those of a command, or is the store of a sweep.
 
-    All files are read and compared with the checksums that wearlaw keeps beside them. Missing, changed and added files are
-    listed. The exit code is 1 if a file is missing or changed, or nothing can be said.
+    All files are read and compared with the checksums that wearlaw wrote with them. Missing, changed and added files
+    are listed. The exit code is 0 if no file is missing or changed, otherwise 1.
     """
     for line in verified(folder):
         click.echo(line)

@@ -67,8 +67,8 @@ class Checkpoint:
         try:
             if not resume:
                 raise OutputError(
-                    f"output: '{folder}' holds the finished blocks of an interrupted run; add --resume to go on with it,"
-                    " remove it, or choose another folder with -o"
+                    f"output: '{folder}' holds the finished blocks of an interrupted run; add --resume to go on with"
+                    " it, remove it, or choose another folder with -o"
                 )
             check_same(folder, self._before(), self._run)
         except BaseException:

@@ -39,9 +39,9 @@ else:
 def open_locked(path: Path, create: bool = False) -> IO[bytes]:
     """Return a file, open for reading and appending, that no other process can open in this way.
 
-    The lock ends as the file is closed or the process ends, even if it is killed. On a network it is as good as the file
-    system: NFS locks between machines unless it is mounted with `nolock` or `local_lock`. Where a file system has no locks,
-    the file is opened without one.
+    The lock ends as the file is closed or the process ends, even if it is killed. On a network it is as good as the
+    file system: NFS locks between machines unless it is mounted with `nolock` or `local_lock`. Where a file system has
+    no locks, the file is opened without one.
 
     Parameters
     ----------

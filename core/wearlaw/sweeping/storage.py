@@ -193,9 +193,8 @@ class Store(Target):
         except BaseException as error:
             self.close()
             if isinstance(error, OSError) and not isinstance(error, OutputError):
-                raise OutputError(
-                    f"store: cannot write to '{error.filename or path}': {error.strerror or error}; choose another folder"
-                ) from None
+                where, why = error.filename or path, error.strerror or error
+                raise OutputError(f"store: cannot write to '{where}': {why}; choose another folder") from None
             raise
 
     def _lay_out(self) -> None:

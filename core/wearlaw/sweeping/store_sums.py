@@ -7,7 +7,7 @@ import itertools
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -39,11 +39,14 @@ class StoreSums:
         The sums of the other files: coordinates, and what describes the arrays.
     metadata : str
         SHA-256 of what describes the store, without these checksums.
+    own : str
+        SHA-256 of the sums above.
     """
 
     outputs: dict[str, list[int]]
     files: dict[str, FileSum]
     metadata: str
+    own: str = ""
 
 
 def checksums(path: Path, coordinates: Iterable[str], outputs: Mapping[str, Sequence[int]]) -> str:
@@ -60,13 +63,19 @@ def checksums(path: Path, coordinates: Iterable[str], outputs: Mapping[str, Sequ
     files = [f"{name}/{file}" for name in coordinates for file in file_names(path / name)]
     files += [f"{name}/{METADATA}" for name in outputs]
     blocks = {name: list(sums) for name, sums in outputs.items()}
-    found = StoreSums(blocks, file_sums(path, files), _sum_of(json.loads((path / METADATA).read_bytes())))
-    return json.dumps(asdict(found), separators=(",", ":"))
+    described = _described(json.loads((path / METADATA).read_bytes()))
+    found = StoreSums(blocks, file_sums(path, files), _sum_of(described))
+    return json.dumps(asdict(replace(found, own=_sum_of(asdict(found)))), separators=(",", ":"))
 
 
-def _sum_of(metadata: Mapping[str, Any]) -> str:
+def _described(metadata: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what describes a store, without its checksums."""
     attributes = {name: value for name, value in metadata["attributes"].items() if name != CHECKSUMS}
-    return hashlib.sha256(json.dumps({**metadata, "attributes": attributes}, sort_keys=True).encode()).hexdigest()
+    return {**metadata, "attributes": attributes}
+
+
+def _sum_of(values: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
 
 
 def verify_store(path: Path) -> tuple[str, Differences]:
@@ -95,9 +104,11 @@ def verify_store(path: Path) -> tuple[str, Differences]:
     try:
         sums = TypeAdapter(StoreSums).validate_json(attributes[CHECKSUMS])
     except ValueError:
-        raise OutputError(f"'{path / METADATA}' is damaged: its checksums; remove '{path}' and sweep again") from None
+        sums = StoreSums({}, {}, "")
+    if sums.own != _sum_of(asdict(replace(sums, own=""))):
+        raise OutputError(f"'{path / METADATA}' is damaged (its checksums); remove '{path}' and sweep again")
     found = differences(path, sums.files)
-    if _sum_of(metadata) != sums.metadata:
+    if _sum_of(_described(metadata)) != sums.metadata:
         found.changed.append(f"{METADATA} (other bytes)")
     added = set(found.added) - {METADATA}
     for output, blocks in sums.outputs.items():
@@ -108,7 +119,12 @@ def verify_store(path: Path) -> tuple[str, Differences]:
             added |= chunks - set(_compare(path, output, blocks, found))
     found.added = sorted(added)
     count = max(map(len, sums.outputs.values()))
-    return f"{count} blocks of {len(sums.outputs)} outputs, and {len(sums.files) + 1} other files", found
+    of_outputs = f"{_counted(count, 'block')} of {_counted(len(sums.outputs), 'output')}"
+    return f"{of_outputs}, and {_counted(len(sums.files) + 1, 'other file')}", found
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
 def _compare(path: Path, output: str, blocks: Sequence[int], found: Differences) -> list[str]:
