@@ -112,3 +112,17 @@ def overwrite(path: Path, start: int, values: bytes) -> None:
     with path.open("rb+") as file:
         file.seek(start)
         file.write(values)
+
+
+def swap(one: Path, other: Path) -> None:
+    """Exchange the bytes of two files."""
+    first, second = one.read_bytes(), other.read_bytes()
+    one.write_bytes(second)
+    other.write_bytes(first)
+
+
+def replace(path: Path, before: str, after: str) -> None:
+    """Replace text in a file that has it."""
+    text = path.read_text(encoding="utf-8")
+    assert before in text
+    path.write_text(text.replace(before, after), encoding="utf-8")

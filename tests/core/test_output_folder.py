@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -73,11 +74,13 @@ OLD = {RESULTS: "old", "tables/old.csv": "old", "figures/both.png": "old"}
 NEW = {RESULTS: "new", "tables/new.csv": "new", "figures/both.png": "new"}
 
 
-def test_the_manifest_lists_all_files_and_is_the_same_each_time(tmp_path: Path) -> None:
+def test_the_manifest_lists_all_files_with_their_sums_and_is_the_same_each_time(tmp_path: Path) -> None:
     results(tmp_path / "one", OLD)
     results(tmp_path / "two", OLD)
     manifest = json.loads((tmp_path / "one" / MANIFEST).read_bytes())
-    assert manifest == {"wearlaw": wl.__version__, "files": sorted(OLD)}
+    sums = {name: {"bytes": 3, "sha256": hashlib.sha256(b"old").hexdigest()} for name in sorted(OLD)}
+    assert manifest == {"wearlaw": wl.__version__, "files": sums}
+    assert list(manifest["files"]) == sorted(OLD)
     assert tree(tmp_path / "one") == tree(tmp_path / "two")
 
 
@@ -180,7 +183,28 @@ def test_a_folder_without_a_manifest_is_left_alone_even_with_overwrite(
     assert tree(tmp_path) == {name: b"years of work"}
 
 
-@pytest.mark.parametrize("manifest", ["", "[]", "1", '{"files": 3}', '{"wearlaw": "0.1.0"}', "\x00\xff"])
+def test_earlier_results_whose_manifest_holds_no_sums_are_replaced(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    results(out, OLD)
+    (out / MANIFEST).write_text(json.dumps({"wearlaw": "0.1.0", "files": sorted(OLD)}))
+    (out / "thesis.tex").write_text("years of work")
+    results(out, NEW, overwrite=True)
+    assert texts(out) == {**NEW, "thesis.tex": "years of work"}
+
+
+@pytest.mark.parametrize(
+    "manifest",
+    [
+        "",
+        "[]",
+        "1",
+        '{"files": 3}',
+        '{"wearlaw": "0.1.0"}',
+        "\x00\xff",
+        '{"files": {"results.nc": 3}}',
+        '{"files": [[]]}',
+    ],
+)
 def test_a_manifest_that_is_none_is_as_good_as_none(tmp_path: Path, manifest: str) -> None:
     results(tmp_path / "out", OLD)
     (tmp_path / "out" / MANIFEST).write_text(manifest, encoding="latin-1")
@@ -201,12 +225,14 @@ def test_results_of_another_command_are_left_alone_even_with_overwrite(tmp_path:
     assert tree(tmp_path) == before
 
 
-def test_a_manifest_that_names_files_elsewhere_removes_nothing_there(tmp_path: Path) -> None:
+@pytest.mark.parametrize("sums", [None, {"bytes": 3, "sha256": "0"}])
+def test_a_manifest_that_names_files_elsewhere_removes_nothing_there(tmp_path: Path, sums: Any) -> None:
     out = tmp_path / "out"
     results(out, OLD)
     (tmp_path / "thesis.tex").write_text("years of work")
     listed = [*OLD, "../thesis.tex", "../../thesis.tex", str(tmp_path / "thesis.tex")]
-    (out / MANIFEST).write_text(json.dumps({"files": listed}))
+    written = listed if sums is None else dict.fromkeys(listed, sums)
+    (out / MANIFEST).write_text(json.dumps({"files": written}))
     results(out, NEW, overwrite=True)
     assert texts(tmp_path) == {"thesis.tex": "years of work", **{f"out/{name}": text for name, text in NEW.items()}}
 

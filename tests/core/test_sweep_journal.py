@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import zlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from tests.core.sweeps import predictor
 from wearlaw import Q
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.sweeping import journal as sweep_journal
-from wearlaw.sweeping.evaluation import BlockRecord, Job, checksum
+from wearlaw.sweeping.evaluation import BlockRecord, Job, checksum, is_undamaged, record_checksum
 from wearlaw.sweeping.journal import Journal, check_same, run_of, write_whole
 from wearlaw.sweeping.points import outer_product
 
@@ -28,7 +29,7 @@ def journal(path: Path) -> None:
     """Write the journal of a sweep of which two blocks are done."""
     begun = Journal.begin(path, RUN, lambda _: None)
     for number in (0, 1):
-        begun.add(number, BlockRecord(24, OVERLOAD, {"slip_speed": (0.1, 0.2, 3)}, 2**32 - 1))
+        begun.add(number, BlockRecord(24, OVERLOAD, {"slip_speed": (0.1, 0.2, 3)}, 2**32 - 1, (7, 8)))
     begun.close()
 
 
@@ -60,6 +61,9 @@ def test_of_a_journal_that_was_cut_off_the_whole_lines_are_left(left: int, tmp_p
         '{"block": 0, "points": 24, "max_pressure": 1e9, "ranges": {}}',  # without a checksum
         '[0, {"points": 24, "max_pressure": 1e9, "ranges": {}}]',
         '["0", {"points": 24, "max_pressure": 1e9, "ranges": {}, "checksum": 7}]',
+        '["0", {"points": 24, "overload": null, "ranges": {}, "checksum": 7, "outputs": []}]',
+        '[0, {"points": 24, "overload": null, "ranges": {}, "checksum": 7, "outputs": [1.5]}]',
+        '[0, {"points": 24, "overload": null, "ranges": {}, "checksum": 7}]',
         '[0, {"points": 24, "max_pressure": "high", "ranges": {}, "checksum": 7}]',
         '[0, {"points": 24, "max_pressure": 1e9, "ranges": {"slip_speed": [0.1, 0.2]}, "checksum": 7}]',
         "[0, 1]",
@@ -100,12 +104,13 @@ def test_a_line_is_written_after_the_results_of_its_block(
 
     begun = Journal.begin(path, RUN, sync)
     for number in range(9):
-        begun.add(number, BlockRecord(24, None, {}, number))
+        begun.add(number, BlockRecord(24, None, {}, number, ()))
     begun.close()
     assert [number for numbers in synced for number in numbers] == list(range(9))
     assert (len(synced) == 1) == (pause > 0.0)
     resumed = Journal.resume(path, RUN, tmp_path, sync)
-    assert resumed.done == {number: BlockRecord(24, None, {}, number) for number in range(9)}
+    resumed.close()
+    assert resumed.done == {number: BlockRecord(24, None, {}, number, ()) for number in range(9)}
 
 
 @pytest.mark.parametrize("pause", [0.0, 60.0])
@@ -114,7 +119,7 @@ def test_results_that_cannot_be_synced_are_not_listed_and_an_error(
 ) -> None:
     monkeypatch.setattr(sweep_journal, "SYNC_S", pause)
     begun = Journal.begin(tmp_path / "journal", RUN, full_disk)
-    begun.add(0, BlockRecord(24, OVERLOAD, {}, 0))
+    begun.add(0, BlockRecord(24, OVERLOAD, {}, 0, ()))
     with pytest.raises(wl.OutputError, match="journal': finished blocks cannot be kept: No space left on device"):
         begun.close()
     assert (tmp_path / "journal").read_bytes().count(b"\n") == 1
@@ -136,13 +141,28 @@ def test_a_process_that_is_killed_as_it_writes_a_record_leaves_the_one_before(
     assert path.read_bytes() == b"before"
 
 
-def test_the_checksum_is_that_of_what_was_seen_and_the_bytes_in_their_order() -> None:
+def test_the_checksums_are_those_of_what_was_seen_and_of_each_output_in_their_order() -> None:
     a, b = np.arange(6.0), np.arange(6.0, 10.0)
-    seen = BlockRecord(24, OVERLOAD, {"slip_speed": (0.1, np.inf, 3)}, 0)
-    text = b'[24, [true, 1.5, 1000000000.0, 0.3], {"slip_speed": [0.1, Infinity, 3]}]'
-    assert checksum(seen, [a, b]) == zlib.crc32(text + a.tobytes() + b.tobytes())
-    assert checksum(seen, [a[::2]]) == zlib.crc32(text + a[::2].tobytes())
-    assert checksum(seen, [b, a]) != checksum(seen, [a, b])
+    sums = (zlib.crc32(a.tobytes()), zlib.crc32(b.tobytes()))
+    seen = BlockRecord(24, OVERLOAD, {"slip_speed": (0.1, np.inf, 3)}, 0, sums, ("climbs",))
+    text = '[24, [true, 1.5, 1000000000.0, 0.3], {"slip_speed": [0.1, Infinity, 3]}, ' + f'{[*sums]}, ["climbs"]]'
+    assert record_checksum(seen) == zlib.crc32(text.encode())
+    seen = replace(seen, checksum=record_checksum(seen))
+    assert is_undamaged(seen, [a, b])
+    assert not any(is_undamaged(seen, outputs) for outputs in ([b, a], [a], [], [a, b, b], [a, -b]))
+    assert not any(is_undamaged(replace(seen, **{name: value}), [a, b]) for name, value in OTHER_VALUES.items())
+    assert checksum(a[::2]) == zlib.crc32(a[::2].tobytes())
+
+
+OTHER_VALUES: dict[str, Any] = {
+    "points": 25,
+    "overload": None,
+    "ranges": {},
+    "remarks": (),
+    "checksum": 0,
+    "outputs": (),
+}
+"""Values that the record in the test above does not have."""
 
 
 def test_what_has_changed_is_said_with_units_as_they_are_shown_elsewhere(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from tests.core.axles import CREEP, GIVEN, KTH, PATCHES, Axle, Cut, Warns, Worn,
 from tests.core.sweeps import contents, interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.output.verification import verify
 from wearlaw.sweeping import sweep as sweeping
 from wearlaw.sweeping.checkpoint import Evaluator
 from wearlaw.sweeping.points import Points, Varying
@@ -165,6 +166,10 @@ def test_blocks_without_any_patch_are_nan(stored: bool, tmp_path: Path) -> None:
     store = tmp_path / "map.zarr" if stored else None
     swept = wl.sweep(Lifting() | FASTSIM | KTH, **{**GIVEN, "displacement": Q(places, "mm")}, store=store)
     assert (np.isfinite(swept.wear_rate.values[:, :, 0]) == (np.abs(places) <= 10.0)[:, None]).all()
+    if store is not None:
+        (line,) = verify(store)
+        blocks = int(line.split(" blocks")[0].split()[-1])
+        assert 0 < sum(path.is_file() for path in store.glob("wear_rate/c/**/*")) < blocks  # zarr writes none for these
 
 
 def test_bodies_that_touch_nowhere_are_named() -> None:

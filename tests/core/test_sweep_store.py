@@ -9,7 +9,8 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -22,10 +23,11 @@ import xarray as xr
 from matplotlib import pyplot as plt
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, interrupted_after, overwrite, predictor
+from tests.core.cases import full_disk
+from tests.core.sweeps import CONDITIONS, OUTPUTS, contents, interrupted_after, overwrite, predictor, replace, swap
 from wearlaw import Q
 from wearlaw.sweeping import journal
-from wearlaw.sweeping.evaluation import write_block
+from wearlaw.sweeping.evaluation import BlockRecord, write_block
 from wearlaw.sweeping.points import Block
 
 pytest.importorskip("zarr")
@@ -95,18 +97,6 @@ def test_a_resumed_sweep_has_the_same_bytes_as_an_uninterrupted_one(
     assert contents(tmp_path / "resumed.zarr") == whole()
     assert seen[0] >= 3 * 24  # done before, and not again
     assert not (tmp_path / "resumed.zarr.journal").exists()
-
-
-def swap(one: Path, other: Path) -> None:
-    first, second = one.read_bytes(), other.read_bytes()
-    one.write_bytes(second)
-    other.write_bytes(first)
-
-
-def replace(path: Path, before: str, after: str) -> None:
-    text = path.read_text(encoding="utf-8")
-    assert before in text
-    path.write_text(text.replace(before, after), encoding="utf-8")
 
 
 def beside(store: Path) -> Path:
@@ -226,6 +216,108 @@ def test_an_unfinished_sweep_of_which_nothing_is_done_begins_anew(
     interrupted(tmp_path / "map.zarr", monkeypatch, after=0)
     ds = wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=True)
     assert ds.wear_rate.notnull().all()
+
+
+def test_blocks_are_reported_in_their_order_whatever_that_in_the_journal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Workers finish blocks in any order; the first remark of the rig is that of the first block."""
+    reported: list[list[BlockRecord]] = []
+
+    def report(_: Any, blocks: Iterable[BlockRecord]) -> list[Warning]:
+        reported.append(list(blocks))
+        return []
+
+    monkeypatch.setattr("wearlaw.sweeping.sweep.range_warnings", report)
+    wl.sweep(predictor(), **GIVEN)
+    interrupted(tmp_path / "map.zarr", monkeypatch)
+    path = beside(tmp_path / "map.zarr")
+    head, *lines = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(head + b"".join(reversed(lines)))
+    wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=True)
+    whole, resumed = reported
+    assert resumed == whole
+
+
+COMPLETE_DAMAGE: dict[str, Callable[[Path], object]] = {
+    "provenance": lambda store: replace(store / "zarr.json", '"provenance": "{', '"provenance": "'),
+    "an output is gone": lambda store: shutil.rmtree(store / RATE),
+    "an output is not described": lambda store: (store / RATE / "zarr.json").write_text("garbage"),
+    "a folder is a file": lambda store: (shutil.rmtree(store / RATE), (store / RATE).touch()),
+    "a coordinate": lambda store: (store / "creepage/zarr.json").write_text("[]"),
+}
+
+
+@pytest.mark.parametrize("what", COMPLETE_DAMAGE)
+@pytest.mark.filterwarnings("ignore:Object at .* is not recognized")
+def test_a_finished_sweep_that_is_damaged_is_not_returned(what: str, tmp_path: Path) -> None:
+    store = tmp_path / "map.zarr"
+    wl.sweep(predictor(), **GIVEN, store=store)
+    COMPLETE_DAMAGE[what](store)
+    message = "map.zarr' holds a complete sweep, but is damaged; remove it to start again"
+    with pytest.raises(wl.OutputError, match=message):
+        wl.sweep(predictor(), **GIVEN, store=store, resume=True)
+
+
+def test_an_unfinished_store_without_its_journal_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    store = tmp_path / "map.zarr"
+    interrupted(store, monkeypatch)
+    beside(store).unlink()
+    message = r"holds an unfinished sweep whose journal '.*map.zarr.journal' is missing; remove '.*map.zarr' to start"
+    for resume in (True, False):
+        with pytest.raises(wl.OutputError, match=message):
+            wl.sweep(predictor(), **GIVEN, store=store, resume=resume)
+
+
+IN_THE_WAY: dict[str, Callable[[Path], object]] = {
+    "a folder for a block": lambda store: (store / RATE / "c/7/0/0").mkdir(parents=True),
+    "a folder for a finished block": lambda store: (
+        (store / RATE / "c/1/0/0").unlink(),
+        (store / RATE / "c/1/0/0/inside").mkdir(parents=True),
+    ),
+    "a pipe for a finished block": lambda store: (
+        (store / RATE / "c/1/0/0").unlink(),
+        os.mkfifo(store / RATE / "c/1/0/0"),
+    ),
+    "a file for a folder of blocks": lambda store: (shutil.rmtree(store / RATE / "c"), (store / RATE / "c").touch()),
+    "a file for an output": lambda store: (shutil.rmtree(store / RATE), (store / RATE).touch()),
+    "a file for a coordinate": lambda store: (shutil.rmtree(store / "creepage"), (store / "creepage").touch()),
+    "a folder for what describes an output": lambda store: (
+        (store / RATE / "zarr.json").unlink(),
+        (store / RATE / "zarr.json").mkdir(),
+    ),
+    "a folder for what describes all": lambda store: (
+        (store / "zarr.json").unlink(),
+        (store / "zarr.json" / "inside").mkdir(parents=True),
+    ),
+    "a folder for what was cut off": lambda store: (store / RATE / "c/0.1.partial").mkdir(),
+}
+"""What may stand where a resumed sweep writes; files of others stay."""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there are no named pipes")
+@pytest.mark.filterwarnings("ignore:. of the 3 blocks kept in")
+@pytest.mark.parametrize("what", IN_THE_WAY)
+def test_what_is_in_the_place_of_results_makes_way(what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    store = tmp_path / "map.zarr"
+    interrupted(store, monkeypatch)
+    IN_THE_WAY[what](store)
+    (store / "notes.txt").write_text("mine")
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Object at notes.txt is not recognized")
+        wl.sweep(predictor(), **GIVEN, store=store, resume=True)
+    assert contents(store) == {**whole(), "notes.txt": b"mine"}
+
+
+def test_a_store_that_cannot_be_written_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(
+        wl.OutputError, match=r"store: cannot write to '.*': (Not a directory|File exists); choose another"
+    ):
+        wl.sweep(predictor(), **GIVEN, store=tmp_path / "file" / "map.zarr")
+    monkeypatch.setattr("wearlaw.sweeping.journal._append", full_disk)
+    with pytest.raises(wl.OutputError, match=r"store: cannot write to '.*map.zarr': No space left on device; choose"):
+        wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr")
 
 
 CHANGES: list[tuple[dict[str, Any], str]] = [

@@ -13,7 +13,7 @@ from typing import IO, Any, NamedTuple
 
 import click
 
-from wearlaw.errors import WearlawError, described, did_you_mean, message_of, printable, readable
+from wearlaw.errors import WearlawError, described, did_you_mean, message_of, printable, quoted, readable
 from wearlaw.version import __version__
 
 
@@ -36,6 +36,7 @@ COMMANDS = {
     "schema": _Command("case_commands", "schema", "Print the JSON Schema of case files."),
     "show": _Command("model_commands", "show", "Explain anything that wearlaw plugins lists."),
     "uncertainty": _Command("study_commands", "uncertainty", "Say how uncertain the predictions of a case are."),
+    "verify": _Command("verify_commands", "verify", "Check that results are as they were written."),
     "wear": _Command("wear_commands", "wear", "Predict the wear of contacts that another program solved."),
 }
 """All commands. Their modules import pandas, matplotlib and more, so each is loaded when a command of it is used."""
@@ -87,7 +88,9 @@ class _Commands(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and not args[0].startswith("-") and args[0] not in COMMANDS:
             hint = did_you_mean(args[0], COMMANDS)
-            raise click.UsageError(f"there is no command '{args[0]}'{hint} wearlaw --help lists the commands", ctx)
+            raise click.UsageError(
+                f"there is no command {quoted(args[0])}{hint} wearlaw --help lists the commands", ctx
+            )
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002

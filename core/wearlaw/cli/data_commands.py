@@ -176,7 +176,7 @@ def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | flo
     for field, text in fields("--bounds", settings, "FIELD=LOW:HIGH").items():
         low, colon, high = text.partition(":")
         if not colon:
-            raise click.UsageError(f"--bounds: write it as FIELD=LOW:HIGH, got '{field}={text}'")
+            raise click.UsageError(f"--bounds: write it as FIELD=LOW:HIGH, got {quoted(f'{field}={text}')}")
         found[field] = value(low.strip()), value(high.strip())
     return found
 
@@ -282,7 +282,7 @@ def _compare(
     ]
     freed, ends = _freed(free, named), _bounds(bounds)
     for field in ends.keys() - {field for fields_of_law in freed.values() for field in fields_of_law}:
-        raise click.UsageError(f"--bounds: '{field}' is not free; add it to --free, as in --free LAW={field}")
+        raise click.UsageError(f"--bounds: {quoted(field)} is not free; add it to --free, as in --free LAW={field}")
     for law, fields_of_law in freed.items():
         of_law = [pair for pair in pairs if pair.law == law]
         own = {field: ends[field] for field in fields_of_law if field in ends}

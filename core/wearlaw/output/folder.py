@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import itertools
-import json
 import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from wearlaw.errors import OutputError, quoted
+from wearlaw.output.manifest import MANIFEST, read_manifest, write_manifest
 from wearlaw.output.temporary import Temporary, tidy_up
-from wearlaw.version import __version__
-
-MANIFEST = ".wearlaw.json"
-"""Manifest of the files that wearlaw wrote into a folder; it replaces no others."""
+from wearlaw.sweeping.file_sums import file_names
 
 
 class ElsewhereError(OutputError):
@@ -74,7 +70,7 @@ def fresh_folder(folder: Path, overwrite: bool = False, marker: str | None = Non
         try:
             with _os_errors_of(folder):
                 if marker is not None:
-                    _write_manifest(inside)
+                    write_manifest(inside)
                 if earlier is None:
                     _uninterrupted(lambda: _put(inside, folder, target))
                 else:
@@ -130,11 +126,8 @@ def _earlier(folder: Path, target: Path, overwrite: bool, marker: str | None) ->
 
 def _listed(folder: Path) -> frozenset[str]:
     """Return the files in a folder's manifest and the manifest itself, or none without one."""
-    try:
-        found: Any = json.loads((folder / MANIFEST).read_bytes())
-        return frozenset([MANIFEST, *map(str, found["files"])])
-    except (OSError, ValueError, TypeError, KeyError):
-        return frozenset()
+    found = read_manifest(folder)
+    return frozenset() if found is None else frozenset([MANIFEST, *found.files])
 
 
 def identity(folder: Path) -> tuple[int, ...] | None:
@@ -144,15 +137,6 @@ def identity(folder: Path) -> tuple[int, ...] | None:
     except OSError:
         return None
     return found.st_ino, found.st_mtime_ns
-
-
-def _write_manifest(folder: Path) -> None:
-    manifest = {"wearlaw": __version__, "files": _files(folder)}
-    (folder / MANIFEST).write_text(json.dumps(manifest, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
-
-
-def _files(folder: Path) -> list[str]:
-    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir())
 
 
 def _taken(folder: Path) -> OutputError:
@@ -183,7 +167,7 @@ def _replace(inside: Path, folder: Path, target: Path, replaced: Path, earlier: 
     try:
         if identity(replaced) != earlier.identity:  # another run was faster since the lines above
             raise _taken(folder)
-        new = frozenset(_files(inside))
+        new = frozenset(file_names(inside))
         others = list(_others(replaced, earlier.files, new))
         _check_names(folder, others, new)
         inside.rename(target)

@@ -78,7 +78,7 @@ class Checkpoint:
                     " with it, remove it, or choose another folder with -o"
                 )
             check_same(folder, self._before(), self._run)
-        except OutputError:
+        except BaseException:
             self.close()
             raise
 

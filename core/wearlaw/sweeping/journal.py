@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Self
+from typing import IO, Any, Self
 
 import pint
 from pydantic import TypeAdapter
@@ -21,6 +21,7 @@ from wearlaw.models.contact_model import Model
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import BlockRecord, Job
+from wearlaw.sweeping.lock import open_locked
 from wearlaw.sweeping.points import BLOCK, Points, Varying
 from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
@@ -72,8 +73,17 @@ def _summary(one: Varying) -> str:
     return f"{one.values.size} values, {ends}, along {one.dim}{origin}, checksum {digest.hexdigest()[:16]}"
 
 
-def check_same(where: Path, before: Run, now: Run) -> None:
+def check_same(where: Path, before: Run, now: Run, journal: Path | None = None) -> None:
     """Raise an error unless an interrupted sweep is the same as this one.
+
+    Parameters
+    ----------
+    where : Path
+        The folder of the interrupted sweep.
+    before, now : dict
+        The descriptions of both.
+    journal : Path, optional
+        The journal of the interrupted sweep, if it is not in the folder.
 
     Raises
     ------
@@ -85,8 +95,14 @@ def check_same(where: Path, before: Run, now: Run) -> None:
         raise OutputError(
             f"{quoted(where)} holds another run and cannot be resumed, since these have changed:"
             + "".join(f"\n  {change}" for change in changes)
-            + "\nChange them back, or choose another place"
+            + f"\nChange them back, choose another place, or remove {_both(where, journal)} to start again"
         )
+
+
+def _both(where: Path, journal: Path | None) -> str:
+    return (
+        f"{quoted(where)}" if journal is None or where in journal.parents else f"{quoted(journal)} and {quoted(where)}"
+    )
 
 
 def _changes(path: str, before: Any, now: Any) -> Iterator[str]:
@@ -107,10 +123,23 @@ def write_whole(path: Path, text: str) -> None:
     beside.replace(path)
 
 
+def _append(file: IO[bytes], text: str) -> None:
+    """Write text at the end of a file, and wait until it is on disk."""
+    file.write(text.encode())
+    file.flush()
+    os.fsync(file.fileno())
+
+
 def sync_file(path: Path) -> None:
     """Wait until a file is on disk."""
     with path.open("rb+") as file:
         os.fsync(file.fileno())
+
+
+def _spoilt(path: Path, where: Path) -> OutputError:
+    return OutputError(
+        f"{quoted(path)} is not the journal of a sweep that can be resumed; remove it and {quoted(where)} to start again"
+    )
 
 
 class Journal:
@@ -121,14 +150,19 @@ class Journal:
     Parameters
     ----------
     path : Path
+    file : binary file
+        The file there; no other process has it.
     done : dict of int to BlockRecord
         The blocks listed so far.
     sync : callable
         Called with the numbers of some blocks, to wait until their results are on disk.
     """
 
-    def __init__(self, path: Path, done: Mapping[int, BlockRecord], sync: Callable[[list[int]], None]) -> None:
+    def __init__(
+        self, path: Path, file: IO[bytes], done: Mapping[int, BlockRecord], sync: Callable[[list[int]], None]
+    ) -> None:
         self.path = path
+        self._file = file
         self.done = dict(done)
         self._sync = sync
         self._waiting: dict[int, BlockRecord] = {}
@@ -138,9 +172,21 @@ class Journal:
 
     @classmethod
     def begin(cls, path: Path, run: Run, sync: Callable[[list[int]], None]) -> Self:
-        """Return a new journal without blocks."""
-        write_whole(path, json.dumps(run) + "\n")
-        return cls(path, {}, sync)
+        """Return a new journal without blocks.
+
+        Raises
+        ------
+        OutputError
+            If another process has the journal.
+        """
+        file = open_locked(path, create=True)
+        try:
+            file.truncate(0)
+            _append(file, json.dumps(run) + "\n")
+        except BaseException:
+            file.close()
+            raise
+        return cls(path, file, {}, sync)
 
     @classmethod
     def resume(cls, path: Path, run: Run, where: Path, sync: Callable[[list[int]], None]) -> Self:
@@ -149,9 +195,21 @@ class Journal:
         Raises
         ------
         OutputError
-            If the journal is damaged or belongs to another run.
+            If the journal is damaged or belongs to another run, or another process has it.
         """
-        text = path.read_bytes()
+        if not path.is_file():
+            raise _spoilt(path, where)
+        file = open_locked(path)
+        try:
+            return cls(path, file, cls._read(file, path, run, where), sync)
+        except BaseException:
+            file.close()
+            raise
+
+    @staticmethod
+    def _read(file: IO[bytes], path: Path, run: Run, where: Path) -> dict[int, BlockRecord]:
+        """Return the records in a journal and cut off a last line that is not whole."""
+        text = file.read()
         whole = text[: text.rfind(b"\n") + 1]
         try:
             head, *lines = whole.splitlines()
@@ -159,14 +217,12 @@ class Journal:
             line_type = TypeAdapter(tuple[int, BlockRecord])
             done = dict(line_type.validate_json(line, strict=True) for line in lines)
         except ValueError:
-            raise OutputError(
-                f"{quoted(path)} is not the journal of a sweep that can be resumed; remove it and {quoted(where)} to"
-                " start again"
-            ) from None
-        check_same(where, before, run)
+            raise _spoilt(path, where) from None
+        check_same(where, before, run, path)
         if len(whole) < len(text):
-            os.truncate(path, len(whole))
-        return cls(path, done, sync)
+            file.truncate(len(whole))
+        file.seek(len(whole))
+        return done
 
     def add(self, number: int, seen: BlockRecord) -> None:
         """Add a finished block; its line is written a little later."""
@@ -191,10 +247,8 @@ class Journal:
         """
         try:
             self._sync(list(blocks))
-            with self.path.open("a", encoding="utf-8") as file:
-                file.writelines(json.dumps([number, asdict(seen)]) + "\n" for number, seen in blocks.items())
-                file.flush()
-                os.fsync(file.fileno())
+            lines = (json.dumps([number, asdict(seen)]) + "\n" for number, seen in blocks.items())
+            _append(self._file, "".join(lines))
         except OSError as error:
             raise OutputError(
                 f"{quoted(self.path)}: finished blocks cannot be kept: {error.strerror or error}"
@@ -203,14 +257,23 @@ class Journal:
     def close(self) -> None:
         """Write the remaining lines; the file stays."""
         try:
-            self._wait()
-            if self._waiting:
-                self._write(self._waiting)
+            self.flush()
         finally:
             self._thread.shutdown()
+            self._file.close()
+
+    def flush(self) -> None:
+        """Write the remaining lines."""
+        self._wait()
+        waiting, self._waiting = self._waiting, {}
+        if waiting:
+            self._write(waiting)
 
     def remove(self) -> None:
         """Remove the file of a finished sweep."""
-        self._thread.shutdown()
-        self._waiting = {}
-        self.path.unlink()
+        if os.name == "nt":  # where a file in use cannot be removed
+            self.close()
+            self.path.unlink()
+        else:  # while it is locked, so that nobody goes on with it
+            self.path.unlink()
+            self.close()

@@ -15,13 +15,15 @@ from typing import Any
 import numpy as np
 import pint
 import xarray
+from pydantic import TypeAdapter
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
 from wearlaw.errors import InputError, OutputError, quoted
-from wearlaw.sweeping.evaluation import BlockRecord, Job, checksum, load_zarr, zarr_group
+from wearlaw.sweeping.evaluation import BlockRecord, Job, is_undamaged, load_zarr, zarr_group
 from wearlaw.sweeping.journal import Journal, Run, check_same, run_of, sync_file
 from wearlaw.sweeping.points import ITEM, Block, Points
+from wearlaw.sweeping.store_sums import CHECKSUMS, COMPLETE, INCOMPLETE, METADATA, checksums
 from wearlaw.units.quantities import parse
 from wearlaw.units.registry import symbol
 
@@ -29,12 +31,6 @@ GIB = 2.0**30
 
 JOURNAL = "journal"
 """Name of the journal in a folder of results."""
-
-METADATA = "zarr.json"
-"""Name of the file that describes a group or an array in a zarr store."""
-
-COMPLETE, INCOMPLETE = "complete", "incomplete"
-"""Values of the attribute "status" of results."""
 
 
 class Target(ABC):
@@ -75,11 +71,10 @@ class Target(ABC):
             self._journal.close()
 
     def _take_over(self, journal: Journal) -> None:
-        """Use a journal, and accept its blocks whose results on disk are undamaged."""
-        self._journal = journal
+        """Accept the blocks of a journal whose results on disk are undamaged."""
         blocks = {block.number: block for block in self.points.blocks()}
         for number, seen in journal.done.items():
-            if number in blocks and checksum(seen, self._kept(blocks[number])) == seen.checksum:
+            if number in blocks and is_undamaged(seen, self._kept(blocks[number])):
                 self.done[number] = seen
         self.listed = len(journal.done)
         self.damaged = self.listed - len(self.done)
@@ -147,19 +142,21 @@ class Files(Arrays):
         path, run = folder / JOURNAL, run_of(job, points)
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            known = path.exists()
-            journal = Journal.resume(path, run, folder, self._sync) if known else Journal.begin(path, run, self._sync)
+            known = os.path.lexists(path)
+            begun = Journal.resume(path, run, folder, self._sync) if known else Journal.begin(path, run, self._sync)
+            self._journal = begun
             self._maps = {name: self._mapped(folder / f"{name}.f64") for name in job.units}
-        except OutputError:
+            self.arrays = dict(self._maps)
+            self._take_over(begun)
+        except BaseException as error:
+            self.close()
+            if isinstance(error, OSError) and not isinstance(error, OutputError):
+                where = error.filename or folder
+                raise OutputError(
+                    f"output: finished blocks cannot be kept in {quoted(where)}: {error.strerror or error};"
+                    f" remove {quoted(folder)} to start again"
+                ) from None
             raise
-        except OSError as error:
-            where = error.filename or folder
-            raise OutputError(
-                f"output: finished blocks cannot be kept in {quoted(where)}: {error.strerror or error};"
-                f" remove {quoted(folder)} to start again"
-            ) from None
-        self.arrays = dict(self._maps)
-        self._take_over(journal)
 
     def _mapped(self, path: Path) -> np.memmap[Any, Any]:
         """Return the memory map of a file; create or resize the file if needed."""
@@ -183,24 +180,33 @@ class Store(Target):
         self.path, self.store = path, str(path.absolute())
         self._run = run_of(job, points)
         beside = _beside(path)
-        if resume and beside.exists():
-            journal = Journal.resume(beside, self._run, path, self._sync)
-        else:
-            kept = sum(one.values.size for one in points.coordinates().values() if one.on_disk)
-            check_disk(self.size + kept * ITEM, path)
-            path.parent.mkdir(parents=True, exist_ok=True)
-            journal = Journal.begin(beside, self._run, self._sync)
-        self._lay_out()
-        self._take_over(journal)
+        try:
+            if resume and os.path.lexists(beside):
+                self._journal = Journal.resume(beside, self._run, path, self._sync)
+            else:
+                kept = sum(one.values.size for one in points.coordinates().values() if one.on_disk)
+                check_disk(self.size + kept * ITEM, path)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                self._journal = Journal.begin(beside, self._run, self._sync)
+            self._lay_out()
+            self._take_over(self._journal)
+        except BaseException as error:
+            self.close()
+            if isinstance(error, OSError) and not isinstance(error, OutputError):
+                where, why = error.filename or path, error.strerror or error
+                raise OutputError(f"store: cannot write to {quoted(where)}: {why}; choose another folder") from None
+            raise
 
     def _lay_out(self) -> None:
         """Write the layout of the store anew, without results: an existing layout may be damaged."""
         empty = dataset(self.points, {}, self.job).assign_attrs(status=INCOMPLETE)
         large = {name: one for name, one in self.points.coordinates().items() if one.on_disk}
-        for name in (*map(str, empty.coords), *large):
-            shutil.rmtree(self.path / name, ignore_errors=True)
-        for name in ("", *self.job.units):
-            (self.path / name / METADATA).unlink(missing_ok=True)
+        self._coordinates = [*map(str, empty.coords), *large]
+        for name in (METADATA, *self._coordinates):
+            _remove(self.path / name)
+        for name in self.job.units:
+            _remove(self.path / name / METADATA)
+        self._clear_chunks()
         group, own = load_zarr().open_group(self.store, mode="a", zarr_format=3), self.job.own_shape
         for name in self.job.units:
             group.create_array(
@@ -234,6 +240,26 @@ class Store(Target):
             names = [*group.attrs.get("coordinates", "").split(), *large]
             group.attrs["coordinates"] = " ".join(name for name in names if name not in self.points.dims)
 
+    def _clear_chunks(self) -> None:
+        """Remove what stands in the place of a chunk or of a folder of chunks and is none."""
+        seen: set[Path] = set()
+        for block in self.points.blocks():
+            for chunk in self._chunks(block):
+                folders = [folder for folder in reversed(chunk.parents) if folder.is_relative_to(self.path)]
+                for folder in folders[1:]:
+                    if folder not in seen and os.path.lexists(folder) and not folder.is_dir():
+                        _remove(folder)
+                    seen.add(folder)
+                if os.path.lexists(chunk) and not chunk.is_file():
+                    _remove(chunk)
+
+    def _chunks(self, block: Block) -> list[Path]:
+        """Return the file of each output of a block."""
+        shape = self.points.block_shape
+        which = [one.start // size for one, size in zip(block.slices, shape, strict=True)]
+        key = "/".join(map(str, ["c", *which, *([0] * len(self.job.dims))]))
+        return [self.path / name / key for name in self.job.units]
+
     def places(self, block: Block) -> list[Array]:  # noqa: ARG002
         """Return nothing: the evaluating processes write to the store."""
         return []
@@ -247,21 +273,23 @@ class Store(Target):
 
     def _sync(self, numbers: list[int]) -> None:
         blocks = self.points.blocks()
-        for name in self.job.units:
-            array = zarr_group(self.store)[name]
-            for number in numbers:
-                shape = self.points.block_shape
-                which = [one.start // size for one, size in zip(blocks[number].slices, shape, strict=True)]
-                which += [0] * len(self.job.dims)
+        for number in numbers:
+            for chunk in self._chunks(blocks[number]):
                 with suppress(FileNotFoundError):  # zarr writes no file if all values are NaN
-                    sync_file(self.path / name / array.metadata.encode_chunk_key(tuple(which)))
+                    sync_file(chunk)
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Mark the store as complete and open it; values are read when used."""
-        for cut_off in self.path.rglob("*.partial"):  # of a worker that died while writing
-            cut_off.unlink()
-        load_zarr().open_group(self.store, mode="r+").attrs.update(attributes(self._run, notes))
         assert self._journal is not None
+        self._journal.flush()  # results must be on disk before they are said to be complete
+        for cut_off in self.path.rglob("*.partial"):  # of a process that died while writing
+            _remove(cut_off)
+        group = load_zarr().open_group(self.store, mode="r+")
+        by_block = [self.done[number].outputs for number in sorted(self.done)]
+        by_output = dict(zip(self.job.units, zip(*by_block, strict=True), strict=True))
+        group.attrs.update(attributes(self._run, notes))
+        group.attrs[CHECKSUMS] = checksums(self.path, self._coordinates, by_output)
+        sync_file(self.path / METADATA)
         self._journal.remove()
         return _opened(self.path)
 
@@ -276,20 +304,48 @@ def finished(job: Job, points: Points, path: Path, resume: bool) -> xarray.Datas
     """
     load_zarr()
     if path.exists() and not path.is_dir():
-        raise OutputError(f"store: {quoted(path)} is a file, not a folder; choose another name")
+        raise OutputError(f"store: {quoted(path)} is a file, not a folder; choose another name, or remove it")
     if not path.is_dir() or not any(path.iterdir()):
         return None
-    if _beside(path).exists():
+    if os.path.lexists(_beside(path)):
         if not resume:
             raise OutputError(f"store: {quoted(path)} holds an unfinished sweep; add resume=True, or remove it")
         return None
     found = _attributes(path)
+    if found.get("status") == INCOMPLETE:
+        raise OutputError(
+            f"store: {quoted(path)} holds an unfinished sweep whose journal {quoted(_beside(path))} is missing; remove {quoted(path)} to"
+            " start again"
+        )
     if found.get("status") != COMPLETE or "provenance" not in found:
         raise OutputError(f"store: {quoted(path)} is not empty, and holds no sweep of wearlaw; choose another folder")
     if not resume:
         raise OutputError(f"store: {quoted(path)} holds the results of a sweep; choose another folder, or remove it")
-    check_same(path, json.loads(found["provenance"]), run_of(job, points))
-    return _opened(path)
+    try:
+        before = TypeAdapter(Run).validate_json(found["provenance"])
+    except ValueError:
+        raise OutputError(f"store: {_damaged(path)}") from None
+    check_same(path, before, run_of(job, points))
+    try:
+        opened = _opened(path)
+    except Exception:  # zarr and xarray raise many kinds
+        raise OutputError(f"store: {_damaged(path)}") from None
+    if not set(job.units) <= set(opened):
+        raise OutputError(f"store: {_damaged(path)}")
+    return opened
+
+
+def _damaged(path: Path) -> str:
+    return f"{quoted(path)} holds a complete sweep, but is damaged; remove it to start again"
+
+
+def _remove(path: Path) -> None:
+    """Remove a file or a folder, if there is one."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        with suppress(FileNotFoundError, NotADirectoryError):
+            path.unlink()
 
 
 def _beside(path: Path) -> Path:
@@ -306,6 +362,7 @@ def _attributes(path: Path) -> dict[str, Any]:
 
 def _opened(path: Path) -> xarray.Dataset:
     found: xarray.Dataset = xarray.open_zarr(str(path), chunks=None, consolidated=False)
+    found.attrs.pop(CHECKSUMS, None)
     return found
 
 

@@ -16,7 +16,7 @@ import numpy as np
 import xarray
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import (
+from wearlaw.errors import (, quoted
     ConditionsError,
     InputError,
     ModelError,
@@ -146,7 +146,9 @@ def sweep(
                 found = run(target, bar, workers, client)
             except KeyboardInterrupt as interrupt:
                 if store is not None:
-                    interrupt.add_note(f"finished blocks are kept in '{store}'; the same call with resume=True goes on")
+                    interrupt.add_note(
+                        f"finished blocks are kept in {quoted(store)}; the same call with resume=True goes on"
+                    )
                 raise
             for warning in found:
                 warnings.warn(warning, stacklevel=2)
@@ -290,7 +292,7 @@ def run(target: Target, on_block: Callable[[int], None], workers: int = 1, clien
                 warnings.warn(death, WorkerWarning, stacklevel=3)
             if several:
                 on_block(block.size)
-    return range_warnings(target.job, target.done.values())
+    return range_warnings(target.job, (target.done[number] for number in sorted(target.done)))
 
 
 def _elsewhere(target: Target, blocks: list[Block], workers: int, client: Any) -> Generator[Done, None, None]:

@@ -134,7 +134,9 @@ def open_table(path: str | os.PathLike[str]) -> TableFile:
     path = Path(path)
     if path.is_dir():
         if not any((path / name).exists() for name in ZARR):
-            raise DataError(f"table: '{path}' is a folder and no zarr store; give the path of a file or of a store")
+            raise DataError(
+                f"table: {quoted(path)} is a folder and no zarr store; give the path of a file or of a store"
+            )
         return XarrayFile(path)
     try:
         with path.open("rb") as file:
