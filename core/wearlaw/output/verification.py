@@ -67,8 +67,8 @@ def _verify_files(folder: Path) -> tuple[str, Differences]:
             else "no file is missing"
         )
         raise OutputError(
-            f"{quoted(folder)} was written by an earlier wearlaw ({manifest.wearlaw}), whose {MANIFEST} holds no checksums,"
-            f" so that changes cannot be found; {there}"
+            f"{quoted(folder)} was written by an earlier wearlaw ({manifest.wearlaw}), whose {MANIFEST} holds no"
+            f" checksums, so that changes cannot be found; {there}"
         )
     found = differences(folder, sums)
     found.added.remove(MANIFEST)

@@ -138,7 +138,8 @@ def sync_file(path: Path) -> None:
 
 def _spoilt(path: Path, where: Path) -> OutputError:
     return OutputError(
-        f"{quoted(path)} is not the journal of a sweep that can be resumed; remove it and {quoted(where)} to start again"
+        f"{quoted(path)} is not the journal of a sweep that can be resumed; remove it and {quoted(where)} to"
+        " start again"
     )
 
 

@@ -314,8 +314,8 @@ def finished(job: Job, points: Points, path: Path, resume: bool) -> xarray.Datas
     found = _attributes(path)
     if found.get("status") == INCOMPLETE:
         raise OutputError(
-            f"store: {quoted(path)} holds an unfinished sweep whose journal {quoted(_beside(path))} is missing; remove {quoted(path)} to"
-            " start again"
+            f"store: {quoted(path)} holds an unfinished sweep whose journal {quoted(_beside(path))} is missing; remove"
+            f" {quoted(path)} to start again"
         )
     if found.get("status") != COMPLETE or "provenance" not in found:
         raise OutputError(f"store: {quoted(path)} is not empty, and holds no sweep of wearlaw; choose another folder")

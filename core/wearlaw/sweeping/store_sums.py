@@ -100,8 +100,8 @@ def verify_store(path: Path) -> tuple[str, Differences]:
         raise OutputError(f"{quoted(path)} holds no sweep of wearlaw")
     if CHECKSUMS not in attributes:
         raise OutputError(
-            f"{quoted(path)} is complete, but was written by a version of wearlaw that kept no checksums in stores; remove it"
-            " and sweep again to have them"
+            f"{quoted(path)} is complete, but was written by a version of wearlaw that kept no checksums in stores;"
+            " remove it and sweep again to have them"
         )
     try:
         sums = TypeAdapter(StoreSums).validate_json(attributes[CHECKSUMS])

@@ -16,13 +16,14 @@ import numpy as np
 import xarray
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import (, quoted
+from wearlaw.errors import (
     ConditionsError,
     InputError,
     ModelError,
     ResumeWarning,
     WearlawWarning,
     WorkerWarning,
+    quoted,
     shortened,
 )
 from wearlaw.pipeline.composition import warn_of_unlike_materials
