@@ -113,7 +113,7 @@ def test_the_second_of_two_runs_that_resume_is_refused_and_changes_nothing(
     run = ("run", "case.toml", "-o", "out")
     with monkeypatch.context() as patched:
         interrupted_after(6, patched)
-        assert wearlaw(*run).exit_code == 1
+        assert wearlaw(*run).exit_code == 130
     before = contents(folder)
     with held(folder / "out.partial" / LOCK):
         message = "'out.partial' belongs to a run that is still going on; wait for its end, or choose"
