@@ -8,6 +8,7 @@ import pickle
 import random
 import re
 import traceback
+import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -324,7 +325,10 @@ def run() -> None:
     names: dict[str, Any] = {"wl": wl, "ws": ws, "Q": wl.Q, "np": np, "pd": pd, "xr": xr, "pickle": pickle}
     names |= {"Decimal": decimal.Decimal, "Fraction": fractions.Fraction}
     try:
-        exec(compile(Path("script.txt").read_text(encoding="utf-8"), "<case>", "exec"), names)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SyntaxWarning)
+            script = compile(Path("script.txt").read_text(encoding="utf-8"), "<case>", "exec")
+        exec(script, names)
     except wl.WearlawError:
         raise
     except Exception as error:
@@ -387,7 +391,7 @@ def _check_alone(found: wl.Prediction, predict: wl.Pipeline[...], batch: Mapping
     if len(shape) != 1 or not shape[0]:
         return
     for name, value in given.items():
-        if np.ndim(getattr(value, "magnitude", value)) == 1 and not isinstance(value, str):
+        if isinstance(value, wl.Quantity | list | np.ndarray) and np.ndim(getattr(value, "magnitude", value)) == 1:
             given[name] = value[-1]
     alone = predict(**given)
     for name in ("tangential_force", "wear_index", *("wear_rate",) * bool(found.laws)):
