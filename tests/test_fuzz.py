@@ -39,6 +39,7 @@ OPEN: dict[str, str] = {
     "api/contact-file-named-nul": CUT,
     "api/disc-of-a-text": "a disc may be anything",
     "api/escape-in-a-radius": CUT,
+    "api/wheel-named-by-1000-blanks": CUT,
     "api/load-of-5000-characters": CUT,
     "api/number-of-a-text": "wl.scalar_si takes anything",
     "api/parse-of-a-quantity": "wl.parse takes anything",
@@ -51,6 +52,7 @@ OPEN: dict[str, str] = {
     "case_files/stage-of-2000-brackets": CUT,
     "contact_result_files/escape-in-a-cell": CUT,
     "journal/control-character-in-a-version": CUT,
+    "journal/key-of-1500-brackets": CUT,
     "profiles/cell-of-2000-characters": CUT,
     "profiles/escape-in-a-cell": CUT,
     "sweep_tables/escape-in-a-head": CUT,
@@ -59,6 +61,7 @@ OPEN: dict[str, str] = {
     "wear_test_csv/column-named-self": "a condition cannot have the name of an argument of Python's",
     "wear_test_csv/control-characters-in-a-head": CUT,
     "wear_test_csv/friction-that-overflows": OVERFLOW,
+    "wear_test_csv/number-of-900-digits": CUT,
     "wear_test_csv/traction-that-overflows": OVERFLOW,
 }
 """Entries of the corpus that still show what was found, with what is missing."""

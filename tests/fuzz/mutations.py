@@ -73,34 +73,32 @@ def _bytes(random: Random, content: bytes) -> bytes:
     start = random.randrange(len(content) + 1)
     end = min(start + int(random.expovariate(0.1)) + 1, len(content))
     odd = random.choice([b"\x00", b"\xff", b"\xc3", b"\xef\xbb\xbf", b"\r", b"\n", b"\x1b", b"\x80", b"PK\x03\x04"])
-    return random.choice(
-        [
-            lambda: content[:start],
-            lambda: content[start:],
-            lambda: content[:start] + content[end:],
-            lambda: content[:end] + content[start:],
-            lambda: content[:start] + odd + content[start:],
-            lambda: content[:start] + bytes(random.randrange(256) for _ in range(start, end)) + content[end:],
-            lambda: content[:start] + bytes(end - start) + content[end:],
-            lambda: odd + content,
-        ]
-    )()
+    changes: list[Callable[[], bytes]] = [
+        lambda: content[:start],
+        lambda: content[start:],
+        lambda: content[:start] + content[end:],
+        lambda: content[:end] + content[start:],
+        lambda: content[:start] + odd + content[start:],
+        lambda: content[:start] + bytes(random.randrange(256) for _ in range(start, end)) + content[end:],
+        lambda: content[:start] + bytes(end - start) + content[end:],
+        lambda: odd + content,
+    ]
+    return random.choice(changes)()
 
 
 def _encoded(random: Random, content: bytes) -> bytes:
     """Return a text in another encoding, or with other ends of lines."""
     text = content.decode("utf-8", "replace")
-    return random.choice(
-        [
-            lambda: text.encode("utf-16"),
-            lambda: text.encode("utf-16")[:-1],
-            lambda: text.encode("utf-32"),
-            lambda: text.encode("utf-8-sig"),
-            lambda: text.encode("cp1252", "replace"),
-            lambda: content.replace(b"\n", b"\r\n"),
-            lambda: content.replace(b"\n", b"\r"),
-        ]
-    )()
+    changes: list[Callable[[], bytes]] = [
+        lambda: text.encode("utf-16"),
+        lambda: text.encode("utf-16")[:-1],
+        lambda: text.encode("utf-32"),
+        lambda: text.encode("utf-8-sig"),
+        lambda: text.encode("cp1252", "replace"),
+        lambda: content.replace(b"\n", b"\r\n"),
+        lambda: content.replace(b"\n", b"\r"),
+    ]
+    return random.choice(changes)()
 
 
 def lines(random: Random, text: str) -> str:
