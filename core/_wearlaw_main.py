@@ -110,7 +110,7 @@ def _interrupt_again(number: int) -> None:
     if hasattr(signal, "pthread_kill"):
         signal.pthread_kill(_main_thread, number)  # wakes the thread if it waits
     else:  # on Windows
-        _thread.interrupt_main(number)
+        _thread.interrupt_main(signal.Signals(number))
 
 
 def _say(text: str) -> None:
