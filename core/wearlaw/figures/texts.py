@@ -93,8 +93,8 @@ def _drawable(boxes: dict[int, str], text: str, most: int) -> str:
 
 
 def _letters(text: str, width: int) -> int:
-    """Return how many letters of a text fit into a width; those of East Asian scripts are twice as wide as others."""
-    wide = sum(unicodedata.east_asian_width(letter) in "WF" for letter in text)
+    """Return how many letters of a text fit into a width; East Asian ones, and boxes, are twice as wide as others."""
+    wide = sum(letter == BOX or unicodedata.east_asian_width(letter) in "WF" for letter in text)
     return max(4, width * len(text) // (len(text) + wide or 1))
 
 
