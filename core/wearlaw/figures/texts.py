@@ -43,7 +43,8 @@ def texts_of(figure: FigureData) -> Iterator[str]:
         yield panel.title
         for axis in (panel.x, panel.y):
             yield from (axis.label, *axis.names)
-        yield from (one.label for one in (*panel.curves, *panel.shades))
+        yield from (curve.label for curve in panel.curves)
+        yield from (shade.label for shade in panel.shades)
         if panel.map is not None:
             yield from (panel.map.label, *panel.map.borders)
 
