@@ -10,14 +10,15 @@ import warnings
 from collections.abc import Callable
 from copy import deepcopy
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
 import pytest
 import xarray
 from click.testing import CliRunner
-from fontTools.fontBuilder import FontBuilder
+from fontTools.fontBuilder import FontBuilder  # type: ignore[import-untyped]
+from fontTools.pens.ttGlyphPen import TTGlyphPen  # type: ignore[import-untyped]
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib import font_manager
@@ -178,11 +179,11 @@ def test_no_argument_of_a_function_steers_a_terminal(text: str) -> None:
     rig = wl.TwinDisc.suros()
     predict = rig | wl.contact_model("global") | wl.wear_law("usfd", fitted_for="global")
     conditions: dict[str, Any] = {"normal_force": "1 kN", "creepage": "1 %", "friction_coefficient": 0.4}
-    found = predict(**conditions)
+    found, named = predict(**conditions), cast("dict[str, Any]", {text: 1})
     calls: list[Callable[[], object]] = [
         lambda: Q(1.0, text),
         lambda: Q(1.0, f"m{text}"),
-        lambda: predict(**conditions, **{text: 1}),
+        lambda: predict(**conditions, **named),
         lambda: predict(**{**conditions, "creepage": text}),
         lambda: predict(**{**conditions, "creepage": [text]}),
         lambda: predict(**{**conditions, "friction_coefficient": text}),
@@ -202,7 +203,7 @@ def test_no_argument_of_a_function_steers_a_terminal(text: str) -> None:
         lambda: found.isel(**{text: 0}),
         lambda: found.plot(text),
         lambda: wl.sweep(predict, **conditions, outputs=[text]),
-        lambda: wl.sweep(predict, **conditions, **{text: 1}),
+        lambda: wl.sweep(predict, **conditions, **named),
         lambda: wl.fit(predict, wl.read_tests("lewis2004"), free=[text]),
         lambda: wl.fit(predict, wl.read_tests("lewis2004"), free=["q_s"], bounds={text: ("1", "2")}),
     ]
@@ -368,7 +369,7 @@ def test_letters_come_from_any_installed_font_that_has_them(tmp_path: Path, monk
     builder = FontBuilder(1000)
     builder.setupGlyphOrder([".notdef", "middle"])
     builder.setupCharacterMap({ord("中"): "middle"})
-    pen: Any = __import__("fontTools.pens.ttGlyphPen", fromlist=["TTGlyphPen"]).TTGlyphPen(None)
+    pen = TTGlyphPen(None)
     for number, point in enumerate([(0, 0), (0, 700), (700, 700), (700, 0)]):
         (pen.lineTo if number else pen.moveTo)(point)
     pen.closePath()

@@ -43,7 +43,8 @@ def texts_of(figure: FigureData) -> Iterator[str]:
         yield panel.title
         for axis in (panel.x, panel.y):
             yield from (axis.label, *axis.names)
-        yield from (one.label for one in (*panel.curves, *panel.shades))
+        yield from (curve.label for curve in panel.curves)
+        yield from (shade.label for shade in panel.shades)
         if panel.map is not None:
             yield from (panel.map.label, *panel.map.borders)
 
@@ -93,8 +94,8 @@ def _drawable(boxes: dict[int, str], text: str, most: int) -> str:
 
 
 def _letters(text: str, width: int) -> int:
-    """Return how many letters of a text fit into a width; those of East Asian scripts are twice as wide as others."""
-    wide = sum(unicodedata.east_asian_width(letter) in "WF" for letter in text)
+    """Return how many letters of a text fit into a width; East Asian ones, and boxes, are twice as wide as others."""
+    wide = sum(letter == BOX or unicodedata.east_asian_width(letter) in "WF" for letter in text)
     return max(4, width * len(text) // (len(text) + wide or 1))
 
 

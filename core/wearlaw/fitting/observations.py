@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConfigurationError, FitError, ModelError
+from wearlaw.errors import ConfigurationError, FitError, ModelError, excerpt
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, give_bounds
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces, integrate_laws, patch_area
@@ -273,6 +273,6 @@ def _refuse_rest(observable: str, tests: WearTests, problem: Problem) -> None:
 def test_names(tests: WearTests, which: NDArray[np.bool_]) -> str:
     """Return the labels of up to five tests, for messages."""
     numbers = np.flatnonzero(which)
-    shown = [tests.labels[i] for i in numbers[:5]]
+    shown = [excerpt(tests.labels[i]) for i in numbers[:5]]
     more = f" and {numbers.size - 5} more" if numbers.size > 5 else ""
     return f"test{'s' if numbers.size > 1 else ''} {', '.join(shown)}{more}"
