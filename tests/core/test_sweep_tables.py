@@ -128,6 +128,12 @@ def test_columns_named_as_conditions_need_no_mapping(tmp_path: Path) -> None:
     assert ds.wear_rate.to_numpy().tolist() == expected().wear_rate.magnitude.tolist()
 
 
+def test_a_unit_in_the_head_and_another_in_the_row_below_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("slip,Fz [N]\n-,kN\n-0.01,5\n", encoding="utf-8")
+    with pytest.raises(wl.DataError, match=r"column 'Fz \[N\]' has the unit 'kN' as well; keep one of the two"):
+        wl.sweep(predictor(), tmp_path / "run.csv", columns=COLUMNS, **FRICTION)
+
+
 def test_a_comma_at_the_end_of_each_line_makes_no_column(tmp_path: Path) -> None:
     text = "creepage [-],normal_force [N],\n0.01,5000,\n"
     (tmp_path / "run.csv").write_text(text, encoding="utf-8")
