@@ -67,7 +67,8 @@ def _is_table(part: Any) -> TypeGuard[type[Configuration]]:
     """Return whether a field is a table of fields of its own in a file; models and materials have names too."""
     if not (isinstance(part, type) and issubclass(part, Configuration)) or issubclass(part, Model | Material):
         return False
-    return field_docstrings(part).keys() <= part.model_json_schema(by_alias=False).get("properties", {}).keys()
+    written: dict[str, Any] = part.model_json_schema(by_alias=False).get("properties", {})
+    return field_docstrings(part).keys() <= written.keys()
 
 
 def _headline(model: type[Model], parameter_set: str | None) -> Iterator[str]:
