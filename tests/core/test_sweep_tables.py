@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import tracemalloc
 from collections.abc import Callable
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -353,6 +354,37 @@ def test_columns_of_a_dataset_lie_along_one_dimension(tmp_path: Path) -> None:
     dataset().assign(Fz=("other", LOAD, {"units": "N"})).to_netcdf(tmp_path / "run.nc")
     with pytest.raises(wl.DataError, match=r"must all lie along one dimension, got .*'Fz' along other"):
         swept(tmp_path / "run.nc")
+
+
+def test_columns_of_a_file_have_one_dimension_each(tmp_path: Path) -> None:
+    grid = {"Fz": (("time", "car"), np.full((3, 2), 5e3), {"units": "N"})}
+    xr.Dataset({**grid, "slip": (("time", "car"), np.full((3, 2), -0.01), {"units": "1"})}).to_netcdf(
+        tmp_path / "run.nc"
+    )
+    with pytest.raises(wl.DataError, match=r"must all lie along one dimension, got 'slip' along time × car, 'Fz'"):
+        wl.sweep(predictor(), tmp_path / "run.nc", columns=COLUMNS, **FRICTION)
+
+
+def test_coordinates_of_a_file_are_no_conditions_unless_they_are_mapped(tmp_path: Path) -> None:
+    given = {"creepage": ("time", [0.01, 0.02], {"units": "1"}), "normal_force": ("time", [5e3, 6e3], {"units": "N"})}
+    xr.Dataset(given, {"time": ("time", [0.0, 1.0], {"units": "s"})}).to_netcdf(tmp_path / "run.nc")
+    ds = wl.sweep(predictor(), tmp_path / "run.nc", **FRICTION)
+    assert ds.normal_force.to_numpy().tolist() == [5e3, 6e3]
+
+
+def test_a_table_whose_index_has_several_levels_is_refused() -> None:
+    with pytest.raises(wl.DataError, match=r"its index has several levels; call reset_index\(\)"):
+        swept(frame().set_index(["Time [s]", "note"]))
+
+
+def test_decimals_of_parquet_are_numbers(tmp_path: Path) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    pytest.importorskip("pyarrow.parquet")
+    force = pyarrow.array([Decimal("5000.25")], pyarrow.decimal128(9, 2))
+    table = pyarrow.table({"creepage [-]": [0.01], "normal_force [N]": force})
+    pyarrow.parquet.write_table(table, tmp_path / "run.parquet")
+    ds = wl.sweep(predictor(), tmp_path / "run.parquet", **FRICTION)
+    assert ds.normal_force.to_numpy().tolist() == [5000.25]
 
 
 def test_parquet_of_text_or_damaged_is_refused(tmp_path: Path) -> None:
