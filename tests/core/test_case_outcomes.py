@@ -259,7 +259,7 @@ def test_across_an_ellipse_only_wear_is_shown() -> None:
         assert said in study.notes
     alone = ran(**ON_RAILS, wear_laws=[], laws=["heat"])
     assert not alone.profiles["one"]
-    assert {figure.name.partition("_against")[0] for figure in alone.figures} == {
+    assert {figure.name.partition("_over")[0] for figure in alone.figures} == {
         "creepage_heat_flux",
         "creepage_traction",
     }
