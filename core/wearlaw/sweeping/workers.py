@@ -18,7 +18,7 @@ import time
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from contextlib import contextmanager, suppress
-from threading import Thread
+from threading import Event, Thread
 from typing import IO, Any, BinaryIO, TypeAlias
 
 from wearlaw.arrays.array import Array
@@ -160,15 +160,15 @@ class _Team:
 
     def __init__(self) -> None:
         self._busy: set[_Worker] = set()
-        self._disbanded = False
+        self._disbanded = Event()
 
     def evaluated(self, block: Block, task: bytes, into: list[Array]) -> Done:
         """Return a block that one of the workers has evaluated."""
         deaths: list[str] = []
-        while len(deaths) < ATTEMPTS and not self._disbanded:
+        while len(deaths) < ATTEMPTS and not self._disbanded.is_set():
             worker = _worker()
             self._busy.add(worker)
-            if self._disbanded:  # after `disband` has seen who is busy
+            if self._disbanded.is_set():  # after `disband` has seen who is busy
                 worker.kill()
             try:
                 answer = worker.evaluate(task, into)
@@ -189,7 +189,7 @@ class _Team:
 
     def disband(self) -> None:
         """Kill the workers that are busy."""
-        self._disbanded = True
+        self._disbanded.set()
         for worker in list(self._busy):
             worker.kill()
 
