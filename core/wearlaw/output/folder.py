@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from wearlaw.errors import OutputError
+from wearlaw.settings.text_files import reason_of
+from wearlaw.sweeping.storage import place_of
 from wearlaw.version import __version__
 
 MANIFEST = ".wearlaw.json"
@@ -62,7 +64,7 @@ def fresh_folder(folder: Path, overwrite: bool = False, marker: str | None = Non
         new one. The results are then in a folder beside it, which the message names.
     """
     with _os_errors_of(folder):
-        target = folder.resolve()
+        target = place_of(folder)
         earlier = _earlier(folder, target, overwrite, marker)
         nearest = next(parent for parent in target.parents if parent.exists())
         temporary = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=nearest))
@@ -95,10 +97,9 @@ def _os_errors_of(folder: Path) -> Iterator[None]:
         yield
     except OutputError:
         raise
-    except OSError as error:
-        raise OutputError(
-            f"output: cannot write to '{folder}': {error.strerror or error}; choose another folder with -o"
-        ) from None
+    except (OSError, ValueError) as error:  # a ValueError is a null character in a name
+        reason = reason_of(error)
+        raise OutputError(f"output: cannot write to '{folder}': {reason}; choose another folder with -o") from None
 
 
 def _earlier(folder: Path, target: Path, overwrite: bool, marker: str | None) -> _Earlier | None:
@@ -109,6 +110,8 @@ def _earlier(folder: Path, target: Path, overwrite: bool, marker: str | None) ->
         raise OutputError(f"output: '{folder}' is a file, not a folder; choose another with -o")
     if Path.cwd().is_relative_to(target):
         raise OutputError(f"output: '{folder}' is the working folder or above it; choose another folder with -o")
+    if os.path.ismount(target):
+        raise OutputError(f"output: '{folder}' is the top of a disk; choose a folder in it with -o")
     if not any(target.iterdir()):
         return None
     files = _listed(target)
