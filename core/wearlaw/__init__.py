@@ -78,7 +78,7 @@ from wearlaw.plugins.loader import (
 from wearlaw.rigs.twin_disc import Disc, TwinDisc
 from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.settings.configuration import Configuration
-from wearlaw.settings.text_files import beside
+from wearlaw.settings.text_files import beside, read_file
 from wearlaw.study.sections import CheckedClaim, Section, Verdict
 from wearlaw.uncertainties.distributions import lognormal, normal, published_range, uniform
 from wearlaw.units.quantities import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
@@ -203,6 +203,7 @@ __all__ = [
     "patch_mean",
     "published_range",
     "read_contact",
+    "read_file",
     "read_law",
     "read_tests",
     "read_wear_law",

@@ -15,6 +15,9 @@ from numpy.typing import NDArray
 import wearlaw as wl
 from wearlaw import Array
 
+LARGEST = 256 * 2**20
+"""Size of the largest file that is read [bytes]."""
+
 OTHERS = {
     b"MATLAB 5.0 MAT-file": "a binary file of MATLAB or Octave",
     b"\x89HDF\r\n\x1a\n": "an HDF5 file, as MATLAB 7.3 writes it",
@@ -110,9 +113,9 @@ def table_of(path: Path) -> Table:
 def _rows(path: Path) -> list[tuple[int, list[str]]]:
     """Return the cells of the lines that are not comments, with the number of each line."""
     try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise wl.DataError(f"cannot read '{path}': {error.strerror or error}") from None
+        content = wl.read_file(path, LARGEST)
+    except (FileNotFoundError, wl.InputError) as error:
+        raise wl.DataError(f"cannot read '{path}': {getattr(error, 'strerror', None) or error}") from None
     if not content:
         raise wl.DataError(f"'{path}': is empty")
     for start, kind in OTHERS.items():

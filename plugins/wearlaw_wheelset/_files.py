@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 import os
 import re
-import stat
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
+from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,23 +111,11 @@ def points_of(path: Path, kind: Kind | None, units: str) -> tuple[Points, Kind]:
 
 def _text_of(path: Path) -> str:
     try:
-        status = path.stat()
+        content = wl.read_file(path, LARGEST)
     except FileNotFoundError:
         raise FileError(f"there is no such file in '{path.parent.absolute()}'") from None
-    except (OSError, ValueError) as error:
-        raise FileError(f"it cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    if stat.S_ISDIR(status.st_mode):
-        raise FileError("it is a folder; give a file")
-    if not stat.S_ISREG(status.st_mode):
-        raise FileError("it is not a regular file, so reading it might never end; copy it into one")
-    if status.st_size > LARGEST:
-        raise FileError(
-            f"it has {status.st_size / 2**20:.3g} MiB, but a profile may have {LARGEST / 2**20:g} MiB; is it a profile?"
-        )
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise FileError(f"it cannot be read: {error.strerror or error}") from None
+    except wl.InputError as error:
+        raise FileError(f"it cannot be read: {error}") from None
     if b"\0" in content and not content.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise FileError("it is not text; export the points of the profile as text")
     for encoding in ("utf-16",) if content.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "cp1252"):
@@ -407,7 +395,7 @@ def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
     writers: dict[str, Callable[[str, Array, Array], list[str]]] = dict.fromkeys(SIMPACK, _as_simpack)
     writers |= dict.fromkeys(MINIPROF, _as_miniprof)
     text = "\n".join(writers.get(ending, _as_columns)(kind, 1e3 * y, 1e3 * z)) + "\n"
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary = path.parent / f".{uuid4().hex}"  # short, since the name of the file may be as long as names can be
     try:
         try:
             temporary.write_text(text, encoding="utf-8", newline="\n")

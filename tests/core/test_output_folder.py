@@ -520,8 +520,11 @@ def test_the_working_folder_is_not_replaced(tmp_path: Path, monkeypatch: pytest.
         (lambda folder: folder / "file" / "deep" / "out", "cannot write to '.*': Not a directory; choose another"),
         (lambda _: Path("/proc/out"), "cannot write to '/proc/out': "),
         (lambda folder: folder / ("long" * 100), "cannot write to '.*': File name too long; choose another"),
+        (lambda folder: folder / "new" / ("long" * 100) / "out", "cannot write to '.*': File name too long; choose"),
+        (lambda folder: folder.joinpath(*["deep"] * 1000), "cannot write to '.*': File name too long; choose another"),
+        (lambda folder: folder / "a\0b", "cannot write to '.*': a name cannot have a null character; choose another"),
     ],
-    ids=["file", "under a file", "deep under a file", "system folder", "long name"],
+    ids=["file", "under a file", "deep under", "system folder", "long name", "under a long name", "long path", "null"],
 )
 def test_a_folder_that_cannot_be_written_is_refused_at_once(
     tmp_path: Path, make: Callable[[Path], Path], message: str
@@ -530,6 +533,23 @@ def test_a_folder_that_cannot_be_written_is_refused_at_once(
     with pytest.raises(wl.OutputError, match=f"^output: .*{message}"):
         enter(make(tmp_path), overwrite=True)
     assert tree(tmp_path) == {"file": b"mine"}
+
+
+@pytest.mark.parametrize("name", ["itself", "itself/out"])
+def test_links_in_a_circle_are_refused_at_once(tmp_path: Path, name: str) -> None:
+    (tmp_path / "itself").symlink_to("itself")
+    with pytest.raises(
+        wl.OutputError, match=r"output: cannot write to '.*itself.*': Too many levels of symbolic links;"
+    ):
+        enter(tmp_path / name, overwrite=True)
+    assert os.listdir(tmp_path) == ["itself"]
+
+
+def test_the_top_of_a_disk_is_refused_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It cannot be replaced, although it is empty."""
+    monkeypatch.setattr("os.path.ismount", lambda path: path == tmp_path.resolve())
+    with pytest.raises(wl.OutputError, match=r"is the top of a disk; choose a folder in it with -o"):
+        enter(tmp_path, overwrite=False)
 
 
 def test_a_file_that_took_the_place_of_the_folder_meanwhile_is_left_alone(tmp_path: Path) -> None:

@@ -258,5 +258,5 @@ def test_what_cannot_be_opened_is_refused(name: str) -> None:
 
 
 def test_a_folder_is_refused_as_one() -> None:
-    with pytest.raises(wl.DataError, match=r"cannot read the tests '\.': it is a folder; give a CSV file"):
+    with pytest.raises(wl.DataError, match=r"cannot read the tests '\.': it is a folder; give a file"):
         wl.read_tests(".")

@@ -300,7 +300,7 @@ MEASURED = NEW.format(columns="X,Y", count=len(table()), more="WheelDiameterTape
         ("a.xlsx", COLUMNS, r"the ending '\.xlsx' is not known; give a file that ends in \.prw, "),
         ("a.prw", b"\x89PNG\0\0", "it is not text"),
         ("a.prw", b"\xff\xfe\x00", "it is not text in UTF-8"),
-        ("a.csv", b" " * (LARGEST + 1), "it has 4 MiB, but a profile may have 4 MiB; is it a profile"),
+        ("a.csv", b" " * (LARGEST + 1), "it has more than 4 MiB, the most that is read; is it the right"),
     ],
 )  # fmt: skip
 def test_a_file_that_is_no_profile_says_where_and_why(tmp_path: Path, name: str, text: Any, message: str) -> None:
@@ -324,7 +324,7 @@ def test_what_is_no_regular_file_is_not_read(tmp_path: Path) -> None:
         ws.read_profile("a\0.prw")
     if hasattr(os, "mkfifo"):
         os.mkfifo(tmp_path / "pipe.prw")
-        with pytest.raises(wl.DataError, match="it is not a regular file"):
+        with pytest.raises(wl.DataError, match="it is a pipe; save what it gives to a file"):
             ws.read_profile(tmp_path / "pipe.prw")
 
 

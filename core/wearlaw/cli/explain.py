@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import inspect
-import tomllib
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
 from wearlaw.cli.describe import describe, fields_of, wrapped
 from wearlaw.contact.material import Material
-from wearlaw.errors import UnknownModelError
+from wearlaw.errors import InputError, UnknownModelError
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import unknown
+from wearlaw.settings.toml_files import parse_toml
 from wearlaw.study.case import load_case
 from wearlaw.wear_tests.reader import parse_tests
 
@@ -102,8 +102,8 @@ def _section(name: str, make: Callable[..., Any]) -> Iterator[str]:
 def _sections(text: str) -> list[str]:
     """Return the sections of a case file, none if it is not valid TOML."""
     try:
-        named: list[str] = tomllib.loads(text).get("sections", [])
-    except tomllib.TOMLDecodeError:
+        named: list[str] = parse_toml(text).get("sections", [])
+    except InputError:
         return []
     return named
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import tomli_w
 
@@ -15,7 +15,8 @@ from wearlaw.models.law import Law
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import specification
-from wearlaw.settings.text_files import read_text
+from wearlaw.settings.text_files import read_text, reason_of
+from wearlaw.settings.toml_files import LARGEST, parse_toml
 
 DIGESTS = "digests_of_tests"
 """The entry of the provenance with the digests of the tests of a fit."""
@@ -32,15 +33,15 @@ def write_law(path: str | os.PathLike[str], law: Law, provenance: Mapping[str, A
     target = Path(path)
     tests = {DIGESTS: list(law.fitted_to)} if law.fitted_to else {}
     text = tomli_w.dumps({law.kind.replace(" ", "_"): specification(law), "provenance": {**provenance, **tests}})
-    temporary = target.with_name(f".{target.name}.{os.getpid()}")
+    temporary = target.parent / f".{uuid4().hex}"  # short, since the name of the file may be as long as names can be
     try:
         try:
             temporary.write_text(text, encoding="utf-8", newline="\n")
             os.replace(temporary, target)
         finally:
             temporary.unlink(missing_ok=True)
-    except OSError as error:
-        raise OutputError(f"cannot write {quoted(Path(path))}: {error.strerror or error}") from None
+    except (OSError, ValueError) as error:
+        raise OutputError(f"cannot write {quoted(Path(path))}: {reason_of(error)}") from None
 
 
 def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -52,12 +53,13 @@ def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
         If the file is missing or is not TOML.
     """
     try:
-        return tomllib.loads(read_text(path))
-    except (OSError, InputError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"cannot read {subject} {quoted(Path(path))}: {reason}") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{subject} {quoted(Path(path))} is not valid TOML: {error}") from None
+        text = read_text(path, LARGEST)
+    except (FileNotFoundError, InputError) as error:
+        raise InputError(f"cannot read {subject} {quoted(Path(path))}: {reason_of(error)}") from None
+    try:
+        return parse_toml(text)
+    except InputError as error:
+        raise InputError(f"{subject} {quoted(Path(path))} {error}") from None
 
 
 def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:

@@ -12,13 +12,12 @@ from typing import Any
 
 import pandas as pd
 
-from wearlaw.errors import OutputError
 from wearlaw.figures.curves import FigureData, FigureFormat
 from wearlaw.figures.texts import warn_of_boxes
 from wearlaw.fitting.comparison import Comparison
 from wearlaw.fitting.result import Fit
 from wearlaw.models.law import Law
-from wearlaw.output.results import save_figure, save_table
+from wearlaw.output.results import save_figure, save_table, writing
 from wearlaw.plugins.fields import specification
 from wearlaw.study.case import Case, written
 from wearlaw.study.study import provenance
@@ -34,7 +33,7 @@ WEAR = "wear.json"
 LAW = "law.toml"
 
 LONGEST_NAME = 100
-"""Most characters of a figure's name; file systems allow 255 bytes for a name with its ending."""
+"""Most bytes of a figure's name; file systems allow 255 for a name with its ending."""
 
 
 def write_fit(
@@ -145,15 +144,13 @@ def _write(
     latex: bool,
 ) -> list[str]:
     """Write tables, a figure if there is one, and a JSON record."""
-    try:
+    with writing():
         names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
         if figure is not None:
             warn_of_boxes([figure])
             names += save_figure(figure, folder, figure.name, figure_formats)
         text = json.dumps(record, indent=2, ensure_ascii=False)
         (folder / marker).write_text(text + "\n", encoding="utf-8")
-    except OSError as error:
-        raise OutputError(f"output: cannot write the results: {error.strerror or error}") from None
     return [*names, marker]
 
 
@@ -179,7 +176,7 @@ def write_uncertainty(
         "provenance": provenance(case),
         "notes": list(found.notes),
     }
-    try:
+    with writing():
         names = save_table(found.wear_rates, folder, "wear_rates", latex)
         if len(found.indices):
             names += save_table(found.indices, folder, "sobol_indices", latex)
@@ -195,8 +192,6 @@ def write_uncertainty(
             (folder / name).write_text(text, encoding="utf-8")
         text = json.dumps(record, indent=2, ensure_ascii=False)
         (folder / UNCERTAINTY).write_text(text + "\n", encoding="utf-8")
-    except OSError as error:
-        raise OutputError(f"output: cannot write the results: {error.strerror or error}") from None
     return [*names, *files, UNCERTAINTY]
 
 
@@ -209,7 +204,7 @@ def figure_files(pairs: Sequence[UncertainPair]) -> list[str]:
     names: list[str] = []
     for label, one in zip(labels, pairs, strict=True):
         text = label if labels.count(label) == 1 else f"{label} {one.uncertainty.outcomes[0]}"
-        name = re.sub(r"\W+", "_", text).strip("_")[:LONGEST_NAME]
+        name = re.sub(r"\W+", "_", text).strip("_").encode()[:LONGEST_NAME].decode(errors="ignore")
         numbered = (f"{name}_{number}" for number in itertools.count(2))
         names.append(name if name not in names else next(other for other in numbered if other not in names))
     return names

@@ -13,7 +13,9 @@ from pathlib import Path
 from wearlaw.errors import OutputError, quoted
 from wearlaw.output.manifest import MANIFEST, read_manifest, write_manifest
 from wearlaw.output.temporary import Temporary, tidy_up
+from wearlaw.settings.text_files import reason_of
 from wearlaw.sweeping.file_sums import file_names
+from wearlaw.sweeping.storage import place_of
 
 
 class ElsewhereError(OutputError):
@@ -58,7 +60,7 @@ def fresh_folder(folder: Path, overwrite: bool = False, marker: str | None = Non
         new one. The results are then in a folder beside it, which the message names.
     """
     with _os_errors_of(folder):
-        target = folder.resolve()
+        target = place_of(folder)
         tidy_up(folder, target)
         earlier = _earlier(folder, target, overwrite, marker)
     temporary = Temporary(target)
@@ -96,9 +98,10 @@ def _os_errors_of(folder: Path) -> Iterator[None]:
         yield
     except OutputError:
         raise
-    except OSError as error:
+    except (OSError, ValueError) as error:  # a ValueError is a null character in a name
+        reason = reason_of(error)
         raise OutputError(
-            f"output: cannot write to {quoted(folder)}: {error.strerror or error}; choose another folder with -o"
+            f"output: cannot write to {quoted(folder)}: {reason}; choose another folder with -o"
         ) from None
 
 
@@ -110,6 +113,8 @@ def _earlier(folder: Path, target: Path, overwrite: bool, marker: str | None) ->
         raise OutputError(f"output: {quoted(folder)} is a file, not a folder; choose another with -o")
     if Path.cwd().is_relative_to(target):
         raise OutputError(f"output: {quoted(folder)} is the working folder or above it; choose another folder with -o")
+    if os.path.ismount(target):
+        raise OutputError(f"output: {quoted(folder)} is the top of a disk; choose a folder in it with -o")
     if not any(target.iterdir()):
         return None
     files = _listed(target)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
+import h5netcdf
 import matplotlib as mpl
 import pandas as pd
 import xarray
@@ -22,11 +24,12 @@ from wearlaw.report.latex import latex_table
 from wearlaw.report.main_result import main_figure, main_result
 from wearlaw.report.page import report
 from wearlaw.report.tables import tables
+from wearlaw.settings.text_files import reason_of
 from wearlaw.study.case import CASE_FILE, Case, written
 from wearlaw.study.results import patch_axes
 from wearlaw.study.study import Study, numbers
 from wearlaw.sweeping.points import ITEM
-from wearlaw.sweeping.storage import check_disk, check_memory
+from wearlaw.sweeping.storage import FULL, check_disk, check_memory, set_size
 
 RESULTS = "results.nc"
 CSV = "results.csv"
@@ -39,6 +42,8 @@ ROW_IN_MEMORY, ROW_ON_DISK = 800, 400
 """Bytes of a row of the table of results in memory (measured) and as CSV."""
 MOST_ROWS = 2**20 - 1
 """Most rows of a table of results that is written unasked: those that a sheet of Excel holds below the head."""
+SPARE = 2**20
+"""Bytes of a netCDF file beside its numbers, at most."""
 CHUNK = 2**16
 """Rows that are written before progress is shown."""
 METADATA: dict[FigureFormat, Any] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
@@ -125,7 +130,7 @@ def write(
         If a file cannot be written, or two figures or tables have one name.
     """
     case_files = written(study.case)
-    try:
+    with writing():
         on_stage("writing results")
         write_netcdf(study, folder / RESULTS)
         if csv:
@@ -136,9 +141,19 @@ def write(
         names += write_figures(study, folder, figure_formats, on_stage)
         on_stage("writing the report")
         (folder / REPORT).write_text(report(study, case_files[CASE_FILE]), encoding="utf-8")
-    except OSError as error:
-        raise OutputError(f"output: cannot write the results: {error.strerror or error}") from None
     return names
+
+
+@contextmanager
+def writing() -> Iterator[None]:
+    """Raise an `OutputError` if files cannot be written while this context lasts."""
+    try:
+        yield
+    except OutputError:
+        raise
+    except OSError as error:
+        advice = "make room, or choose another folder with -o" if error.errno in FULL else "choose another with -o"
+        raise OutputError(f"output: cannot write the results: {reason_of(error)}; {advice}") from None
 
 
 def _write_csv(rows: pd.DataFrame, path: Path, on_stage: Callable[[str], None]) -> None:
@@ -235,7 +250,10 @@ def write_netcdf(study: Study, path: Path) -> None:
     """Write all datasets into one netCDF file, each in a group: sweeps/NAME and profiles/NAME."""
     groups = {f"sweeps/{name}": dataset for name, dataset in study.sweeps.items()}
     groups |= {f"profiles/{name}": dataset for name, dataset in study.profiles.items() if dataset}
-    xarray.DataTree.from_dict(groups).to_netcdf(path, engine="h5netcdf")
+    tree = xarray.DataTree.from_dict(groups)
+    h5netcdf.File(path, "w").close()
+    set_size(path, tree.nbytes + SPARE)  # HDF5 crashes if it finds the disk full; it cuts the file to what it needs
+    tree.to_netcdf(path, mode="a", engine="h5netcdf")
 
 
 def table(study: Study) -> pd.DataFrame:

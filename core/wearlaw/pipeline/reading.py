@@ -21,6 +21,7 @@ from wearlaw.numerics.solved import Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import unknown
+from wearlaw.settings.text_files import read_start
 
 File: TypeAlias = str | os.PathLike[str]
 """The path of a file."""
@@ -85,14 +86,12 @@ def _read(path: Path, name: str | None, options: dict[str, Any]) -> Contact:
 def _head(path: Path) -> bytes:
     """Return the first bytes of a file."""
     try:
-        with path.open("rb") as file:
-            return file.read(HEAD)
+        return read_start(path, HEAD)
     except FileNotFoundError:
-        beside = sorted(one.name for one in path.parent.glob(f"*{escape(path.suffix)}"))
+        beside = sorted(one.name for one in path.parent.glob(f"[!.]*{escape(path.suffix)}"))
         raise DataError(f"there is no file {quoted(path)}{did_you_mean(path.name, beside)}") from None
-    except (OSError, ValueError) as error:
-        reason = "it is a folder" if os.path.isdir(path) else getattr(error, "strerror", None) or error
-        raise DataError(f"cannot read {quoted(path)}: {reason}; give the file of a contact") from None
+    except InputError as error:
+        raise DataError(f"cannot read {quoted(path)}: {error}") from None
 
 
 def _by_name(name: str) -> type[Reader]:

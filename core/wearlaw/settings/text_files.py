@@ -1,17 +1,24 @@
-"""Text as editors and shells write it into files: UTF-8, with a byte order mark or without, and UTF-16 with one."""
+"""Reading files from outside: regular ones, up to a size, in the encodings that editors and shells write."""
 
 from __future__ import annotations
 
+import io
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
 
-from wearlaw.errors import InputError
+from wearlaw.errors import InputError, quoted
+
+MIB = 2**20
 
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 """The byte order marks of UTF-16, which `>` writes in Windows PowerShell 5."""
+
+_KINDS = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket"}
+"""What is no regular file; the rest are devices."""
 
 
 _READ: ContextVar[Path | None] = ContextVar("folder of the file that is being read", default=None)
@@ -37,18 +44,93 @@ def beside(path: str | os.PathLike[str]) -> Path:
     return Path(path) if folder is None else folder / path
 
 
-def read_text(path: str | os.PathLike[str]) -> str:
-    """Return the text of a file.
+def _opened(path: str | os.PathLike[str]) -> io.BufferedReader:
+    """Open a regular file. Anything else may never end, or never begin."""
+    if "\0" in os.fspath(path):
+        raise InputError("a name cannot have a null character")
+    _check_regular(os.stat(path))  # first, since opening a device may do something
+    file = io.BufferedReader(io.FileIO(path, opener=_without_waiting))
+    try:
+        _check_regular(os.fstat(file.fileno()))  # it may have been replaced meanwhile
+    except InputError:
+        file.close()
+        raise
+    return file
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    """Open a file at once: a pipe would wait for a program that writes to it."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def _check_regular(status: os.stat_result) -> None:
+    if not stat.S_ISREG(status.st_mode):
+        kind = _KINDS.get(stat.S_IFMT(status.st_mode), "a device")
+        do = "give a file" if kind == "a folder" else "save what it gives to a file, and give that file"
+        raise InputError(f"it is {kind}; {do}")
+
+
+def reason_of(error: Exception) -> str:
+    """Return why a file cannot be opened, read or written, without its name."""
+    text = getattr(error, "strerror", None) or str(error)
+    return text.replace("embedded null byte", "a name cannot have a null character")
+
+
+def read_start(path: str | os.PathLike[str], count: int) -> bytes:
+    """Return the first bytes of a regular file, all if it has no more than `count`.
 
     Raises
     ------
-    OSError
-        If the file cannot be read.
-    InputError
-        If it is not text; the message follows the name of the file.
+    FileNotFoundError, InputError
+        As for `read_file`.
     """
     try:
-        return decoded(Path(path).read_bytes())
+        with _opened(path) as file:
+            return file.read(count) or b""
+    except FileNotFoundError:
+        if os.path.islink(path):
+            raise InputError(f"it is a link to {quoted(os.readlink(path))}, which does not exist") from None
+        raise
+    except InputError:
+        raise
+    except (OSError, ValueError) as error:
+        raise InputError(reason_of(error)) from None
+
+
+def read_file(path: str | os.PathLike[str], most: int) -> bytes:
+    """Return the content of a regular file of at most so many bytes.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    most : int
+        The size of the largest file that is read [bytes].
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    InputError
+        If it is larger, cannot be read, or is a folder, pipe, device or broken link; the message follows the name of
+        the file.
+    """
+    content = read_start(path, most + 1)
+    if len(content) > most:
+        raise InputError(f"it has more than {most / MIB:g} MiB, the most that is read; is it the right file?")
+    return content
+
+
+def read_text(path: str | os.PathLike[str], most: int) -> str:
+    """Return the text of a regular file of at most so many bytes.
+
+    Raises
+    ------
+    FileNotFoundError, InputError
+        As for `read_file`; also if it is not text.
+    """
+    try:
+        return decoded(read_file(path, most))
     except UnicodeDecodeError:
         raise InputError("it is not text in UTF-8; save it in UTF-8") from None
 

@@ -6,7 +6,6 @@ contact model and a law is evaluated. `load_case` reads one from a file, or by t
 
 from __future__ import annotations
 
-import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -56,7 +55,8 @@ from wearlaw.plugins.fields import ContactModelField, LawField, StageField, Wear
 from wearlaw.plugins.shelf import Shelf
 from wearlaw.settings.configuration import Configuration, configuration_error, known_as
 from wearlaw.settings.text_files import beside, read_text, reading
-from wearlaw.study.figure_check import Contents
+from wearlaw.settings.toml_files import LARGEST, parse_toml
+from wearlaw.study.figure_check import Contents, wrong_name
 from wearlaw.study.figure_spec import FigureSpec
 from wearlaw.study.grid import Condition, Grid
 from wearlaw.study.measured import MeasuredTests, check_rig, known_variables
@@ -274,8 +274,9 @@ class Case(Configuration):
             return found
         checked, wrong = {}, []
         for name, conditions in given.items():
-            if isinstance(name, str) and not name.isidentifier():
-                wrong.append(Fault((), f"the name {quoted(name)} must be made of letters, digits and underscores"))
+            fault = wrong_name(name) if isinstance(name, str) else ""
+            if fault:
+                wrong.append(Fault((), f"the name {quoted(name)} {fault}"))
             grid, faults = _read_conditions(name, conditions, read, info.data.get("rig"))
             if grid is not None and info.field_name == "profiles" and grid.axes():
                 faults.append(Fault((name,), "a profile is at one operating point; give each condition one value"))
@@ -444,15 +445,14 @@ def case_text(name_or_path: str) -> str:
     if name_or_path in found.cases.providers:
         return found.cases.find(name_or_path, found.broken)
     try:
-        return read_text(name_or_path)
+        return read_text(name_or_path, LARGEST)
     except FileNotFoundError:
         hint = did_you_mean(name_or_path, known)
         raise CaseError(
             f"there is no case file {quoted(Path(name_or_path))}{hint} Shipped cases: {', '.join(known)}"
         ) from None
-    except (OSError, InputError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise CaseError(f"cannot read the case file {quoted(Path(name_or_path))}: {reason}") from None
+    except InputError as error:
+        raise CaseError(f"cannot read the case file {quoted(Path(name_or_path))}: {error}") from None
 
 
 def case_schema() -> dict[str, Any]:
@@ -584,13 +584,14 @@ def load_case(name_or_path: str) -> Case:
     """
     text = case_text(name_or_path)
     try:
-        fields = tomllib.loads(text)
+        fields = parse_toml(text)
+    except InputError as error:
+        raise CaseError(f"case {quoted(Path(name_or_path))} {error}") from None
+    try:
         if name_or_path in loader.installed().cases.providers:
             return known_as(name_or_path, Case(**fields))
         with reading(name_or_path):
             return Case(**_beside(fields))
-    except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"case {quoted(Path(name_or_path))} is not valid TOML: {error}") from None
     except ConfigurationError as error:
         raise CaseError(with_problems(f"case {quoted(Path(name_or_path))} is wrong in:", error.problems)) from None
 

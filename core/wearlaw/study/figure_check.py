@@ -31,6 +31,17 @@ from wearlaw.study.figure_spec import (
 from wearlaw.study.grid import Grid
 from wearlaw.units.variables import UNITS
 
+LONGEST_NAME = 100
+"""Most bytes of the name of a sweep, profile or figure; file systems allow 255 for it with what files add to it."""
+
+
+def wrong_name(name: str) -> str:
+    """Return what keeps a name in a case from being part of the name of a file, or "" if it can be."""
+    if not name.isidentifier():
+        return "must be made of letters, digits and underscores"
+    size = len(name.encode())
+    return f"has {size} bytes, but {LONGEST_NAME} are the most" if size > LONGEST_NAME else ""
+
 
 @dataclass(frozen=True)
 class Variables:
@@ -91,8 +102,9 @@ class Contents:
     def problems(self, figures: Mapping[str, FigureSpec]) -> Iterator[Fault]:
         """Yield the faults of figures: names in them that the case does not have."""
         for name, spec in figures.items():
-            if not name.isidentifier():
-                yield Fault(("figures", name), "the name must be made of letters, digits and underscores")
+            fault = wrong_name(name)
+            if fault:
+                yield Fault(("figures", name), f"the name {fault}")
             for path, message in self._problems(spec):
                 yield Fault(("figures", name, *path.split(".")), message)
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import os
 import shutil
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,8 @@ from pydantic import TypeAdapter
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
-from wearlaw.errors import InputError, OutputError, quoted
+from wearlaw.errors import InputError, OutputError, WearlawError, quoted
+from wearlaw.settings.text_files import reason_of
 from wearlaw.sweeping.evaluation import BlockRecord, Job, is_undamaged, load_zarr, zarr_group
 from wearlaw.sweeping.journal import Journal, Run, check_same, run_of, sync_file
 from wearlaw.sweeping.points import ITEM, Block, Points
@@ -28,6 +30,12 @@ from wearlaw.units.quantities import parse
 from wearlaw.units.registry import symbol
 
 GIB = 2.0**30
+
+PIECE = 2**20
+"""Bytes written at a time."""
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""Errors of a full disk: no room, a quota, or a limit on the size of a file."""
 
 JOURNAL = "journal"
 """Name of the journal in a folder of results."""
@@ -140,9 +148,9 @@ class Files(Arrays):
     def __init__(self, job: Job, points: Points, folder: Path) -> None:
         super().__init__(job, points)
         path, run = folder / JOURNAL, run_of(job, points)
+        known = os.path.lexists(path)
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            known = os.path.lexists(path)
             begun = Journal.resume(path, run, folder, self._sync) if known else Journal.begin(path, run, self._sync)
             self._journal = begun
             self._maps = {name: self._mapped(folder / f"{name}.f64") for name in job.units}
@@ -151,17 +159,23 @@ class Files(Arrays):
         except BaseException as error:
             self.close()
             if isinstance(error, OSError) and not isinstance(error, OutputError):
+                if not known:
+                    shutil.rmtree(folder, ignore_errors=True)  # so that the disk is not full of files without a result
                 where = error.filename or folder
+                full = error.errno in FULL
+                advice = "make room, and add --resume to go on" if full else f"remove {quoted(folder)} to start again"
                 raise OutputError(
-                    f"output: finished blocks cannot be kept in {quoted(where)}: {error.strerror or error};"
-                    f" remove {quoted(folder)} to start again"
+                    f"output: finished blocks cannot be kept in {quoted(where)}: {error.strerror or error}; {advice}"
                 ) from None
             raise
 
     def _mapped(self, path: Path) -> np.memmap[Any, Any]:
-        """Return the memory map of a file; create or resize the file if needed."""
+        """Return the memory map of a file; create or resize the file if needed.
+
+        All its room is taken at once: a memory map that finds the disk full ends the process by a signal.
+        """
         path.touch()
-        os.truncate(path, math.prod(self.shape) * ITEM)
+        set_size(path, math.prod(self.shape) * ITEM)
         return np.memmap(path, dtype=np.float64, mode="r+", shape=self.shape)
 
     def _sync(self, _: list[int]) -> None:
@@ -294,6 +308,46 @@ class Store(Target):
         return _opened(self.path)
 
 
+def place_of(folder: Path) -> Path:
+    """Return the path of a folder without links in it, after checks of whether it can be made.
+
+    Raises
+    ------
+    OSError
+        If it cannot, since a name is too long, links lead in a circle, or something above it is no folder.
+    ValueError
+        If a name has a null character.
+    """
+    try:
+        target = folder.resolve()
+    except RuntimeError:  # before Python 3.13
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP)) from None
+    there = next(parent for parent in (target, *target.parents) if os.path.lexists(parent))
+    for path in (target, *(there / name for name in target.relative_to(there).parts)):
+        with suppress(FileNotFoundError):
+            os.stat(path)
+    return target
+
+
+@contextmanager
+def kept_in(store: str | os.PathLike[str] | None) -> Iterator[None]:
+    """Raise an OutputError if the system keeps a sweep from writing to its store."""
+    if store is None:
+        yield
+        return
+    try:
+        place_of(Path(store))
+        yield
+    except (WearlawError, ConnectionError):
+        raise
+    except (OSError, ValueError) as error:
+        code = getattr(error, "errno", None)
+        if code is None and "null" not in str(error):  # no error of a file, but a timeout of a cluster
+            raise
+        advice = "make room, and add resume=True to go on" if code in FULL else "choose another folder"
+        raise OutputError(f"store: cannot write to '{store}': {reason_of(error)}; {advice}") from None
+
+
 def finished(job: Job, points: Points, path: Path, resume: bool) -> xarray.Dataset | None:
     """Return the finished results in a folder, or None if it is empty or holds an unfinished part to resume.
 
@@ -303,6 +357,10 @@ def finished(job: Job, points: Points, path: Path, resume: bool) -> xarray.Datas
         If the folder holds something else, or results without `resume`.
     """
     load_zarr()
+    if path.is_symlink() and not path.exists():
+        raise OutputError(
+            f"store: {quoted(path)} is a link to {quoted(os.readlink(path))}, which does not exist; create that folder"
+        )
     if path.exists() and not path.is_dir():
         raise OutputError(f"store: {quoted(path)} is a file, not a folder; choose another name, or remove it")
     if not path.is_dir() or not any(path.iterdir()):
@@ -441,6 +499,23 @@ def check_disk(size: int, path: Path) -> None:
             f"the results need {size / GIB:.3g} GiB on disk, but {quoted(nearest)} has {there / GIB:.3g} GiB free;"
             " choose another disk, fewer outputs or fewer points"
         )
+
+
+def set_size(path: Path, size: int) -> None:
+    """Cut a file to a size, or extend it by zeros that have their room on the disk.
+
+    Raises
+    ------
+    OSError
+        If the disk is full.
+    """
+    with path.open("rb+") as file:
+        file.truncate(min(size, file.seek(0, os.SEEK_END)))
+        if hasattr(os, "posix_fallocate"):
+            os.posix_fallocate(file.fileno(), 0, size)
+        else:
+            for start in range(file.tell(), size, PIECE):
+                file.write(bytes(min(PIECE, size - start)))
 
 
 def available_memory() -> int | None:

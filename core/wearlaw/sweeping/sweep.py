@@ -35,7 +35,7 @@ from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warn
 from wearlaw.sweeping.located import posed
 from wearlaw.sweeping.points import BLOCK, Block, Points, outer_product
 from wearlaw.sweeping.progress import Bar
-from wearlaw.sweeping.storage import Memory, Store, Target, damage, finished
+from wearlaw.sweeping.storage import Memory, Store, Target, damage, finished, kept_in
 from wearlaw.sweeping.tables import from_table
 from wearlaw.sweeping.workers import Done, in_processes, on_cluster
 
@@ -117,7 +117,7 @@ def sweep(
     InputError
         If conditions or outputs are invalid, or the results would not fit into memory or on the disk.
     OutputError
-        If `store` holds anything but an unfinished part of the same sweep.
+        If `store` holds anything but an unfinished part of the same sweep, or cannot be written.
     SweepError
         If workers die again and again.
     """
@@ -125,7 +125,7 @@ def sweep(
         raise InputError(f"workers: must be the number of processes, at least 1; got {shortened(workers)}")
     if not isinstance(store, str | os.PathLike | None):
         raise InputError(f'store: must be the path of a folder, such as "map.zarr"; got {shortened(store)}')
-    with _points(predict, table, conditions, columns, keep, store, progress) as points:
+    with kept_in(store), _points(predict, table, conditions, columns, keep, store, progress) as points:
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
         points = dataclasses.replace(points, weight=weight(first))

@@ -17,9 +17,9 @@ import pandas as pd
 import xarray
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import DataError, described, quoted, shortened
+from wearlaw.errors import DataError, InputError, described, quoted, shortened
 from wearlaw.settings.csv_files import kind_of, preamble, rows
-from wearlaw.settings.text_files import UTF_16, decoded
+from wearlaw.settings.text_files import UTF_16, decoded, read_start, reason_of
 from wearlaw.units.quantities import HEAD
 
 ROWS = 100_000
@@ -36,6 +36,8 @@ BUFFER = 2**20
 
 ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 """Files of which a zarr store has one."""
+LONGEST = 2**20
+"""Bytes of the longest line of a CSV file: a table may have any number of lines, but is read line by line."""
 
 DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?", re.ASCII)
 
@@ -132,17 +134,18 @@ def open_table(path: str | os.PathLike[str]) -> TableFile:
         If there is no such file, or it holds no table.
     """
     path = Path(path)
-    if path.is_dir():
+    if os.path.isdir(path):
         if not any((path / name).exists() for name in ZARR):
             raise DataError(
                 f"table: {quoted(path)} is a folder and no zarr store; give the path of a file or of a store"
             )
         return XarrayFile(path)
     try:
-        with path.open("rb") as file:
-            start = file.read(START)
-    except OSError as error:
-        raise DataError(f"table: cannot read {quoted(path)}: {error.strerror or error}") from None
+        start = read_start(path, START)
+    except (FileNotFoundError, InputError) as error:
+        raise DataError(f"table: cannot read {quoted(path)}: {reason_of(error)}") from None
+    if not start:
+        raise DataError(f"table: {quoted(path)} is empty")
     if start.startswith(b"PAR1"):
         return ParquetFile(path)
     if start.startswith((b"\x89HDF", b"CDF")):
@@ -150,18 +153,23 @@ def open_table(path: str | os.PathLike[str]) -> TableFile:
     return CsvFile(path, start)
 
 
-class _Counting(io.FileIO):
-    """A file that counts the bytes of a kind as they are read."""
+class _Lines(io.FileIO):
+    """A file of lines that counts the bytes of a kind as they are read, and refuses a line that is too long."""
 
-    def __init__(self, path: Path, counted: bytes) -> None:
+    def __init__(self, path: Path, counted: bytes = b"\n") -> None:
         super().__init__(path)
         self._counted = counted
-        self.count = 0
+        self.count = self._line = 0
 
     def readinto(self, buffer: Any, /) -> int | None:
         read = super().readinto(buffer)
         if read:
-            self.count += bytes(memoryview(buffer)[:read]).count(self._counted)
+            content = bytes(memoryview(buffer)[:read])
+            self.count += content.count(self._counted)
+            end = max(content.rfind(b"\n"), content.rfind(b"\r"))
+            self._line = read - 1 - end if end >= 0 else self._line + read
+            if self._line > LONGEST:
+                raise DataError(f"table '{self.name}': has a line of more than {LONGEST} bytes; is it a table?")
         return read
 
 
@@ -219,16 +227,19 @@ class CsvFile(TableFile):
         return bool(texts) and not any(re.match(r"[+-]?[.,]?\d|[+-]?(nan|inf)", text, re.IGNORECASE) for text in texts)
 
     def _opened(self) -> io.TextIOWrapper:
-        return self.path.open(encoding=self.encoding, errors="replace", newline="")
+        return self._text(_Lines(self.path))
+
+    def _text(self, raw: _Lines, buffer: int = START) -> io.TextIOWrapper:
+        buffered = io.BufferedReader(raw, buffer)
+        return io.TextIOWrapper(buffered, encoding=self.encoding, errors="replace", newline="")
 
     def pieces(self, places: Sequence[int]) -> Iterator[Piece]:
         """Yield the rows of some columns."""
         if not self.first_line:
             return
         count, before = 0, 0
-        with _Counting(self.path, self.separator.encode("ascii")) as raw:
-            buffer = io.BufferedReader(raw, BUFFER)
-            text = io.TextIOWrapper(buffer, encoding=self.encoding, errors="replace", newline="")
+        with _Lines(self.path, self.separator.encode("ascii")) as raw:
+            text = self._text(raw, BUFFER)
             above = sum(line.count(self.separator) for line in itertools.islice(text, self.first_line - 1))
             try:
                 with pd.read_csv(
@@ -248,7 +259,7 @@ class CsvFile(TableFile):
                         before += done
                         columns = [_numbers(frame[place]) for place in places]
                         yield Piece([one for one, _ in columns], [text for _, text in columns], done)
-            except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
+            except (OSError, pd.errors.ParserError, pd.errors.EmptyDataError) as error:
                 raise self.failed(error) from None
             if raw.count - above != count * (self.width - 1):
                 self._check_widths()

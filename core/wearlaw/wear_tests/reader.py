@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
@@ -11,14 +10,17 @@ from typing import NoReturn
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import DataError, did_you_mean, quoted, shortened
+from wearlaw.errors import DataError, InputError, did_you_mean, quoted, shortened
 from wearlaw.plugins import loader
 from wearlaw.settings.csv_files import kind_of
-from wearlaw.settings.text_files import UTF_16, decoded
+from wearlaw.settings.text_files import MIB, UTF_16, decoded, read_file
 from wearlaw.units.quantities import Q
 from wearlaw.wear_tests.columns import faulty, with_traction
 from wearlaw.wear_tests.csv_table import TEXTS, Head, Problems, Table, table_of
 from wearlaw.wear_tests.tests import WearTests
+
+LARGEST = 4 * MIB
+"""Size of the largest file of tests that is read [bytes]."""
 
 MISSING = ("", "na", "n/a", "nan", "-")
 """Contents of a cell without a value, in upper or lower case."""
@@ -63,12 +65,11 @@ def text_of_tests(path_or_name: str | Path) -> str:
         return found.test_sets.find(str(path_or_name), found.broken)
     path = Path(path_or_name)
     try:
-        content = path.read_bytes()
+        content = read_file(path, LARGEST)
     except FileNotFoundError:
         _refuse_missing(path, list(found.test_sets.items()))
-    except (OSError, ValueError) as error:
-        reason = "it is a folder" if os.path.isdir(path) else getattr(error, "strerror", None) or error
-        raise DataError(f"cannot read the tests {quoted(path)}: {reason}; give a CSV file") from None
+    except InputError as error:
+        raise DataError(f"cannot read the tests {quoted(path)}: {error}") from None
     return _decoded(content, path)
 
 
