@@ -53,7 +53,7 @@ READERS: dict[str, Callable[[Path], Any]] = {
 }
 
 
-@pytest.fixture(params=READERS.values(), ids=READERS)
+@pytest.fixture(params=list(READERS.values()), ids=list(READERS))
 def read(request: pytest.FixtureRequest) -> Iterator[Callable[[Path], Any]]:
     """Give each reader in turn; one that waits for a pipe fails."""
 

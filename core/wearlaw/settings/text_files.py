@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
+from typing import BinaryIO
 
 from wearlaw.errors import InputError, quoted
 
@@ -44,12 +44,12 @@ def beside(path: str | os.PathLike[str]) -> Path:
     return Path(path) if folder is None else folder / path
 
 
-def _opened(path: str | os.PathLike[str]) -> io.BufferedReader:
+def _opened(path: str | os.PathLike[str]) -> BinaryIO:
     """Open a regular file. Anything else may never end, or never begin."""
     if "\0" in os.fspath(path):
         raise InputError("a name cannot have a null character")
     _check_regular(os.stat(path))  # first, since opening a device may do something
-    file = io.BufferedReader(io.FileIO(path, opener=_without_waiting))
+    file = open(path, "rb", opener=_without_waiting)  # noqa: SIM115
     try:
         _check_regular(os.fstat(file.fileno()))  # it may have been replaced meanwhile
     except InputError:
