@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, steady
 from wearlaw.contact import hertz
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material
 from wearlaw.errors import CompositionError, InputError, UnitError
-from wearlaw.units.quantities import QuantityLike, coefficient, real_array, scalar_si
+from wearlaw.units.quantities import QuantityLike, coefficient, real_array, scalar_si, shortened
 from wearlaw.units.variables import VARIABLES
 
 if TYPE_CHECKING:
@@ -488,9 +488,9 @@ class Problem:
         InputError
             If no body has that name.
         """
-        if name not in self.bodies:
+        if not isinstance(name, str) or name not in self.bodies:
             names = " and ".join(repr(one) for one in self.bodies) or "not named"
-            raise InputError(f"body: this rig has no '{name}'; its bodies are {names}")
+            raise InputError(f"body: this rig has no {shortened(name)}; its bodies are {names}")
         return self.bodies[name]
 
     def worn_on(self, body: str | None) -> Self:
@@ -509,6 +509,7 @@ class Problem:
         if self.geometry != geometry:
             raise CompositionError(f"{what}: belongs to {PATCHES[geometry]}, not to {PATCHES[self.geometry]}")
 
+    @steady
     def power(self, forces: CreepForces) -> Array:
         """Return the energy dissipated per metre rolled, Tγ = ξFx + ηFy + φMz [N]."""
         along = self.longitudinal_creepage * forces.longitudinal

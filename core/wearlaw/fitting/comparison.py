@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 import pandas as pd
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, steady
 from wearlaw.errors import InputError, did_you_mean
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.plot import plot
@@ -283,6 +283,7 @@ def compare(
     return compare_named(list(zip(names, given, strict=True)), tests, friction_coefficient, chosen, cross_validate)
 
 
+@steady
 def compare_named(
     named: Sequence[tuple[Names, Predictor]],
     tests: WearTests,

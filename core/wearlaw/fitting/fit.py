@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from wearlaw.arrays.array import STEADY
 from wearlaw.errors import FitError, FitWarning
 from wearlaw.fitting.intervals import DECIDED_ALONE, Replicates, leverage, replicate
 from wearlaw.fitting.least_squares import Solutions
@@ -97,11 +98,12 @@ def fit(
     """
     _check_settings(scatter, confidence, starts=starts, bootstrap=bootstrap, seed=seed)
     _check_replicates(bootstrap, confidence)
-    task = Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
-    best = task.solve(starts, seed)
-    replicates = None
-    if bootstrap:
-        replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
+    with np.errstate(**STEADY):
+        task = Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
+        best = task.solve(starts, seed)
+        replicates = None
+        if bootstrap:
+            replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
     if overload := task.overload(best):
         overload.warn(stacklevel=2)
     settings = {
@@ -114,7 +116,8 @@ def fit(
         "seed": seed,
         "confidence": confidence,
     }
-    found = summarise(task, best, replicates, confidence, settings)
+    with np.errstate(**STEADY):
+        found = summarise(task, best, replicates, confidence, settings)
     _warn(task, best, replicates, found)
     return found
 

@@ -27,7 +27,7 @@ from wearlaw.errors import CalibrationWarning, CompositionError, InputError, Mod
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
-from wearlaw.units.quantities import Quantity, Unit, from_si
+from wearlaw.units.quantities import Quantity, Unit, from_si, shortened
 from wearlaw.units.registry import unit_in_si
 from wearlaw.units.variables import UNITS, VARIABLES
 
@@ -135,8 +135,8 @@ class Outcome:
         """Check the fields."""
         if not (isinstance(self.name, str) and self.name.isidentifier()):
             raise InputError(f"outcome: its name must be made of letters, digits and underscores, got {self.name!r}")
-        if self.of not in ("area mean", "patch"):
-            raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {self.of!r}")
+        if not isinstance(self.of, str) or self.of not in ("area mean", "patch"):
+            raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {shortened(self.of)}")
         known = VARIABLES.get(self.name)
         if known is not None:
             if self.name != WEAR:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import Array, same
+from wearlaw.arrays.array import Array, same, steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
@@ -151,7 +151,7 @@ class Prediction:
     _whole: tuple[Prediction, Selection] | None = None
     """The prediction that this one is a part of, and the selection; None if it is no part."""
 
-    def sel(self, **labels: Label | Sequence[Label]) -> Prediction:
+    def sel(self, /, **labels: Label | Sequence[Label]) -> Prediction:
         """Return the prediction for some of the patches, by the labels of the rig's own axes.
 
         Nothing is solved again. A label drops its axis, and a list of labels keeps it: ``sel(side="right")``,
@@ -169,7 +169,7 @@ class Prediction:
         """
         return self._part(Selection.by_label(self.problem, labels))
 
-    def isel(self, **positions: int | slice | Sequence[int]) -> Prediction:
+    def isel(self, /, **positions: int | slice | Sequence[int]) -> Prediction:
         """Return the prediction for some operating points or patches, by their positions along the axes.
 
         Nothing is solved again. The axes of the conditions are point_0, point_1 and so on; those that stay are numbered
@@ -372,6 +372,7 @@ class Prediction:
         return from_si(self._force, "N")
 
     @property
+    @steady
     def traction_coefficient(self) -> Quantity:
         """Tangential over normal force, T/N [-]."""
         return from_si(self._force / self.problem.normal_force, "")
@@ -394,6 +395,7 @@ class Prediction:
         return from_si(self._slip.cell_wear_index, "N")
 
     @property
+    @steady
     def averaged_wear_index(self) -> Quantity:
         """The averaged wear index of Tassini et al. 2010, section 3.2.3 [N].
 
@@ -410,6 +412,7 @@ class Prediction:
         return from_si(slipping * np.abs(self._force), "N")
 
     @property
+    @steady
     def wear_index_density(self) -> Quantity:
         """Wear index over the area of the patch, Tγ/A [N/m²]."""
         return from_si(self._wear_index / self._patch_area, "N/mm^2")
@@ -548,6 +551,7 @@ class Prediction:
         names = ("x", "pressure", "traction", "traction_bound", "slip")
         return along_patch(self.problem, {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more})
 
+    @steady
     def wear_profile(self, body: str, strips: int | None = None, at: QuantityLike | None = None) -> xarray.Dataset:
         """Return the depth lost and the distance slid across an elliptic patch, over y.
 
@@ -596,7 +600,7 @@ class Prediction:
         if strips is not None and (isinstance(strips, bool) or not isinstance(strips, int) or strips < 2):
             raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
         index = self._wear_law(body)
-        self._warn_of(index, body, stacklevel=3)
+        self._warn_of(index, body, stacklevel=4)  # the decorator counts
         across = self._across(index, body, strips)
         turns = bool(np.isfinite(radius).any())
         once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
@@ -651,6 +655,7 @@ class Prediction:
         """
         return from_si(self._whole_error(self._wear_law()), WEAR_RATE)
 
+    @steady
     def _whole_error(self, index: int) -> Array:
         """Return the numerical error of an outcome and, without energy balance, that of the energy that nodes lack."""
         error = self.error_of_law(index)
@@ -663,6 +668,7 @@ class Prediction:
         share = np.divide(lacking, found, out=np.zeros_like(found), where=~none)
         return error + np.where(none & (lacking > 0.0), np.inf, np.abs(self._solved_totals.values[index]) * share)
 
+    @steady
     def depth_per_distance(self, body: str) -> Quantity:
         """Return the depth that a body's surface loses per distance rolled, mean over the patch's width [m/m].
 
@@ -678,6 +684,7 @@ class Prediction:
         length = 0.5 * self._patch_area / self.problem.b
         return from_si(self._volume_rate(body) * (length / self._circumference(body)), "um/km")
 
+    @steady
     def profile_area_rate(self, body: str) -> Quantity:
         """Return the area of a radial section that a body loses per distance rolled [mm²/km].
 
@@ -688,10 +695,12 @@ class Prediction:
         return from_si(section, "mm^2/km")
 
     @property
+    @steady
     def mass_per_distance(self) -> Quantity:
         """Mass that a body loses per metre rolled [kg/m]; of body 1, like `wear_rate`."""
         return from_si(self._solved_totals.values[self._wear_law()] * self._patch_area, "ug/m")
 
+    @steady
     def mass_lost(self, over: QuantityLike, body: str) -> Quantity:
         """Return the mass that a body loses over a distance rolled [kg]; a rail loses it along the whole distance.
 
@@ -702,8 +711,17 @@ class Prediction:
         body : str
             Its name in the rig, such as "disc_1" or "wheel".
         """
-        return from_si(self._mass_per_distance(body) * Unit("km").si(over, "over"), "mg")
+        distance, mass = Unit("km").si(over, "over"), self._mass_per_distance(body)
+        try:
+            lost = mass * distance
+        except ValueError:
+            raise InputError(
+                f"over: an array of shape {distance.shape} does not broadcast to the operating points, of shape"
+                f" {mass.shape}; give one distance, or one for each point"
+            ) from None
+        return from_si(lost, "mg")
 
+    @steady
     def mass_per_cycle(self, body: str) -> Quantity:
         """Return the mass that a body loses in one of its revolutions, over πD rolled [kg]."""
         return from_si(self._mass_per_distance(body) * self._circumference(body), "ug")
@@ -775,10 +793,11 @@ class Prediction:
         return self._rate(body) / self._density(body)
 
     def _rate(self, body: str) -> Array:
-        return self._of_body(self._wear_law(body), body, stacklevel=5)
+        return self._of_body(self._wear_law(body), body, stacklevel=6)  # the decorator of the callers counts
 
     def _of_body(self, index: int, body: str, stacklevel: int) -> Array:
         """Return the outcome of a law for a body; a law for every body is evaluated again if the materials differ."""
+        self.problem.body(body)  # raises unless it is one of them
         kept = self._kept_for(index, body)
         self._warn_of(index, body, stacklevel + 1)
         if kept:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from glob import escape
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -21,6 +21,7 @@ from wearlaw.numerics.solved import Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import unknown
+from wearlaw.settings.arguments import expect, expect_path
 
 File: TypeAlias = str | os.PathLike[str]
 """The path of a file."""
@@ -58,7 +59,11 @@ def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, 
     """
     if isinstance(paths, str | os.PathLike):
         return _read(Path(paths), reader, options)
-    files = [Path(path) for path in paths]
+    expect(Iterable, paths, "paths", "the path of a file, or several")
+    given = list(paths)
+    for path in given:
+        expect_path(path, "paths", "a file, or several")
+    files = [Path(path) for path in given]
     if not files:
         raise InputError("paths: give at least one file")
     return _stacked(files, [_read(path, reader, options) for path in files])

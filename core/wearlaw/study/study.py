@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import xarray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.material import Material
 from wearlaw.errors import (
     InputError,
@@ -108,6 +108,7 @@ class Study(Results):
         return "\n".join([f"Study of '{self.case.title}'", *shown])
 
 
+@steady
 def run(
     case: Case,
     on_block: Callable[[int], None] = lambda _: None,
