@@ -80,7 +80,12 @@ def check_same(compute: Callable[[], Mapping[str, Array]]) -> None:
 @pytest.mark.parametrize("law", wl.wear_laws())
 @pytest.mark.parametrize(
     ("geometry", "model"),
-    [(geometry, name) for name, model in wl.contact_models().items() for geometry in RIGS if geometry in model.geometries()],
+    [
+        (geometry, name)
+        for name, model in wl.contact_models().items()
+        for geometry in RIGS
+        if geometry in model.geometries()
+    ],
 )
 def test_errors_of_floats_end_no_prediction(geometry: str, model: str, law: str, conditions: str) -> None:
     rig, known = RIGS[geometry]
@@ -178,9 +183,9 @@ def test_errors_of_floats_end_no_rig_of_a_third_party() -> None:
 @pytest.mark.parametrize("state", ["warn", "raise"])
 def test_values_that_overflow_or_underflow_in_si_are_refused_in_words(state: Any) -> None:
     with np.errstate(all=state):
-        with pytest.raises(wl.UnitError, match="^normal_force: must be finite, got 1.700e"):
+        with pytest.raises(wl.UnitError, match=r"^normal_force: must be finite, got 1\.700e"):
             DISCS.problem(normal_force="1.7e308 kN", creepage="1 %", friction_coefficient=0.4)
-        with pytest.raises(wl.UnitError, match="^x: must be finite, got inf km at index|^x: must be finite, got 1.700e"):
+        with pytest.raises(wl.UnitError, match=r"^x: must be finite, got 1\.700e\+308 km at index \[1\]"):
             wl.Unit("km").si(Q([1.0, 1.7e308], "km"), "x")
         with pytest.raises(wl.ConfigurationError, match="diameter: must be greater than zero"):
             wl.Disc(diameter="5e-324 mm", material=wl.steel())

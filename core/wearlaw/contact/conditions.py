@@ -110,7 +110,9 @@ def condition_arrays(
             arrays[name] = np.zeros(())
     arrays = broadcast(arrays)
     if is_friction_law(friction):
-        arrays["friction_coefficient"] = _of_friction_law(friction, creep_speed(arrays), arrays[table.creepages[0]].shape)
+        arrays["friction_coefficient"] = _of_friction_law(
+            friction, creep_speed(arrays), arrays[table.creepages[0]].shape
+        )
     return arrays
 
 

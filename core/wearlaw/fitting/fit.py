@@ -19,7 +19,8 @@ from wearlaw.fitting.result import Fit
 from wearlaw.fitting.summary import summarise
 from wearlaw.fitting.task import Task
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.units.quantities import QuantityLike
+from wearlaw.settings.arguments import expect
+from wearlaw.units.quantities import QuantityLike, shortened
 from wearlaw.wear_tests.tests import WearTests
 
 AT_BOUND = 1e-6
@@ -96,6 +97,8 @@ def fit(
     -----
     G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989.
     """
+    expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
+    expect(Mapping | None, bounds, "bounds", "a table from parameters to pairs of bounds")
     _check_settings(scatter, confidence, starts=starts, bootstrap=bootstrap, seed=seed)
     _check_replicates(bootstrap, confidence)
     with np.errstate(**STEADY):
@@ -123,8 +126,8 @@ def fit(
 
 
 def _check_settings(scatter: object, confidence: object, **counts: object) -> None:
-    if scatter not in ("relative", "absolute"):
-        raise FitError(f'scatter: must be "relative" or "absolute", got {scatter!r}')
+    if not isinstance(scatter, str) or scatter not in ("relative", "absolute"):
+        raise FitError(f'scatter: must be "relative" or "absolute", got {shortened(scatter)}')
     if not (isinstance(confidence, float | np.floating) and 0.0 < confidence < 1.0):
         raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {confidence!r}")
     for name, value in counts.items():

@@ -25,6 +25,7 @@ from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Geometry
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, ModelError, UnitError, did_you_mean
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale
+from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
 from wearlaw.units.quantities import Quantity, Unit, from_si, shortened
@@ -134,7 +135,9 @@ class Outcome:
     def __post_init__(self) -> None:
         """Check the fields."""
         if not (isinstance(self.name, str) and self.name.isidentifier()):
-            raise InputError(f"outcome: its name must be made of letters, digits and underscores, got {self.name!r}")
+            raise InputError(
+                f"outcome: its name must be made of letters, digits and underscores, got {shortened(self.name)}"
+            )
         if not isinstance(self.of, str) or self.of not in ("area mean", "patch"):
             raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {shortened(self.of)}")
         known = VARIABLES.get(self.name)
@@ -142,6 +145,7 @@ class Outcome:
             if self.name != WEAR:
                 raise InputError(f"outcome '{self.name}': this name has a meaning, {known.name}; choose another one")
             return
+        expect(str, self.unit, f"outcome '{self.name}': unit", "a text, such as 'mm', or '' for a plain number")
         try:
             unit_in_si(self.unit)
         except UnitError as error:

@@ -42,7 +42,8 @@ from wearlaw.pipeline.profiles import across_patch, along_patch, on_profile
 from wearlaw.pipeline.ranges import RangeWatch, elastic_limits, outside_range
 from wearlaw.pipeline.selection import Index, Label, Selection
 from wearlaw.pipeline.variables import ERROR, default_variables, long_name, outcome_units
-from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
+from wearlaw.settings.arguments import expect
+from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si, shortened
 from wearlaw.units.variables import UNITS
 
 if TYPE_CHECKING:
@@ -53,6 +54,9 @@ if TYPE_CHECKING:
 
 PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
+
+MOST_STRIPS = 10_000
+"""Most strips of a wear profile; a wheel's patch of 10 mm then has strips of 1 µm."""
 
 FORCES = ("longitudinal_force", "lateral_force", "spin_moment", "wear_index")
 
@@ -127,7 +131,11 @@ class Prediction:
         ModelError
             If the contact holds impossible values, or a law fails.
         """
-        laws, problem = (law, *more), contact.problem
+        laws = (law, *more)
+        expect(Contact, contact, "contact", "a wearlaw.Contact, such as read_contact returns")
+        for one in laws:
+            expect(Law, one, "law", "a law, such as wl.wear_law('usfd')")
+        problem = contact.problem
         if problem is None:
             raise InputError(
                 "contact: has no problem, so its bodies and creepages are not known; use contact | law for its wear"
@@ -597,8 +605,12 @@ class Prediction:
                 f"wear_profile: {self._model!r} gives means of the whole patch; take a contact model that"
                 ' resolves it, such as wl.contact_model("fastsim")'
             )
-        if strips is not None and (isinstance(strips, bool) or not isinstance(strips, int) or strips < 2):
-            raise InputError(f"strips: must be a whole number from 2, such as 101; got {strips!r}")
+        if strips is not None and (
+            isinstance(strips, bool) or not isinstance(strips, int) or not 2 <= strips <= MOST_STRIPS
+        ):
+            raise InputError(
+                f"strips: must be a whole number from 2 to {MOST_STRIPS}, such as 101; got {shortened(strips)}"
+            )
         index = self._wear_law(body)
         self._warn_of(index, body, stacklevel=4)  # the decorator counts
         across = self._across(index, body, strips)

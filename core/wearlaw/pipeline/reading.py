@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from glob import escape
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -59,7 +59,7 @@ def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, 
     """
     if isinstance(paths, str | os.PathLike):
         return _read(Path(paths), reader, options)
-    expect(Iterable, paths, "paths", "the path of a file, or several")
+    expect(Sequence, paths, "paths", "the path of a file, or a list of several")
     given = list(paths)
     for path in given:
         expect_path(path, "paths", "a file, or several")

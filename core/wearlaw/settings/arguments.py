@@ -30,3 +30,15 @@ def expect(kind: Any, value: object, name: str, wanted: str) -> None:
 def expect_path(value: object, name: str, of: str) -> None:
     """Raise an `InputError` that names the argument unless its value is a path; `of` says of what."""
     expect(str | os.PathLike, value, name, f"the path of {of}")
+
+
+def expect_names(value: object, name: str, example: str, least: int = 1) -> list[str]:
+    """Return an argument that is a list of names, at least so many, or raise an `InputError` that names it."""
+    try:
+        found: Any = None if isinstance(value, str) else list(value)  # type: ignore[call-overload]
+    except TypeError:
+        found = None
+    if found is None or len(found) < least or not all(isinstance(one, str) for one in found):
+        raise InputError(f'{name}: must be a list of names, such as ["{example}"]; got {shortened(value)}')
+    names: list[str] = found
+    return names

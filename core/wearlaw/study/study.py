@@ -34,6 +34,7 @@ from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
 from wearlaw.plugins import loader
+from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, known_name, parts
 from wearlaw.study.case import Case
 from wearlaw.study.figures import figures_of
@@ -128,6 +129,7 @@ def run(
     checkpoint : Checkpoint, optional
         Folder in which an interrupted run keeps finished blocks.
     """
+    expect(Case, case, "case", "a wearlaw.Case, as from wl.load_case")
     notes = Notes()
     evaluator = Evaluator(on_block, workers, checkpoint)
     pairs = pairs_of(case, notes)

@@ -17,7 +17,15 @@ from pydantic_core import core_schema
 
 from wearlaw.arrays.array import extremes
 from wearlaw.errors import UnitError
-from wearlaw.units.registry import application_registry, divided, quantity, quantity_from_si, si_factor, symbol, unit_in_si
+from wearlaw.units.registry import (
+    application_registry,
+    divided,
+    quantity,
+    quantity_from_si,
+    si_factor,
+    symbol,
+    unit_in_si,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -258,7 +266,9 @@ def real_array(value: object) -> NDArray[np.float64]:
     if array.dtype.kind not in "iuf":
         raise UnitError(f"{_describe(value)} is not a real number")
     if array.dtype != np.float64:
-        with np.errstate(over="ignore", under="ignore"):  # of numbers with more than 64 bits; callers check for infinity
+        with np.errstate(
+            over="ignore", under="ignore"
+        ):  # of numbers with more than 64 bits; callers check for infinity
             array = array.astype(np.float64)
     return array if array.ndim else array[()]
 

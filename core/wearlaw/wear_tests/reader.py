@@ -13,8 +13,8 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.errors import DataError, did_you_mean
 from wearlaw.plugins import loader
+from wearlaw.settings.arguments import expect_names, expect_path
 from wearlaw.settings.csv_files import kind_of
-from wearlaw.settings.arguments import expect_path
 from wearlaw.settings.text_files import UTF_16, decoded
 from wearlaw.units.quantities import Q, shortened
 from wearlaw.wear_tests.columns import faulty, with_traction
@@ -49,6 +49,7 @@ def read_tests(path_or_name: str | Path, *, outcomes: Collection[str] = ()) -> W
     expect_path(path_or_name, "tests", "a CSV file, or the name of shipped tests")
     if isinstance(outcomes, str):
         raise DataError(f'outcomes: give a list of names, such as ["{outcomes}"]')
+    outcomes = expect_names(outcomes, "outcomes", "rcf_damage", least=0)
     return parse_tests(text_of_tests(path_or_name), str(path_or_name), outcomes)
 
 
