@@ -39,6 +39,6 @@ def expect_names(value: object, name: str, example: str, least: int = 1) -> list
     except TypeError:
         found = None
     if found is None or len(found) < least or not all(isinstance(one, str) for one in found):
-        raise InputError(f'{name}: must be a list of names, such as ["{example}"]; got {shortened(value)}')
+        raise InputError(f'{name}: must be a list of names, such as ["{example}"], got {shortened(value)}')
     names: list[str] = found
     return names
