@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeGuard
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import Array
-from wearlaw.errors import ConditionsError, UnitError, did_you_mean, excerpt
+from wearlaw.arrays.array import Array, extremes
+from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described, did_you_mean, excerpt
 from wearlaw.units.quantities import Q, Unit, coefficient, parse, real_array
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import VARIABLES, expected
@@ -110,14 +110,45 @@ def condition_arrays(
             arrays[name] = np.zeros(())
     arrays = broadcast(arrays)
     if is_friction_law(friction):
-        arrays["friction_coefficient"] = friction.coefficient(creep_speed(arrays))
+        arrays["friction_coefficient"] = _of_friction_law(
+            friction, creep_speed(arrays), arrays[table.creepages[0]].shape
+        )
     return arrays
+
+
+def _of_friction_law(friction: FrictionLaw, creep_speed: Array, shape: tuple[int, ...]) -> Array:
+    """Return μ [-] of a friction law in the shape of the conditions, checked, since the law may come from anyone."""
+    law = f"friction_coefficient: friction law {type(friction).__name__}"
+    try:
+        given = friction.coefficient(creep_speed)
+    except (WearlawError, KeyboardInterrupt, MemoryError):
+        raise
+    except Exception as error:
+        raise ModelError(f"{law} failed: {described(error)}") from error
+    try:
+        found = coefficient(given, "its result")
+    except UnitError as error:
+        raise ModelError(f"{law} is wrong at creep speeds of {_spread(creep_speed)}: {error}") from None
+    if found.shape == shape:
+        return found
+    try:
+        return np.broadcast_to(found, shape)
+    except ValueError:
+        raise ModelError(
+            f"{law} returned an array of shape {found.shape} for creep speeds of shape {shape}; return one coefficient"
+            " for each of them"
+        ) from None
+
+
+def _spread(creep_speed: Array) -> str:
+    low, high = extremes(creep_speed)
+    return f"{low:.4g} m/s" if low == high else f"{low:.4g} to {high:.4g} m/s"
 
 
 def is_friction_law(friction: object) -> TypeGuard[FrictionLaw]:
     """Return whether friction depends on the speed of sliding."""
     # A test with isinstance(friction, FrictionLaw) would take a tenth of the time of a prediction.
-    return hasattr(friction, "coefficient") and not isinstance(friction, type)
+    return callable(getattr(friction, "coefficient", None)) and not isinstance(friction, type)
 
 
 def _check_names(conditions: Mapping[str, Any], arrays: Arrays, table: ConditionTable) -> None:

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, steady
 from wearlaw.contact import hertz
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material
-from wearlaw.errors import CompositionError, InputError, UnitError, quoted, shortened
+from wearlaw.errors import CompositionError, ConditionsError, InputError, UnitError, shortened
 from wearlaw.units.quantities import QuantityLike, coefficient, real_array, scalar_si
 from wearlaw.units.variables import VARIABLES
 
@@ -239,6 +239,7 @@ class Problem:
     exists: NDArray[np.bool_] | None = None
 
     @classmethod
+    @np.errstate(all="ignore")  # `_checked_size` rejects what overflows
     def line(
         cls,
         *,
@@ -292,7 +293,14 @@ class Problem:
         si = _si(given, friction_coefficient, poisson_ratio)
         modulus = si.pop("shear_modulus") / (1.0 - si["poisson_ratio"])
         per_width = si.pop("normal_force") / si["track_width"]
-        return cls.line_from_si(normal_force_per_width=per_width, effective_modulus=modulus, **si)
+        return cls.line_from_si(normal_force_per_width=per_width, effective_modulus=modulus, **si)._checked_size()
+
+    def _checked_size(self) -> Self:
+        """Return the problem, or raise an error if floats have overflowed or underflowed on the way to it."""
+        for name, value in {"half length": self.a, "max pressure": self.max_pressure}.items():
+            if not ((value > 0.0) & (value < np.inf)).all():
+                raise ConditionsError(f"these arguments give a {name} that no float can hold; check their units")
+        return self
 
     @classmethod
     def line_from_si(
@@ -320,6 +328,7 @@ class Problem:
         )
 
     @classmethod
+    @np.errstate(all="ignore")  # `_checked_size` rejects what overflows
     def ellipse(
         cls,
         *,
@@ -374,7 +383,7 @@ class Problem:
             "rolling_speed": rolling_speed,
             "density": density,
         }
-        return cls.ellipse_from_si(**_si(given, friction_coefficient, poisson_ratio))
+        return cls.ellipse_from_si(**_si(given, friction_coefficient, poisson_ratio))._checked_size()
 
     @classmethod
     def ellipse_from_si(cls, *, shear_modulus: Array, poisson_ratio: Array, **fields: Any) -> Self:
@@ -488,9 +497,9 @@ class Problem:
         InputError
             If no body has that name.
         """
-        if name not in self.bodies:
+        if not isinstance(name, str) or name not in self.bodies:
             names = " and ".join(repr(one) for one in self.bodies) or "not named"
-            raise InputError(f"body: this rig has no {quoted(name)}; its bodies are {names}")
+            raise InputError(f"body: this rig has no {shortened(name)}; its bodies are {names}")
         return self.bodies[name]
 
     def worn_on(self, body: str | None) -> Self:
@@ -509,6 +518,7 @@ class Problem:
         if self.geometry != geometry:
             raise CompositionError(f"{what}: belongs to {PATCHES[geometry]}, not to {PATCHES[self.geometry]}")
 
+    @steady
     def power(self, forces: CreepForces) -> Array:
         """Return the energy dissipated per metre rolled, Tγ = ξFx + ηFy + φMz [N]."""
         along = self.longitudinal_creepage * forces.longitudinal

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 import pandas as pd
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, steady
 from wearlaw.errors import InputError, did_you_mean, quoted, shortened
 from wearlaw.figures.curves import BLACK, Curve, FigureData
 from wearlaw.figures.parity import parity_panels
@@ -23,6 +23,7 @@ from wearlaw.models.labels import labels
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.settings.arguments import expect
 from wearlaw.sweeping.progress import Bar
 from wearlaw.units.quantities import WEAR_RATE, in_unit
 from wearlaw.units.variables import label, name_of
@@ -256,6 +257,8 @@ def compare(
     `in_sample` counts the tests; cross-validation ranks fits by tests that they have not seen.
     """
     given = _given(predictors)
+    expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
+    expect(str | None, outcome, "outcome", "the name of an outcome, such as 'wear_rate'")
     chosen = _chosen(given, tests, outcome)
     names = _names(given, chosen)
     if isinstance(predictors, Mapping):
@@ -263,6 +266,7 @@ def compare(
     return compare_named(list(zip(names, given, strict=True)), tests, friction_coefficient, chosen, cross_validate)
 
 
+@steady
 def compare_named(
     named: Sequence[tuple[Names, Predictor]],
     tests: WearTests,
@@ -312,6 +316,7 @@ def compare_named(
 
 def _given(predictors: Mapping[str, Predictor] | Sequence[Predictor]) -> list[Predictor]:
     """Return the predictors as a list."""
+    expect(Mapping | Sequence, predictors, "predictors", "a list of pipelines and fits, or a table of these by name")
     given = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
     if not given:
         raise InputError("give at least one predictor, such as rig | contact_model | law")

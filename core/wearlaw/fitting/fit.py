@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from wearlaw.arrays.array import STEADY
 from wearlaw.errors import FitError, FitWarning, shortened
 from wearlaw.fitting.intervals import DECIDED_ALONE, Replicates, leverage, replicate
 from wearlaw.fitting.least_squares import Solutions
@@ -18,6 +19,7 @@ from wearlaw.fitting.result import Fit
 from wearlaw.fitting.summary import summarise
 from wearlaw.fitting.task import Task
 from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.settings.arguments import expect
 from wearlaw.units.quantities import QuantityLike
 from wearlaw.wear_tests.tests import WearTests
 
@@ -95,13 +97,16 @@ def fit(
     -----
     G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989.
     """
+    expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
+    expect(Mapping | None, bounds, "bounds", "a table from parameters to pairs of bounds")
     _check_settings(scatter, confidence, starts=starts, bootstrap=bootstrap, seed=seed)
     _check_replicates(bootstrap, confidence)
-    task = Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
-    best = task.solve(starts, seed)
-    replicates = None
-    if bootstrap:
-        replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
+    with np.errstate(**STEADY):
+        task = Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
+        best = task.solve(starts, seed)
+        replicates = None
+        if bootstrap:
+            replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
     if overload := task.overload(best):
         overload.warn(stacklevel=2)
     settings = {
@@ -114,13 +119,14 @@ def fit(
         "seed": seed,
         "confidence": confidence,
     }
-    found = summarise(task, best, replicates, confidence, settings)
+    with np.errstate(**STEADY):
+        found = summarise(task, best, replicates, confidence, settings)
     _warn(task, best, replicates, found)
     return found
 
 
 def _check_settings(scatter: object, confidence: object, **counts: object) -> None:
-    if scatter not in ("relative", "absolute"):
+    if not isinstance(scatter, str) or scatter not in ("relative", "absolute"):
         raise FitError(f'scatter: must be "relative" or "absolute", got {shortened(scatter)}')
     if not (isinstance(confidence, float | np.floating) and 0.0 < confidence < 1.0):
         raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {shortened(confidence)}")

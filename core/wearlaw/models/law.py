@@ -34,6 +34,7 @@ from wearlaw.errors import (
     shortened,
 )
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale
+from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
 from wearlaw.units.quantities import Quantity, Unit, from_si
@@ -148,13 +149,14 @@ class Outcome:
             raise InputError(
                 f"outcome: its name must be made of letters, digits and underscores, got {shortened(self.name)}"
             )
-        if self.of not in ("area mean", "patch"):
+        if not isinstance(self.of, str) or self.of not in ("area mean", "patch"):
             raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {shortened(self.of)}")
         known = VARIABLES.get(self.name)
         if known is not None:
             if self.name != WEAR:
                 raise InputError(f"outcome '{self.name}': this name has a meaning, {known.name}; choose another one")
             return
+        expect(str, self.unit, f"outcome '{self.name}': unit", "a text, such as 'mm', or '' for a plain number")
         try:
             unit_in_si(self.unit)
         except UnitError as error:

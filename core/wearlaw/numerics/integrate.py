@@ -22,7 +22,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, extremes
+from wearlaw.arrays.array import Array, extremes, steady
 from wearlaw.arrays.kernels import accelerated
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import CreepForces, Problem
@@ -145,6 +145,7 @@ class Totals:
     across: tuple[Across | None, ...] = ()
 
 
+@steady
 def prepared(model: ContactModel, problem: Problem) -> tuple[ContactModel, Problem]:
     """Return a model and a problem without the outer stages that change only the problem; they are applied to it.
 
@@ -155,6 +156,7 @@ def prepared(model: ContactModel, problem: Problem) -> tuple[ContactModel, Probl
     return model, problem
 
 
+@steady
 def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
     """Return the forces and the moment, or raise a `ModelError` if they are not finite."""
     model, problem = prepared(model, problem)
@@ -178,6 +180,7 @@ def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
     return CreepForces.of({"longitudinal": found["tangential_force"]})
 
 
+@steady
 def integrate_slip(model: ContactModel, problem: Problem, solved_before: Contact | None = None) -> SlipTotals:
     """Return the slip of the patch; a contact `solved_before`, as in `Totals.contact`, is not solved again."""
     model, problem = prepared(model, problem)
@@ -202,6 +205,7 @@ def _slip_columns(contact: Contact) -> Columns:
     return {name: getattr(contact, name) for name in SlipTotals.__slots__}
 
 
+@steady
 def patch_area(model: ContactModel, problem: Problem) -> Array:
     """Return the area of the patch, the sum of its nodes' areas [m²]."""
     if isinstance(model, LineContactModel) and problem.geometry == "line":  # its nodes cover the whole patch
@@ -209,6 +213,7 @@ def patch_area(model: ContactModel, problem: Problem) -> Array:
     return integrate_slip(model, problem).patch_area
 
 
+@steady
 def integrate_laws(
     model: ContactModel,
     laws: Sequence[Law],
@@ -339,6 +344,7 @@ def _contact_of(law: Law, contact: Contact, problem: Problem) -> Contact:
     return contact if of_body is problem else contact.replaced(density=of_body.density, problem=of_body)
 
 
+@steady
 def outcome_error(model: ContactModel, law: Law, problem: Problem, totals: Totals, index: int) -> Array:
     """Return an estimate of the error of an outcome in SI; `index` is the index of the law in the totals.
 
@@ -377,6 +383,7 @@ def outcome_error(model: ContactModel, law: Law, problem: Problem, totals: Total
     return _by_block(solver, problem, columns)["error"]
 
 
+@steady
 def integrate_across(
     model: ContactModel, law: Law, problem: Problem, strips: int | None, solved_before: Contact | None = None
 ) -> Across:
@@ -434,12 +441,14 @@ def _by_block(solver: Solver, problem: Problem, columns: OfBlock, on_block: OnBl
     return solver.by_block(problem, block, columns, on_block)
 
 
+@steady
 def solve(model: ContactModel, problem: Problem) -> Contact:
     """Return the contact of a model on its own nodes."""
     model, prepared_problem = prepared(model, problem)
     return Solver(model).solve(prepared_problem.existing()).unflattened(prepared_problem)
 
 
+@steady
 def contact_for(model: ContactModel, law: Law, problem: Problem) -> Contact:
     """Return the contact on nodes suited to a law, for a batch of one axis."""
     model, problem = prepared(model, problem)

@@ -9,10 +9,10 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import Known
-from wearlaw.errors import InputError, shortened
 from wearlaw.pipeline.profiles import labelled
 from wearlaw.pipeline.selection import Selection, axis_names
 from wearlaw.pipeline.variables import Predicted, default_variables, long_name, unit_of
+from wearlaw.settings.arguments import expect_names
 from wearlaw.units.quantities import Quantity
 from wearlaw.units.variables import name_of
 
@@ -109,8 +109,8 @@ def _fits(shape: tuple[int, ...], whole: tuple[int, ...]) -> bool:
 
 def dataset(prediction: Named, conditions: Conditions, names: Sequence[str] | None) -> xarray.Dataset:
     """Return a prediction as a dataset with its conditions as coordinates; see `Prediction.to_dataset`."""
-    if names is not None and (isinstance(names, str) or not names or not all(isinstance(name, str) for name in names)):
-        raise InputError(f'names: must be a list of names, such as ["wear_rate"], got {shortened(names)}')
+    if names is not None:
+        names = expect_names(names, "names", "wear_rate")
     problem = prediction.problem
     every = axis_names(problem)
     count = len(every) - len(problem.dims)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import elementwise
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.conditions import is_friction_law
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, ConditionsError, UnitError
 from wearlaw.numerics.integrate import integrate_forces
-from wearlaw.pipeline.pipeline import Rig
+from wearlaw.pipeline.pipeline import Rig, expect_pipeline
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si, real_array
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ ROUNDED = 1e-12
 """Rounding error of a sum over some thousand nodes, as a share of the friction force."""
 
 
+@steady
 def creepage_for(
     predict: Pipeline[...],
     /,
@@ -65,6 +66,7 @@ def creepage_for(
     CompositionError
         If the rig has no condition for the creepage.
     """
+    expect_pipeline(predict)
     if (tangential_force is None) == (traction_coefficient is None):
         raise ConditionsError("give either tangential_force or traction_coefficient")
     if is_friction_law(conditions.get("friction_coefficient")):

@@ -15,7 +15,7 @@ from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self,
 import numpy as np
 from pydantic import model_validator
 
-from wearlaw.arrays.array import Array, extremes, type_name
+from wearlaw.arrays.array import STEADY, Array, extremes, steady, type_name
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, excerpt, shortened
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
@@ -38,6 +38,7 @@ from wearlaw.pipeline.composition import (
 from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch, overload_of
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
+from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, Configuration
 
 ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
@@ -51,6 +52,9 @@ TINY = float(np.sqrt(np.finfo(np.float64).tiny))
 
 LEAST_FRICTION = 1e-12
 """The smallest friction coefficient; below it formulas of fourth order in creepage over full-slip creepage overflow."""
+
+MOST_FRICTION = 1.0 / LEAST_FRICTION
+"""The largest friction coefficient; above it tractions and energies soon overflow."""
 
 
 class Poses(Protocol[P]):
@@ -149,7 +153,7 @@ class Rig(Model):
             If the rig fails or does not return a problem.
         """
         try:
-            with Blame(self):
+            with Blame(self), np.errstate(**STEADY):
                 problem = self.problem(**conditions)
         except ModelError:
             self.check_names(conditions)
@@ -275,8 +279,10 @@ def check_sizes(sizes: dict[str, Array], friction_coefficient: Array) -> None:
                 f"the load gives a {name} of {spread} in SI units,"
                 " which no contact has; check the units of the load and of the rig"
             )
-    if extremes(friction_coefficient)[0] < LEAST_FRICTION:
-        raise ConditionsError(f"friction_coefficient: must be at least {LEAST_FRICTION:g}, which no contact comes near")
+    low, high = extremes(friction_coefficient)
+    if low < LEAST_FRICTION or high > MOST_FRICTION:
+        bound, limit = ("at least", LEAST_FRICTION) if low < LEAST_FRICTION else ("at most", MOST_FRICTION)
+        raise ConditionsError(f"friction_coefficient: must be {bound} {limit:g}, which no contact comes near")
 
 
 class Pipeline(Configuration, Generic[P]):
@@ -356,7 +362,7 @@ class Pipeline(Configuration, Generic[P]):
             warn_of_body(self.rig.bodies, part, part.body, stacklevel=3)
         return pipeline
 
-    def __call__(self, *positional: P.args, **conditions: P.kwargs) -> Prediction:
+    def __call__(self, /, *positional: P.args, **conditions: P.kwargs) -> Prediction:
         """Return the contact and the wear under the given conditions; see the rig's `problem` for the conditions."""
         if positional:
             raise ConditionsError(
@@ -381,12 +387,13 @@ class Pipeline(Configuration, Generic[P]):
         CompositionError
             If the application needs one patch and the rig makes several.
         """
+        expect(Mapping, conditions, "conditions", "a table of conditions by name")
         rig, problem = self.rig, self.rig.checked_problem(conditions)
         if of_one_patch:
             check_one_patch(problem, rig, of_one_patch)
         if type(rig).balanced is Rig.balanced:
             return problem
-        with Blame(rig):
+        with Blame(rig), np.errstate(**STEADY):
             balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
         return rig._checked_balance(problem, balanced)
 
@@ -408,6 +415,7 @@ class Pipeline(Configuration, Generic[P]):
         stacklevel : int
             The caller that warnings name; 2 is the caller of this method.
         """
+        expect(Problem, problem, "problem", "a wearlaw.Problem, from the `problem` method of the rig")
         if self.rig.patch_geometry not in (None, problem.geometry):
             raise InputError(
                 f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"
@@ -451,6 +459,7 @@ class Pipeline(Configuration, Generic[P]):
             return self._without_law(model, problem, watch, on_block)
         return solved(model, self.laws, problem, watch, on_block)
 
+    @steady
     def _without_law(
         self, model: ContactModel, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None
     ) -> Prediction:
@@ -460,3 +469,8 @@ class Pipeline(Configuration, Generic[P]):
         if on_block is not None:
             on_block(problem.size)
         return Prediction(problem, model, forces=forces)
+
+
+def expect_pipeline(predict: object) -> None:
+    """Raise an `InputError` unless the argument `predict` of an application is a pipeline."""
+    expect(Pipeline, predict, "predict", "a pipeline, as in rig | contact model | wear law")

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import Array, same
+from wearlaw.arrays.array import Array, same, steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
@@ -42,6 +42,7 @@ from wearlaw.pipeline.profiles import across_patch, along_patch, on_profile
 from wearlaw.pipeline.ranges import RangeWatch, elastic_limits, outside_range
 from wearlaw.pipeline.selection import Index, Label, Selection
 from wearlaw.pipeline.variables import ERROR, default_variables, long_name, outcome_units
+from wearlaw.settings.arguments import expect
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
 from wearlaw.units.variables import UNITS
 
@@ -53,6 +54,9 @@ if TYPE_CHECKING:
 
 PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
+
+MOST_STRIPS = 10_000
+"""Most strips of a wear profile; a wheel's patch of 10 mm then has strips of 1 µm."""
 
 FORCES = ("longitudinal_force", "lateral_force", "spin_moment", "wear_index")
 
@@ -127,7 +131,11 @@ class Prediction:
         ModelError
             If the contact holds impossible values, or a law fails.
         """
-        laws, problem = (law, *more), contact.problem
+        laws = (law, *more)
+        expect(Contact, contact, "contact", "a wearlaw.Contact, such as read_contact returns")
+        for one in laws:
+            expect(Law, one, "law", "a law, such as wl.wear_law('usfd')")
+        problem = contact.problem
         if problem is None:
             raise InputError(
                 "contact: has no problem, so its bodies and creepages are not known; use contact | law for its wear"
@@ -151,7 +159,7 @@ class Prediction:
     _whole: tuple[Prediction, Selection] | None = None
     """The prediction that this one is a part of, and the selection; None if it is no part."""
 
-    def sel(self, **labels: Label | Sequence[Label]) -> Prediction:
+    def sel(self, /, **labels: Label | Sequence[Label]) -> Prediction:
         """Return the prediction for some of the patches, by the labels of the rig's own axes.
 
         Nothing is solved again. A label drops its axis, and a list of labels keeps it: ``sel(side="right")``,
@@ -169,7 +177,7 @@ class Prediction:
         """
         return self._part(Selection.by_label(self.problem, labels))
 
-    def isel(self, **positions: int | slice | Sequence[int]) -> Prediction:
+    def isel(self, /, **positions: int | slice | Sequence[int]) -> Prediction:
         """Return the prediction for some operating points or patches, by their positions along the axes.
 
         Nothing is solved again. The axes of the conditions are point_0, point_1 and so on; those that stay are numbered
@@ -372,6 +380,7 @@ class Prediction:
         return from_si(self._force, "N")
 
     @property
+    @steady
     def traction_coefficient(self) -> Quantity:
         """Tangential over normal force, T/N [-]."""
         return from_si(self._force / self.problem.normal_force, "")
@@ -394,6 +403,7 @@ class Prediction:
         return from_si(self._slip.cell_wear_index, "N")
 
     @property
+    @steady
     def averaged_wear_index(self) -> Quantity:
         """The averaged wear index of Tassini et al. 2010, section 3.2.3 [N].
 
@@ -410,6 +420,7 @@ class Prediction:
         return from_si(slipping * np.abs(self._force), "N")
 
     @property
+    @steady
     def wear_index_density(self) -> Quantity:
         """Wear index over the area of the patch, Tγ/A [N/m²]."""
         return from_si(self._wear_index / self._patch_area, "N/mm^2")
@@ -548,6 +559,7 @@ class Prediction:
         names = ("x", "pressure", "traction", "traction_bound", "slip")
         return along_patch(self.problem, {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more})
 
+    @steady
     def wear_profile(self, body: str, strips: int | None = None, at: QuantityLike | None = None) -> xarray.Dataset:
         """Return the depth lost and the distance slid across an elliptic patch, over y.
 
@@ -593,10 +605,14 @@ class Prediction:
                 f"wear_profile: {self._model!r} gives means of the whole patch; take a contact model that"
                 ' resolves it, such as wl.contact_model("fastsim")'
             )
-        if strips is not None and (isinstance(strips, bool) or not isinstance(strips, int) or strips < 2):
-            raise InputError(f"strips: must be a whole number from 2, such as 101; got {shortened(strips)}")
+        if strips is not None and (
+            isinstance(strips, bool) or not isinstance(strips, int) or not 2 <= strips <= MOST_STRIPS
+        ):
+            raise InputError(
+                f"strips: must be a whole number from 2 to {MOST_STRIPS}, such as 101; got {shortened(strips)}"
+            )
         index = self._wear_law(body)
-        self._warn_of(index, body, stacklevel=3)
+        self._warn_of(index, body, stacklevel=4)  # the decorator counts
         across = self._across(index, body, strips)
         turns = bool(np.isfinite(radius).any())
         once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
@@ -651,6 +667,7 @@ class Prediction:
         """
         return from_si(self._whole_error(self._wear_law()), WEAR_RATE)
 
+    @steady
     def _whole_error(self, index: int) -> Array:
         """Return the numerical error of an outcome and, without energy balance, that of the energy that nodes lack."""
         error = self.error_of_law(index)
@@ -663,6 +680,7 @@ class Prediction:
         share = np.divide(lacking, found, out=np.zeros_like(found), where=~none)
         return error + np.where(none & (lacking > 0.0), np.inf, np.abs(self._solved_totals.values[index]) * share)
 
+    @steady
     def depth_per_distance(self, body: str) -> Quantity:
         """Return the depth that a body's surface loses per distance rolled, mean over the patch's width [m/m].
 
@@ -678,6 +696,7 @@ class Prediction:
         length = 0.5 * self._patch_area / self.problem.b
         return from_si(self._volume_rate(body) * (length / self._circumference(body)), "um/km")
 
+    @steady
     def profile_area_rate(self, body: str) -> Quantity:
         """Return the area of a radial section that a body loses per distance rolled [mm²/km].
 
@@ -688,10 +707,12 @@ class Prediction:
         return from_si(section, "mm^2/km")
 
     @property
+    @steady
     def mass_per_distance(self) -> Quantity:
         """Mass that a body loses per metre rolled [kg/m]; of body 1, like `wear_rate`."""
         return from_si(self._solved_totals.values[self._wear_law()] * self._patch_area, "ug/m")
 
+    @steady
     def mass_lost(self, over: QuantityLike, body: str) -> Quantity:
         """Return the mass that a body loses over a distance rolled [kg]; a rail loses it along the whole distance.
 
@@ -702,8 +723,17 @@ class Prediction:
         body : str
             Its name in the rig, such as "disc_1" or "wheel".
         """
-        return from_si(self._mass_per_distance(body) * Unit("km").si(over, "over"), "mg")
+        distance, mass = Unit("km").si(over, "over"), self._mass_per_distance(body)
+        try:
+            lost = mass * distance
+        except ValueError:
+            raise InputError(
+                f"over: an array of shape {distance.shape} does not broadcast to the operating points, of shape"
+                f" {mass.shape}; give one distance, or one for each point"
+            ) from None
+        return from_si(lost, "mg")
 
+    @steady
     def mass_per_cycle(self, body: str) -> Quantity:
         """Return the mass that a body loses in one of its revolutions, over πD rolled [kg]."""
         return from_si(self._mass_per_distance(body) * self._circumference(body), "ug")
@@ -775,10 +805,11 @@ class Prediction:
         return self._rate(body) / self._density(body)
 
     def _rate(self, body: str) -> Array:
-        return self._of_body(self._wear_law(body), body, stacklevel=5)
+        return self._of_body(self._wear_law(body), body, stacklevel=6)  # the decorator of the callers counts
 
     def _of_body(self, index: int, body: str, stacklevel: int) -> Array:
         """Return the outcome of a law for a body; a law for every body is evaluated again if the materials differ."""
+        self.problem.body(body)  # raises unless it is one of them
         kept = self._kept_for(index, body)
         self._warn_of(index, body, stacklevel + 1)
         if kept:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, extremes
+from wearlaw.arrays.array import Array, extremes, steady
 from wearlaw.contact.elastic_limit import Overload, first_yield, overload, shakedown_limit
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.errors import CompositionError, ModelError, RangeWarning
@@ -148,6 +148,7 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
     )
 
 
+@steady
 def outside_range(problem: Problem, columns: Columns, law: Law) -> NDArray[np.bool_]:
     """Return at which operating points a mean over the patch lies outside the law's range, of the batch shape."""
     outside = np.zeros(problem.batch_shape, dtype=np.bool_)
@@ -157,6 +158,7 @@ def outside_range(problem: Problem, columns: Columns, law: Law) -> NDArray[np.bo
     return outside
 
 
+@steady
 def elastic_limits(problem: Problem, tangential_force: Array) -> tuple[Array, Array]:
     """Return Hertz's maximum pressure at first yield and at the shakedown limit [Pa], of the body that yields first.
 

@@ -21,6 +21,7 @@ from wearlaw.numerics.solved import Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import unknown
+from wearlaw.settings.arguments import expect, expect_path
 from wearlaw.settings.text_files import read_start
 
 File: TypeAlias = str | os.PathLike[str]
@@ -59,7 +60,11 @@ def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, 
     """
     if isinstance(paths, str | os.PathLike):
         return _read(Path(paths), reader, options)
-    files = [Path(path) for path in paths]
+    expect(Sequence, paths, "paths", "the path of a file, or a list of several")
+    given = list(paths)
+    for path in given:
+        expect_path(path, "paths", "a file, or several")
+    files = [Path(path) for path in given]
     if not files:
         raise InputError("paths: give at least one file")
     return _stacked(files, [_read(path, reader, options) for path in files])

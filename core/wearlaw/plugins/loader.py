@@ -29,6 +29,7 @@ from wearlaw.models.stage import Stage
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins.isolation import Isolation
 from wearlaw.plugins.shelf import Broken, Origin, Shelf, add_model, unknown
+from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import Configuration, known_as
 
 
@@ -202,6 +203,7 @@ def wear_law(name: str, /, **options: Any) -> WearLaw:
 
     Parameters and errors are those of `contact_model`.
     """
+    expect(str, name, "wear law", "a name")
     found = installed()
     if name in found.parameter_sets.providers and name not in found.wear_laws.providers:
         return known_as(name, found.parameter_sets.find(name, found.broken).model_copy(update=options))
@@ -227,6 +229,7 @@ def law(name: str, /, **options: Any) -> Law:
 
     Parameters and errors are those of `contact_model`.
     """
+    expect(str, name, "law", "a name")
     found = installed()
     if name in found.laws.providers and name not in {**found.wear_laws.providers, **found.parameter_sets.providers}:
         return found.laws.find(name, found.broken)(**options)
@@ -250,6 +253,7 @@ def material(name: str, /, **options: Any) -> Material:
     ConfigurationError
         If a field is missing or unknown, or has a wrong value.
     """
+    expect(str, name, "material", "a name")
     found = installed()
     if name in found.materials.providers:
         known = found.materials.find(name, found.broken)

@@ -14,7 +14,7 @@ from wearlaw.contact import hertz
 from wearlaw.contact.conditions import COEFFICIENTS, LOADS, ConditionTable, FrictionLaw, condition_arrays
 from wearlaw.contact.material import Material, steel
 from wearlaw.contact.problem import Body, Geometry, Problem
-from wearlaw.errors import InputError, UnitError, quoted
+from wearlaw.errors import ConfigurationError, Fault, InputError, UnitError, quoted
 from wearlaw.pipeline.pipeline import Rig, check_sizes
 from wearlaw.plugins.fields import MaterialField
 from wearlaw.settings.configuration import Configuration
@@ -183,8 +183,9 @@ class TwinDisc(Rig):
         Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, read in a secondary transcription. It gives 400 rpm
         as the nominal speed; that disc 1 keeps it is an interpretation.
         """
-        standard = Disc(diameter=diameter, material=material or steel())
-        disc_1, disc_2 = disc_1 or standard, disc_2 or standard
+        standard = Disc(diameter=diameter, material=steel() if material is None else material)
+        disc_1 = standard if disc_1 is None else _disc("disc_1", disc_1)
+        disc_2 = standard if disc_2 is None else _disc("disc_2", disc_2)
         if speed_of is None:
             speed_of = "disc_1" if rolling_speed is None else "mean"
         if rolling_speed is None:
@@ -214,7 +215,8 @@ class TwinDisc(Rig):
         """Return the rig of the University of Sheffield."""
         return {"suros": cls.suros}
 
-    def problem(self, **conditions: Unpack[TwinDiscConditions]) -> Problem:
+    @np.errstate(all="ignore")  # `check_sizes` rejects what overflows
+    def problem(self, /, **conditions: Unpack[TwinDiscConditions]) -> Problem:
         """Return the contact problem that the conditions of a test pose.
 
         Parameters
@@ -241,10 +243,9 @@ class TwinDisc(Rig):
         arrays = condition_arrays(
             conditions, TWIN_DISC, lambda a: self._mean_speed(a["creepage"]) * np.abs(a["creepage"])
         )
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` rejects the result
-            per_width = self._normal_force_per_width(arrays)
-            half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
-            max_pressure = hertz.max_pressure(per_width, half_width)
+        per_width = self._normal_force_per_width(arrays)
+        half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
+        max_pressure = hertz.max_pressure(per_width, half_width)
         check_sizes({"half width": half_width, "max pressure": max_pressure}, arrays["friction_coefficient"])
         creepage = arrays["creepage"]
         shape = creepage.shape
@@ -325,6 +326,15 @@ class TwinDisc(Rig):
             "lateral_creepage": none,
             "spin": none,
         }
+
+
+def _disc(name: str, disc: Disc) -> Disc:
+    """Return a disc, or raise an error that names the argument."""
+    try:
+        return Disc.model_validate(disc)
+    except ConfigurationError as error:
+        faults = [Fault((name, *fault.path), fault.message) for fault in error.problems]
+        raise ConfigurationError(TwinDisc.subject(), faults) from None
 
 
 def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:

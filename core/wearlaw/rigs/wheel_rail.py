@@ -15,7 +15,7 @@ from wearlaw.contact.conditions import COEFFICIENTS, ConditionTable, FrictionLaw
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Body, Geometry, Problem
 from wearlaw.errors import UnitError
-from wearlaw.pipeline.pipeline import Rig, check_sizes
+from wearlaw.pipeline.pipeline import TINY, Rig, check_sizes
 from wearlaw.plugins.fields import MaterialField
 from wearlaw.units.quantities import Length, Quantity, QuantityLike, Speed, Unit, from_si, scalar_si
 
@@ -159,9 +159,10 @@ class WheelRail(Rig):
 
     @model_validator(mode="after")
     def _touch_in_a_point(self) -> WheelRail:
-        if 0.0 in (self.rail_head_radius.magnitude, self.wheel_profile_radius.magnitude):
-            raise ValueError('a radius must not be zero; a flat body has the radius "inf mm"')
-        across = 1.0 / scalar_si(self.rail_head_radius, "m") + 1.0 / scalar_si(self.wheel_profile_radius, "m")
+        radii = scalar_si(self.rail_head_radius, "m"), scalar_si(self.wheel_profile_radius, "m")
+        if min(map(abs, radii)) < TINY:
+            raise ValueError('a radius must not be zero or next to it; a flat body has the radius "inf mm"')
+        across = 1.0 / radii[0] + 1.0 / radii[1]
         if across <= 0.0:
             raise ValueError(
                 f"rail_head_radius {self.rail_head_radius!r} and wheel_profile_radius {self.wheel_profile_radius!r}"
@@ -192,7 +193,8 @@ class WheelRail(Rig):
         """Return the names of the required conditions, besides one of the loads."""
         return tuple(WHEEL_RAIL.examples)
 
-    def problem(self, **conditions: Unpack[WheelRailConditions]) -> Problem:
+    @np.errstate(all="ignore")  # `check_sizes` rejects what overflows
+    def problem(self, /, **conditions: Unpack[WheelRailConditions]) -> Problem:
         """Return the contact problem that the conditions pose.
 
         Parameters
@@ -233,13 +235,12 @@ class WheelRail(Rig):
             arrays["contact_angle"] = np.broadcast_to(self._angle, shape)
         if "contact_angle" in arrays and conditions.get("spin") is None:
             arrays["spin"] = np.broadcast_to(patch.spin, shape)
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):  # `check_sizes` rejects the result
-            if "max_pressure" in arrays:
-                pressure = arrays.pop("max_pressure")
-                arrays["normal_force"] = (pressure / patch.max_pressure) ** 3
-            scale = np.cbrt(arrays["normal_force"])
-            a, b = patch.a * scale, patch.b * scale
-            max_pressure = hertz_ellipse.max_pressure(arrays["normal_force"], a, b)
+        if "max_pressure" in arrays:
+            pressure = arrays.pop("max_pressure")
+            arrays["normal_force"] = (pressure / patch.max_pressure) ** 3
+        scale = np.cbrt(arrays["normal_force"])
+        a, b = patch.a * scale, patch.b * scale
+        max_pressure = hertz_ellipse.max_pressure(arrays["normal_force"], a, b)
         check_sizes(
             {"longer semi-axis": np.maximum(a, b), "shorter semi-axis": np.minimum(a, b), "max pressure": max_pressure},
             arrays["friction_coefficient"],

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import xarray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.material import Material
 from wearlaw.errors import (
     InputError,
@@ -36,6 +36,7 @@ from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
 from wearlaw.plugins import loader
+from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, known_name, parts
 from wearlaw.study.case import Case
 from wearlaw.study.figures import figures_of
@@ -110,6 +111,7 @@ class Study(Results):
         return "\n".join([f"Study of {quoted(self.case.title)}", *shown])
 
 
+@steady
 def run(
     case: Case,
     on_block: Callable[[int], None] = lambda _: None,
@@ -129,6 +131,7 @@ def run(
     checkpoint : Checkpoint, optional
         Folder in which an interrupted run keeps finished blocks.
     """
+    expect(Case, case, "case", "a wearlaw.Case, as from wl.load_case")
     notes = Notes()
     evaluator = Evaluator(on_block, workers, checkpoint)
     pairs = pairs_of(case, notes)

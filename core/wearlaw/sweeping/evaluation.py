@@ -14,7 +14,7 @@ import numpy as np
 import pint
 
 from wearlaw.arrays import kernels
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, InputError, ModelError, RangeWarning, WearlawWarning, did_you_mean, quoted
@@ -91,6 +91,7 @@ class BlockRecord:
     remarks: tuple[str, ...] = ()
 
 
+@steady
 def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, BlockRecord]:
     """Return the outputs of a block of operating points, and its record.
 

@@ -23,6 +23,7 @@ from wearlaw.contact.conditions import is_friction_law
 from wearlaw.errors import ConditionsError, UnitError
 from wearlaw.units.quantities import Q, real_array
 from wearlaw.units.registry import symbol
+from wearlaw.units.variables import VARIABLES
 
 if TYPE_CHECKING:
     from wearlaw.sweeping.table_files import TableFile
@@ -255,14 +256,19 @@ def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Vary
 
 def _plain(name: str, value: Any) -> tuple[Any, str | None]:
     """Return the numbers of a condition, and their unit if they have one."""
-    if isinstance(value, pint.Quantity):
-        return value.magnitude, symbol(value.units, "~C")
     if isinstance(value, (str, int, float)) or is_friction_law(value):  # text with a unit, or a law of friction
         return 0.0, None
+    quantity = isinstance(value, pint.Quantity)
     try:
-        return real_array(value), None
+        return real_array(value.magnitude if quantity else value), symbol(value.units, "~C") if quantity else None
     except UnitError as error:
-        raise UnitError(f"{name}: {error}") from None
+        raise UnitError(f"{name}: {error}; give one value, or several as in {name}={_several(name)}") from None
+
+
+def _several(name: str) -> str:
+    """Return an example of several values of a condition, in Python."""
+    unit = VARIABLES[name].unit if name in VARIABLES else ""
+    return f'Q([1, 2], "{unit}")' if unit else "[0.3, 0.4]"
 
 
 def axis(name: str, dim: str, values: object, unit: str | None) -> Varying:

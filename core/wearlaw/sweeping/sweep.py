@@ -7,7 +7,7 @@ import math
 import os
 import pickle
 import warnings
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,9 +27,10 @@ from wearlaw.errors import (
     shortened,
 )
 from wearlaw.pipeline.composition import warn_of_unlike_materials
-from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig
+from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig, expect_pipeline
 from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import default_variables
+from wearlaw.settings.arguments import expect_names
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
 from wearlaw.sweeping.located import posed
@@ -121,6 +122,7 @@ def sweep(
     SweepError
         If workers die again and again.
     """
+    expect_pipeline(predict)
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise InputError(f"workers: must be the number of processes, at least 1; got {shortened(workers)}")
     if not isinstance(store, str | os.PathLike | None):
@@ -191,9 +193,7 @@ def _checked_job(
     InputError
         If an output is impossible, or other processes could not import a model.
     """
-    names = list(outputs) if isinstance(outputs, Iterable) and not isinstance(outputs, str) else []
-    if outputs is not None and not (names and all(isinstance(name, str) for name in names)):
-        raise InputError(f'outputs: must be a list of names, such as ["wear_rate"], got {shortened(outputs)}')
+    names = [] if outputs is None else expect_names(outputs, "outputs", "wear_rate")
     if elsewhere:
         check_importable(pipeline)
     one = first.flatten()[:1]

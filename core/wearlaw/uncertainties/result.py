@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import scipy
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import STEADY, Array
 from wearlaw.contact.conditions import Known, broadcast
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shortened
@@ -23,7 +23,9 @@ from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_laws
 from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
 from wearlaw.pipeline.named_numbers import Kind, Place, check_loads_stay, staged_models
+from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.pipeline.ranges import RangeWatch
+from wearlaw.settings.arguments import expect
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
 from wearlaw.uncertainties.inputs import OTHERS, Uncertain, check_samples, numbers_of, split
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si
@@ -86,6 +88,9 @@ def uncertainty(
     InputError
         If nothing is distributed, or a distribution is impossible for its condition or parameter.
     """
+    expect_pipeline(predict)
+    for name, given in {"law": law, "stage": stage}.items():
+        expect(Mapping | None, given, name, "a table of distributions by the names of numbers, as in {'m_m': ...}")
     return Uncertainty(predict, conditions, law or {}, samples, seed, stage or {})
 
 
@@ -229,12 +234,13 @@ class Uncertainty:
             return pd.DataFrame(alone, index=rows)
         every: list[Any] = [scipy.stats.uniform()] * len(self.inputs)
         size = max(self.samples // SEQUENCES, 2)
-        found = [
-            scipy.stats.sobol_indices(
-                func=lambda x: self._sampled(x, (index,))[0][None, :], n=size, dists=every, rng=rng
-            )
-            for rng in np.random.default_rng(self._seed).spawn(SEQUENCES)
-        ]
+        with np.errstate(**STEADY):
+            found = [
+                scipy.stats.sobol_indices(
+                    func=lambda x: self._sampled(x, (index,))[0][None, :], n=size, dists=every, rng=rng
+                )
+                for rng in np.random.default_rng(self._seed).spawn(SEQUENCES)
+            ]
         table: dict[str, Array] = {}
         for order in ("first_order", "total_order"):
             shares = np.array([np.ravel(getattr(one, order)) for one in found])
@@ -318,9 +324,10 @@ class Uncertainty:
     def _values(self, stacklevel: int) -> tuple[Array, ...]:
         """Return the samples of all outcomes in SI; warn the first time, where `stacklevel` 1 is this method."""
         if self._found is None:
-            sequence = scipy.stats.qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
-            probability = sequence.random_base2(self.samples.bit_length() - 1).T
-            self._found = self._sampled(probability, range(len(self._laws)), stacklevel + 1)
+            with np.errstate(**STEADY):
+                sequence = scipy.stats.qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
+                probability = sequence.random_base2(self.samples.bit_length() - 1).T
+                self._found = self._sampled(probability, range(len(self._laws)), stacklevel + 1)
         return self._found
 
     def _sampled(self, probability: Array, indices: Sequence[int], stacklevel: int | None = None) -> tuple[Array, ...]:

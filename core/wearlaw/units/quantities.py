@@ -17,7 +17,15 @@ from pydantic_core import core_schema
 
 from wearlaw.arrays.array import extremes
 from wearlaw.errors import VALUE, UnitError, quoted, shortened
-from wearlaw.units.registry import application_registry, quantity, quantity_from_si, si_factor, symbol, unit_in_si
+from wearlaw.units.registry import (
+    application_registry,
+    divided,
+    quantity,
+    quantity_from_si,
+    si_factor,
+    symbol,
+    unit_in_si,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -53,6 +61,8 @@ def Q(value: ArrayLike, unit: str) -> Quantity:
     UnitError
         If the unit is not known, or the value is not a real number.
     """
+    if not isinstance(unit, str):
+        raise UnitError(f"unit: must be a text, such as 'kN'; got {shortened(unit)}")
     magnitude: Any = value
     if type(value) not in (int, float):
         array = real_array(value)
@@ -69,7 +79,7 @@ def parse(text: str) -> Quantity:
     UnitError
         If the text is not a number followed by a known unit.
     """
-    match = _QUANTITY_TEXT.fullmatch(text) if len(text) <= 10 * VALUE else None
+    match = _QUANTITY_TEXT.fullmatch(text) if isinstance(text, str) and len(text) <= 10 * VALUE else None
     if match is None or not match["unit"]:
         raise UnitError(f"{quoted(text)} is not a number with a unit")
     return Q(float(match["number"]), match["unit"])
@@ -148,7 +158,7 @@ class Unit:
             factor = si_factor(quantity, self.unit)
         except UnitError as error:
             raise UnitError(f"got {_describe(Q(magnitude, str(quantity.units)))}, {error}") from None
-        in_si = magnitude if factor == 1.0 else magnitude * factor
+        in_si = magnitude if factor == 1.0 else _scaled(magnitude, factor)
         if self._allows(in_si):
             return quantity, in_si
         for wrong, rule in self._rules(in_si):
@@ -224,6 +234,18 @@ class Unit:
         return Q(float(quantity.magnitude), str(quantity.units))
 
 
+def _scaled(magnitude: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+    """Return numbers in another unit; those that overflow are infinite, which callers check."""
+    if magnitude.ndim:
+        return _scaled_array(magnitude, factor)
+    return np.float64(float(magnitude) * factor)  # type: ignore[return-value]  # unlike NumPy's, Python's product is silent
+
+
+@np.errstate(over="ignore", under="ignore")
+def _scaled_array(magnitude: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+    return magnitude * factor
+
+
 LARGEST = 2**53
 """Largest of the whole numbers that are all floats too."""
 
@@ -240,11 +262,15 @@ def real_array(value: object) -> NDArray[np.float64]:
         raise UnitError(f"{_describe(value)} has a unit of its own where a plain number is expected")
     try:
         array = np.asarray(value)
-    except (TypeError, ValueError):
+    except Exception:  # whatever the `__array__` of another package's type raises
         raise UnitError(f"{_describe(value)} is not an array of numbers") from None
     if array.dtype.kind not in "iuf":
         raise UnitError(f"{_describe(value)} is not a real number")
-    array = array.astype(np.float64, copy=False)
+    if array.dtype != np.float64:
+        with np.errstate(
+            over="ignore", under="ignore"
+        ):  # of numbers with more than 64 bits; callers check for infinity
+            array = array.astype(np.float64)
     return array if array.ndim else array[()]
 
 
@@ -275,7 +301,7 @@ def scalar_si(quantity: Quantity, unit: str) -> float:
 def in_unit(value: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
     """Return SI floats as floats in `unit`."""
     factor = unit_in_si(unit)
-    return value if factor == 1.0 else value / factor
+    return value if factor == 1.0 else divided(value, factor)
 
 
 def from_si(value: NDArray[np.float64] | float, unit: str) -> Quantity:

@@ -115,8 +115,15 @@ def quantity(magnitude: Any, unit: str) -> Any:
 def quantity_from_si(value: Any, unit: str) -> Any:
     """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
     cls, container, factor = _shown_in(application_registry(), unit)
-    scaled = value / factor
-    return cls.of(scaled if isinstance(scaled, np.ndarray) and scaled.ndim else float(scaled), container)
+    if isinstance(value, np.ndarray) and value.ndim:
+        return cls.of(divided(value, factor), container)
+    return cls.of(float(value) / factor, container)
+
+
+@np.errstate(over="ignore", under="ignore")
+def divided(values: Any, factor: float) -> Any:
+    """Return an array over a number, whatever `np.errstate` the caller has set."""
+    return values / factor
 
 
 @functools.lru_cache(maxsize=512)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -125,9 +126,16 @@ def wear_coefficient(
     for name in given:
         exponent = getattr(target, name) - getattr(source, name)
         if exponent and name in in_si:
-            result *= in_si[name] ** exponent
+            try:
+                result *= in_si[name] ** exponent
+            except (OverflowError, ZeroDivisionError):
+                result = math.inf
         elif exponent:
             missing.append(name)
+    if not 0.0 < result < math.inf and not missing:
+        raise InputError(
+            f"value: as {to}, {target.formula}, it is too small or too large for a float; check the values"
+        )
     if missing:
         raise InputError(
             f"{to}, {target.formula}, from {form}, {source.formula}, needs {_listed(missing)}; give the values of your"
@@ -149,7 +157,7 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _known(form: str, argument: str) -> _Form:
-    if form not in FORMS:
+    if not isinstance(form, str) or form not in FORMS:
         forms = "; ".join(f"{name}, {one.formula}" for name, one in FORMS.items())
         raise InputError(f"{argument}: no form {shortened(form)}{did_you_mean(str(form), FORMS)} There are: {forms}")
     return FORMS[form]

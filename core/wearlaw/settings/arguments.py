@@ -1,0 +1,43 @@
+"""Checking that an argument is of its type."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from wearlaw.errors import InputError, shortened
+
+
+def expect(kind: Any, value: object, name: str, wanted: str) -> None:
+    """Raise an `InputError` that names the argument unless its value is of a type.
+
+    Parameters
+    ----------
+    kind : type or union of types
+        The type.
+    value : object
+        The value, which may be anything. Nothing is asked of it, since to compare or hash it could fail.
+    name : str
+        The argument.
+    wanted : str
+        What it must be, as in "a name, such as 'wheel'".
+    """
+    if not isinstance(value, kind):
+        raise InputError(f"{name}: must be {wanted}; got {shortened(value)}")
+
+
+def expect_path(value: object, name: str, of: str) -> None:
+    """Raise an `InputError` that names the argument unless its value is a path; `of` says of what."""
+    expect(str | os.PathLike, value, name, f"the path of {of}")
+
+
+def expect_names(value: object, name: str, example: str, least: int = 1) -> list[str]:
+    """Return an argument that is a list of names, at least so many, or raise an `InputError` that names it."""
+    try:
+        found: Any = None if isinstance(value, str) else list(value)  # type: ignore[call-overload]
+    except TypeError:
+        found = None
+    if found is None or len(found) < least or not all(isinstance(one, str) for one in found):
+        raise InputError(f'{name}: must be a list of names, such as ["{example}"], got {shortened(value)}')
+    names: list[str] = found
+    return names
