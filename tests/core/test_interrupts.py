@@ -18,7 +18,8 @@ import wearlaw as wl
 from tests.core.cases import table, tree, wearlaw, write
 from tests.core.interrupts import COMMANDS, ENDS_WITHIN_S, PROGRAM, TESTS, nobody_left, session
 from tests.core.test_cli_sweeps import LONG
-from wearlaw.output.folder import MANIFEST, fresh_folder
+from wearlaw.output.folder import fresh_folder
+from wearlaw.output.manifest import MANIFEST
 from wearlaw.output.results import RESULTS
 from wearlaw.output.temporary import LOCK, Temporary
 from wearlaw.sweeping.lock import HeldError, Lock

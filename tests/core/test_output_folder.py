@@ -20,7 +20,8 @@ from matplotlib.figure import Figure
 import wearlaw as wl
 from tests.core.cases import full_disk, tree
 from tests.core.sweeps import contents
-from wearlaw.output.folder import MANIFEST, fresh_folder
+from wearlaw.output.folder import fresh_folder
+from wearlaw.output.manifest import MANIFEST
 from wearlaw.output.results import CSV, RESULTS, write
 from wearlaw.study.study import Study
 

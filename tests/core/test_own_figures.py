@@ -264,7 +264,10 @@ def test_one_operating_point_is_shown_as_bars_with_their_names_and_numbers() -> 
 
 
 def test_two_axes_make_a_map_of_the_users_spacing_and_units_for_each_pair() -> None:
-    both = {"normal_force": LOADS, "creepage": {"from": "0.1 %", "to": "20 %", "points": 12, "spacing": "log"}}
+    both: dict[str, Any] = {
+        "normal_force": LOADS,
+        "creepage": {"from": "0.1 %", "to": "20 %", "points": 12, "spacing": "log"},
+    }
     study = ran(("global", "exact"), wear_laws=["usfd", "kth"], **both)
     figure = drawings(study)["own_wear_rate_over_creepage_and_normal_force"]
     assert figure.get_suptitle() == "Wear rate over creepage and normal force"
@@ -290,7 +293,7 @@ def test_few_values_along_an_axis_make_no_map() -> None:
 def test_a_case_can_ask_for_a_map_of_any_variable() -> None:
     spec = {"sweep": "own", "x": "normal_force", "y": "creepage", "map": "traction_coefficient", "y_scale": "log",
             "contact_models": ["exact"]}  # fmt: skip
-    both = {"normal_force": LOADS, "creepage": ["0.1 %", "0.5 %", "3 %"]}
+    both: dict[str, Any] = {"normal_force": LOADS, "creepage": ["0.1 %", "0.5 %", "3 %"]}
     study = ran(("global", "exact"), wear_laws=["usfd"], figures={"mine": spec}, **both)
     axes, bar = drawings(study)["mine"].axes
     assert (axes.get_title(), axes.get_yscale(), bar.get_ylabel()) == ("exact", "log", "traction coefficient T/N [-]")
@@ -317,7 +320,7 @@ def test_a_map_that_is_not_possible_says_why(changes: dict[str, Any], message: s
 
 
 def test_the_main_figure_of_two_axes_is_a_map_that_the_first_screen_has_room_for() -> None:
-    both = {"normal_force": LOADS, "creepage": {"from": "0.1 %", "to": "20 %", "points": 6}}
+    both: dict[str, Any] = {"normal_force": LOADS, "creepage": {"from": "0.1 %", "to": "20 %", "points": 6}}
     study = ran(("global", "exact"), wear_laws=["usfd", "kth"], **both)
     figure = main_figure(main_result(study))
     assert figure.name == "main_wear_rate_over_creepage_and_normal_force"

@@ -239,11 +239,19 @@ def test_blocks_are_reported_in_their_order_whatever_that_in_the_journal(
     assert resumed == whole
 
 
+def in_turn(*steps: Callable[[Path], object]) -> Callable[[Path], object]:
+    def change(store: Path) -> None:
+        for step in steps:
+            step(store)
+
+    return change
+
+
 COMPLETE_DAMAGE: dict[str, Callable[[Path], object]] = {
     "provenance": lambda store: replace(store / "zarr.json", '"provenance": "{', '"provenance": "'),
     "an output is gone": lambda store: shutil.rmtree(store / RATE),
     "an output is not described": lambda store: (store / RATE / "zarr.json").write_text("garbage"),
-    "a folder is a file": lambda store: (shutil.rmtree(store / RATE), (store / RATE).touch()),
+    "a folder is a file": in_turn(lambda store: shutil.rmtree(store / RATE), lambda store: (store / RATE).touch()),
     "a coordinate": lambda store: (store / "creepage/zarr.json").write_text("[]"),
 }
 
@@ -271,24 +279,25 @@ def test_an_unfinished_store_without_its_journal_is_named(tmp_path: Path, monkey
 
 IN_THE_WAY: dict[str, Callable[[Path], object]] = {
     "a folder for a block": lambda store: (store / RATE / "c/7/0/0").mkdir(parents=True),
-    "a folder for a finished block": lambda store: (
-        (store / RATE / "c/1/0/0").unlink(),
-        (store / RATE / "c/1/0/0/inside").mkdir(parents=True),
+    "a folder for a finished block": in_turn(
+        lambda store: (store / RATE / "c/1/0/0").unlink(),
+        lambda store: (store / RATE / "c/1/0/0/inside").mkdir(parents=True),
     ),
-    "a pipe for a finished block": lambda store: (
-        (store / RATE / "c/1/0/0").unlink(),
-        os.mkfifo(store / RATE / "c/1/0/0"),
+    "a pipe for a finished block": in_turn(
+        lambda store: (store / RATE / "c/1/0/0").unlink(), lambda store: os.mkfifo(store / RATE / "c/1/0/0")
     ),
-    "a file for a folder of blocks": lambda store: (shutil.rmtree(store / RATE / "c"), (store / RATE / "c").touch()),
-    "a file for an output": lambda store: (shutil.rmtree(store / RATE), (store / RATE).touch()),
-    "a file for a coordinate": lambda store: (shutil.rmtree(store / "creepage"), (store / "creepage").touch()),
-    "a folder for what describes an output": lambda store: (
-        (store / RATE / "zarr.json").unlink(),
-        (store / RATE / "zarr.json").mkdir(),
+    "a file for a folder of blocks": in_turn(
+        lambda store: shutil.rmtree(store / RATE / "c"), lambda store: (store / RATE / "c").touch()
     ),
-    "a folder for what describes all": lambda store: (
-        (store / "zarr.json").unlink(),
-        (store / "zarr.json" / "inside").mkdir(parents=True),
+    "a file for an output": in_turn(lambda store: shutil.rmtree(store / RATE), lambda store: (store / RATE).touch()),
+    "a file for a coordinate": in_turn(
+        lambda store: shutil.rmtree(store / "creepage"), lambda store: (store / "creepage").touch()
+    ),
+    "a folder for what describes an output": in_turn(
+        lambda store: (store / RATE / "zarr.json").unlink(), lambda store: (store / RATE / "zarr.json").mkdir()
+    ),
+    "a folder for what describes all": in_turn(
+        lambda store: (store / "zarr.json").unlink(), lambda store: (store / "zarr.json" / "inside").mkdir(parents=True)
     ),
     "a folder for what was cut off": lambda store: (store / RATE / "c/0.1.partial").mkdir(),
 }

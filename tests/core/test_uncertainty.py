@@ -185,7 +185,8 @@ def test_the_figure_shows_median_and_interval() -> None:
     assert all(curve.is_line for curve in panel.curves), "only measurements have markers"
     assert median.x == pytest.approx(2 * [in_microgram(u.median)])
     (shade,) = panel.shades
-    assert shade.spans == (pytest.approx([in_microgram(end) for end in u.interval()]),)
+    (span,) = shade.spans
+    assert span == pytest.approx([in_microgram(end) for end in u.interval()])
     assert u.figure_data().conditions == "64 samples of friction_coefficient uniform(0.3, 0.5)"
     assert panel.x.label == "wear rate [µg/m/mm²]"
     assert u.plot().axes[0].get_xlabel() == panel.x.label

@@ -84,7 +84,8 @@ def _odd(random: random.Random, table: pd.DataFrame) -> pd.DataFrame:
     ]
     kind = random.randrange(5)
     if kind == 0:
-        return table.drop(columns=name)
+        found: pd.DataFrame = table.drop(columns=name)
+        return found
     if kind == 1:
         return table.rename(columns={name: random.choice(["creepage", "a [b]", "", "x" * 3000, "\x1b[31m", "slip"])})
     if kind == 2:

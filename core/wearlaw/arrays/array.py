@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from typing import Final, TypeAlias
+from typing import Final, Literal, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,15 @@ from numpy.typing import NDArray
 Array: TypeAlias = NDArray[np.float64]
 """A float64 array of SI values."""
 
-STEADY: Final = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
+
+class _Treatment(TypedDict):
+    divide: Literal["warn"]
+    over: Literal["warn"]
+    under: Literal["ignore"]
+    invalid: Literal["warn"]
+
+
+STEADY: Final[_Treatment] = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
 """NumPy's default treatment of errors of floats."""
 
 steady = np.errstate(**STEADY)

@@ -180,7 +180,7 @@ def disarmed(frame: pd.DataFrame) -> pd.DataFrame:
     found = frame.rename(columns=_disarmed)
     for number, dtype in enumerate(frame.dtypes):
         if not pd.api.types.is_numeric_dtype(dtype):
-            found.isetitem(number, frame.iloc[:, number].map(_disarmed))
+            found.isetitem(number, [_disarmed(value) for value in frame.iloc[:, number]])
     return found
 
 
