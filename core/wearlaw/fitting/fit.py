@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from wearlaw.arrays.array import STEADY
+from wearlaw.arrays.array import steadily
 from wearlaw.errors import FitError, FitWarning
 from wearlaw.fitting.intervals import DECIDED_ALONE, Replicates, leverage, replicate
 from wearlaw.fitting.least_squares import Solutions
@@ -101,7 +101,7 @@ def fit(
     expect(Mapping | None, bounds, "bounds", "a table from parameters to pairs of bounds")
     _check_settings(scatter, confidence, starts=starts, bootstrap=bootstrap, seed=seed)
     _check_replicates(bootstrap, confidence)
-    with np.errstate(**STEADY):
+    with steadily():
         task = Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
         best = task.solve(starts, seed)
         replicates = None
@@ -119,7 +119,7 @@ def fit(
         "seed": seed,
         "confidence": confidence,
     }
-    with np.errstate(**STEADY):
+    with steadily():
         found = summarise(task, best, replicates, confidence, settings)
     _warn(task, best, replicates, found)
     return found
