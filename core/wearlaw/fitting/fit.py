@@ -98,11 +98,10 @@ def fit(
     G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989.
     """
     expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
-    expect(Mapping | None, bounds, "bounds", "a table from parameters to pairs of bounds")
     _check_settings(scatter, confidence, starts=starts, bootstrap=bootstrap, seed=seed)
     _check_replicates(bootstrap, confidence)
     with steadily():
-        task = Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
+        task = Task.of(predict, tests, free, friction_coefficient, scatter, {} if bounds is None else bounds)
         best = task.solve(starts, seed)
         replicates = None
         if bootstrap:
