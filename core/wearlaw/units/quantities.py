@@ -159,8 +159,8 @@ class Unit:
             raise UnitError(f"got {_describe(Q(magnitude, str(quantity.units)))}, {error}") from None
         if factor == 1.0:
             in_si = magnitude
-        elif type(magnitude) is np.float64:  # unlike NumPy's, Python's product is silent if it overflows
-            in_si = np.float64(float(magnitude) * factor)
+        elif not magnitude.ndim:  # unlike NumPy's, Python's product is silent if it overflows
+            in_si = np.float64(float(magnitude) * factor)  # type: ignore[assignment]
         else:
             in_si = _scaled(magnitude, factor)
         if self._allows(in_si):
