@@ -15,6 +15,7 @@ from pydantic import BeforeValidator, Field, model_validator
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._conicity import equivalent_conicity
+from wearlaw_wheelset._curve import steady
 from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
 from wearlaw_wheelset._loads import Balance, Elastic, Task
 from wearlaw_wheelset._motion import placed, roll_rate
@@ -235,6 +236,7 @@ class Wheelset(wl.Rig):
             "rail": wl.Body(self.rail_material or self.material, np.inf),
         }
 
+    @steady
     def geometry(
         self,
         *,
@@ -284,6 +286,7 @@ class Wheelset(wl.Rig):
         """Return the right wheel and its rail in the middle of the track, as SI arrays."""
         return profiles(self._section, scalar(self.nominal_radius))
 
+    @steady
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
         """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, by EN 15302."""
         most = scalar(wl.Unit("mm").si(amplitude, "amplitude"))

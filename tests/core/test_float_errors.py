@@ -109,7 +109,7 @@ def test_errors_of_floats_end_no_stage(stage: str, geometry: str, conditions: st
 
 def test_errors_of_floats_end_no_application() -> None:
     predict = DISCS | wl.contact_model("exact") | wl.wear_law("kth")
-    conditions: dict[str, Any] = {"normal_force": Q([1.0, 7.0], "kN"), "creepage": Q([0.0, 1e-3, 3.0], "%")}
+    conditions: Any = {"normal_force": Q([1.0, 7.0], "kN"), "creepage": Q([0.0, 1e-3, 3.0], "%")}
 
     def swept() -> dict[str, Array]:
         found = wl.sweep(predict, friction_coefficient=STEEP, **conditions)

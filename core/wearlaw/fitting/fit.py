@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from wearlaw.arrays.array import STEADY
+from wearlaw.arrays.array import steadily
 from wearlaw.errors import FitError, FitWarning, shortened
 from wearlaw.fitting.intervals import DECIDED_ALONE, Replicates, leverage, replicate
 from wearlaw.fitting.least_squares import Solutions
@@ -98,11 +98,10 @@ def fit(
     G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989.
     """
     expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
-    expect(Mapping | None, bounds, "bounds", "a table from parameters to pairs of bounds")
     _check_settings(scatter, confidence, starts=starts, bootstrap=bootstrap, seed=seed)
     _check_replicates(bootstrap, confidence)
-    with np.errstate(**STEADY):
-        task = Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
+    with steadily():
+        task = Task.of(predict, tests, free, friction_coefficient, scatter, {} if bounds is None else bounds)
         best = task.solve(starts, seed)
         replicates = None
         if bootstrap:
@@ -119,7 +118,7 @@ def fit(
         "seed": seed,
         "confidence": confidence,
     }
-    with np.errstate(**STEADY):
+    with steadily():
         found = summarise(task, best, replicates, confidence, settings)
     _warn(task, best, replicates, found)
     return found

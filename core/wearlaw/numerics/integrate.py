@@ -22,7 +22,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, extremes, steady
+from wearlaw.arrays.array import Array, extremes, steadily, steady
 from wearlaw.arrays.kernels import accelerated
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import CreepForces, Problem
@@ -145,14 +145,14 @@ class Totals:
     across: tuple[Across | None, ...] = ()
 
 
-@steady
 def prepared(model: ContactModel, problem: Problem) -> tuple[ContactModel, Problem]:
     """Return a model and a problem without the outer stages that change only the problem; they are applied to it.
 
     The model inside can then be integrated as exactly as without stages.
     """
     while isinstance(model, Staged) and model.stage.alters_problem_only():
-        problem, model = model.altered(problem, partial(integrate_forces, model.model)), model.model
+        with steadily():
+            problem, model = model.altered(problem, partial(integrate_forces, model.model)), model.model
     return model, problem
 
 

@@ -15,7 +15,7 @@ from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self,
 import numpy as np
 from pydantic import model_validator
 
-from wearlaw.arrays.array import STEADY, Array, extremes, steady, type_name
+from wearlaw.arrays.array import Array, extremes, steadily, steady, type_name
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, excerpt, shortened
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
@@ -153,7 +153,7 @@ class Rig(Model):
             If the rig fails or does not return a problem.
         """
         try:
-            with Blame(self), np.errstate(**STEADY):
+            with Blame(self), steadily():
                 problem = self.problem(**conditions)
         except ModelError:
             self.check_names(conditions)
@@ -387,13 +387,14 @@ class Pipeline(Configuration, Generic[P]):
         CompositionError
             If the application needs one patch and the rig makes several.
         """
-        expect(Mapping, conditions, "conditions", "a table of conditions by name")
+        if type(conditions) is not dict:  # the test for a mapping takes long
+            expect(Mapping, conditions, "conditions", "a table of conditions by name")
         rig, problem = self.rig, self.rig.checked_problem(conditions)
         if of_one_patch:
             check_one_patch(problem, rig, of_one_patch)
         if type(rig).balanced is Rig.balanced:
             return problem
-        with Blame(rig), np.errstate(**STEADY):
+        with Blame(rig), steadily():
             balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
         return rig._checked_balance(problem, balanced)
 

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import scipy
 
-from wearlaw.arrays.array import STEADY, Array
+from wearlaw.arrays.array import Array, steadily
 from wearlaw.contact.conditions import Known, broadcast
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shortened
@@ -234,7 +234,7 @@ class Uncertainty:
             return pd.DataFrame(alone, index=rows)
         every: list[Any] = [scipy.stats.uniform()] * len(self.inputs)
         size = max(self.samples // SEQUENCES, 2)
-        with np.errstate(**STEADY):
+        with steadily():
             found = [
                 scipy.stats.sobol_indices(
                     func=lambda x: self._sampled(x, (index,))[0][None, :], n=size, dists=every, rng=rng
@@ -324,7 +324,7 @@ class Uncertainty:
     def _values(self, stacklevel: int) -> tuple[Array, ...]:
         """Return the samples of all outcomes in SI; warn the first time, where `stacklevel` 1 is this method."""
         if self._found is None:
-            with np.errstate(**STEADY):
+            with steadily():
                 sequence = scipy.stats.qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
                 probability = sequence.random_base2(self.samples.bit_length() - 1).T
                 self._found = self._sampled(probability, range(len(self._laws)), stacklevel + 1)

@@ -158,7 +158,12 @@ class Unit:
             factor = si_factor(quantity, self.unit)
         except UnitError as error:
             raise UnitError(f"got {_describe(Q(magnitude, str(quantity.units)))}, {error}") from None
-        in_si = magnitude if factor == 1.0 else _scaled(magnitude, factor)
+        if factor == 1.0:
+            in_si = magnitude
+        elif not magnitude.ndim:  # unlike NumPy's, Python's product is silent if it overflows
+            in_si = np.float64(float(magnitude) * factor)  # type: ignore[assignment]
+        else:
+            in_si = _scaled(magnitude, factor)
         if self._allows(in_si):
             return quantity, in_si
         for wrong, rule in self._rules(in_si):
@@ -234,15 +239,9 @@ class Unit:
         return Q(float(quantity.magnitude), str(quantity.units))
 
 
+@np.errstate(over="ignore", under="ignore")
 def _scaled(magnitude: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
     """Return numbers in another unit; those that overflow are infinite, which callers check."""
-    if magnitude.ndim:
-        return _scaled_array(magnitude, factor)
-    return np.float64(float(magnitude) * factor)  # type: ignore[return-value]  # unlike NumPy's, Python's product is silent
-
-
-@np.errstate(over="ignore", under="ignore")
-def _scaled_array(magnitude: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
     return magnitude * factor
 
 
