@@ -31,6 +31,9 @@ KINDS: dict[str, Kind] = {".prw": "wheel", ".whl": "wheel", ".prr": "rail", ".ba
 SIMPACK, MINIPROF, COLUMNS = (".prw", ".prr"), (".whl", ".ban"), (".csv", ".txt", ".dat", ".asc", "")
 ENDINGS = (*KINDS, ".csv", ".txt")
 
+LONGEST = 300
+"""Most characters that a message shows of a text from outside."""
+
 NUMBERS = (
     "approx.smooth", "point.dist.min", "shift.y", "shift.z", "rotate", "bound.y.min", "bound.y.max", "bound.z.min",
     "bound.z.max", "mirror.y", "mirror.z", "inversion", "units.len.f", "units.ang.f",
@@ -98,7 +101,7 @@ def points_of(path: Path, kind: Kind | None, units: str) -> tuple[Points, Kind]:
     elif ending in COLUMNS:
         found = _columns(lines, units)
     else:
-        raise FileError(f"the ending '{ending}' is not known; give a file that ends in {', '.join(ENDINGS)}")
+        raise FileError(f"the ending {quoted(ending)} is not known; give a file that ends in {', '.join(ENDINGS)}")
     sure = kind or by_ending or found.kind
     if sure is None:
         raise FileError('it does not say whether it is a wheel or a rail; give kind="wheel" or kind="rail"')
@@ -113,7 +116,7 @@ def _text_of(path: Path) -> str:
     try:
         content = wl.read_file(path, LARGEST)
     except FileNotFoundError:
-        raise FileError(f"there is no such file in '{path.parent.absolute()}'") from None
+        raise FileError(f"there is no such file in {quoted(path.parent.absolute())}") from None
     except wl.InputError as error:
         raise FileError(f"it cannot be read: {error}") from None
     if b"\0" in content and not content.startswith((b"\xff\xfe", b"\xfe\xff")):
@@ -201,7 +204,7 @@ def _simpack(lines: Sequence[str], units: str) -> Points:
             values[key] = _number(value, number, key)
         elif place == ["spline"] and key not in TEXTS:
             warnings.warn(
-                f"line {number} of a profile: the key '{key}' is not known and left out", wl.WearlawWarning, 4
+                f"line {number} of a profile: the key {quoted(key)} is not known and left out", wl.WearlawWarning, 4
             )
     if not told:
         raise FileError(f"it ends in the section '{place[-1]}'; is it whole?" if place else "it has no spline.begin")
@@ -374,6 +377,12 @@ def _head(cells: Sequence[str], line: int, factors: list[float]) -> tuple[tuple[
     return places, found
 
 
+def quoted(text: object) -> str:
+    """Return a text from outside between quotes, cut if it is long."""
+    whole = str(text)
+    return f"'{whole}'" if len(whole) <= LONGEST else f"'{whole[:LONGEST]}...' ({len(whole)} characters)"
+
+
 def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
     """Write points to a file whose ending gives its format, whole or not at all.
 
@@ -388,10 +397,12 @@ def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
     """
     ending = path.suffix.lower()
     if ending not in ENDINGS:
-        raise wl.InputError(f"cannot write '{path}': its ending must be one of {', '.join(ENDINGS)}")
+        raise wl.InputError(f"cannot write {quoted(path)}: its ending must be one of {', '.join(ENDINGS)}")
     if KINDS.get(ending, kind) != kind:
         right = next(one for one in (SIMPACK if ending in SIMPACK else MINIPROF) if KINDS[one] == kind)
-        raise wl.InputError(f"cannot write '{path}': the profile is that of a {kind}, so its ending must be {right}")
+        raise wl.InputError(
+            f"cannot write {quoted(path)}: the profile is that of a {kind}, so its ending must be {right}"
+        )
     writers: dict[str, Callable[[str, Array, Array], list[str]]] = dict.fromkeys(SIMPACK, _as_simpack)
     writers |= dict.fromkeys(MINIPROF, _as_miniprof)
     text = "\n".join(writers.get(ending, _as_columns)(kind, 1e3 * y, 1e3 * z)) + "\n"
@@ -403,7 +414,7 @@ def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
         finally:
             temporary.unlink(missing_ok=True)
     except (OSError, ValueError) as error:
-        raise wl.OutputError(f"cannot write '{path}': {getattr(error, 'strerror', None) or error}") from None
+        raise wl.OutputError(f"cannot write {quoted(path)}: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _rows(y: Array, z: Array, mark: str) -> list[str]:

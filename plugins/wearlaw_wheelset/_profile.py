@@ -16,7 +16,7 @@ from pydantic_core import core_schema
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._curve import Curve, joined, steady, through_points
-from wearlaw_wheelset._files import Kind, points_of, write_points
+from wearlaw_wheelset._files import Kind, points_of, quoted, write_points
 from wearlaw_wheelset._formulas import FORMULAS
 from wearlaw_wheelset._points import check_orientation, check_points
 
@@ -176,7 +176,7 @@ class Profile(wl.Configuration):
     def _of_text(cls, given: Any) -> Any:
         """Take the name of a formula or the path of a file for a table, and add the kind of a formula."""
         if isinstance(given, str | os.PathLike):
-            given = _named(os.fspath(given))
+            given = _named(_path(given, "profile"))
         elif isinstance(given, Mapping) and "file" in given:
             return _of_file(given)
         if isinstance(given, Mapping) and given.get("formula") in FORMULAS and "kind" not in given:
@@ -189,7 +189,9 @@ class Profile(wl.Configuration):
             if self.y is not None or self.z is not None or self.weights is not None:
                 raise ValueError("takes a formula or points, not both")
             if self.formula not in FORMULAS:
-                raise ValueError(f"formula: no profile is called '{self.formula}'; there are {', '.join(FORMULAS)}")
+                raise ValueError(
+                    f"formula: no profile is called {quoted(self.formula)}; there are {', '.join(FORMULAS)}"
+                )
             if self.kind != FORMULAS[self.formula][0]:
                 raise ValueError(f"kind: '{self.formula}' is a {FORMULAS[self.formula][0]}, not a {self.kind}")
         elif self.y is None or self.z is None:
@@ -442,13 +444,21 @@ def _by_formula(name: str) -> Curve:
     return joined(pieces(), CONVEX[kind])
 
 
+def _path(value: object, name: str) -> str:
+    """Return a path as text, or raise an error that names the argument."""
+    text = os.fspath(value) if isinstance(value, str | os.PathLike) else None
+    if not isinstance(text, str):
+        raise wl.InputError(f"{name}: must be the path of a file, got {quoted(repr(value))}")
+    return text
+
+
 def _named(text: str) -> Any:
     """Return the fields of a formula, or the profile of a file."""
     if text in FORMULAS:
         return {"formula": text}
     if not os.path.lexists(wl.beside(text)):
         raise wl.InputError(
-            f"'{text}' is neither a profile by formula nor a file in '{wl.beside('.').absolute()}'"
+            f"{quoted(text)} is neither a profile by formula nor a file in {quoted(wl.beside('.').absolute())}"
             f"{did_you_mean(text, FORMULAS)} The"
             f" formulas are: {', '.join(FORMULAS)}"
         )
@@ -460,8 +470,10 @@ def _of_file(table: Mapping[str, Any]) -> dict[str, Any]:
     for name in table:
         if name not in FILE_FIELDS:
             near = did_you_mean(name, FILE_FIELDS)
-            raise wl.InputError(f"unknown field '{name}'{near} With a file, they are: {', '.join(FILE_FIELDS)}")
-    found = read_profile(wl.beside(table["file"]), **{name: value for name, value in table.items() if name != "file"})
+            raise wl.InputError(f"unknown field {quoted(name)}{near} With a file, they are: {', '.join(FILE_FIELDS)}")
+    found = read_profile(
+        wl.beside(_path(table["file"], "file")), **{name: value for name, value in table.items() if name != "file"}
+    )
     return {name: getattr(found, name) for name in found.model_fields_set}
 
 
@@ -506,7 +518,7 @@ def read_profile(
     DataError
         If the file cannot be read, or does not hold a profile. The message names the file and the line.
     """
-    file = Path(path)
+    file = Path(_path(path, "path"))
     try:
         for option, value in (("mirror_y", mirror_y), ("mirror_z", mirror_z)):
             if not isinstance(value, bool):
@@ -529,7 +541,7 @@ def read_profile(
             smoothing=smoothing,
         )
     except wl.InputError as error:
-        raise wl.DataError(f"profile '{path}': {error}") from None
+        raise wl.DataError(f"profile {quoted(path)}: {error}") from None
 
 
 def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:
@@ -549,7 +561,7 @@ def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:
     y, z = (1e-3 * value.magnitude for value in profile.points)
     if profile.smoothing.magnitude:
         y, z = profile.curve.y, profile.curve.z
-    write_points(Path(path), profile.kind, y, z)
+    write_points(Path(_path(path, "path")), profile.kind, y, z)
 
 
 DEEP, TOP = 10e-3, 20e-3

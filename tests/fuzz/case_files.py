@@ -83,7 +83,7 @@ def draw(random: random.Random) -> Files:
             table = mutations.tree(random, table, KNOWN)
         try:
             content = tomli_w.dumps(table).encode("utf-8", "surrogateescape")
-        except (TypeError, ValueError):  # a table that TOML cannot hold
+        except (TypeError, ValueError, RecursionError):  # a table that TOML, or its writer, cannot hold
             content = text.encode()
     else:
         content = mutations.mutated(random, text.encode(), [mutations.units, mutations.brackets])

@@ -282,6 +282,7 @@ class Law(Model):
         with Blame(self):
             return numbers_in_si(self.explicit())
 
+    @np.errstate(all="ignore")  # what overflows is not finite, which the check at the end finds
     def checked_rate(self, contact: Contact, p: Numbers | None = None) -> Array:
         """Return `rate` with the given numbers, by default the law's own.
 
@@ -308,7 +309,10 @@ class Law(Model):
             )
         low, high = extremes(rate) if rate.size else (0.0, 0.0)
         if not (math.isfinite(low) and math.isfinite(high)):
-            raise ModelError(f"{self.kind} '{self.name}' returned a {self._values[:-1]} that is not finite")
+            raise ModelError(
+                f"{self.kind} '{self.name}' returned a {self._values[:-1]} that is not finite; are its numbers, the"
+                " loads and the materials right?"
+            )
         if self.zero_in_stick and not of_patch and rate[contact.slip == 0.0].any():
             raise ModelError(
                 f"{self.kind} '{self.name}' gives {'wear' if self.outcome.name == WEAR else self.outcome.name} where"

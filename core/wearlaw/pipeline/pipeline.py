@@ -16,6 +16,7 @@ import numpy as np
 from pydantic import model_validator
 
 from wearlaw.arrays.array import Array, extremes, steadily, steady, type_name
+from wearlaw.contact.conditions import COEFFICIENTS
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, excerpt, shortened
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
@@ -48,13 +49,16 @@ TOUCH_NOWHERE = "rig '{}': the bodies touch nowhere under these conditions; chec
 P = ParamSpec("P")
 
 TINY = float(np.sqrt(np.finfo(np.float64).tiny))
-"""Smallest length or pressure in SI whose square is a float of full precision."""
+"""Smallest length, pressure or force in SI whose square is a float of full precision."""
 
 LEAST_FRICTION = 1e-12
-"""The smallest friction coefficient; below it formulas of fourth order in creepage over full-slip creepage overflow."""
+"""The smallest coefficient of friction or traction.
+
+Below it formulas of fourth order in creepage over full-slip creepage overflow.
+"""
 
 MOST_FRICTION = 1.0 / LEAST_FRICTION
-"""The largest friction coefficient; above it tractions and energies soon overflow."""
+"""The largest coefficient of friction or traction; above it tractions and energies soon overflow."""
 
 
 class Poses(Protocol[P]):
@@ -269,8 +273,16 @@ RigField = Annotated[Rig, *RIG]
 """A field that takes a rig, its name, or a table of its fields with its name as `type` or the name of a `preset`."""
 
 
-def check_sizes(sizes: dict[str, Array], friction_coefficient: Array) -> None:
-    """Raise an error for loads and sizes [SI] so extreme that floats overflow or lose their precision."""
+def check_sizes(sizes: dict[str, Array], conditions: Mapping[str, Array]) -> None:
+    """Raise an error for sizes and coefficients so extreme that floats overflow or lose their precision.
+
+    Parameters
+    ----------
+    sizes : dict of str to ndarray
+        Lengths, pressures and forces that follow from the load, by their names in the message [SI].
+    conditions : mapping of str to ndarray
+        All conditions, of which the coefficients of friction and traction are checked [SI].
+    """
     for name, value in sizes.items():
         low, high = extremes(value)
         if not (low > TINY and high < 1.0 / TINY):
@@ -279,10 +291,13 @@ def check_sizes(sizes: dict[str, Array], friction_coefficient: Array) -> None:
                 f"the load gives a {name} of {spread} in SI units,"
                 " which no contact has; check the units of the load and of the rig"
             )
-    low, high = extremes(friction_coefficient)
-    if low < LEAST_FRICTION or high > MOST_FRICTION:
-        bound, limit = ("at least", LEAST_FRICTION) if low < LEAST_FRICTION else ("at most", MOST_FRICTION)
-        raise ConditionsError(f"friction_coefficient: must be {bound} {limit:g}, which no contact comes near")
+    for name in COEFFICIENTS:
+        if name not in conditions:
+            continue
+        low, high = extremes(conditions[name])
+        if low < LEAST_FRICTION or high > MOST_FRICTION:
+            bound, limit = ("at least", LEAST_FRICTION) if low < LEAST_FRICTION else ("at most", MOST_FRICTION)
+            raise ConditionsError(f"{name}: must be {bound} {limit:g}, which no contact comes near")
 
 
 class Pipeline(Configuration, Generic[P]):

@@ -59,6 +59,7 @@ def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, 
         If the reader fails, or returns a contact with impossible values.
     """
     if isinstance(paths, str | os.PathLike):
+        expect_path(paths, "paths", "a file, or several")
         return _read(Path(paths), reader, options)
     expect(Sequence, paths, "paths", "the path of a file, or a list of several")
     given = list(paths)

@@ -246,7 +246,7 @@ class TwinDisc(Rig):
         per_width = self._normal_force_per_width(arrays)
         half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
         max_pressure = hertz.max_pressure(per_width, half_width)
-        check_sizes({"half width": half_width, "max pressure": max_pressure}, arrays["friction_coefficient"])
+        check_sizes({"half width": half_width, "max pressure": max_pressure}, arrays)
         creepage = arrays["creepage"]
         shape = creepage.shape
         same: dict[str, Any] = self._same

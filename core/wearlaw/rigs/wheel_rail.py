@@ -241,10 +241,8 @@ class WheelRail(Rig):
         scale = np.cbrt(arrays["normal_force"])
         a, b = patch.a * scale, patch.b * scale
         max_pressure = hertz_ellipse.max_pressure(arrays["normal_force"], a, b)
-        check_sizes(
-            {"longer semi-axis": np.maximum(a, b), "shorter semi-axis": np.minimum(a, b), "max pressure": max_pressure},
-            arrays["friction_coefficient"],
-        )
+        sizes = {"longer semi-axis": np.maximum(a, b), "shorter semi-axis": np.minimum(a, b)}
+        check_sizes({**sizes, "max pressure": max_pressure, "normal force": arrays["normal_force"]}, arrays)
         same: dict[str, Any] = constants._asdict()
         same = {name: np.broadcast_to(value, shape) if shape else np.float64(value) for name, value in same.items()}
         return Problem.ellipse_from_si(a=a, b=b, bodies=self._bodies, **arrays, **same)

@@ -28,7 +28,9 @@ def expect(kind: Any, value: object, name: str, wanted: str) -> None:
 
 def expect_path(value: object, name: str, of: str) -> None:
     """Raise an `InputError` that names the argument unless its value is a path; `of` says of what."""
-    expect(str | os.PathLike, value, name, f"the path of {of}")
+    wanted = f"the path of {of}"
+    expect(str | os.PathLike, value, name, wanted)
+    expect(str, os.fspath(value), name, wanted)  # type: ignore[call-overload]  # a path may be of bytes
 
 
 def expect_names(value: object, name: str, example: str, least: int = 1) -> list[str]:

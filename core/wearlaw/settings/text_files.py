@@ -72,6 +72,8 @@ def _check_regular(status: os.stat_result) -> None:
 
 def reason_of(error: Exception) -> str:
     """Return why a file cannot be opened, read or written, without its name."""
+    if isinstance(error, UnicodeEncodeError):
+        return f"a name cannot have the character {error.object[error.start]!a}"
     text = getattr(error, "strerror", None) or str(error)
     return text.replace("embedded null byte", "a name cannot have a null character")
 

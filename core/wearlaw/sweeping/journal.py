@@ -16,7 +16,7 @@ import pint
 from pydantic import TypeAdapter
 
 from wearlaw.arrays.kernels import WORTHWHILE, accelerated
-from wearlaw.errors import OutputError, quoted
+from wearlaw.errors import PATH, OutputError, excerpt, quoted, with_problems
 from wearlaw.models.contact_model import Model
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import parts
@@ -92,9 +92,9 @@ def check_same(where: Path, before: Run, now: Run, journal: Path | None = None) 
     """
     changes = list(_changes("", before, now))
     if changes:
+        head = f"{quoted(where)} holds another run and cannot be resumed, since these have changed:"
         raise OutputError(
-            f"{quoted(where)} holds another run and cannot be resumed, since these have changed:"
-            + "".join(f"\n  {change}" for change in changes)
+            with_problems(head, changes)
             + f"\nChange them back, choose another place, or remove {_both(where, journal)} to start again"
         )
 
@@ -112,7 +112,12 @@ def _changes(path: str, before: Any, now: Any) -> Iterator[str]:
         for key in dict.fromkeys([*before, *now]):
             yield from _changes(f"{path}.{key}" if path else key, before.get(key, "nothing"), now.get(key, "nothing"))
     elif before != now:
-        yield f"{path}: was {before}, is {now}".replace("**2", "²").replace("**3", "³")
+        yield f"{excerpt(path)}: was {_cut(before)}, is {_cut(now)}".replace("**2", "²").replace("**3", "³")
+
+
+def _cut(value: Any) -> str:
+    """Return the text of a value in a journal, cut if it is longer than those of a sweep: the file may be damaged."""
+    return str(value) if len(str(value)) <= PATH else excerpt(value)
 
 
 def write_whole(path: Path, text: str) -> None:

@@ -336,16 +336,19 @@ def kept_in(store: str | os.PathLike[str] | None) -> Iterator[None]:
         yield
         return
     try:
+        if not Path(store).name:
+            raise OutputError(f"store: {quoted(Path(store))} is no name of a folder; give one, such as 'map.zarr'")
         place_of(Path(store))
         yield
     except (WearlawError, ConnectionError):
         raise
     except (OSError, ValueError) as error:
         code = getattr(error, "errno", None)
-        if code is None and "null" not in str(error):  # no error of a file, but a timeout of a cluster
+        named = isinstance(error, UnicodeEncodeError) or "null" in str(error)
+        if code is None and not named:  # no error of a file, but a timeout of a cluster
             raise
         advice = "make room, and add resume=True to go on" if code in FULL else "choose another folder"
-        raise OutputError(f"store: cannot write to '{store}': {reason_of(error)}; {advice}") from None
+        raise OutputError(f"store: cannot write to {quoted(Path(store))}: {reason_of(error)}; {advice}") from None
 
 
 def finished(job: Job, points: Points, path: Path, resume: bool) -> xarray.Dataset | None:

@@ -30,7 +30,7 @@ from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig, expect_pipeline
 from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import default_variables
-from wearlaw.settings.arguments import expect_names
+from wearlaw.settings.arguments import expect_names, expect_path
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
 from wearlaw.sweeping.located import posed
@@ -125,8 +125,8 @@ def sweep(
     expect_pipeline(predict)
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise InputError(f"workers: must be the number of processes, at least 1; got {shortened(workers)}")
-    if not isinstance(store, str | os.PathLike | None):
-        raise InputError(f'store: must be the path of a folder, such as "map.zarr"; got {shortened(store)}')
+    if store is not None:
+        expect_path(store, "store", 'a folder, such as "map.zarr"')
     with kept_in(store), _points(predict, table, conditions, columns, keep, store, progress) as points:
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)

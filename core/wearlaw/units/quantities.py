@@ -294,7 +294,13 @@ def coefficient(value: object, name: str) -> NDArray[np.float64]:
 
 def scalar_si(quantity: Quantity, unit: str) -> float:
     """Return the SI value of a scalar quantity that is already checked."""
-    return quantity.magnitude * si_factor(quantity, unit)  # type: ignore[no-any-return]
+    try:
+        return quantity.magnitude * si_factor(quantity, unit)  # type: ignore[no-any-return]
+    except (AttributeError, TypeError):
+        raise UnitError(
+            f'give a quantity and its unit, as in scalar_si(Q(1, "mm"), "m"); got {shortened(quantity)} and'
+            f" {shortened(unit)}"
+        ) from None
 
 
 def in_unit(value: NDArray[np.float64], unit: str) -> NDArray[np.float64]:

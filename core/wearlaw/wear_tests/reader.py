@@ -10,7 +10,7 @@ from typing import NoReturn
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import DataError, InputError, did_you_mean, quoted, shortened
+from wearlaw.errors import DataError, InputError, did_you_mean, excerpt, quoted, shortened
 from wearlaw.plugins import loader
 from wearlaw.settings.arguments import expect_names, expect_path
 from wearlaw.settings.csv_files import kind_of
@@ -171,7 +171,7 @@ def _check_values(columns: dict[str, Array], table: Table, outcomes: Collection[
     for i, name, rule in faulty({name: values for name, values in columns.items() if name in heads}, outcomes):
         row = table.rows[i]
         text = row.cells[heads[name].place].strip()
-        got = "" if text.casefold() in MISSING else f"got {text}, which "
+        got = "" if text.casefold() in MISSING else f"got {excerpt(text)}, which "
         wrong.add(row.line, heads[name].text, f"{got}{rule}")
 
 
