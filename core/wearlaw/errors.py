@@ -17,7 +17,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-VALUE, PATH, LINE, LINES = 100, 400, 2000, 50
+VALUE, PATH, LINE, LINES = 100, 400, 1000, 50
 """Most characters that a message shows of a value, of a path and in a line, and most lines."""
 
 _CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")

@@ -448,7 +448,7 @@ def _path(value: object, name: str) -> str:
     """Return a path as text, or raise an error that names the argument."""
     text = os.fspath(value) if isinstance(value, str | os.PathLike) else None
     if not isinstance(text, str):
-        raise wl.InputError(f"{name}: must be the path of a file, got {quoted(repr(value))}")
+        raise wl.InputError(f"{name}: must be the path of a file, got {value!r}")
     return text
 
 

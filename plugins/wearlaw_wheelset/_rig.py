@@ -30,17 +30,20 @@ if TYPE_CHECKING:
 DIMS: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch": (1, 2, 3)}
 """The axes of patches."""
 
+HUGE = 1e12
+"""Greatest value of a condition in its unit, whatever it is: products of several are floats."""
+
 UNITS = {
-    "lateral_displacement": wl.Unit("mm", positive=False),
-    "yaw": wl.Unit("mrad", positive=False),
-    "roll": wl.Unit("mrad", positive=False),
-    "vertical_load": wl.Unit("kN"),
-    "axle_torque": wl.Unit("N*m", positive=False),
-    "angular_speed": wl.Unit("rad/s"),
-    "lateral_velocity": wl.Unit("m/s", positive=False),
-    "yaw_velocity": wl.Unit("rad/s", positive=False),
+    "lateral_displacement": wl.Unit("mm", positive=False, limit=HUGE),
+    "yaw": wl.Unit("mrad", positive=False, limit=HUGE),
+    "roll": wl.Unit("mrad", positive=False, limit=HUGE),
+    "vertical_load": wl.Unit("kN", limit=HUGE),
+    "axle_torque": wl.Unit("N*m", positive=False, limit=HUGE),
+    "angular_speed": wl.Unit("rad/s", limit=HUGE),
+    "lateral_velocity": wl.Unit("m/s", positive=False, limit=HUGE),
+    "yaw_velocity": wl.Unit("rad/s", positive=False, limit=HUGE),
     "curve_radius": wl.Unit("m", positive=False, infinite=True),
-    "rolled_distance": wl.Unit("km", positive=False),
+    "rolled_distance": wl.Unit("km", positive=False, limit=HUGE),
 }
 """Units of the conditions."""
 

@@ -116,8 +116,9 @@ def test_a_store_without_room_is_an_error_that_says_how_to_go_on(
         ("long" * 100, "File name too long"),
         (f"new/{'long' * 100}/map", "File name too long"),
         ("a\0b", "a name cannot have a null character"),
+        ("a\ud800b", r"a name cannot have the character '\\ud800'"),
     ],
-    ids=["circle", "in a circle", "under a file", "broken link", "long name", "under a long name", "null"],
+    ids=["circle", "in a circle", "under a file", "broken link", "long name", "under a long name", "null", "surrogate"],
 )
 def test_a_store_that_cannot_be_made_is_refused_before_computing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, message: str
@@ -130,3 +131,9 @@ def test_a_store_that_cannot_be_made_is_refused_before_computing(
     with pytest.raises(wl.OutputError, match=f"^store: .*{message}"):
         sweep(tmp_path / name)
     assert sorted(os.listdir(tmp_path)) == ["broken", "file", "itself"]
+
+
+@pytest.mark.parametrize("store", ["", ".", "/"])
+def test_a_store_without_a_name_is_refused(store: str) -> None:
+    with pytest.raises(wl.OutputError, match=r"^store: '.' is no name of a folder; give one, such as 'map.zarr'"):
+        sweep(Path(store))

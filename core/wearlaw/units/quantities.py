@@ -232,11 +232,18 @@ class Unit:
     def _scalar(self, value: object) -> Quantity:
         try:
             quantity, in_si = self._checked(value)
+            size = abs(in_si) if in_si.ndim == 0 else 1.0
+            if (self.positive and size < 1.0 / EXTREME) or EXTREME < size < np.inf:
+                raise UnitError(f"must lie between {1.0 / EXTREME:g} and {EXTREME:g} in SI units, got {quantity!r}")
         except UnitError as error:
             raise UnitError(f"{error}; {self._fix('it', value)}") from None
         if in_si.ndim != 0:
             raise UnitError(f"must be one value, got an array of shape {in_si.shape}")
         return Q(float(quantity.magnitude), str(quantity.units))
+
+
+EXTREME = 1e100
+"""Largest number in SI of a field, and inverse of the smallest positive one: products of three are floats."""
 
 
 @np.errstate(over="ignore", under="ignore")
