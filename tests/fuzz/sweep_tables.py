@@ -104,7 +104,6 @@ def run() -> None:
     rate = found.wear_rate.to_numpy()
     check((rate >= 0.0).all(), "a wear rate is negative or no number")
     check(np.isfinite(rate).all(), "a wear rate is infinite")
-    names = ("creepage", "normal_force")
-    given = {name: wl.Q(float(found[name][-1]), found[name].attrs["units"]) for name in names}
-    alone = predict(**given, friction_coefficient=float(found.friction_coefficient[-1])).wear_rate.magnitude
+    given = {name: wl.Q(float(found[name][-1]), found[name].attrs["units"]) for name in COLUMNS}
+    alone = predict(**given).wear_rate.magnitude
     check(np.isclose(rate[-1], alone, rtol=1e-12, atol=0.0), "a row is not what it is alone")
