@@ -32,7 +32,7 @@ from wearlaw.study.figure_kinds import (
 )
 from wearlaw.study.figure_spec import ACROSS, BY_PATCH, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
 from wearlaw.study.jumps import with_jumps
-from wearlaw.study.measured import measured_points
+from wearlaw.study.measured import known_variables, measured_points
 from wearlaw.study.results import (
     Patch,
     Results,
@@ -105,7 +105,8 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
                 spec = FigureSpec(sweep=name, x=x, y=(outcome.name,), x_scale=spacing, y_scale=y_scale)
                 yield f"{name}_{outcome.name}_over_{x}", spec
         if axis == creepage:
-            measured = results.case.measured is not None
+            tests = results.case.measured
+            measured = tests is not None and "traction_coefficient" in known_variables(tests.data)
             spec = FigureSpec(sweep=name, x=first, y=("traction_coefficient",), x_scale=spacing, measured=measured)
             yield f"{name}_traction" if point and not several else f"{name}_traction_over_{first}", spec
     for name, profile in results.profiles.items():
