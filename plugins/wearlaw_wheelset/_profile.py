@@ -506,7 +506,7 @@ def read_profile(
     DataError
         If the file cannot be read, or does not hold a profile. The message names the file and the line.
     """
-    file = Path(path)
+    file = _path(path)
     try:
         for option, value in (("mirror_y", mirror_y), ("mirror_z", mirror_z)):
             if not isinstance(value, bool):
@@ -546,10 +546,19 @@ def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:
     OutputError
         If the file cannot be written.
     """
+    file = _path(path)
+    if not isinstance(profile, Profile):
+        raise wl.InputError(f"profile: must be a Profile, as in write_profile('worn.prr', profile); got {profile!r}")
     y, z = (1e-3 * value.magnitude for value in profile.points)
     if profile.smoothing.magnitude:
         y, z = profile.curve.y, profile.curve.z
-    write_points(Path(path), profile.kind, y, z)
+    write_points(file, profile.kind, y, z)
+
+
+def _path(path: object) -> Path:
+    if not isinstance(path, str | os.PathLike):
+        raise wl.InputError(f"path: must be the path of a profile; got {path!r}")
+    return Path(path)
 
 
 DEEP, TOP = 10e-3, 20e-3
