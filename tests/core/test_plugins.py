@@ -311,11 +311,17 @@ def test_an_unknown_contact_model_gets_a_suggestion_and_the_list(name: str, hint
     )
 
 
-@pytest.mark.parametrize("name", ["zzzzz", "", 3, None])
-def test_a_name_near_to_none_gets_the_list_only(name: object) -> None:
+@pytest.mark.parametrize("name", ["zzzzz", ""])
+def test_a_name_near_to_none_gets_the_list_only(name: str) -> None:
     with pytest.raises(wl.UnknownModelError) as error:
-        wl.wear_law(name)  # type: ignore[arg-type]
+        wl.wear_law(name)
     assert str(error.value) == f"no wear law is called {name!r}. Installed: archard, brr, energy, kth, usfd"
+
+
+@pytest.mark.parametrize("name", [3, None])
+def test_what_is_no_name_is_refused(name: object) -> None:
+    with pytest.raises(wl.InputError, match=f"^wear law: must be a name; got {name!r}$"):
+        wl.wear_law(name)  # type: ignore[arg-type]
 
 
 def test_an_unknown_option_is_named_with_the_fields_there_are() -> None:

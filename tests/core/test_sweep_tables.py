@@ -249,7 +249,7 @@ WRONG: dict[str, tuple[Callable[[list[str]], list[str]], dict[str, Any], str]] =
         {},
         r"normal_force: the column 'Fz' is there 2 times; rename all but one",
     ),
-    "no condition": (lambda lines: lines, {"columns": {**COLUMNS, "lod": "Time"}}, "lod: unknown condition"),
+    "no condition": (lambda lines: lines, {"columns": {**COLUMNS, "lod": "Time"}}, "column 'lod': unknown condition"),
     "missing condition": (lambda lines: lines, {"columns": {"normal_force": "Fz"}}, "creepage: is missing"),
     "only kept": (lambda lines: lines, {"columns": {}}, "none of its columns is a condition"),
     "no name": (lambda lines: lines, {"keep": {"my time": "Time"}}, "keep.*'my time' is no name"),
@@ -346,7 +346,7 @@ def test_files_of_other_kinds_and_damaged_ones_are_refused(tmp_path: Path) -> No
             (tmp_path / name).write_bytes(start)
         with pytest.raises(wl.DataError, match=message):
             swept(tmp_path / name)
-    with pytest.raises(wl.DataError, match="cannot be read as netCDF or zarr"):
+    with pytest.raises(wl.DataError, match="is a folder and no zarr store"):
         swept(tmp_path)
 
 

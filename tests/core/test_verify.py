@@ -132,7 +132,7 @@ def test_what_holds_no_finished_results_is_refused_with_what_it_is(
     assert_refused(wearlaw("verify", "out"), "its .wearlaw.json is damaged")
     (folder / "case.toml").write_text(damage.CASE, encoding="utf-8")
     interrupted_after(6, monkeypatch)
-    assert wearlaw("run", "case.toml", "-o", "new").exit_code == 1
+    assert wearlaw("run", "case.toml", "-o", "new").exit_code == 130
     assert_refused(wearlaw("verify", "new"), "'new' is not there; 'new.partial' holds an unfinished run\n")
     assert_refused(wearlaw("verify", "new.partial"), "the same wearlaw run with --resume goes on with it")
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from wearlaw.cli.shared import echo
 from wearlaw.output.verification import verify as verified
 
 
@@ -18,4 +19,4 @@ def verify(folder: Path) -> None:
     are listed. The exit code is 0 if no file is missing or changed, otherwise 1.
     """
     for line in verified(folder):
-        click.echo(line)
+        echo(line)

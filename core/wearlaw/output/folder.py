@@ -13,9 +13,8 @@ from pathlib import Path
 from wearlaw.errors import OutputError, quoted
 from wearlaw.output.manifest import MANIFEST, read_manifest, write_manifest
 from wearlaw.output.temporary import Temporary, tidy_up
-from wearlaw.settings.text_files import reason_of
+from wearlaw.settings.text_files import place_of, reason_of
 from wearlaw.sweeping.file_sums import file_names
-from wearlaw.sweeping.storage import place_of
 
 
 class ElsewhereError(OutputError):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from wearlaw.errors import OutputError, quoted
+from wearlaw.errors import OutputError, excerpt, quoted
 from wearlaw.output.manifest import MANIFEST, read_manifest
 from wearlaw.sweeping.checkpoint import RUN
 from wearlaw.sweeping.file_sums import Differences, differences
@@ -49,7 +49,7 @@ def verify(folder: Path) -> list[str]:
         raise OutputError(
             "\n".join([f"{quoted(folder)} is not as it was written:", *_lines(found), f"To repair it, {again}"])
         )
-    return [f"{folder}: all as written, {what}", *_lines(found)]
+    return [f"{excerpt(folder)}: all as written, {what}", *_lines(found)]
 
 
 def _verify_files(folder: Path) -> tuple[str, Differences]:
@@ -77,6 +77,6 @@ def _verify_files(folder: Path) -> tuple[str, Differences]:
 
 def _lines(found: Differences) -> Iterator[str]:
     for kind, names in {"missing": found.missing, "changed": found.changed, "added": found.added}.items():
-        yield from (f"  {kind}: {name}" for name in names[:MOST])
+        yield from (f"  {kind}: {excerpt(name)}" for name in names[:MOST])
         if len(names) > MOST:
             yield f"  {kind}: {len(names) - MOST} more"

@@ -23,6 +23,7 @@ from wearlaw.errors import (
     shortened,
 )
 from wearlaw.settings.docstrings import field_docstrings, place_of_statement
+from wearlaw.settings.toml_files import DEEPEST
 from wearlaw.units.quantities import shown
 
 if TYPE_CHECKING:
@@ -163,6 +164,8 @@ def unwritable(value: object, path: tuple[str, ...] = ()) -> Iterator[tuple[tupl
         found = UNWRITABLE.search(value)
         if found:
             yield path, f"has the control character {quoted(found[0])}, which no text may have, in {quoted(value)}"
+    elif len(path) > DEEPEST:
+        return
     elif isinstance(value, dict):
         for key, inner in value.items():
             yield from unwritable(inner, (*path, str(key)))

@@ -21,7 +21,7 @@ from pydantic import TypeAdapter
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
 from wearlaw.errors import InputError, OutputError, WearlawError, quoted
-from wearlaw.settings.text_files import reason_of
+from wearlaw.settings.text_files import place_of, reason_of
 from wearlaw.sweeping.evaluation import BlockRecord, Job, is_undamaged, load_zarr, zarr_group
 from wearlaw.sweeping.journal import Journal, Run, check_same, run_of, sync_file
 from wearlaw.sweeping.points import ITEM, Block, Points
@@ -306,27 +306,6 @@ class Store(Target):
         sync_file(self.path / METADATA)
         self._journal.remove()
         return _opened(self.path)
-
-
-def place_of(folder: Path) -> Path:
-    """Return the path of a folder without links in it, after checks of whether it can be made.
-
-    Raises
-    ------
-    OSError
-        If it cannot, since a name is too long, links lead in a circle, or something above it is no folder.
-    ValueError
-        If a name has a null character.
-    """
-    try:
-        target = folder.resolve()
-    except RuntimeError:  # before Python 3.13
-        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP)) from None
-    there = next(parent for parent in (target, *target.parents) if os.path.lexists(parent))
-    for path in (target, *(there / name for name in target.relative_to(there).parts)):
-        with suppress(FileNotFoundError):
-            os.stat(path)
-    return target
 
 
 @contextmanager
