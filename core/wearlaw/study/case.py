@@ -239,8 +239,8 @@ class Case(Configuration):
     def _some_law(cls, laws: tuple[WearLaw, ...], info: ValidationInfo) -> tuple[WearLaw, ...]:
         if not laws and info.data.get("laws") == ():
             raise InputError(
-                'is missing; give at least one, as in wear_laws = ["usfd"], or laws of other outcomes than wear under'
-                " laws"
+                'is missing or empty; give at least one, as in wear_laws = ["usfd"], or laws of other outcomes than'
+                " wear under laws"
             )
         return laws
 

@@ -97,7 +97,9 @@ class Problems:
         found = []
         for (place, message), those in lines.items():
             if len(those) > LISTED:
-                found.append((those[0], f"lines {those[0]} to {those[-1]}, {len(those)} of them{place}: {message}"))
+                found.append(
+                    (those[0], f"line {those[0]} (and {len(those) - 1} more, up to line {those[-1]}){place}: {message}")
+                )
             else:
                 found += [(line, f"line {line}{place}: {message}") for line in those]
         return [text for _, text in sorted(found, key=lambda one: one[0])]
