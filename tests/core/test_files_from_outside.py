@@ -43,7 +43,7 @@ def of_rig(path: Path) -> None:
 
 
 READERS: dict[str, Callable[[Path], Any]] = {
-    "case": load_case,
+    "case": lambda path: load_case(str(path)),
     "law": wl.read_law,
     "wear law": wl.read_wear_law,
     "tests": wl.read_tests,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from typing import Literal, TypeAlias
 
@@ -14,6 +13,7 @@ from wearlaw.errors import FitError, FitWarning, InputError, PlasticityWarning, 
 from wearlaw.fitting.fit import fit as fit_parameters
 from wearlaw.fitting.observations import test_names
 from wearlaw.fitting.result import Fit
+from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.wear_tests.tests import WearTests
 
 Folds: TypeAlias = int | Literal["leave-one-out"]
@@ -98,9 +98,7 @@ def cross_validated(
         there[held] = True
         try:
             # The fit to all tests has warned already; test after test at the edge of the range would repeat it.
-            with warnings.catch_warnings():
-                for kind in (FitWarning, RangeWarning, PlasticityWarning):
-                    warnings.simplefilter("ignore", kind)
+            with caught_warnings(FitWarning, RangeWarning, PlasticityWarning):
                 again = fit_parameters(tests=tests[~there], bootstrap=0, **fit.settings)
                 found[held] = predict(again, held)
         except FitError as error:

@@ -157,8 +157,8 @@ class Rig(Model):
             If the rig fails or does not return a problem.
         """
         try:
-            with Blame(self), steadily():
-                problem = self.problem(**conditions)
+            with Blame(self):
+                problem = _posed(self, conditions)
         except ModelError:
             self.check_names(conditions)
             raise
@@ -267,6 +267,11 @@ class Rig(Model):
             )
         assert isinstance(self, Rig)
         return Pipeline(rig=self, contact_model=model)
+
+
+@steady
+def _posed(rig: Rig, conditions: Mapping[str, Any]) -> Problem:
+    return rig.problem(**conditions)
 
 
 RigField = Annotated[Rig, *RIG]
@@ -432,7 +437,8 @@ class Pipeline(Configuration, Generic[P]):
         stacklevel : int
             The caller that warnings name; 2 is the caller of this method.
         """
-        expect(Problem, problem, "problem", "a wearlaw.Problem, from the `problem` method of the rig")
+        if type(problem) is not Problem:
+            expect(Problem, problem, "problem", "a wearlaw.Problem, from the `problem` method of the rig")
         if self.rig.patch_geometry not in (None, problem.geometry):
             raise InputError(
                 f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"

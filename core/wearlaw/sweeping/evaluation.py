@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import json
-import warnings
 import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -17,13 +16,14 @@ from wearlaw.arrays import kernels
 from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, InputError, ModelError, RangeWarning, WearlawWarning, did_you_mean, quoted
+from wearlaw.errors import CompositionError, InputError, ModelError, RangeWarning, did_you_mean, quoted
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction, unsolved
 from wearlaw.pipeline.ranges import Seen
 from wearlaw.pipeline.variables import long_name, outcome_units, unit_of
+from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.sweeping.located import posed
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.units.quantities import Quantity
@@ -98,10 +98,9 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     `on_block` is called with the number of points just done, several times for a long block.
     """
     kernels.accelerate(job.accelerate)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", WearlawWarning)
+    with caught_warnings() as caught:
         problem = posed(part, job.pipeline.posed)
-    remarks = dict.fromkeys(str(one.message) for one in caught if isinstance(one.message, WearlawWarning))
+    remarks = dict.fromkeys(map(str, caught))
     if job.dims or problem.dims:
         _check_axes(job, problem, part)
         on_block = on_block and _in_points(on_block, part.size, problem.size)
@@ -202,10 +201,8 @@ def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
         for name, seen in one.ranges.items():
             watch.see_outside(name, Seen(*seen))
     watch.overload = max((one.overload for one in every if one.overload), default=None)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
+    with caught_warnings() as found:
         watch.warn(stacklevel=1)
-    found = [one.message for one in caught if isinstance(one.message, Warning)]
     remark = next((text for one in every for text in one.remarks), None)
     return found if remark is None else [*found, RangeWarning(remark)]
 

@@ -21,7 +21,6 @@ from wearlaw.errors import (
     InputError,
     ModelError,
     ResumeWarning,
-    WearlawWarning,
     WorkerWarning,
     quoted,
     shortened,
@@ -31,6 +30,7 @@ from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig, expect_pipel
 from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.settings.arguments import expect_names, expect_path
+from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
 from wearlaw.sweeping.located import posed
@@ -234,8 +234,7 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
 
     def along(dim: str, values: slice) -> Problem:
         line = points.part(values if other == dim else slice(0, 1) for other in points.dims)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", WearlawWarning)  # the blocks record them
+        with caught_warnings():  # the blocks record them
             return posed(line, lambda given: pipeline.rig.checked_problem({**not_given, **given}))
 
     first = along(points.dims[0], slice(0, SAMPLE))

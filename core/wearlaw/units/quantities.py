@@ -158,10 +158,11 @@ class Unit:
             factor = si_factor(quantity, self.unit)
         except UnitError as error:
             raise UnitError(f"got {_describe(Q(magnitude, str(quantity.units)))}, {error}") from None
+        in_si: Any
         if factor == 1.0:
             in_si = magnitude
         elif not magnitude.ndim:  # unlike NumPy's, Python's product is silent if it overflows
-            in_si = np.float64(float(magnitude) * factor)  # type: ignore[assignment]
+            in_si = np.float64(float(magnitude) * factor)
         else:
             in_si = _scaled(magnitude, factor)
         if self._allows(in_si):
