@@ -11,7 +11,7 @@ nox.options.default_venv_backend = "venv"
 PYPROJECT = nox.project.load_toml()
 
 
-@nox.session(python=["3.11", "3.12", "3.13"])
+@nox.session(python=["3.11", "3.12", "3.13", "3.14"])
 def tests(session: nox.Session) -> None:
     """Test with the newest version of each dependency."""
     session.install("-e", ".[test]")
