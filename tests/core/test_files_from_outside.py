@@ -42,7 +42,7 @@ def of_rig(path: Path) -> None:
     raise wl.InputError(result.output)
 
 
-READERS: dict[str, Callable[[Path], Any]] = {
+READERS: dict[str, Callable[[Any], Any]] = {
     "case": load_case,
     "law": wl.read_law,
     "wear law": wl.read_wear_law,
