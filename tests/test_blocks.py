@@ -61,6 +61,10 @@ NOT_RUN = {
     ("CONTRIBUTING.md", ".venv/bin/python -m pip install --upgrade pip"): INDEX,
     ("CONTRIBUTING.md", "python -m pip install pre-commit"): "installs from an index, and into the clone's git",
     ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,
+    (
+        "CONTRIBUTING.md",
+        ".venv/bin/python -m tests.fuzz --seconds 3600",
+    ): "takes an hour; tests/test_fuzz.py runs the fuzzer",
     ("CONTRIBUTING.md", ROOMS): "no code; tests/test_contributing.py compares it with the code",
     ("docs/accuracy.md", "nox -s bench"): NOX,
     ("docs/results.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
@@ -231,7 +235,12 @@ def test_sessions_modules_and_scripts_that_pages_start_are_there() -> None:
     assert [name for name in sessions if f"\ndef {name}(session: nox.Session)" not in noxfile] == []
     modules = {*re.findall(r"python -m\s+(tests\.[\w.]+)", TEXT)}
     assert {"tests.benchmarks.coverage", "tests.benchmarks.sweep"} <= modules
-    assert [name for name in modules if not (ROOT / f"{name.replace('.', '/')}.py").is_file()] == []
+    files = {name: ROOT / name.replace(".", "/") for name in modules}
+    assert [
+        name
+        for name, path in files.items()
+        if not (path.with_suffix(".py").is_file() or (path / "__main__.py").is_file())
+    ] == []
     scripts = {*re.findall(r"\.venv/bin/python (\S+\.py)", TEXT)}
     assert "docs/validation.py" in scripts
     assert [name for name in scripts if not (ROOT / name).is_file()] == []

@@ -59,7 +59,7 @@ def test_pages_show_the_pictures_that_are_there_and_no_other() -> None:
     pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
     shown = {name for page in pages for name in re.findall(r"pictures/(\w+)\.png\)", page.read_text(encoding="utf-8"))}
     assert shown == {path.stem for path in pictures.FOLDER.iterdir()}
-    assert {name for name in shown if re.match(r"figure_|wear_against", name)} == {*pictures.OF_STUDY}
+    assert {name for name in shown if re.match(r"figure_|wear_over", name)} == {*pictures.OF_STUDY}
 
 
 def test_the_picture_of_the_readme_is_what_is_drawn_now(tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ for radius, moved, yaw, line in (-np.inf, 0.8, 0, "-"), (-500, 5.5, 5, "--"), (-
     track = {"lateral_displacement": Q(moved, "mm"), "yaw": Q(yaw, "mrad"), "curve_radius": Q(radius, "m")}
     r = predict(**track, vertical_load="60 kN", friction_coefficient=0.3)
     depth = r.sel(side="right").wear_profile("wheel", at=Q(places, "mm")).depth
-    (drawn,) = loss.plot(y, depth.where(depth > 0.0), line, label=f"{-radius} m")
+    (drawn,) = loss.plot(y, depth.where(depth > 0.0), line, label=f"{-radius} m" if radius > -np.inf else "straight")
     shape.plot(y, np.where(depth > 0.0, z, np.nan), lw=6.0, alpha=0.5, color=drawn.get_color())
 shape.set(ylabel="z of the wheel [mm]", aspect="equal", ylim=shape.get_ylim()[::-1])
 loss.set(xlabel="y of the wheel [mm]", ylabel="depth lost per distance [µm/km]", yscale="log", ylim=(1e-2, None))

@@ -558,10 +558,13 @@ def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:
     OutputError
         If the file cannot be written.
     """
+    file = Path(_path(path, "path"))
+    if not isinstance(profile, Profile):
+        raise wl.InputError(f"profile: must be a Profile, as in write_profile('worn.prr', profile); got {profile!r}")
     y, z = (1e-3 * value.magnitude for value in profile.points)
     if profile.smoothing.magnitude:
         y, z = profile.curve.y, profile.curve.z
-    write_points(Path(_path(path, "path")), profile.kind, y, z)
+    write_points(file, profile.kind, y, z)
 
 
 DEEP, TOP = 10e-3, 20e-3

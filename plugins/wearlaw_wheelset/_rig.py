@@ -70,6 +70,8 @@ CONICITY_POINTS = 801
 
 RATIO = re.compile(r"\s*1\s*:\s*([0-9]+\.?[0-9]*)\s*")
 
+FRACTION = re.compile(r"\s*1\s*/\s*([0-9]+\.?[0-9]*)\s*")
+
 NUMBER = re.compile(r"\s*[0-9]+\.?[0-9]*\s*")
 
 
@@ -82,7 +84,11 @@ def _cant(value: object) -> object:
     if isinstance(value, int | float) and not isinstance(value, bool) and value == 0:
         return wl.Q(0.0, "rad")
     if isinstance(value, int | float | str) and not isinstance(value, bool) and NUMBER.fullmatch(str(value)):
-        raise wl.UnitError(f"got {value!r}, which has no unit; give a ratio or an angle, as '1:{value}' or '1.4 deg'")
+        number = float(value)
+        ratio = f"1:{value if number > 1.0 else format(1.0 / number, '.6g')}" if number else "1:40"
+        raise wl.UnitError(f"got {value!r}, which has no unit; give a ratio or an angle, as '{ratio}' or '1.4 deg'")
+    if isinstance(value, str) and (fraction := FRACTION.fullmatch(value)):
+        raise wl.UnitError(f"got {value!r}; write a ratio with a colon, as '1:{fraction[1]}'")
     return value
 
 
@@ -198,9 +204,11 @@ class Wheelset(wl.Rig):
     @model_validator(mode="after")
     def _fits(self) -> Wheelset:
         if self.wheel.kind != "wheel" or self.rail.kind != "rail":
+            swapped = self.wheel.kind != "wheel" and self.rail.kind != "rail"
             raise ValueError(
-                f"wheel is the profile of a {self.wheel.kind} and rail that of a {self.rail.kind}; give them the other"
-                " way round, or make the profile with the other kind"
+                f"wheel is the profile of a {self.wheel.kind} and rail that of a {self.rail.kind};"
+                f" {'give them the other way round' if swapped else 'give one of each'}, or make the profile with the"
+                " other kind"
             )
         lean = scalar(self.rail.apparent_cant)
         if abs(lean) > 0.5 * scalar(self.rail_cant) > 0.0:

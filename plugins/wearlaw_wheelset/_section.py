@@ -76,10 +76,10 @@ def _geometry(rig: Wheelset) -> wl.FigureData:
     found = rig.geometry(lateral_displacement=wl.Q(there, "mm")).dataset
     across = found["lateral_displacement"].values
     x = wl.PlotAxis("lateral displacement [mm]")
-    radius = wl.Curve("right minus left", across, found["rolling_radius_difference"].values, points=True)
+    radius = wl.Curve("right minus left", across, found["rolling_radius_difference"].values, points=True, hollow=True)
     angles = [
         wl.Curve(f"right wheel, patch {patch}", across, found["contact_angle"].sel(side="right", patch=patch).values,
-                 colour=number, points=True)
+                 colour=number, points=True, hollow=True)
         for number, patch in enumerate(found["patch"].values)
         if found["contact_angle"].sel(side="right", patch=patch).notnull().any()
     ]  # fmt: skip

@@ -353,7 +353,7 @@ class Named(Damage):
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"wear_laws": []}, "wear_laws: must be a list of names, or of tables with a name and options, with at"),
+        ({"wear_laws": []}, "wear_laws: is missing or empty; give at least one, as in wear_laws"),
         ({"laws": ["damag"]}, "laws.0: no law is called 'damag'; did you mean 'damage'? Installed: damage, "),
         ({"laws": ["usfd"]}, "laws.0: usfd predicts the wear rate; list it under wear_laws"),
         ({"wear_laws": ["kth", "damage"]}, "wear_laws.1: damage predicts rcf_damage, not wear; list it under laws"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shlex
 import shutil
 from collections.abc import Callable
@@ -318,6 +319,9 @@ def test_uncertainty_of_a_case_is_that_of_its_pairs_with_samples_rounded_up_and_
     result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--samples", "1000", "-o", "out")
     assert result.exit_code == 0, result.output
     assert "Samples: 1000 rounded up to 1024, a power of two, as Sobol sequences need it" in result.stdout
+    # Shares to a thousandth: their sampling error is larger.
+    assert re.search(r"creepage( +0\.\d{3}){4}\n", result.stdout)
+    assert not re.search(r"\d(e-\d|-0\.000)", result.stdout)
     rates = pd.read_csv(folder / "out" / "wear_rates.csv")
     predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("kth")
     u = wl.uncertainty(

@@ -12,6 +12,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import assert_refused, files, wearlaw
 from tests.plugins.contact_files import FILES
+from wearlaw.cli.wear_commands import _print
 
 pytestmark = [
     pytest.mark.usefixtures("blank_figures", "folder"),
@@ -69,6 +70,11 @@ def test_several_files_make_a_table_with_a_row_each() -> None:
     record = json.loads(Path("both/wear.json").read_text(encoding="utf-8"))
     assert record["laws"][0]["model"] == "kth"
     assert record["wearlaw"] == wl.__version__
+
+
+def test_a_negative_zero_is_printed_as_zero(capsys: pytest.CaptureFixture[str]) -> None:
+    _print(pd.DataFrame({"contact": ["a"], "spin_moment [N*m]": [-0.0], "lateral_force [N]": [-2.0]}))
+    assert printed(capsys.readouterr().out) == {"spin_moment": ["0"], "lateral_force": ["-2"]}
 
 
 def test_fields_of_the_reader_and_several_laws() -> None:

@@ -114,7 +114,7 @@ def test_each_fold_is_predicted_by_the_mean_factor_of_the_others(how: Any) -> No
     truth = (EXACT | usfd())(**conditions).wear_rate
     tests = wl.WearTests.from_arrays(**conditions, wear_rate=truth * SCATTER)
     fit = wl.fit(EXACT | usfd(), tests, ["m_m"], bootstrap=0)
-    parts = folds(8, how)
+    parts = folds(np.arange(8), how)
     assert sorted(np.concatenate(parts)) == list(range(8))
     expected = np.empty(8)
     for held in parts:
@@ -126,6 +126,46 @@ def test_each_fold_is_predicted_by_the_mean_factor_of_the_others(how: Any) -> No
     assert one.in_sample == 0
     in_sample = by_label(wl.compare([fit], tests))["usfd fitted on exact"]
     assert one.agreement.rms_factor > in_sample.agreement.rms_factor  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("how", ["leave-one-out", 2, 3])
+def test_tests_that_repeat_each_other_are_left_out_together(how: Any) -> None:
+    """A repeat has another label, wear rate and measured traction, but no other creepage, load and friction."""
+    creepage = [0.1, 0.2, 0.3, 0.4, 0.2, 0.1, 0.1, 0.40001]
+    point = np.array([0, 1, 2, 3, 1, 0, 0, 3])
+    conditions: Any = {
+        "creepage": Q(creepage, "%"), "max_pressure": "1500 MPa", "friction_coefficient": 0.46
+    }  # fmt: skip
+    truth = (EXACT | usfd())(**conditions).wear_rate
+    tests = wl.WearTests.from_arrays(
+        **conditions, traction_coefficient=0.1 * SCATTER, wear_rate=truth * SCATTER, labels=list("abcdefgh")
+    )
+    fit = wl.fit(EXACT | usfd(), tests, ["m_m"], bootstrap=0)
+    if how == "leave-one-out":
+        held_out = [point == number for number in range(4)]
+    else:
+        held_out = [np.isin(np.arange(8), part) for part in folds(point, how)]
+        for number in range(4):
+            assert sum((held & (point == number)).any() for held in held_out) == 1
+    expected = np.empty(8)
+    for held in held_out:
+        expected[held] = np.exp(np.log(SCATTER[~held]).mean())
+    comparison = wl.compare([fit], tests, cross_validate=how)
+    (one,) = comparison.compared
+    # As above, 1e-8 of the best fit.
+    assert one.predicted * 1e3 == pytest.approx(truth.magnitude * expected, rel=1e-6)
+    assert comparison.cross_validated == (how if how == "leave-one-out" else f"{how} folds")
+    note = "the 8 tests are at 4 operating points; cross-validation leaves out repeated tests together"
+    assert note in comparison.notes
+    with pytest.raises(wl.InputError, match="from 2 to the 4 operating points of the 8 tests, got 5"):
+        wl.compare([fit], tests, cross_validate=5)
+
+
+def test_tests_at_one_operating_point_cannot_be_cross_validated() -> None:
+    tests = made(creepage="0.5 %", wear_rate=Q(10.0 * SCATTER, "ug/m/mm^2"))
+    fit = wl.fit(EXACT | usfd(), tests, ["m_m"], bootstrap=0)
+    with pytest.raises(wl.InputError, match="needs tests at two operating points"):
+        wl.compare([fit], tests, cross_validate="leave-one-out")
 
 
 @pytest.mark.parametrize("how", [1, 9, 0, True, 2.5, "twice"])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -86,8 +85,7 @@ def test_tests_repeat_each_other_if_every_condition_agrees_to_its_thousandth() -
     force = [7000.0, 7006.9, 7007.1, 7000.0, 7000.0, 7006.9]  # [N]
     creepage, lateral = [0.01, 0.01, 0.01, 0.01002, 0.01, 0.00999], [0.0, 0.0, 0.0, 0.0, 1e-9, 0.0]
     conditions = {"normal_force": Q(force, "N"), "creepage": np.array(creepage), "lateral_creepage": np.array(lateral)}
-    one: Any = SimpleNamespace(conditions={**conditions, "friction_coefficient": 0.46}, measured=np.ones(6))
-    assert repeats(one).tolist() == [0, 0, 1, 2, 3, 0]
+    assert repeats({**conditions, "friction_coefficient": 0.46}, 6).tolist() == [0, 0, 1, 2, 3, 0]
 
 
 def test_p_is_uniform_if_the_model_is_right() -> None:

@@ -104,7 +104,7 @@ def test_points_outside_are_those_that_the_warning_counts() -> None:
     pressure = Q([300, 899, 900, 1500, 1800, 1801], "MPa")
     r = predict(max_pressure=pressure, creepage="1 %", friction_coefficient=0.46)
     assert r.outside_range.magnitude.tolist() == [1, 1, 0, 0, 0, 1]
-    with pytest.warns(wl.RangeWarning, match="wear index density .* 1 of 3 operating points lie outside"):
+    with pytest.warns(wl.RangeWarning, match="wear index density .* 1 of 3 operating points lies outside"):
         r = predict(max_pressure="1500 MPa", creepage=Q([1, 20, -20.1], "%"), friction_coefficient=0.46)
     assert r.outside_range.magnitude.tolist() == [0, 0, 1]
 

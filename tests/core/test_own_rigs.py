@@ -170,7 +170,7 @@ def test_wrong_conditions_are_named(given: dict[str, Any], said: str) -> None:
 
 def test_conditions_are_given_by_name() -> None:
     predict: Any = Roller() | MODEL | KTH
-    with pytest.raises(wl.ConditionsError, match="'20 kg': is given without a name"):
+    with pytest.raises(wl.ConditionsError, match="'20 kg': is given without a name; write mass="):
         predict("20 kg", creepage="1 %")
 
 

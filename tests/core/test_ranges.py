@@ -76,9 +76,9 @@ def test_points_outside_are_counted_over_all_blocks() -> None:
 @pytest.mark.parametrize(
     ("blocks", "outside", "farthest"),
     [
-        ([[0.05, 0.002], [0.02, 0.004]], "2 of 4", "0.2000 %"),
-        ([[0.05, 0.2], [0.02, 0.15]], "2 of 4", "20.00 %"),
-        ([[-0.2], [-0.05]], "1 of 2", "20.00 %"),
+        ([[0.05, 0.002], [0.02, 0.004]], "2 of 4 operating points lie", "0.2000 %"),
+        ([[0.05, 0.2], [0.02, 0.15]], "2 of 4 operating points lie", "20.00 %"),
+        ([[-0.2], [-0.05]], "1 of 2 operating points lies", "20.00 %"),
     ],
     ids=["below", "above", "negative creepage"],
 )
@@ -86,7 +86,7 @@ def test_the_farthest_value_is_named(blocks: list[list[float]], outside: str, fa
     watch = RangeWatch(Stated())
     see(watch, *blocks)
     (message,) = messages(watch)
-    assert f"; {outside} operating points lie outside, as far as {farthest}" in message
+    assert f"; {outside} outside, as far as {farthest}" in message
 
 
 def test_the_borders_belong_to_the_range() -> None:
@@ -128,7 +128,7 @@ def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> 
         watch.see(one.size, partial(mean_over_patch, one, {"longitudinal": EXACT.tangential_force(one)}))
         (message,) = messages(watch)
         assert f"range of mean {name.replace('_', ' ')} from" in message
-        assert f"; {outside} of 4 operating points lie outside" in message
+        assert f"; {outside} of 4 operating points {'lies' if outside == 1 else 'lie'} outside" in message
 
 
 ON_RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")

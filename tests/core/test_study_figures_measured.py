@@ -77,6 +77,25 @@ def test_the_area_and_width_of_the_patch_in_a_test_are_those_of_its_load(measure
     np.testing.assert_allclose(density.y, np.array([21.0, 175.0]) / (20.0 * half_width), rtol=64 * EPS)
 
 
-def test_measured_traction_is_shown_without_being_asked_for_by_a_case_without_figures(measured: dict[str, Any]) -> None:
+@pytest.mark.parametrize("sweep", [cases.SWEEP, cases.POINT])
+def test_tests_without_traction_leave_the_default_figures_of_traction_to_the_models(
+    tmp_path: Path, sweep: dict[str, Any]
+) -> None:
+    file = tmp_path / "tests.csv"
+    file.write_text(cases.TESTS_CSV, encoding="utf-8")
+    figures = run(case(measured={"label": "my tests", "tests": str(file)}, sweeps={"creepage": sweep})).figures
+    traction = [figure for figure in figures if "traction" in figure.name]
+    assert traction
+    assert not any(curve.points for figure in traction for panel in figure.panels for curve in panel.curves)
+
+
+def test_measured_tests_are_shown_without_being_asked_for_by_a_case_without_figures(measured: dict[str, Any]) -> None:
     figures = by_name(run(case(measured=measured)))
-    assert [c.label for c in one_panel(figures["creepage_traction_over_creepage"]).curves if c.points] == ["my tests"]
+    for name in ("traction_over_creepage", "wear_rate_over_creepage", "wear_rate_over_wear_index"):
+        assert [c.label for c in one_panel(figures[f"creepage_{name}"]).curves if c.points] == ["my tests"]
+
+
+def test_default_figures_show_measured_tests_over_creepage_only(measured: dict[str, Any]) -> None:
+    sweeps = {"load": {**cases.POINT, "max_pressure": LOADS}}
+    figures = run(case(measured=measured, sweeps=sweeps)).figures
+    assert not any(curve.points for figure in figures for panel in figure.panels for curve in panel.curves)

@@ -13,6 +13,7 @@ from tests.core import cases
 from tests.core.cases import InstallModel, case
 from tests.core.studies import lattice_study
 from wearlaw import Array
+from wearlaw.pipeline.notes import grouped
 from wearlaw.study.case import Case
 from wearlaw.study.study import evaluations, provenance, run
 
@@ -36,6 +37,39 @@ def test_a_warning_that_all_pairs_give_is_noted_once_for_each_sweep_or_profile()
     study = run(case(contact_models=["exact", "fastsim"], wear_laws=["kth"], sweeps=sweeps, profiles={"p": hard}))
     assert [note.split(":")[0] for note in study.notes] == ["sweep 'a'", "sweep 'b'", "profile 'p'"]
     assert all("shakedown limit, 1177 MPa" in note for note in study.notes)
+
+
+def test_printed_notes_name_all_parts_of_a_case_that_share_a_remark_and_each_source_once() -> None:
+    pressure, speed = (f"wear law 'usfd' has a known range of mean {name} from 1 to 2" for name in ("pressure", "slip"))
+    source, other = " (Lewis (2004), Table 1)", " (Jendel (2002))"
+    law = "wear law 'kth' has a known range of mean slip from 1 to 2"
+    said = grouped([
+        f"sweep 'a': {pressure}{source}; 1 of 3 points lies outside, as far as 4",
+        f"sweep 'a': {speed}{source}; 2 of 3 points lie outside, as far as 5",
+        f"profile 'p': {pressure}{source}; 1 of 1 points lies outside, as far as 6",
+        "profile 'p': check it",
+        "profile 'q': check it",
+        "section 's': check it",
+        f"profile 'p': {law}{other}; 1 of 1 points lies outside, as far as 7",
+        "usfd on exact: was fitted for patch means",
+    ])  # fmt: skip
+    assert said == [
+        "usfd on exact: was fitted for patch means",
+        f"{pressure}{source}; sweep 'a': 1 of 3 points lies outside, as far as 4; profile 'p': 1 of 1 points lies"
+        " outside, as far as 6",
+        f"sweep 'a': {speed} (source above); 2 of 3 points lie outside, as far as 5",
+        "profile 'p', profile 'q' and section 's': check it",
+        f"profile 'p': {law}{other}; 1 of 1 points lies outside, as far as 7",
+    ]
+
+
+def test_the_range_of_a_law_is_printed_once_for_all_sweeps() -> None:
+    soft = {**cases.POINT, "max_pressure": "300 MPa"}
+    study = run(case(contact_models=["exact"], wear_laws=["usfd"], sweeps={"a": soft, "b": soft}, profiles={}))
+    ranges = [note for note in grouped(study.notes) if "known range of mean pressure" in note]
+    assert len(ranges) == 1
+    assert ranges[0].startswith("wear law 'usfd' has a known range")
+    assert "; sweep 'a': 1 of 1 operating points lies outside, as far as 235.6 MPa; sweep 'b': 1 of 1" in ranges[0]
 
 
 class Warns(cases.Linear):

@@ -115,6 +115,17 @@ def test_a_wrong_row_is_refused_with_line_and_column(row: str, message: str) -> 
     assert message in problem
 
 
+def test_a_fault_of_many_lines_is_said_once() -> None:
+    commas = "".join(f"{name},{name},7,4,40\n" for name in "123456")
+    with pytest.raises(wl.DataError) as refusal:
+        parse_tests(f"{TESTS_HEAD}\n{commas}x,y,7.4,40\nx,y,7.4,50\n", "mine.csv")
+    assert list(refusal.value.problems) == [
+        "line 2 (and 5 more, up to line 7): has 5 cells, but the header has 4; with decimal commas, separate cells by ';'",
+        "line 8, column 'creepage [%]': 'y' is not a number",
+        "line 9, column 'creepage [%]': 'y' is not a number",
+    ]
+
+
 def test_lines_are_counted_as_an_editor_shows_them() -> None:
     text = f'\ufeffsep=,\r\n# a comment\r\n\r\n{TESTS_HEAD}\r\n\r\n"a\r\nb",1,7,3\r\n,,,\r\nc,1,7,x\r\nd,1,7,y'
     with pytest.raises(wl.DataError) as refusal:

@@ -287,7 +287,7 @@ def test_the_elastic_limit_and_the_range_of_the_law_are_watched() -> None:
         predict(**{**CONDITIONS, "normal_force": Q(400, "kN"), "longitudinal_creepage": Q([1, 60], "%")})
     messages = [str(warning.message) for warning in caught]
     assert any("beyond the shakedown limit" in message for message in messages)
-    assert any("1 of 2 operating points lie outside" in message for message in messages)
+    assert any("1 of 2 operating points lies outside" in message for message in messages)
     assert {warning.filename for warning in caught} == {__file__}
 
 

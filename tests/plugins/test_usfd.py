@@ -200,7 +200,7 @@ def test_pressures_without_a_test_are_warned_of(pressure: str, said: str) -> Non
     for message in of_law:
         assert message.startswith("wear law 'usfd' has a known range of mean pressure from 706.8 MPa to 1414 MPa (")
         assert "Lewis and R. S. Dwyer-Joyce" in message
-        assert message.endswith(f"1 of 1 operating points lie outside, as far as {said}")
+        assert message.endswith(f"1 of 1 operating points lies outside, as far as {said}")
 
 
 @pytest.mark.parametrize("fitted_for", ["global", "exact", "fastsim"])

@@ -33,7 +33,8 @@ def pair(**changed: Any) -> ws.Wheelset:
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"wheel": ws.Profile.uic60()}, "wheel is the profile of a rail and rail that of a rail"),
+        ({"wheel": ws.Profile.uic60()}, "rail and rail that of a rail; give one of each"),
+        ({"wheel": ws.Profile.uic60(), "rail": ws.Profile.s1002()}, "that of a wheel; give them the other way round"),
         (
             {"rail": ws.Profile.uic60().turned("-0.025 rad")},
             r"rail_cant: is 1\.43 deg, but .* leans by 1\.43 deg already",
@@ -47,6 +48,8 @@ def pair(**changed: Any) -> ws.Wheelset:
         ({"rail_cant": "steep"}, "rail_cant"),
         ({"rail_cant": "40"}, "rail_cant.* no unit; .* as '1:40'"),
         ({"rail_cant": 20}, "rail_cant.* no unit; .* as '1:20'"),
+        ({"rail_cant": 0.025}, "rail_cant.* no unit; .* as '1:40' or"),
+        ({"rail_cant": "1/40"}, "rail_cant: got '1/40'; write a ratio with a colon, as '1:40'"),
         ({"rail_cant": "1:0"}, "rail_cant.* such as '1:40'"),
         ({"rail_cant": "1:4.0.0"}, "rail_cant"),
         ({"pressure": "carter"}, "pressure"),

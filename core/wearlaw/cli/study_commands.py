@@ -24,7 +24,7 @@ from wearlaw.output.analyses import UNCERTAINTY, write_uncertainty
 from wearlaw.output.folder import ElsewhereError, identity
 from wearlaw.output.results import RESULTS, check_room, without_csv, write
 from wearlaw.output.temporary import discard, to_the_end
-from wearlaw.pipeline.notes import Notes
+from wearlaw.pipeline.notes import Notes, grouped
 from wearlaw.report.tables import NamedTable, summaries
 from wearlaw.study.case import load_case
 from wearlaw.study.study import Study, evaluations, provenance, used
@@ -76,7 +76,7 @@ def run(
                 study = replace(study, notes=(*study.notes, left_out))
             with notes.of("figures"):
                 names = write(study, fresh, figure_formats, latex, shown.stage, left_out is None)
-    print_notes([*study.notes, *checkpoint.notes(), *notes.texts])
+    print_notes(grouped([*study.notes, *checkpoint.notes(), *notes.texts]))
     for table in summaries(study):
         Console().print(_summary(table))
     _print_used(study)
@@ -168,7 +168,7 @@ def uncertainty(
     if found.samples != samples:
         echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
     print_notes([*found.notes, *notes.texts])
-    for table in (found.wear_rates, found.indices):
-        if len(table):
-            echo(table.to_string(index=False, float_format=lambda number: f"{number:.4g}"))
+    echo(found.wear_rates.to_string(index=False, float_format=lambda number: f"{number:.4g}"))
+    if len(found.indices):
+        echo(found.indices.to_string(index=False, float_format=lambda share: f"{round(share, 3) + 0.0:.3f}"))
     print_results(folder, names)

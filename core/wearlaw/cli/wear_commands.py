@@ -136,6 +136,6 @@ def _print(table: pd.DataFrame) -> None:
     count = max(1, space // (2 + max(NUMBER, *map(len, across.columns))))
     shown = min(across.shape[1], BLOCKS * count)
     blocks = [across.iloc[:, start : start + count] for start in range(0, shown, count)]
-    echo("\n\n".join(block.to_string(float_format=lambda number: f"{number:.4g}") for block in blocks))
+    echo("\n\n".join(block.to_string(float_format=lambda number: f"{number + 0.0:.4g}") for block in blocks))
     if shown < across.shape[1]:
         echo(f"... and {across.shape[1] - shown} more contacts in wear.csv")

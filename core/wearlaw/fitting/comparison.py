@@ -17,6 +17,7 @@ from wearlaw.figures.plot import plot
 from wearlaw.fitting.agreement import Agreement, Information, agreement
 from wearlaw.fitting.cross_validation import Folds, cross_validated, folds
 from wearlaw.fitting.free_parameters import FRICTION
+from wearlaw.fitting.lack_of_fit import repeats
 from wearlaw.fitting.result import Fit
 from wearlaw.models.contact_model import Model
 from wearlaw.models.labels import labels
@@ -229,8 +230,9 @@ def compare(
     friction_coefficient : array_like of float, optional
         μ [-] for tests without a friction coefficient.
     cross_validate : int or "leave-one-out", optional
-        Each `Fit` predicts every test from a fit of its free parameters to other tests: to all others for
-        "leave-one-out", or to those in the other of this number of random folds. Pipelines predict as they are.
+        Each `Fit` predicts every test from a fit of its free parameters to tests at other operating points: to all
+        others for "leave-one-out", or to those in the other of this number of random folds. Repeated tests, whose
+        conditions agree to 0.1 %, stay together. Pipelines predict as they are.
 
     Returns
     -------
@@ -296,8 +298,14 @@ def compare_named(
                 "cross_validate: fits free parameters anew, but no predictor is a Fit; make one with its free"
                 ' parameters, as in wl.fit(pipeline, tests, free=["q_s"])'
             )
-        parts = folds(len(used), cross_validate)
-        how = "leave-one-out" if len(parts) == len(used) else f"{len(parts)} folds"
+        points = _operating_points(used, given[0], friction_coefficient)
+        parts, distinct = folds(points, cross_validate), int(points.max()) + 1
+        how = "leave-one-out" if len(parts) == distinct else f"{len(parts)} folds"
+        if distinct < len(used):
+            notes.add(
+                f"the {len(used)} tests are at {distinct} operating points; cross-validation leaves out repeated tests"
+                " together"
+            )
         with Bar(len(parts) * sum(isinstance(one, Fit) for one in given), progress) as shown:
             shown.stage("cross-validating")
             compared = [
@@ -431,6 +439,14 @@ def _compared(
         )
     worth = _information(names.label, predictor, tests, outcome, notes) if isinstance(predictor, Fit) else None
     return Compared(names, _pipeline(predictor), predicted, errors, _in_sample(law, tests, outcome), worth)
+
+
+def _operating_points(tests: WearTests, predictor: Predictor, friction: Any) -> NDArray[np.intp]:
+    """Return the number of the operating point of each test; measured tractions of repeated tests scatter."""
+    pipeline = _pipeline(predictor)
+    conditions = tests.conditions(pipeline.contact_model, friction, pipeline.rig)
+    conditions.pop("traction_coefficient", None)
+    return repeats(conditions, len(tests))
 
 
 def _cross_validated(

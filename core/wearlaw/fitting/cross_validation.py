@@ -17,28 +17,45 @@ from wearlaw.fitting.result import Fit
 from wearlaw.wear_tests.tests import WearTests
 
 Folds: TypeAlias = int | Literal["leave-one-out"]
-"""Number of folds, or one for each test."""
+"""Number of folds, or one for each operating point."""
 
 SEED = 0
-"""Seed of the random order in which tests are dealt to folds, so that a comparison can be repeated."""
+"""Seed of the random order in which operating points are dealt to folds, so that a comparison can be repeated."""
 
 
-def folds(count: int, how: Folds) -> list[NDArray[np.intp]]:
+def folds(points: NDArray[np.intp], how: Folds) -> list[NDArray[np.intp]]:
     """Return the indices of the tests in each fold.
+
+    Tests that repeat each other are in one fold, since a fit that has seen one of them has seen the others.
+
+    Parameters
+    ----------
+    points : ndarray of int, (n,)
+        Number of the operating point of each test, from `repeats`.
+    how : int or "leave-one-out"
+        Number of folds, or a fold for each operating point.
 
     Raises
     ------
     InputError
-        If `how` is not a number of folds from 2 to the number of tests, or "leave-one-out".
+        If `how` is not a number of folds from 2 to the number of operating points, or "leave-one-out", or there is only
+        one operating point.
     """
+    count = int(points.max()) + 1
+    if count == 1:
+        raise InputError(
+            "cross_validate: needs tests at two operating points at least, but all have the same conditions; leave it"
+            " out"
+        )
     number: object = count if how == "leave-one-out" else how
     if isinstance(number, bool) or not isinstance(number, int | np.integer) or not 2 <= number <= count:
+        all_points = "tests" if count == points.size else f"operating points of the {points.size} tests"
         raise InputError(
-            f'cross_validate: give "leave-one-out" or a number of folds from 2 to the {count} tests, got'
+            f'cross_validate: give "leave-one-out" or a number of folds from 2 to the {count} {all_points}, got'
             f" {shortened(how)}"
         )
     dealt = np.random.default_rng(SEED).permutation(count)
-    return [np.sort(dealt[fold::number]) for fold in range(number)]
+    return [np.flatnonzero(np.isin(points, dealt[fold::number])) for fold in range(number)]
 
 
 def cross_validated(

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy
@@ -135,7 +136,7 @@ def _check(one: Observations, residuals: Array, spent: float, confidence: float)
         chi2 = float(np.sum(residuals**2))
         p = float(scipy.special.chdtrc(nu, chi2))
         return LackOfFit(one.observable, "uncertainty", chi2 / nu, (nu,), p, rms, None, p < 1.0 - confidence)
-    f, degrees, p_value, scatter = f_test(residuals, repeats(one), spent)
+    f, degrees, p_value, scatter = f_test(residuals, repeats(one.conditions, one.measured.size), spent)
     if p_value is not None:
         return LackOfFit(one.observable, "repeats", f, degrees, p_value, rms, scatter, p_value < 1.0 - confidence)
     if one.scatter == "relative":
@@ -144,17 +145,23 @@ def _check(one: Observations, residuals: Array, spent: float, confidence: float)
     return LackOfFit(one.observable, "share", rms, (), None, rms, None, rms > POOR_SHARE)
 
 
-def repeats(one: Observations) -> NDArray[np.intp]:
+def repeats(conditions: Mapping[str, Any], count: int) -> NDArray[np.intp]:
     """Return the number of the operating point of each test, (n,); tests with the same number repeat each other.
 
-    Two tests are at the same point if all their conditions agree to `SAME`, a measured traction that the contact model
-    uses included.
+    Two tests are at the same point if all their conditions agree to `SAME`.
+
+    Parameters
+    ----------
+    conditions : mapping of str to Quantity or array_like, (n,) or a single value
+        The conditions of the tests.
+    count : int
+        Number of tests n.
     """
-    conditions = (real_array(getattr(value, "magnitude", value)) for value in one.conditions.values())
-    values = np.stack([np.broadcast_to(value, one.measured.shape) for value in conditions], axis=-1)
+    arrays = (real_array(getattr(value, "magnitude", value)) for value in conditions.values())
+    values = np.stack([np.broadcast_to(value, (count,)) for value in arrays], axis=-1)
     near = SAME * np.abs(values)
     points: list[int] = []
-    found = np.empty(one.measured.size, dtype=np.intp)
+    found = np.empty(count, dtype=np.intp)
     for test, value in enumerate(values):
         same = (i for i, point in enumerate(points) if (np.abs(value - values[point]) <= near[point]).all())
         found[test] = next(same, len(points))

@@ -380,8 +380,9 @@ class Pipeline(Configuration, Generic[P]):
     def __call__(self, /, *positional: P.args, **conditions: P.kwargs) -> Prediction:
         """Return the contact and the wear under the given conditions; see the rig's `problem` for the conditions."""
         if positional:
+            first = next(iter(self.rig.conditions()), "creepage")
             raise ConditionsError(
-                f"{shortened(positional[0])}: is given without a name; write creepage=..., for example"
+                f"{shortened(positional[0])}: is given without a name; write {first}=..., for example"
             )
         found = self.predict(self.posed(conditions), stacklevel=3)
         found._given = conditions

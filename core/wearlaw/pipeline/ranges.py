@@ -82,11 +82,12 @@ class RangeWatch:
                 calibration = law.calibration
                 farthest = seen.highest if seen.highest > high else seen.lowest
                 shown = [repr(from_si(value, UNITS[name])) for value in (low, high, farthest)]
+                lie = "lies" if seen.outside == 1 else "lie"
                 source = f" ({calibration.source})" if calibration and name in calibration.range_in_si else ""
                 warnings.warn(
                     f"{law.kind} '{law.name}' has a known range of mean {name.replace('_', ' ')} from {shown[0]} to"
-                    f" {shown[1]}{source}; {seen.outside} of {self.points} {self.counted} lie outside, as far as"
-                    f" {shown[2]}",
+                    f" {shown[1]}{source}; {seen.outside} of {self.points} {self.counted} {lie} outside, as far"
+                    f" as {shown[2]}",
                     RangeWarning,
                     stacklevel=stacklevel + 1,
                 )

@@ -18,6 +18,7 @@ from plotly.offline import get_plotlyjs
 
 from wearlaw.errors import UNWRITABLE
 from wearlaw.figures.curves import FigureData
+from wearlaw.pipeline.notes import grouped
 from wearlaw.report.interactive import plotly_figure
 from wearlaw.report.main_result import main_figure, main_result
 from wearlaw.report.sentences import sentences
@@ -42,6 +43,7 @@ def report(study: Study, case_text: str) -> str:
     first = main_figure(main)
     return _template().render(
         study=study,
+        notes=grouped(study.notes),
         case_text=case_text,
         claims=claims,
         counted=counted,

@@ -238,7 +238,10 @@ class Case(Configuration):
     @classmethod
     def _some_law(cls, laws: tuple[WearLaw, ...], info: ValidationInfo) -> tuple[WearLaw, ...]:
         if not laws and info.data.get("laws") == ():
-            raise InputError(f"{LISTED}, with at least one; or name laws of other outcomes than wear under laws")
+            raise InputError(
+                'is missing or empty; give at least one, as in wear_laws = ["usfd"], or laws of other outcomes than'
+                " wear under laws"
+            )
         return laws
 
     @field_validator("laws", "wear_laws")

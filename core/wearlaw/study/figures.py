@@ -32,7 +32,7 @@ from wearlaw.study.figure_kinds import (
 )
 from wearlaw.study.figure_spec import ACROSS, BY_PATCH, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
 from wearlaw.study.jumps import with_jumps
-from wearlaw.study.measured import measured_points
+from wearlaw.study.measured import known_variables, measured_points
 from wearlaw.study.results import (
     Patch,
     Results,
@@ -81,9 +81,10 @@ def figures_of(results: Results) -> tuple[FigureData, ...]:
 def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
     """Yield the default figures: outcomes and traction over each sweep, and the fields or wear of each profile.
 
-    Scales are those of the sweep's own spacing.
+    Scales are those of the sweep's own spacing. Figures over creepage show the measured tests.
     """
-    creepage = results.case.rig.creepage
+    creepage, tests = results.case.rig.creepage, results.case.measured
+    known = known_variables(tests.data) if tests is not None else ()
     for name, sweep in results.sweeps.items():
         axis, several = main_axis(sweep, creepage), is_of_patches(sweep)
         # One operating point of several patches is no curve.
@@ -102,10 +103,13 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
             log = not outcome.signed and first != BY_PATCH and (spacing == "log" or fit_for_log(along_axis))
             for x in (first,) if first == BY_PATCH else ("wear_index", first):
                 y_scale: Scale = "log" if log else "linear"
-                spec = FigureSpec(sweep=name, x=x, y=(outcome.name,), x_scale=spacing, y_scale=y_scale)
+                measured = axis == creepage and {x, outcome.name} <= {*known}
+                spec = FigureSpec(
+                    sweep=name, x=x, y=(outcome.name,), x_scale=spacing, y_scale=y_scale, measured=measured
+                )
                 yield f"{name}_{outcome.name}_over_{x}", spec
         if axis == creepage:
-            measured = results.case.measured is not None
+            measured = {first, "traction_coefficient"} <= {*known}
             spec = FigureSpec(sweep=name, x=first, y=("traction_coefficient",), x_scale=spacing, measured=measured)
             yield f"{name}_traction" if point and not several else f"{name}_traction_over_{first}", spec
     for name, profile in results.profiles.items():

@@ -70,7 +70,7 @@ class Axis(Configuration):
         InputError
             If the ends have different dimensions, are not finite, or are too far apart, or a log axis touches zero.
         """
-        (first, last), unit = _in_one_unit((self.start, self.stop))
+        (first, last), unit = _in_one_unit((self.start, self.stop), ("from", "to"))
         if not math.isfinite(float(last) - float(first)):
             raise InputError(
                 f"the ends of an axis and their distance must be finite, got '{self.start}' and '{self.stop}'"
@@ -322,8 +322,8 @@ def _values(value: Any) -> tuple[Array, str | None] | None:
     return None
 
 
-def _in_one_unit(values: tuple[float | str, ...]) -> tuple[Array, str | None]:
-    """Return values as numbers in the unit of the first one."""
+def _in_one_unit(values: tuple[float | str, ...], names: tuple[str, ...] = ()) -> tuple[Array, str | None]:
+    """Return values as numbers in the unit of the first one; errors name a value if it has a name."""
     if not any(isinstance(value, str) for value in values):
         return np.array(values, dtype=np.float64), None
     for value in values:
@@ -333,13 +333,24 @@ def _in_one_unit(values: tuple[float | str, ...]) -> tuple[Array, str | None]:
                 f"got the bare number {shortened(value)}, which has no unit, beside {shortened(with_unit)}; give all"
                 " values one"
             )
-    quantities = [parse(str(value)) for value in values]
+    quantities = [_parsed(value, number, values, names) for number, value in enumerate(values)]
     unit = _symbol(quantities[0])
     for quantity, value in zip(quantities, values, strict=True):
         if not quantity.is_compatible_with(quantities[0]):
             raise UnitError(f"{quoted(values[0])} and {quoted(value)} are not of one dimension")
     numbers = [quantity.to(quantities[0].units).magnitude for quantity in quantities]
     return np.array(numbers, dtype=np.float64), unit
+
+
+def _parsed(value: float | str, number: int, values: tuple[float | str, ...], names: tuple[str, ...]) -> Quantity:
+    """Return a value as a quantity; the error shows how to write it with the unit of another value."""
+    try:
+        return parse(str(value))
+    except UnitError as error:
+        units = [_symbol(one) for one in map(_quantity, values) if one is not None]
+        with_unit = quoted(f"{value} {units[0] or 'dimensionless'}") if units else ""
+        fixed = f"; write {with_unit}" if with_unit and _quantity(with_unit.strip("'\"")) is not None else ""
+        raise UnitError(f"{f'{names[number]}: ' if names else ''}{error}{fixed}") from None
 
 
 def _quantity(value: Any) -> Quantity | None:

@@ -70,11 +70,16 @@ class Table(NamedTuple):
     rows: list[Row]
 
 
+LISTED = 3
+"""Number of lines with the same fault up to which each is listed."""
+
+
 @dataclass
 class Problems:
     """Collects the faults of a file, each with its line."""
 
-    found: list[tuple[int, str]] = field(default_factory=list)
+    found: list[tuple[int, str, str]] = field(default_factory=list)
+    """Line, place in it and message of each fault."""
     cells: set[tuple[int, str]] = field(default_factory=set)
     """Line and column of the cells that already have a fault."""
 
@@ -82,12 +87,22 @@ class Problems:
         """Add a fault, unless its cell already has one."""
         if not column or (line, column) not in self.cells:
             self.cells.add((line, column))
-            where = f"line {line}, column {quoted(column)}" if column else f"line {line}"
-            self.found.append((line, f"{where}: {message}"))
+            self.found.append((line, f", column {quoted(column)}" if column else "", message))
 
     def texts(self) -> list[str]:
-        """Return all faults in the order of the file."""
-        return [text for _, text in sorted(self.found, key=lambda one: one[0])]
+        """Return all faults in the order of the file, one for many lines that are wrong in the same way."""
+        lines: dict[tuple[str, str], list[int]] = {}
+        for line, place, message in sorted(self.found, key=lambda one: one[0]):
+            lines.setdefault((place, message), []).append(line)
+        found = []
+        for (place, message), those in lines.items():
+            if len(those) > LISTED:
+                found.append(
+                    (those[0], f"line {those[0]} (and {len(those) - 1} more, up to line {those[-1]}){place}: {message}")
+                )
+            else:
+                found += [(line, f"line {line}{place}: {message}") for line in those]
+        return [text for _, text in sorted(found, key=lambda one: one[0])]
 
 
 def table_of(
