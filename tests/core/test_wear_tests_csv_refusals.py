@@ -120,7 +120,8 @@ def test_a_fault_of_many_lines_is_said_once() -> None:
     with pytest.raises(wl.DataError) as refusal:
         parse_tests(f"{TESTS_HEAD}\n{commas}x,y,7.4,40\nx,y,7.4,50\n", "mine.csv")
     assert list(refusal.value.problems) == [
-        "line 2 (and 5 more, up to line 7): has 5 cells, but the header has 4; with decimal commas, separate cells by ';'",
+        "line 2 (and 5 more, up to line 7): has 5 cells, but the header has 4; with decimal commas, separate cells by"
+        " ';'",
         "line 8, column 'creepage [%]': 'y' is not a number",
         "line 9, column 'creepage [%]': 'y' is not a number",
     ]
