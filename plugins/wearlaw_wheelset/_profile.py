@@ -157,8 +157,8 @@ class Profile(wl.Configuration):
             The kind of profile.
         smoothing : Quantity or str
             Root mean square distance of the points from the curve. The curve is the smoothest one that keeps it, in the
-            sense of the least ``∫|r''|² du`` over the length u of the chords. With zero the curve is a cubic spline through
-            the points. Give the standard deviation of their noise.
+            sense of the least ``∫|r''|² du`` over the length u of the chords. With zero the curve is a cubic spline
+            through the points. Give the standard deviation of their noise.
         weights : array_like of float, shape (n,), optional
             Weights of the squared distances.
 

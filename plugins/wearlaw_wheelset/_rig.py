@@ -85,8 +85,8 @@ def _cant(value: object) -> object:
         return wl.Q(0.0, "rad")
     if isinstance(value, int | float | str) and not isinstance(value, bool) and NUMBER.fullmatch(str(value)):
         number = float(value)
-        ratio = f"1:{value if number > 1.0 else format(1.0 / number, '.6g')}" if number else "1:40"
-        raise wl.UnitError(f"got {value!r}, which has no unit; give a ratio or an angle, as '{ratio}' or '1.4 deg'")
+        advised = f"1:{value if number > 1.0 else format(1.0 / number, '.6g')}" if number else "1:40"
+        raise wl.UnitError(f"got {value!r}, which has no unit; give a ratio or an angle, as '{advised}' or '1.4 deg'")
     if isinstance(value, str) and (fraction := FRACTION.fullmatch(value)):
         raise wl.UnitError(f"got {value!r}; write a ratio with a colon, as '1:{fraction[1]}'")
     return value

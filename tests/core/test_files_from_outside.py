@@ -42,8 +42,8 @@ def of_rig(path: Path) -> None:
     raise wl.InputError(result.output)
 
 
-READERS: dict[str, Callable[[Path], Any]] = {
-    "case": lambda path: load_case(str(path)),
+READERS: dict[str, Callable[[Any], Any]] = {
+    "case": load_case,
     "law": wl.read_law,
     "wear law": wl.read_wear_law,
     "tests": wl.read_tests,

@@ -52,11 +52,12 @@ def grouped(texts: Iterable[str]) -> list[str]:
             lines.setdefault(text)
             continue
         subject, remark = about.groups()
+        outside = ""
         of_range = _RANGE.fullmatch(remark)
         if of_range:
             remark, outside = of_range[1], of_range[3]
             sources[remark] = of_range[2] or ""
-        groups.setdefault(remark, []).append((subject, outside if of_range else ""))
+        groups.setdefault(remark, []).append((subject, outside))
     named: set[str] = set()
     for remark, members in groups.items():
         subjects = [subject for subject, _ in members]
