@@ -411,10 +411,10 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
 
 def test_a_path_or_a_profile_of_another_type_is_refused(tmp_path: Path) -> None:
     wrong: Any = 3
-    with pytest.raises(wl.InputError, match="path: must be the path of a profile; got 3"):
+    with pytest.raises(wl.InputError, match="path: must be the path of a file, got 3"):
         ws.read_profile(wrong)
     swapped: Any = (ws.Profile.uic60(), tmp_path / "a.prr")
-    with pytest.raises(wl.InputError, match="path: must be the path of a profile; got Profile"):
+    with pytest.raises(wl.InputError, match="path: must be the path of a file, got Profile"):
         ws.write_profile(*swapped)
     with pytest.raises(wl.InputError, match="profile: must be a Profile"):
         ws.write_profile(tmp_path / "a.prr", wrong)

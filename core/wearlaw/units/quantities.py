@@ -234,8 +234,8 @@ class Unit:
         try:
             quantity, in_si = self._checked(value)
             size = abs(in_si) if in_si.ndim == 0 else 1.0
-            if (self.positive and size < 1.0 / EXTREME) or EXTREME < size < np.inf:
-                raise UnitError(f"must lie between {1.0 / EXTREME:g} and {EXTREME:g} in SI units, got {quantity!r}")
+            if (self.positive and size < SMALLEST) or GREATEST < size < np.inf:
+                raise UnitError(f"must lie between {SMALLEST:g} and {GREATEST:g} in SI units, got {quantity!r}")
         except UnitError as error:
             raise UnitError(f"{error}; {self._fix('it', value)}") from None
         if in_si.ndim != 0:
@@ -243,8 +243,8 @@ class Unit:
         return Q(float(quantity.magnitude), str(quantity.units))
 
 
-EXTREME = 1e100
-"""Largest number in SI of a field, and inverse of the smallest positive one: products of three are floats."""
+SMALLEST, GREATEST = 1e-100, 1e300
+"""Ends of the positive numbers in SI that a field may have: formulas divide by them, and square the quotient."""
 
 
 @np.errstate(over="ignore", under="ignore")
