@@ -13,7 +13,7 @@ import time
 from contextlib import suppress
 from importlib import import_module
 from threading import Thread, Timer
-from types import FrameType
+from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, NoReturn
 
 if TYPE_CHECKING:
@@ -58,6 +58,7 @@ class _Stop:
     def listen(self) -> None:
         """Turn signals into `KeyboardInterrupt`, except those that the parent process had ignored, as `nohup` does."""
         sys.unraisablehook = self._raised_in_vain
+        sys.excepthook = self._printed
         for name in ("SIGINT", "SIGTERM", "SIGHUP"):
             number = getattr(signal, name, None)  # Windows has no SIGHUP
             if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
@@ -87,6 +88,11 @@ class _Stop:
             again.start()
         else:
             sys.__unraisablehook__(what)
+
+    def _printed(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None, /) -> None:
+        """Print an exception unless it is an interrupt, which compiled code prints before it drops it."""
+        if self._signal is None or not issubclass(kind, KeyboardInterrupt):
+            sys.__excepthook__(kind, error, trace)
 
     def _end_in_time(self) -> None:
         """End the program even if something has caught the interrupt, or hangs."""

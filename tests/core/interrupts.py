@@ -177,8 +177,8 @@ def check(what: str, ended: Ended, number: int, target: str, folder: Path, whole
         assert not stopped or ("--resume" in ended.errors) == (folder / "out.partial").exists(), ended.errors
     if what != "script" and (folder / "out").exists():
         there = contents(folder / "out")
-        if "died" in ended.errors and "report.html" in there:
-            whole = {**whole, "report.html": there["report.html"]}  # its notes name the dead worker
+        if "died" in ended.errors and "report.html" in there:  # its notes name the dead worker
+            whole = {**whole, **{name: there[name] for name in ("report.html", ".wearlaw.json")}}
         assert there in (whole, OLD), f"not whole: {[name for name in whole if there.get(name) != whole[name]]}"
 
 

@@ -492,3 +492,19 @@ def test_a_run_that_was_killed_before_it_had_a_block_is_no_obstacle(fork: Forker
     assert (work / "out.partial").is_dir()
     assert fork(work, f"run(*{RUN})").code == 0
     assert not (work / "out.partial").exists()
+
+
+def test_an_interrupt_that_compiled_code_prints_is_not_shown() -> None:
+    script = (
+        "import os, signal, sys, time, _wearlaw_main\n"
+        "stop = _wearlaw_main._Stop()\n"
+        "stop.listen()\n"
+        "try:\n"
+        "    os.kill(os.getpid(), signal.SIGTERM)\n"
+        "    time.sleep(5)\n"
+        "except KeyboardInterrupt:\n"
+        "    sys.excepthook(*sys.exc_info())\n"
+        "stop.end_if_asked()\n"
+    )
+    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert (found.returncode, found.stdout, found.stderr) == (-signal.SIGTERM, "", "")
