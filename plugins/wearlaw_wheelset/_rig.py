@@ -545,13 +545,21 @@ def scalar(value: Any) -> float:
     return float(value.to_base_units().magnitude if isinstance(value, wl.Quantity) else value)
 
 
+LEAST_RADIUS, LEAST_LOAD = 1e-3, 1e-6
+"""Smallest curve radius [m] and vertical load [N]: below them, numbers overflow or vanish."""
+
+
 def _check_given(arrays: Mapping[str, Array]) -> None:
-    """Raise an error for a distance below zero, or a curve without a radius."""
-    distance, radius = arrays.get("rolled_distance"), arrays["curve_radius"]
+    """Raise an error for a distance below zero, a curve without a radius, or a load that is nothing but rounding."""
+    distance, radius, load = arrays.get("rolled_distance"), arrays["curve_radius"], arrays["vertical_load"]
     if distance is not None and (distance < 0.0).any():
         raise wl.UnitError(f"rolled_distance: must not be negative, got {1e-3 * distance.min():.4g} km")
     if (radius == 0.0).any():
         raise wl.ConditionsError("curve_radius: must not be zero; straight track has an infinite radius, 'inf m'")
+    if (np.abs(radius) < LEAST_RADIUS).any():
+        raise wl.ConditionsError(f"curve_radius: must be {LEAST_RADIUS:g} m or more, got {np.abs(radius).min():g} m")
+    if (load < LEAST_LOAD).any():
+        raise wl.ConditionsError(f"vertical_load: must be {LEAST_LOAD:g} N or more, got {load.min():g} N")
 
 
 def _friction(value: object, name: str) -> Array:

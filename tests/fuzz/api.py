@@ -394,7 +394,7 @@ def _check_alone(found: wl.Prediction, predict: wl.Pipeline[...], batch: Mapping
         if isinstance(value, wl.Quantity | list | np.ndarray) and np.ndim(getattr(value, "magnitude", value)) == 1:
             given[name] = value[-1]
     alone = predict(**given)
-    bound = float(alone.problem.friction_coefficient * alone.problem.normal_force)
+    bound = float(np.max(alone.problem.friction_coefficient * alone.problem.normal_force))
     for name in ("tangential_force", "wear_index", *("wear_rate",) * bool(found.laws)):
         one, other = getattr(found, name).magnitude[-1], getattr(alone, name).magnitude
         rounding = (OVER - 1.0) * bound if name == "tangential_force" else 0.0  # of tractions that cancel
