@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import tomllib
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
+from tests.core.cases import wearlaw, write
 from wearlaw import Q
+from wearlaw.plugins import loader
+from wearlaw.study.case import case_text, load_case
 
 RIG = """
 title = "A worn wheel"
@@ -109,6 +115,34 @@ def test_wear_in_the_report_is_that_of_the_prediction(worn: Path) -> None:
         radius = float(np.asarray(one.problem.body("wheel").rolling_radius))
         mass = Q(area, "um*mm/km") * Q(2.0 * np.pi * radius, "m") * wl.steel().density
         assert (mass / one.mass_per_distance).to("").magnitude == pytest.approx(1.0, rel=1e-12)  # rounding
+
+
+def profiles_of(name: str) -> dict[str, ws.Profile]:
+    rig: Any = load_case(name).rig
+    return {field: value for field, value in rig if isinstance(value, ws.Profile)}
+
+
+@pytest.mark.parametrize("name", [name for name in loader.installed().cases.items() if profiles_of(name)])
+def test_a_shipped_case_runs_with_profiles_from_files(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    case, profiles = tomllib.loads(case_text(name)), profiles_of(name)
+    for field, profile in profiles.items():
+        case["rig"][field] = f"{field}.{'prw' if profile.kind == 'wheel' else 'prr'}"
+        ws.write_profile(case["rig"][field], profile)
+    case["profiles"] = dict([*case["profiles"].items()][:1])
+    case["figures"] = {}
+    for sweep in case["sweeps"].values():
+        for values in sweep.values():
+            if isinstance(values, dict):
+                values["points"] = 2
+    result = wearlaw("run", str(write(Path("case.toml"), case)), "-o", "results")
+    assert result.exit_code == 0, result.output
+    table = pd.read_csv("results/tables/parameters.csv").set_index("parameter")
+    for field in profiles:
+        y = ws.read_profile(case["rig"][field]).points[0].magnitude
+        assert table.value[f"{field}.y"] == f"{y.size} values from {y.min():.12g} to {y.max():.12g} mm"
 
 
 def test_the_shipped_case_is_valid() -> None:

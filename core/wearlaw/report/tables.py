@@ -259,5 +259,12 @@ def _fields(record: Configuration, within: str = "") -> Iterator[tuple[str, str,
 
 def _text(value: Any) -> str:
     if isinstance(value, pint.Quantity):
-        return f"{value.magnitude:.12g} {symbol(value.units, '~P')}".rstrip()
-    return f"{value:.12g}" if isinstance(value, float) else str(value)
+        return f"{_number(value.magnitude)} {symbol(value.units, '~P')}".rstrip()
+    return _number(value) if isinstance(value, float) else str(value)
+
+
+def _number(value: Any) -> str:
+    """Return a number with 12 digits, or the count and the ends of an array, such as the points of a profile."""
+    if np.ndim(value):
+        return f"{np.size(value)} values from {np.min(value):.12g} to {np.max(value):.12g}"
+    return f"{value:.12g}"
