@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import pytest
+from pydantic import Field
 
 import wearlaw as wl
 from tests.core.fits import (
@@ -48,27 +49,41 @@ def test_a_pressure_beyond_first_yield_is_warned_of() -> None:
 
 
 class Narrow(wl.WearLaw):
-    """A law that allows its parameter little."""
+    """A law that allows its parameters little, and fails beyond."""
 
     name: ClassVar[str] = "narrow"
     source: ClassVar[str] = "made up"
     k: Annotated[wl.Quantity, wl.Unit("ug/m/N", limit=8.0)]
+    power: Annotated[float, Field(ge=1.0, le=2.0)] = 1.0
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        return p["k"] * contact.wear_index_density
+        assert np.all((p["power"] >= 1.0) & (p["power"] <= 2.0) & (p["k"] <= 8e-9))
+        return p["k"] * 1e6 * (contact.wear_index_density / 1e6) ** p["power"]
 
 
-def test_a_fit_may_pass_through_parameters_that_a_law_refuses_but_not_end_there() -> None:
-    predict = GLOBAL | Narrow(k=Q(5.0, "ug/m/N"))
-    tests = made_up(GLOBAL | Narrow(k=Q(6.0, "ug/m/N")), creepage=np.linspace(1.0, 5.0, 6))
-    for bounds in (None, {"k": ("1 ug/m/N", Q(7.9, "ug/m/N"))}):
-        fit = wl.fit(predict, tests, free=["k"], bootstrap=0, bounds=bounds)
-        assert fit.parameters["k"].magnitude == pytest.approx(6.0, rel=1e-7)
-    steeper = dataclasses.replace(tests, columns={**tests.columns, "wear_rate": 1.5 * tests.columns["wear_rate"]})
-    with pytest.raises(
-        wl.FitError, match=r"(?s)best fit has parameters that the law does not accept; try bounds: .*must not exceed 8"
-    ):
-        wl.fit(predict, steeper, free=["k"], bootstrap=0)
+@pytest.mark.parametrize(
+    ("free", "start", "true", "limit", "beyond"),
+    [
+        ("k", Q(5.0, "ug/m/N"), Q(6.0, "ug/m/N"), Q(8.0, "ug/m/N"), ("1 ug/m/N", "9 ug/m/N")),
+        ("power", 1.5, 1.2, 2.0, (0.5, 1.9)),
+        ("power", 1.0, 1.2, 2.0, (1.5, 2.1)),
+    ],
+)
+def test_a_fit_stays_within_the_limits_of_a_field(free: str, start: Any, true: Any, limit: Any, beyond: Any) -> None:
+    law = Narrow(k=Q(5.0, "ug/m/N"))
+    predict = GLOBAL | law.model_copy(update={free: start})
+    creepage = np.linspace(1.0, 5.0, 6)
+    tests = made_up(GLOBAL | law.model_copy(update={free: true}), creepage=creepage)
+    found = wl.fit(predict, tests, free=[free], bootstrap=0).parameters[free]
+    assert found.magnitude == pytest.approx(getattr(true, "magnitude", true), rel=1e-7)
+    steeper = made_up(GLOBAL | law.model_copy(update={free: limit}), creepage=creepage)
+    steeper = dataclasses.replace(
+        steeper, columns={**steeper.columns, "wear_rate": steeper.columns["wear_rate"] * (creepage / 0.5) ** 0.2}
+    )
+    with pytest.warns(wl.FitWarning, match=f"at a bound of {free}"):
+        at_limit = wl.fit(predict, steeper, free=[free], bootstrap=0).parameters[free]
+    assert at_limit.magnitude == pytest.approx(getattr(limit, "magnitude", limit), rel=1e-12)
+    refused(f"bounds: '{free}' takes values in the range", predict, tests, [free], bounds={free: beyond})
 
 
 class Steps(Narrow):

@@ -172,6 +172,8 @@ class Bounded(wl.Configuration):
     length: wl.Length = Q(1.0, "mm")
     offset: Annotated[wl.Quantity, wl.Unit("mm", positive=False, limit=20.0)] = Q(1.0, "mm")
     ratio: Annotated[wl.Quantity, wl.Unit("", limit=1.0)] = Q(50.0, "%")
+    power: Annotated[float, Field(ge=1.0, le=2.0)] | None = 1.5
+    stress: wl.Stress | None = Q(1.0, "GPa")
 
 
 class Outer(wl.Configuration):
@@ -190,6 +192,8 @@ def test_the_range_that_a_field_allows_is_that_of_its_annotation() -> None:
         "length": (0.0, inf, True),
         "offset": (-0.02, 0.02, False),
         "ratio": (0.0, 1.0, True),
+        "power": (1.0, 2.0, False),
+        "stress": (0.0, inf, True),
     }
     assert {name: allowed_range(Bounded(), name) for name in due} == due
     assert allowed_range(Outer(), "inner.share") == (0.0, 1.0, False)

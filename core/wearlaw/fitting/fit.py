@@ -65,8 +65,9 @@ def fit(
         residual is predicted - measured. If the tests state an uncertainty of the wear rate, the residual is
         (predicted - measured) over that, whatever is given here.
     bounds : mapping of str to pair, optional
-        Least and greatest values. Default: a hundredth and a hundred times the starting value, for a stage within the
-        range that its field allows.
+        Least and greatest values, within the limits of the field. Default: a hundredth and a hundred times the
+        starting value of a number that must be positive; for any other, a hundred times its size below and above it;
+        within the limits of the field.
     starts : int
         Number of further starting points, within a factor of ten of the given law.
     bootstrap : int

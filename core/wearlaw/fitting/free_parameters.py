@@ -26,7 +26,7 @@ FACTOR = 100.0
 """Default bounds of a parameter: this factor up and down from its first value."""
 
 ROUNDINGS = 16.0 * float(np.finfo(np.float64).eps)
-"""Relative distance from the end of the range that a stage allows, so that roundings do not lead beyond it."""
+"""Relative distance from the end of the range that a field allows, so that roundings do not lead beyond it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,9 +81,7 @@ class FreeParameters:
             part = part_at(predict, place)
             like[name] = numbers(part)[place.field]
             least, most, positive = allowed_range(part, place.field)
-            if place.kind == "law":  # it may pass through numbers that it does not accept; a stage is made anew
-                least, most = -np.inf, np.inf
-            elif name not in bounds:  # of a stage, a share or a factor keeps its sign unless bounds say otherwise
+            if place.kind == "stage" and name not in bounds:  # a share or a factor keeps its sign unless bounds differ
                 positive = positive or number_in_si(like[name]) > 0.0
             ranges[name] = least, most, positive
         if friction is not None:

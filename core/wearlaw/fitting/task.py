@@ -106,7 +106,8 @@ class Task:
         bounds, first = self.free.bounds, np.zeros(len(self.free.names))
         target = np.zeros(self.weights.size)
         reach = np.where(self.free.positive, math.log(NEAR), NEAR)
-        fits = search(self.model, target, first, bounds, Bounds(-reach, reach), starts, seed)
+        near = Bounds(bounds.clip(-reach), bounds.clip(reach))
+        fits = search(self.model, target, first, bounds, near, starts, seed)
         best = min(fits, key=lambda one: float(one.cost[0]))
         if len(self.observations) > 1:
             for _ in range(ROUNDS):

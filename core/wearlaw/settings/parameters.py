@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, TypeVar
+from collections.abc import Iterator, Mapping
+from typing import Any, TypeVar, get_args
 
 import numpy as np
 import pint
+from pydantic.fields import FieldInfo
 
 from wearlaw.errors import InputError, did_you_mean, quoted
 from wearlaw.settings.configuration import Configuration
@@ -54,7 +55,8 @@ def allowed_range(record: Configuration, name: str) -> tuple[float, float, bool]
     if inner:
         return allowed_range(getattr(record, outer), inner)
     low, high, positive = -np.inf, np.inf, False
-    for rule in type(record).model_fields[outer].metadata:
+    field = type(record).model_fields[outer]
+    for rule in (*field.metadata, *_rules_within(field.annotation)):
         if isinstance(rule, Unit):
             limit = rule.limit * unit_in_si(rule.unit) if rule.limit < np.inf else np.inf
             low, high, positive = max(low, -limit), min(high, limit), positive or rule.positive
@@ -64,6 +66,13 @@ def allowed_range(record: Configuration, name: str) -> tuple[float, float, bool]
         low = max([low, *(float(end) for end in (above, getattr(rule, "ge", None)) if end is not None)])
         high = min([high, *(float(getattr(rule, end)) for end in ("lt", "le") if getattr(rule, end, None) is not None)])
     return (max(low, 0.0) if positive else low), high, positive
+
+
+def _rules_within(annotation: Any) -> Iterator[Any]:
+    """Yield the rules of the types in a union, such as those of `Annotated[float, Field(ge=1)] | None`."""
+    for one in get_args(annotation):
+        for rule in getattr(one, "__metadata__", ()):
+            yield from rule.metadata if isinstance(rule, FieldInfo) else (rule,)
 
 
 def changed(record: ConfigurationT, values: Mapping[str, Quantity | float]) -> ConfigurationT:
