@@ -59,8 +59,6 @@ class Archard(wl.WearLaw):
     """Wear coefficient of V = k N s / H, k [-]."""
     hardness: wl.Stress | None = Field(default=None, examples=["2.6 GPa"])
     """Hardness of the body that wears, H [Pa]; None for that of its material."""
-    fitted_for: wl.Calibration | None = None
-    """Record of the tests that the coefficient is from, with their range; None if there is none."""
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         """Return the wear rate at the nodes [kg/m/m²]."""
@@ -77,15 +75,6 @@ class Archard(wl.WearLaw):
     def example_material(self) -> wl.Material:
         """A steel with a hardness, for the checks."""
         return SteelWithHardness(hardness="2.6 GPa")
-
-    @property
-    def calibration(self) -> wl.Calibration | None:
-        """The record of the tests that the coefficient is from."""
-        return self.fitted_for
-
-    def fitted(self, calibration: wl.Calibration) -> Archard:
-        """Return the law with a record of the fit of its coefficient."""
-        return self.model_copy(update={"fitted_for": calibration})
 
 
 def _hardness_of_material(contact: wl.Contact) -> float:

@@ -97,14 +97,10 @@ class BRR(wl.WearLaw):
         steps = ((p["mild_limit"], plateau - mild_end), (p["severe_limit"], severe_start - plateau))
         return {"wear_index": tuple(limit for limit, step in steps if np.any(step > ROUNDING * plateau))}
 
-    @property
-    def calibration(self) -> wl.Calibration | None:
-        """The record of the published law; None with numbers of your own."""
-        return calibration() if self._is_published else None
-
     @cached_property
-    def _is_published(self) -> bool:
-        return self == BRR()
+    def published(self) -> wl.Calibration | None:
+        """The record of the published law; None with numbers of your own."""
+        return calibration() if self.numbers == BRR().numbers else None
 
 
 def _at_borders(p: wl.Numbers) -> tuple[Any, Any, Any]:

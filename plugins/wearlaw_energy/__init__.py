@@ -46,8 +46,6 @@ class Energy(wl.WearLaw):
     thousandth of this unit."""
     energy_limit: EnergyDensity | None = None
     """Energy of friction per distance rolled and area, Tγ/A, at and above which wear is severe [N/mm²]."""
-    fitted_for: wl.Calibration | None = None
-    """Record of the tests that the numbers are from, with their range; None if there is none."""
 
     @model_validator(mode="after")
     def _mild_and_severe(self) -> Energy:
@@ -97,15 +95,6 @@ class Energy(wl.WearLaw):
     def ramps(self, p: wl.Numbers) -> tuple[tuple[Any, Any], ...] | None:
         """Return the whole law without a limit; a law that jumps is no sum of ramps."""
         return ((0.0, p["mass_per_energy"]),) if self._limit is None else None
-
-    @property
-    def calibration(self) -> wl.Calibration | None:
-        """The record of the tests that the numbers are from."""
-        return self.fitted_for
-
-    def fitted(self, calibration: wl.Calibration) -> Energy:
-        """Return the law with a record of the fit of its numbers."""
-        return self.model_copy(update={"fitted_for": calibration})
 
 
 @wl.hookimpl

@@ -122,16 +122,12 @@ class KTH(wl.WearLaw):
         """Return every border of the map: the rate jumps there."""
         return self.breakpoints(p)
 
-    @property
-    def calibration(self) -> wl.Calibration | None:
-        """The record of the published map; None with borders or coefficients of your own."""
-        return calibration() if self._is_published else None
-
     @cached_property
-    def _is_published(self) -> bool:
+    def published(self) -> wl.Calibration | None:
+        """The record of the published map; None with borders or coefficients of your own."""
         ends: tuple[Literal["low", "mid", "high"], ...] = ("low", "mid", "high")
-        published = [KTH(coefficient=end, hardness=self.hardness).explicit() for end in ends]
-        return self.explicit() in published
+        maps = [KTH(coefficient=end, hardness=self.hardness).numbers for end in ends]
+        return calibration() if self.numbers in maps else None
 
     def explicit(self) -> KTH:
         """Return this law with numbers for k."""

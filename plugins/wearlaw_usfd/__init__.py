@@ -74,7 +74,7 @@ class USFD(wl.WearLaw):
     source: ClassVar[str] = f"{TASSINI}, Tables 3 and 4"
     monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("wear_index_density",)
 
-    fitted_for: Literal["global", "exact", "fastsim"] | wl.Calibration = "global"
+    fitted_for: Literal["global", "exact", "fastsim"] | wl.Calibration = "global"  # type: ignore[assignment]
     """The contact solution to which the parameters were fitted. A name also chooses a published set, which fills in
     parameters that you do not give. For a set of your own, give a Calibration."""
     m_m: Slope
@@ -127,13 +127,9 @@ class USFD(wl.WearLaw):
         return (0.0, p["m_m"]), (p["q_s"] / p["m_m"], -p["m_m"]), (p["tr_sc"], p["m_c"])
 
     @property
-    def calibration(self) -> wl.Calibration:
-        """The record of the fit of the parameters."""
-        return calibrations()[self.fitted_for] if isinstance(self.fitted_for, str) else self.fitted_for
-
-    def fitted(self, calibration: wl.Calibration) -> USFD:
-        """Return the law with a record of the fit of its parameters."""
-        return self.model_copy(update={"fitted_for": calibration})
+    def published(self) -> wl.Calibration | None:
+        """The record of the set that `fitted_for` names."""
+        return calibrations()[self.fitted_for] if isinstance(self.fitted_for, str) else None
 
 
 @wl.hookimpl

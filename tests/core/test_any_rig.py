@@ -98,15 +98,16 @@ def test_samples_of_a_rig_of_ones_own_are_single_predictions() -> None:
 
 
 def test_samples_on_a_rail_outside_the_range_of_the_law_are_warned_of() -> None:
-    predict: Any = FASTSIM | wl.wear_law("usfd", fitted_for="fastsim").fitted(
-        wl.Calibration(
+    predict: Any = FASTSIM | wl.wear_law(
+        "usfd",
+        fitted_for=wl.Calibration(
             contact_model="fastsim",
             scale="cells",
             geometry="ellipse",
             materials="steel",
             stated_range=(("wear_index_density", "0 N/mm^2", "1 N/mm^2"),),
             source="a test",
-        )
+        ),
     )
     # Lateral creepage alone: what dissipates is neither the longitudinal force nor a line.
     given: Any = {**ON_ELLIPSE, "longitudinal_creepage": "0 %", "lateral_creepage": wl.uniform("0.5 %", "0.6 %")}

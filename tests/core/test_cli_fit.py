@@ -51,6 +51,17 @@ def test_what_is_not_fitted_and_the_rig_that_is_taken_are_noted() -> None:
     assert "note: fit: not fitted, m_c = 83.70 µg/m/N, tr_sc = 95.00 N/mm²\n" in notes
 
 
+def test_parameters_that_are_kept_from_a_set_for_another_contact_are_noted_as_compare_notes_them() -> None:
+    fit = (*FIT[:5], "usfd", "--bootstrap", "0", "-o", "out", "--overwrite")
+    kept = wearlaw(*fit, "--free", "q_s,m_m").stderr
+    compared = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", "usfd", "-o", "cmp").stderr
+    said = "the parameters of wear law 'usfd' were fitted for patch means (the global model), but are used with Exact("
+    (note,) = (line for line in kept.splitlines() if said in line)
+    assert note.removeprefix("note: fit: ") in compared
+    assert said not in wearlaw(*fit, "--free", "q_s,m_m,m_c,tr_sc").stderr
+    assert said not in wearlaw(*FIT, "-o", "out", "--overwrite").stderr
+
+
 @pytest.mark.parametrize(
     ("options", "free"),
     [

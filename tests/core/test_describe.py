@@ -189,7 +189,7 @@ def test_a_law_that_declares_nothing_or_must_be_given_a_field_is_described(monke
         install(law)
     silent = said(Silent)
     assert silent.startswith("silent: a wear law of wearlaw-testing 9.8.7 (plugin 'testing') Says nothing")
-    assert "fields: body = None The body that the law is for" in silent
+    assert "body = None The body that the law is for" in silent
     assert "declares: scale: patch means or cells branches: not declared" in silent
     assert silent.endswith("branches: not declared")
     assert said(Bounded).endswith("scale: patch means or cells known range of mean pressure from 1.000 MPa to 2000 MPa")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -11,12 +12,13 @@ from scipy import stats
 
 import wearlaw as wl
 from tests.core.distributions import Install
-from tests.core.fits import EXACT, refused
+from tests.core.fits import EXACT, refused, sloping
 from tests.core.outcome_laws import CONDITIONS, MIXED, Damage, Heat, Volume
 from tests.core.test_stages import PLUGIN
 from wearlaw import Q
 
 TRUE_HEAT, TRUE_DAMAGE = Heat(share=0.3), Damage(threshold=Q(40.0, "N"), slope=Q(2e-6, "1/N"))
+SLOPING = sloping.model_copy(update={"offset": Q(0.0, "ug/m/mm^2")})
 FASTSIM = wl.contact_model("fastsim")
 
 
@@ -36,11 +38,37 @@ def measured_tests(outcomes: Any, **more: Any) -> wl.WearTests:
 def test_the_number_of_a_law_of_heat_comes_back() -> None:
     fit = wl.fit(EXACT | Heat(), measured_tests(outcomes_of(TRUE_HEAT)), free=["share"], bootstrap=0)
     assert fit.parameters["share"].magnitude == pytest.approx(0.3, rel=1e-7)
-    assert fit.law == Heat(share=fit.parameters["share"].magnitude)
+    assert fit.law is not None
+    assert fit.law.numbers == {"share": fit.parameters["share"].magnitude}
     assert list(fit.residuals["observable"].unique()) == ["heat_flux [W/mm^2]"]
     (panel,) = fit.figure_data().panels
     assert panel.y.label == "heat flux [W/mm²]"
     assert repr(fit).startswith("Fit to 7 values of heat flux,")
+
+
+@pytest.mark.parametrize(
+    ("start", "true", "free"),
+    [
+        (Heat(), TRUE_HEAT, "share"),
+        (SLOPING, SLOPING.model_copy(update={"slope": Q(3.0, "ug/m/N")}), "slope"),
+        (wl.wear_law("kth"), wl.wear_law("kth", hardness=Q(3.0, "GPa")), "hardness"),
+    ],
+)
+def test_a_fitted_law_of_any_author_records_its_contact_and_warns_beyond_its_tests(
+    start: wl.Law, true: wl.Law, free: str
+) -> None:
+    outcomes = outcomes_of(true)
+    tests = measured_tests(outcomes) if start.kind == "law" else wl.WearTests.from_arrays(**CONDITIONS, **outcomes)
+    law = wl.fit(EXACT | start, tests, free=[free], bootstrap=0).law
+    assert law is not None
+    assert law.calibration is not None
+    assert (law.calibration.contact_model, law.calibration.scale) == ("exact", "cells")
+    assert law.calibration.source == f"fitted to {len(tests)} tests"
+    assert pickle.loads(pickle.dumps(law)) == law
+    with pytest.warns(wl.CalibrationWarning, match="were fitted for the cells of contact_model..exact"):
+        _ = EXACT.rig | wl.contact_model("fastsim") | law
+    with pytest.warns(wl.RangeWarning, match=r"has a known range of mean .* \(fitted to 7 tests\)"):
+        (EXACT | law)(**{**CONDITIONS, "normal_force": Q(5.0, "kN")})
 
 
 def test_a_law_of_another_outcome_has_a_file_too(install: Install, tmp_path: Path) -> None:
@@ -98,7 +126,7 @@ def test_several_laws_are_fitted_together_as_each_alone() -> None:
         (value,) = alone.parameters.values()
         assert fit.parameters[name].magnitude == pytest.approx(value.magnitude, rel=1e-6)
     assert fit.law is None
-    assert fit.predict.laws[1] == Heat(share=fit.parameters["heat.share"].magnitude)
+    assert fit.predict.laws[1].numbers == {"share": fit.parameters["heat.share"].magnitude}
     assert fit.provenance["laws"].keys() == {"usfd", "heat", "damage"}
     with pytest.raises(wl.FitError, match=r"holds one law, and this fit has several; they are in fit\.predict\.laws"):
         fit.to_toml("nowhere.toml")

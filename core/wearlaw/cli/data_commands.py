@@ -184,10 +184,7 @@ def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | flo
 def _with_law(
     contact: Pipeline[...], text: str, given: Mapping[str, str | float], free: list[str], notes: Notes
 ) -> Pipeline[...]:
-    """Return the pipeline with the law to fit, and note the values of its fixed parameters.
-
-    There is no warning that the law was fitted for another contact: it is about to be fitted.
-    """
+    """Return the pipeline with the law to fit, and note the values of its fixed parameters."""
     law = law_of(text, given)
     kept = [
         f"{name} = {value!r}"

@@ -9,7 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import FitError, FitWarning, InputError, PlasticityWarning, RangeWarning, shortened
+from wearlaw.errors import (
+    CalibrationWarning,
+    FitError,
+    FitWarning,
+    InputError,
+    PlasticityWarning,
+    RangeWarning,
+    shortened,
+)
 from wearlaw.fitting.fit import fit as fit_parameters
 from wearlaw.fitting.observations import test_names
 from wearlaw.fitting.result import Fit
@@ -98,7 +106,7 @@ def cross_validated(
         there[held] = True
         try:
             # The fit to all tests has warned already; test after test at the edge of the range would repeat it.
-            with caught_warnings(FitWarning, RangeWarning, PlasticityWarning):
+            with caught_warnings(FitWarning, RangeWarning, PlasticityWarning, CalibrationWarning):
                 again = fit_parameters(tests=tests[~there], bootstrap=0, **fit.settings)
                 found[held] = predict(again, held)
         except FitError as error:

@@ -18,6 +18,7 @@ from wearlaw.fitting.observations import test_names
 from wearlaw.fitting.result import Fit
 from wearlaw.fitting.summary import summarise
 from wearlaw.fitting.task import Task
+from wearlaw.pipeline.composition import warn_of_parameters
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.arguments import expect
 from wearlaw.units.quantities import QuantityLike
@@ -90,6 +91,8 @@ def fit(
 
     Warns
     -----
+    CalibrationWarning
+        If parameters that are not free were fitted for another contact or other materials.
     FitWarning
         If the law does not fit the tests (see `LackOfFit`), the fit ends at a bound, a test decides a parameter alone,
         or the bootstrap is unreliable.
@@ -122,6 +125,7 @@ def fit(
     with steadily():
         found = summarise(task, best, replicates, confidence, settings)
     _warn(task, best, replicates, found)
+    _warn_of_kept(task)
     return found
 
 
@@ -150,6 +154,18 @@ def _warn(task: Task, best: Solutions, replicates: Replicates | None, found: Fit
     poor = (one.warning for one in found.lack_of_fit if one.poor)
     for text in (*poor, *_at_bounds(task, best), *_decided_alone(task, best), *_unreliable(task, replicates)):
         warnings.warn(text, FitWarning, stacklevel=3)
+
+
+def _warn_of_kept(task: Task) -> None:
+    """Warn the caller of `fit` if a law keeps parameters that were fitted for another contact."""
+    predict = task.predict
+    free = {(place.index, place.field) for place in task.free.places.values() if place.kind == "law"}
+    for one in task.observations:
+        if one.law is None:
+            continue
+        law, problem = predict.laws[one.law], one.problem
+        if any((one.law, name) not in free for name in law.numbers):
+            warn_of_parameters(problem.geometry, problem.bodies, predict.contact_model, predict.scale, law, 4)
 
 
 def _at_bounds(task: Task, best: Solutions) -> Iterator[str]:

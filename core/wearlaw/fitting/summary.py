@@ -92,7 +92,7 @@ def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observatio
 
 
 def _fitted_pipeline(task: Task, values: Mapping[str, Array], observations: Sequence[Observations]) -> Pipeline[...]:
-    """Return the pipeline with the fitted numbers; fitted laws record calibration and tests."""
+    """Return the pipeline with the fitted numbers; laws record their tests, and those with free numbers the fit."""
     given = task.predict
     at_places = {place: float(values[name][0]) for name, place in task.free.places.items()}
     for one in observations:
@@ -111,7 +111,9 @@ def _fitted_pipeline(task: Task, values: Mapping[str, Array], observations: Sequ
     predict = given.model_copy(update={"stages": stages})
     for one in observations:
         if one.law is not None:
-            law = laws[one.law].fitted(_calibration(task, predict, one))
+            law = laws[one.law]
+            if one.law in task.free.freed_laws:
+                law = law.model_copy(update={"fitted_for": _calibration(task, predict, one)})
             laws[one.law] = law.with_tests(one.tests.digests(one.observable, one.unit))
     return predict.with_law(*laws) if laws else predict
 

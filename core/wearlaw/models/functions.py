@@ -48,11 +48,12 @@ class FunctionLaw(WearLaw):
         return np.broadcast_to(value * unit_in_si(self.returns), contact.pressure.shape)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        fields = {name: text_of(getattr(self, name)) for name in self.units}
+        own = {name: text_of(getattr(self, name)) for name in self.units}
+        fields = own | {name: getattr(self, name) for name in WearLaw.model_fields}
         return _restore, (type(self).__module__, type(self).__qualname__, fields)
 
 
-def _restore(module: str, name: str, fields: dict[str, str]) -> FunctionLaw:
+def _restore(module: str, name: str, fields: dict[str, Any]) -> FunctionLaw:
     """Make a law again from the decorated function, which is an attribute of its module."""
     law: Any = importlib.import_module(module)
     for part in name.split("."):

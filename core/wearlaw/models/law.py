@@ -210,8 +210,14 @@ class Law(Model):
     zero_in_stick: ClassVar[bool] = False
     """Whether the value is zero at nodes that stick."""
 
+    fitted_for: Calibration | None = None
+    """Record of the tests that the numbers are from, with their range; `wl.fit` fills it in. None if there is none."""
     body: str | None = None
     """The body that the law is for, by its name in the rig, such as "rail"; None for every body."""
+
+    published: ClassVar = cast(Any, None)  # Any: as for `scale`
+    """Record of the tests behind the published numbers of the law, or None. A law with other numbers than the published
+    ones has none, so make it a property."""
 
     scale: ClassVar = cast(Any, "any")  # Any: for type checkers, a subclass may make it a property
     """"patch" if the law is stated only for the means of the whole patch, otherwise "any". A law that contains another
@@ -239,7 +245,9 @@ class Law(Model):
             for name, arguments in TAKE_NUMBERS.items():
                 _check_arguments(cls, name, arguments)
             known = cls.__pydantic_fields__
-            known["body"] = known.pop("body")  # last where fields are shown
+            for name in Law.model_fields:
+                if known[name].default is None:
+                    known[name] = known.pop(name)  # last where fields are shown
 
     @model_validator(mode="after")
     def _has_a_scale(self) -> Self:
@@ -260,7 +268,8 @@ class Law(Model):
             check_variables(f"{self.kind} '{self.name}': `{name}`", variables, allowed)
 
     def __repr_args__(self) -> Any:
-        return ((name, value) for name, value in super().__repr_args__() if (name, value) != ("body", None))
+        inherited = Law.model_fields
+        return ((name, value) for name, value in super().__repr_args__() if name not in inherited or value is not None)
 
     @abstractmethod
     def rate(self, contact: Contact, p: Numbers) -> Array:
@@ -420,15 +429,12 @@ class Law(Model):
 
     @property
     def calibration(self) -> Calibration | None:
-        """Record of the fit of the parameters, or None."""
-        return None
+        """Record of the tests that the numbers are from: `fitted_for`, or else `published`; None if there is none."""
+        record: Calibration | None = self.fitted_for if isinstance(self.fitted_for, Calibration) else self.published
+        return record
 
     def explicit(self) -> "Law":
         """Return the same law with numbers instead of names of published values."""
-        return self
-
-    def fitted(self, calibration: Calibration) -> "Law":  # noqa: ARG002
-        """Return this law with a record of the fit of its parameters; by default the law keeps no record."""
         return self
 
     @cached_property

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
-from wearlaw.models.law import WEAR, Calibration, Law, LocalOutcome, Outcome
+from wearlaw.models.law import WEAR, Law, LocalOutcome, Outcome
 from wearlaw.units.quantities import WEAR_RATE, Quantity, from_si
 
 
@@ -58,7 +58,5 @@ class WearLaw(Law):
         def __ror__(self, contact: Contact) -> LocalWear: ...
 
         def explicit(self) -> WearLaw: ...  # noqa: D102
-
-        def fitted(self, calibration: Calibration) -> WearLaw: ...  # noqa: D102
 
         def band(self) -> tuple[WearLaw, WearLaw, WearLaw] | None: ...  # noqa: D102

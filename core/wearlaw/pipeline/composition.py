@@ -120,6 +120,24 @@ def check_geometry(rig: Model, model: ContactModel, geometry: Geometry | None) -
         )
 
 
+def warn_of_parameters(
+    geometry: Geometry | None,
+    bodies: Mapping[str, Body],
+    model: ContactModel,
+    scale: Scale,
+    law: Law,
+    stacklevel: int = 3,
+) -> None:
+    """Warn if the law's parameters were fitted for another contact, materials or body; `stacklevel` 1 is this function.
+
+    The geometry is None, and `bodies` is empty, if they are not known.
+    """
+    warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
+    warn_of_materials(bodies, law, stacklevel + 1)
+    if law.body is not None and bodies:
+        warn_of_body(bodies, law, law.body, stacklevel + 1)
+
+
 def warn_of_calibration(
     geometry: Geometry | None, model: ContactModel, scale: Scale, law: Law, stacklevel: int = 3
 ) -> None:

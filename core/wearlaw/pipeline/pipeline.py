@@ -31,9 +31,9 @@ from wearlaw.pipeline.composition import (
     check_scale,
     check_traction,
     law_among,
-    warn_of_body,
     warn_of_calibration,
     warn_of_materials,
+    warn_of_parameters,
     warn_of_unlike_materials,
 )
 from wearlaw.pipeline.prediction import Prediction, solved
@@ -376,10 +376,7 @@ class Pipeline(Configuration, Generic[P]):
         if not isinstance(part, Law):
             raise CompositionError(f"a {before} is followed by {after}, not by {shortened(part)}; {ORDER}")
         pipeline = self.with_law(*self.laws, part)
-        warn_of_calibration(self.rig.patch_geometry, self.contact_model, self.scale, part)
-        warn_of_materials(self.rig.bodies, part)
-        if part.body is not None and self.rig.bodies:
-            warn_of_body(self.rig.bodies, part, part.body, stacklevel=3)
+        warn_of_parameters(self.rig.patch_geometry, self.rig.bodies, self.contact_model, self.scale, part)
         return pipeline
 
     def __call__(self, /, *positional: P.args, **conditions: P.kwargs) -> Prediction:

@@ -33,8 +33,7 @@ from wearlaw.pipeline.composition import (
     law_among,
     other_materials,
     warn_of_body,
-    warn_of_calibration,
-    warn_of_materials,
+    warn_of_parameters,
 )
 from wearlaw.pipeline.datasets import Conditions, dataset, frame
 from wearlaw.pipeline.pictures import draw
@@ -147,10 +146,7 @@ class Prediction:
             one.check_variables()
         check_laws(laws, problem.bodies)
         for one in laws:
-            warn_of_calibration(problem.geometry, model, model.scale, one)
-            warn_of_materials(problem.bodies, one)
-            if one.body is not None and problem.bodies:
-                warn_of_body(problem.bodies, one, one.body, stacklevel=3)
+            warn_of_parameters(problem.geometry, problem.bodies, model, model.scale, one)
         watch = RangeWatch(*laws)
         found = solved(model, laws, problem, watch)
         watch.warn(2)
