@@ -46,7 +46,7 @@ def test_a_method_that_goes_or_comes_or_takes_other_arguments_changes_the_interf
 
     Law.__module__ = "wearlaw.models.wear_law"
     assert lines_of("WearLaw", Law) == {
-        "WearLaw(*, body=None) < WearLaw < Law < Configuration",
+        "WearLaw(*, fitted_for=None, body=None) < WearLaw < Law < Configuration",
         "WearLaw.cooled(self)",
         "WearLaw.rate(self, contact, p, *, warm=False)",
     }

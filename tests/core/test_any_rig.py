@@ -98,17 +98,16 @@ def test_samples_of_a_rig_of_ones_own_are_single_predictions() -> None:
 
 
 def test_samples_on_a_rail_outside_the_range_of_the_law_are_warned_of() -> None:
-    predict: Any = FASTSIM | wl.wear_law(
-        "usfd",
-        fitted_for=wl.Calibration(
-            contact_model="fastsim",
-            scale="cells",
-            geometry="ellipse",
-            materials="steel",
-            stated_range=(("wear_index_density", "0 N/mm^2", "1 N/mm^2"),),
-            source="a test",
-        ),
+    record = wl.Calibration(
+        contact_model="fastsim",
+        scale="cells",
+        geometry="ellipse",
+        materials="steel",
+        stated_range=(("wear_index_density", "0 N/mm^2", "1 N/mm^2"),),
+        source="a test",
     )
+    law = wl.wear_law("usfd", fitted_for="fastsim").model_copy(update={"fitted_for": record})
+    predict: Any = FASTSIM | law
     # Lateral creepage alone: what dissipates is neither the longitudinal force nor a line.
     given: Any = {**ON_ELLIPSE, "longitudinal_creepage": "0 %", "lateral_creepage": wl.uniform("0.5 %", "0.6 %")}
     u = wl.uncertainty(predict, **given, samples=8)
@@ -304,7 +303,9 @@ def test_a_fit_finds_the_law_that_made_the_tests(model: str) -> None:
 
 def test_a_law_fitted_on_a_rail_belongs_to_ellipses() -> None:
     usfd = wl.wear_law("usfd", fitted_for="fastsim")
-    fit = wl.fit(FASTSIM.with_law(usfd), on_rail("fastsim"), ["m_m"], friction_coefficient=0.35, starts=4, bootstrap=0)
+    given: Any = {"friction_coefficient": 0.35, "starts": 4, "bootstrap": 0}
+    with pytest.warns(wl.CalibrationWarning, match="were fitted for line contacts, but are used with elliptic"):
+        fit = wl.fit(FASTSIM.with_law(usfd), on_rail("fastsim"), ["m_m"], **given)
     assert fit.law is not None
     FASTSIM | fit.law  # warnings are errors
     with pytest.warns(wl.CalibrationWarning, match="were fitted for elliptic contacts, but are used with line"):

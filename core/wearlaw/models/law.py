@@ -211,7 +211,7 @@ class Law(Model):
     """Whether the value is zero at nodes that stick."""
 
     fitted_for: Calibration | None = None
-    """Record of the tests that the numbers are from, with their range; `wl.fit` fills it in. None if there is none."""
+    """Record of the tests that the numbers are from, with their range; `wl.fit` fills it in."""
     body: str | None = None
     """The body that the law is for, by its name in the rig, such as "rail"; None for every body."""
 
