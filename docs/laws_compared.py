@@ -126,7 +126,7 @@ def published() -> Iterator[tuple[wl.WearLaw, dict[str, str]]]:
         if found.origin(name).distribution == "wearlaw":
             fields = options(law)
             for choice in itertools.product(*fields.values()):
-                chosen = dict(zip(fields, choice, strict=True))
+                chosen: dict[str, Any] = dict(zip(fields, choice, strict=True))
                 try:
                     yield law(**chosen), chosen
                 except wl.ConfigurationError:
