@@ -70,9 +70,12 @@ def test_a_wheelset_that_cannot_be_is_refused(changed: dict[str, Any], message: 
         ({"lateral_displacement": "60 mm"}, wl.ConditionsError, "at 60 mm the left wheel does not touch its rail"),
         ({"yaw": "7 rad"}, wl.ConditionsError, r"yaw: must be at most 0\.2 rad, got 7 rad; is it in mrad"),
         ({"vertical_load": "-5 kN"}, wl.UnitError, "vertical_load"),
-        ({"friction_coefficient": 0.0}, wl.UnitError, "friction_coefficient: must be positive and finite"),
-        ({"friction_coefficient": "rough"}, wl.UnitError, "friction_coefficient: must be a plain number"),
+        ({"friction_coefficient": 0.0}, wl.UnitError, "friction_coefficient: must be a positive finite number"),
+        ({"friction_coefficient": "rough"}, wl.UnitError, "friction_coefficient: 'rough' is not a number with a unit"),
+        ({"friction_coefficient": Q(0.3, "m")}, wl.UnitError, r"friction_coefficient: got 0\.3000 m, .* not a ratio"),
+        ({"friction_coefficient": True}, wl.UnitError, "friction_coefficient: True is not a real number"),
         ({"flange_friction_coefficient": np.nan}, wl.UnitError, "flange_friction_coefficient"),
+        ({"flange_friction_coefficient": Q(0.3, "m")}, wl.UnitError, "flange_friction_coefficient: got .* not a ratio"),
         (
             {"lateral_displacement": Q([1.0, 2.0, 3.0], "mm"), "friction_coefficient": [0.2, 0.3]},
             wl.ConditionsError,
@@ -92,6 +95,15 @@ def test_wrong_conditions_are_named(changed: dict[str, Any], error: type[Excepti
     predict: Any = pair() | wl.contact_model("fastsim")
     with pytest.raises(error, match=message):
         predict(**{**GIVEN, **changed})
+
+
+def test_friction_in_percent_is_a_ratio() -> None:
+    friction = {"friction_coefficient": 0.25, "flange_friction_coefficient": 0.125}
+    given = {**GIVEN, **friction, "lateral_displacement": "6.2 mm"}
+    in_percent = {"friction_coefficient": Q(25.0, "%"), "flange_friction_coefficient": "12.5 %"}
+    one, other = (pair().problem(**values).friction_coefficient for values in (given, {**given, **in_percent}))
+    assert {*one[np.isfinite(one)]} == {0.25, 0.125}
+    np.testing.assert_allclose(other, one, rtol=2 * np.finfo(float).eps)  # the factor and the product round
 
 
 def test_contact_models_that_do_not_solve_strips_are_refused_at_once() -> None:

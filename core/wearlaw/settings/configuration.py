@@ -7,7 +7,7 @@ from threading import RLock
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import pint
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, ValidationError, field_validator, model_validator
 
 from wearlaw.errors import (
     UNWRITABLE,
@@ -24,13 +24,13 @@ from wearlaw.errors import (
 )
 from wearlaw.settings.docstrings import field_docstrings, place_of_statement
 from wearlaw.settings.toml_files import DEEPEST
-from wearlaw.units.quantities import shown
+from wearlaw.units.quantities import plain_number, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from inspect import Signature
 
-    from pydantic import GetJsonSchemaHandler
+    from pydantic import GetJsonSchemaHandler, ValidationInfo
     from pydantic_core import CoreSchema, ErrorDetails
 
 LINE = 100
@@ -71,6 +71,13 @@ class Configuration(BaseModel):
         if wrong:
             raise ConfigurationError(cls.subject(), wrong)
         return fields
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _ratios_as_numbers(cls, value: Any, info: ValidationInfo) -> Any:
+        """Take a ratio such as "30 %" in a field without a unit, and refuse a value with a dimension."""
+        field = cls.model_fields.get(info.field_name or "")
+        return plain_number(value) if field is not None and field.annotation is float else value
 
     if not TYPE_CHECKING:  # checkers keep the signature that pydantic derives from the fields
 
