@@ -186,9 +186,9 @@ def test_wrong_coefficient_is_refused_with_field_value_and_fix(value: Any, said:
 
 
 def test_a_coefficient_may_be_given_in_percent() -> None:
-    for given in (Q(46, "%"), "46 %", "0.46 dimensionless"):
+    for value in (Q(46, "%"), "46 %", "0.46 dimensionless"):
         # The factor of a percent and the product are rounded.
-        assert wl.coefficient(given, "friction_coefficient") == pytest.approx(0.46, rel=np.finfo(float).eps)
+        assert wl.coefficient(value, "friction_coefficient") == pytest.approx(0.46, rel=np.finfo(float).eps)
 
 
 def test_a_field_without_unit_takes_percent_and_refuses_a_dimension() -> None:
