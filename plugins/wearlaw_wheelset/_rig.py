@@ -270,15 +270,20 @@ class Wheelset(wl.Rig):
         ------
         ConditionsError
             If a wheel does not touch its rail.
+        UnitError
+            If an argument lacks its unit, is out of bounds or has too many values.
         """
         given = {"lateral_displacement": lateral_displacement, "yaw": yaw}
-        axes = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
-        for name, array in axes.items():
+        arrays = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
+        for name, array in arrays.items():
             if array.ndim > 1:
                 raise wl.InputError(f"{name}: must have at most one axis, got an array of shape {array.shape}")
-        displacement, turned = (array.ravel() for array in np.meshgrid(*axes.values(), indexing="ij"))
-        fixed = None if roll is None else np.full(displacement.shape, scalar(UNITS["roll"].si(roll, "roll")))
-        most = scalar(wl.Unit("mm", positive=False).si(within, "within"))
+        axes = {name: wl.parse(value) if isinstance(value, str) else value for name, value in given.items()}
+        displacement, turned = (array.ravel() for array in np.meshgrid(*arrays.values(), indexing="ij"))
+        fixed = None if roll is None else np.full(displacement.shape, _one(UNITS["roll"], roll, "roll"))
+        most = _one(wl.Unit("mm", positive=False), within, "within")
+        if most < 0.0:
+            raise wl.UnitError(f"within: must not be negative, got {1e3 * most:.4g} mm")
         self._check_yaw(turned)
         rolls, found = searched(self._section, displacement, turned, fixed)
         self._check_contact(displacement, found)
@@ -297,7 +302,7 @@ class Wheelset(wl.Rig):
     @steady
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
         """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, by EN 15302."""
-        most = scalar(wl.Unit("mm").si(amplitude, "amplitude"))
+        most = _one(wl.Unit("mm"), amplitude, "amplitude")
         displacement = np.linspace(-most - MARGIN, most + MARGIN, CONICITY_POINTS)
         rolls, found = searched(self._section, displacement, np.zeros_like(displacement))
         self._check_contact(displacement, found)
@@ -372,7 +377,7 @@ class Wheelset(wl.Rig):
         _check_given(arrays)
         shape = _shape(arrays)
         flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
-        tread, on_flange = (falling.get(name, flat.get(name)) for name in friction)
+        tread, on_flange = (falling[name] if name in falling else flat[name] for name in friction)
         balance = self._balance(flat, (tread, on_flange))
         return self._whole(balance, shape, flat.get("rolled_distance"))
 
@@ -540,6 +545,14 @@ class Wheelset(wl.Rig):
 def scalar(value: Any) -> float:
     """Return a quantity with one value in SI."""
     return float(value.to_base_units().magnitude if isinstance(value, wl.Quantity) else value)
+
+
+def _one(unit: wl.Unit, value: wl.QuantityLike, name: str) -> float:
+    """Return an argument with one value in SI, or raise an error that names it."""
+    array = unit.si(value, name)
+    if array.ndim:
+        raise wl.UnitError(f"{name}: must be one value, got an array of shape {array.shape}")
+    return float(array)
 
 
 LEAST_RADIUS, LEAST_LOAD, LEAST_FRICTION = 1e-3, 1e-6, 1e-12

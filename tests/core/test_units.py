@@ -194,11 +194,11 @@ def test_a_coefficient_may_be_given_in_percent() -> None:
 def test_a_field_without_unit_takes_percent_and_refuses_a_dimension() -> None:
     given: dict[str, Any] = {"limit_ratio": 1.0, "decay": "1 s/m"}
     for static in (Q(25.0, "%"), "25 %"):
-        assert wl.FallingFriction(static_coefficient=static, **given).static_coefficient == 0.25  # type: ignore[arg-type]
-    for static in (Q(0.25, "m"), "0.25 m", True):
+        assert wl.FallingFriction(static_coefficient=static, **given).static_coefficient == 0.25
+    for wrong in (Q(0.25, "m"), "0.25 m", True):
         said = r"static_coefficient: .* give it as a plain number or in percent"
         with pytest.raises(wl.ConfigurationError, match=said):
-            wl.FallingFriction(static_coefficient=static, **given)  # type: ignore[arg-type]
+            wl.FallingFriction(static_coefficient=wrong, **given)
 
 
 def test_real_array_keeps_the_memory_of_float64() -> None:

@@ -106,6 +106,33 @@ def test_friction_in_percent_is_a_ratio() -> None:
     np.testing.assert_allclose(other, one, rtol=2 * np.finfo(float).eps)  # the factor and the product round
 
 
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"roll": Q([0.0, 1.0], "mrad")}, r"roll: must be one value, got an array of shape \(2,\)"),
+        ({"within": Q([0.1, 0.2], "mm")}, r"within: must be one value, got an array of shape \(2,\)"),
+        ({"within": "-1 mm"}, "within: must not be negative, got -1 mm"),
+    ],
+)
+def test_wrong_arguments_of_the_geometry_are_named(changed: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.UnitError, match=message):
+        pair().geometry(**{"lateral_displacement": "3 mm", **changed})
+
+
+def test_the_conicity_has_one_amplitude() -> None:
+    with pytest.raises(wl.UnitError, match=r"amplitude: must be one value, got an array of shape \(2,\)"):
+        pair().equivalent_conicity(amplitude=Q([1.0, 2.0], "mm"))
+
+
+@pytest.mark.parametrize("unit", ["mm", "m", "cm"])
+def test_coordinates_of_the_geometry_are_the_values_given(unit: str) -> None:
+    given = np.array([-6.5, -0.3, 0.1, 5.7]) / {"mm": 1.0, "m": 1e3, "cm": 10.0}[unit]
+    data = pair().geometry(lateral_displacement=Q(given, unit), yaw="0.3 mrad").dataset
+    assert [float(data.sel(lateral_displacement=one).lateral_displacement) for one in given] == given.tolist()
+    assert data.lateral_displacement.units == unit
+    assert (float(data.yaw), data.yaw.units) == (0.3, "mrad")
+
+
 def test_contact_models_that_do_not_solve_strips_are_refused_at_once() -> None:
     with pytest.raises(
         wl.CompositionError, match="'polach' solves elliptic contacts only, but a Wheelset makes patches"

@@ -195,6 +195,7 @@ def test_friction_falls_with_the_creep_speed_of_each_patch(pressure: Pressure) -
         flange_friction_coefficient=flange,
     )
     problem = found.problem
+    assert problem.contact_angle is not None
     there = np.isfinite(problem.longitudinal_creepage)
     steep = np.abs(problem.contact_angle[there]) > np.radians(30.0)
     assert 0 < steep.sum() < steep.size

@@ -630,7 +630,7 @@ def _si(
     return broadcast(arrays)
 
 
-def _poisson_ratio(value: ArrayLike) -> Array:
+def _poisson_ratio(value: object) -> Array:
     ratio = coefficient(value, "poisson_ratio", positive=False)
     if not ((ratio >= 0.0) & (ratio <= 0.5)).all():
         raise InputError(f"poisson_ratio: must lie between 0 and 0.5, got {shortened(value)}")

@@ -281,7 +281,7 @@ def real_array(value: object) -> NDArray[np.float64]:
     return array if array.ndim else array[()]
 
 
-def coefficient(value: ArrayLike | QuantityLike, name: str, *, positive: bool = True) -> NDArray[np.float64]:
+def coefficient(value: object, name: str, *, positive: bool = True) -> NDArray[np.float64]:
     """Return a coefficient without dimension, such as that of friction, as float64.
 
     Parameters
