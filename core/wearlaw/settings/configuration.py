@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from threading import RLock
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from types import NoneType
+from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, get_args, get_origin
 
 import pint
 from pydantic import BaseModel, ConfigDict, ValidationError, field_validator, model_validator
@@ -77,7 +78,7 @@ class Configuration(BaseModel):
     def _ratios_as_numbers(cls, value: Any, info: ValidationInfo) -> Any:
         """Take a ratio such as "30 %" in a field without a unit, and refuse a value with a dimension."""
         field = cls.model_fields.get(info.field_name or "")
-        return plain_number(value) if field is not None and field.annotation is float else value
+        return plain_number(value) if field is not None and _is_number(field.annotation) else value
 
     if not TYPE_CHECKING:  # checkers keep the signature that pydantic derives from the fields
 
@@ -163,6 +164,16 @@ class Configuration(BaseModel):
     def __repr_args__(self) -> Any:
         for name, value in super().__repr_args__():
             yield name, _Text(shown(value)) if isinstance(value, pint.Quantity) else value
+
+
+def _is_number(annotation: Any) -> bool:
+    """Return whether a field holds a float, or a float or None."""
+    if annotation is float:
+        return True
+    inner = get_args(annotation)
+    if get_origin(annotation) is Annotated:
+        return _is_number(inner[0])
+    return len(inner) == 2 and inner[1] is NoneType and _is_number(inner[0])
 
 
 def unwritable(value: object, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str]]:
