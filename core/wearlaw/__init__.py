@@ -81,7 +81,19 @@ from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.text_files import beside, read_file
 from wearlaw.study.sections import CheckedClaim, Section, Verdict
 from wearlaw.uncertainties.distributions import lognormal, normal, published_range, uniform
-from wearlaw.units.quantities import Density, Length, Q, Quantity, QuantityLike, Speed, Stress, Unit, parse, scalar_si
+from wearlaw.units.quantities import (
+    Density,
+    Length,
+    Q,
+    Quantity,
+    QuantityLike,
+    Speed,
+    Stress,
+    Unit,
+    coefficient,
+    parse,
+    scalar_si,
+)
 from wearlaw.units.wear_coefficients import wear_coefficient
 from wearlaw.version import __version__
 from wearlaw.wear_tests.reader import read_tests
@@ -179,6 +191,7 @@ __all__ = [
     "accelerated",
     "as_wear_law",
     "beside",
+    "coefficient",
     "compare",
     "compiled_loop",
     "contact_model",

@@ -109,7 +109,7 @@ class Geometry:
     ----------
     dataset : xarray.Dataset
         Places, angles, radii and curvatures of each patch, with units in attrs; NaN where there is no such patch. The
-        axes are the lateral displacement and the yaw where they are arrays, then "side" and "patch".
+        axes are the lateral displacement and the yaw where they are arrays, in the unit given, then "side" and "patch".
     """
 
     dataset: xarray.Dataset
@@ -129,15 +129,16 @@ class Geometry:
 
 
 def geometry(
-    section: Section, axes: dict[str, Array], roll: Array, touching: Touching, position: Position, within: float,
+    section: Section, axes: dict[str, wl.Quantity], roll: Array, touching: Touching, position: Position, within: float,
     nominal_radius: float,
 ) -> Geometry:  # fmt: skip
-    """Return the geometry at all combinations of the axes, SI arrays by name with the last one running fastest."""
+    """Return the geometry at all combinations of the axes, quantities by name with the last one running fastest."""
     import xarray
 
     found = patches(section, position, touching)
-    shape = tuple(array.size for array in axes.values() if array.ndim)
-    named = [name for name, array in axes.items() if array.ndim]
+    values_of = {name: np.asarray(axis.magnitude, dtype=np.float64) for name, axis in axes.items()}
+    shape = tuple(array.size for array in values_of.values() if array.ndim)
+    named = [name for name, array in values_of.items() if array.ndim]
     far = ~(touching.gap <= within)
     data: dict[str, Any] = {}
     for name, (unit, words) in VARIABLES.items():
@@ -156,15 +157,9 @@ def geometry(
     }
     for name, (unit, words) in OF_WHEELSET.items():
         data[name] = named, wl.Q(wheelset[name], _si(unit)).to(unit).magnitude.reshape(shape), _attrs(unit, words)
-    units = {"lateral_displacement": "mm", "yaw": "mrad", "roll": "mrad"}
     coordinates: dict[str, Any] = {
-        name: (
-            [name] if array.ndim else [],
-            wl.Q(array, _si(units[name])).to(units[name]).magnitude,
-            _attrs(units[name], name.replace("_", " ")),
-        )
-        for name, array in axes.items()
-        if name not in data
+        name: ([name] if array.ndim else [], array, _attrs(f"{axes[name].units:~C}", name.replace("_", " ")))
+        for name, array in values_of.items()
     }
     coordinates |= {"side": list(SIDES), "patch": np.arange(1, touching.arc.shape[-1] + 1)}
     return Geometry(xarray.Dataset(data, coordinates), profiles(section, nominal_radius))

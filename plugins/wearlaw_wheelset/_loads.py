@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +80,9 @@ class Elastic:
     density: float
 
 
+Friction: TypeAlias = Array | wl.FallingFriction
+
+
 @dataclass(frozen=True)
 class Task:
     """What is asked of a wheelset at each position, as SI arrays of shape (positions,) except where stated.
@@ -90,7 +93,7 @@ class Task:
         V and v_y [m/s], ω_z and ρ' [rad/s].
     load : ndarray
         Vertical load of each wheel, Q [N].
-    friction : ndarray, (positions, 2)
+    friction : pair of ndarray or FallingFriction
         Friction coefficient on the tread and on the flange [-].
     flange_angle : float
         Contact angle beyond which a patch is one of the flange [rad].
@@ -105,10 +108,17 @@ class Task:
     turn_rate: Array
     roll_rate: Array
     load: Array
-    friction: Array
+    friction: tuple[Friction, Friction]
     flange_angle: float
     torque: Array
     rotation: Array | None
+
+    def friction_of(self, point: NDArray[np.intp], flange: NDArray[np.bool_], creep_speed: Array) -> Array:
+        """Return the friction coefficients of patches [-] at creep speeds [m/s]."""
+        tread, on_flange = (
+            one.coefficient(creep_speed) if isinstance(one, wl.FallingFriction) else one[point] for one in self.friction
+        )
+        return np.where(flange, on_flange, tread)
 
 
 @dataclass
@@ -446,14 +456,15 @@ class Balance:
             part.position, place, task.speed[part.point], side * task.lateral_velocity[part.point],
             side * task.turn_rate[part.point], side * task.roll_rate[part.point], side,
         )  # fmt: skip
-        flange = (np.abs(place.angle) > task.flange_angle).astype(np.intp)
+        flange = np.abs(place.angle) > task.flange_angle
         longitudinal, lateral, spin = sliding.at(self.rotation[part.point])
+        creep_speed = task.speed[part.point] * np.hypot(longitudinal, lateral)
         given = {name: shapes[name] for name in ("a", "b")}
         made = {
             "shear_modulus": np.full(side.shape, elastic.shear_modulus),
             "poisson_ratio": np.full(side.shape, elastic.poisson_ratio),
             "density": np.full(side.shape, elastic.density),
-            "friction_coefficient": task.friction[part.point, flange],
+            "friction_coefficient": task.friction_of(part.point, flange, creep_speed),
             "longitudinal_creepage": longitudinal,
             "lateral_creepage": lateral,
             "spin": spin,

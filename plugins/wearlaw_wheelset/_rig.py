@@ -17,7 +17,7 @@ from wearlaw import Array
 from wearlaw_wheelset._conicity import equivalent_conicity
 from wearlaw_wheelset._curve import steady
 from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
-from wearlaw_wheelset._loads import Balance, Elastic, Task
+from wearlaw_wheelset._loads import Balance, Elastic, Friction, Task
 from wearlaw_wheelset._motion import placed, roll_rate
 from wearlaw_wheelset._pictures import Profiles
 from wearlaw_wheelset._profile import Profile
@@ -58,9 +58,6 @@ MOST_PLAY = 40e-3
 
 MOST_YAW = 0.2
 """Greatest yaw [rad]: a locomotive in the tightest curve has a tenth of it."""
-
-LEAST_FRICTION = 1e-12
-"""The smallest friction coefficient, which no contact comes near."""
 
 MARGIN = 1e-3
 """Displacement beyond the amplitude at which the conicity needs radii [m]: waves need not be about the middle."""
@@ -273,15 +270,20 @@ class Wheelset(wl.Rig):
         ------
         ConditionsError
             If a wheel does not touch its rail.
+        UnitError
+            If an argument lacks its unit, is out of bounds or has too many values.
         """
         given = {"lateral_displacement": lateral_displacement, "yaw": yaw}
-        axes = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
-        for name, array in axes.items():
+        arrays = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
+        for name, array in arrays.items():
             if array.ndim > 1:
                 raise wl.InputError(f"{name}: must have at most one axis, got an array of shape {array.shape}")
-        displacement, turned = (array.ravel() for array in np.meshgrid(*axes.values(), indexing="ij"))
-        fixed = None if roll is None else np.full(displacement.shape, scalar(UNITS["roll"].si(roll, "roll")))
-        most = scalar(wl.Unit("mm", positive=False).si(within, "within"))
+        axes = {name: wl.parse(value) if isinstance(value, str) else value for name, value in given.items()}
+        displacement, turned = (array.ravel() for array in np.meshgrid(*arrays.values(), indexing="ij"))
+        fixed = None if roll is None else np.full(displacement.shape, _one(UNITS["roll"], roll, "roll"))
+        most = _one(wl.Unit("mm", positive=False), within, "within")
+        if most < 0.0:
+            raise wl.UnitError(f"within: must not be negative, got {1e3 * most:.4g} mm")
         self._check_yaw(turned)
         rolls, found = searched(self._section, displacement, turned, fixed)
         self._check_contact(displacement, found)
@@ -300,7 +302,7 @@ class Wheelset(wl.Rig):
     @steady
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
         """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, by EN 15302."""
-        most = scalar(wl.Unit("mm").si(amplitude, "amplitude"))
+        most = _one(wl.Unit("mm"), amplitude, "amplitude")
         displacement = np.linspace(-most - MARGIN, most + MARGIN, CONICITY_POINTS)
         rolls, found = searched(self._section, displacement, np.zeros_like(displacement))
         self._check_contact(displacement, found)
@@ -313,10 +315,10 @@ class Wheelset(wl.Rig):
         *,
         lateral_displacement: wl.QuantityLike,
         vertical_load: wl.QuantityLike,
-        friction_coefficient: ArrayLike,
+        friction_coefficient: ArrayLike | wl.FallingFriction,
         yaw: wl.QuantityLike = "0 mrad",
         roll: wl.QuantityLike | None = None,
-        flange_friction_coefficient: ArrayLike | None = None,
+        flange_friction_coefficient: ArrayLike | wl.FallingFriction | None = None,
         axle_torque: wl.QuantityLike | None = None,
         angular_speed: wl.QuantityLike | None = None,
         lateral_velocity: wl.QuantityLike = "0 m/s",
@@ -334,13 +336,13 @@ class Wheelset(wl.Rig):
             Lateral displacement of the wheelset in the track, positive to the right [m].
         vertical_load : Quantity or str
             Vertical load of each wheel, Q [N].
-        friction_coefficient : array_like of float
+        friction_coefficient : array_like of float, Quantity, str or FallingFriction
             Friction coefficient, μ [-].
         yaw : Quantity or str
             Yaw, positive clockwise from above, ψ [rad].
         roll : Quantity or str, optional
             Roll, positive if it lowers the right wheel, ρ [rad]. By default both wheels touch.
-        flange_friction_coefficient : array_like of float, optional
+        flange_friction_coefficient : array_like of float, Quantity, str or FallingFriction, optional
             Friction coefficient where the contact angle exceeds `flange_angle`, as on a lubricated flange [-].
         axle_torque : Quantity or str, optional
             Torque on the axle, positive if it drives, M [N m]. By default zero, a free axle.
@@ -368,14 +370,15 @@ class Wheelset(wl.Rig):
         if axle_torque is not None and angular_speed is not None:
             raise wl.ConditionsError("give axle_torque or angular_speed, not both")
         arrays = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
-        _check_given(arrays)
-        arrays["friction_coefficient"] = _friction(friction_coefficient, "friction_coefficient")
-        name = "flange_friction_coefficient"
         flange = friction_coefficient if flange_friction_coefficient is None else flange_friction_coefficient
-        arrays[name] = _friction(flange, name)
+        friction = {"friction_coefficient": friction_coefficient, "flange_friction_coefficient": flange}
+        falling = {name: value for name, value in friction.items() if isinstance(value, wl.FallingFriction)}
+        arrays |= {name: wl.coefficient(value, name) for name, value in friction.items() if name not in falling}
+        _check_given(arrays)
         shape = _shape(arrays)
         flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
-        balance = self._balance(flat)
+        tread, on_flange = (falling[name] if name in falling else flat[name] for name in friction)
+        balance = self._balance(flat, (tread, on_flange))
         return self._whole(balance, shape, flat.get("rolled_distance"))
 
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
@@ -387,7 +390,7 @@ class Wheelset(wl.Rig):
             self._warn_of_jams(balance)
         return self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
 
-    def _balance(self, given: Mapping[str, Array]) -> Balance:
+    def _balance(self, given: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Balance:
         """Return the loads at positions, SI arrays with one axis, without creep forces."""
         displacement, yaw, roll = given["lateral_displacement"], given["yaw"], given.get("roll")
         self._check_yaw(yaw)
@@ -407,8 +410,7 @@ class Wheelset(wl.Rig):
             rolling = roll_rate(place, given["lateral_velocity"], given["yaw_velocity"])
         task = Task(
             speed, given["lateral_velocity"], turn_rate, rolling, given["vertical_load"],
-            np.stack([given["friction_coefficient"], given["flange_friction_coefficient"]], axis=-1),
-            scalar(self.flange_angle), given.get("axle_torque", np.zeros(displacement.shape)),
+            friction, scalar(self.flange_angle), given.get("axle_torque", np.zeros(displacement.shape)),
             given.get("angular_speed"),
         )  # fmt: skip
         hertz = self.pressure == "hertz"
@@ -545,12 +547,20 @@ def scalar(value: Any) -> float:
     return float(value.to_base_units().magnitude if isinstance(value, wl.Quantity) else value)
 
 
-LEAST_RADIUS, LEAST_LOAD = 1e-3, 1e-6
-"""Smallest curve radius [m] and vertical load [N]: below them, numbers overflow or vanish."""
+def _one(unit: wl.Unit, value: wl.QuantityLike, name: str) -> float:
+    """Return an argument with one value in SI, or raise an error that names it."""
+    array = unit.si(value, name)
+    if array.ndim:
+        raise wl.UnitError(f"{name}: must be one value, got an array of shape {array.shape}")
+    return float(array)
+
+
+LEAST_RADIUS, LEAST_LOAD, LEAST_FRICTION = 1e-3, 1e-6, 1e-12
+"""Smallest curve radius [m], vertical load [N] and friction coefficient: below them, numbers overflow or vanish."""
 
 
 def _check_given(arrays: Mapping[str, Array]) -> None:
-    """Raise an error for a distance below zero, a curve without a radius, or a load that is nothing but rounding."""
+    """Raise an error for a distance below zero, a curve without a radius, or a load or friction of nothing."""
     distance, radius, load = arrays.get("rolled_distance"), arrays["curve_radius"], arrays["vertical_load"]
     if distance is not None and (distance < 0.0).any():
         raise wl.UnitError(f"rolled_distance: must not be negative, got {1e-3 * distance.min():.4g} km")
@@ -560,17 +570,9 @@ def _check_given(arrays: Mapping[str, Array]) -> None:
         raise wl.ConditionsError(f"curve_radius: must be {LEAST_RADIUS:g} m or more, got {np.abs(radius).min():g} m")
     if (load < LEAST_LOAD).any():
         raise wl.ConditionsError(f"vertical_load: must be {LEAST_LOAD:g} N or more, got {load.min():g} N")
-
-
-def _friction(value: object, name: str) -> Array:
-    """Return friction coefficients, or raise an error that names them."""
-    try:
-        array = np.asarray(value.magnitude if isinstance(value, wl.Quantity) else value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise wl.UnitError(f"{name}: must be a plain number or an array of them, such as 0.3; got {value!r}") from None
-    if not ((array >= LEAST_FRICTION) & (array < np.inf)).all():
-        raise wl.UnitError(f"{name}: must be positive and finite, got {value!r}")
-    return array
+    for name in ("friction_coefficient", "flange_friction_coefficient"):
+        if name in arrays and (arrays[name] < LEAST_FRICTION).any():
+            raise wl.ConditionsError(f"{name}: must be {LEAST_FRICTION:g} or more, got {arrays[name].min():g}")
 
 
 def _shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:

@@ -48,7 +48,7 @@ class Axle(wl.Rig):
         moved = wl.Unit("mm", positive=False).si(displacement, "displacement")[..., None, None]
         slip = wl.Unit("", positive=False, limit=0.9).si(driving, "driving")[..., None, None]
         on_wheel = wl.Unit("kN").si(load, "load")[..., None, None]
-        friction = np.asarray(friction_coefficient)[..., None, None]
+        friction = wl.coefficient(friction_coefficient, "friction_coefficient")[..., None, None]
         both = moved * LEFT_OR_RIGHT > FLANGE
         share = np.where(both, np.where(TREAD_OR_FLANGE, 0.25, 0.75), 1.0)
         found = WHEEL.problem(

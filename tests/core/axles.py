@@ -64,7 +64,7 @@ class Axle(wl.Rig):
         creepages: Any = {
             "longitudinal_creepage": Q(lifted("", longitudinal_creepage, "longitudinal_creepage"), ""),
             "spin": Q(lifted("1/m", spin, "spin"), "1/m"),
-            "friction_coefficient": np.asarray(friction_coefficient)[..., None, None],
+            "friction_coefficient": wl.coefficient(friction_coefficient, "friction_coefficient")[..., None, None],
         }
         flange, right = np.array([0.0, 1.0]), np.array([[-1.0], [1.0]])
         exists = (flange == 0.0) | ((place > FLANGE) & (right > 0.0))

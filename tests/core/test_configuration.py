@@ -56,7 +56,7 @@ def disc(**fields: Any) -> wl.Disc:
         (lambda: wl.steel(poisson_ratio=0.51), "poisson_ratio: input should be less than or equal to 0.5, got 0.51"),
         (lambda: wl.steel(poisson_ratio=-0.1), "poisson_ratio: input should be greater than or equal to 0, got -0.1"),
         (lambda: wl.steel(poisson_ratio=float("nan")), "poisson_ratio: input should be a finite number, got nan"),
-        (lambda: wl.steel(poisson_ratio=True), "poisson_ratio: input should be a valid number, got True"),
+        (lambda: wl.steel(poisson_ratio=True), "poisson_ratio: True is not a real number; give it as a plain number"),
         (lambda: wl.steel(poisson_ratio="0.3"), "poisson_ratio: input should be a valid number, got '0.3'"),  # type: ignore[arg-type]
         (lambda: wl.steel(density="7850 kg"), "got 7850 kg, which does not have the dimension of 'kg/m^3'"),
         (

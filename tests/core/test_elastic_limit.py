@@ -318,6 +318,26 @@ def test_a_criterion_that_is_not_known_is_refused() -> None:
         first_yield(1.0, 0.1, poisson_ratio=0.3, criterion="rankine")  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"traction_coefficient": math.nan}, "traction_coefficient: must be a finite number, got nan"),
+        ({"friction_coefficient": -1.0}, "friction_coefficient: must not be negative, got -1"),
+        (
+            {"friction_coefficient": [0.3, math.nan]},
+            r"friction_coefficient: must be a finite number, got nan at index \[1\]",
+        ),
+        ({"axis_ratio": -1.0}, "axis_ratio: must not be negative, got -1"),
+    ],
+)
+def test_arguments_that_no_contact_has_are_refused(given: dict[str, Any], message: str) -> None:
+    given = {"traction_coefficient": 0.3, **given}
+    with pytest.raises(wl.InputError, match=message):
+        first_yield(K, **given, poisson_ratio=0.28)
+    with pytest.raises(wl.InputError, match=message):
+        shakedown_limit(K, **given)
+
+
 @pytest.mark.parametrize("shape", ["line", "ellipse"])
 def test_an_overload_is_the_same_of_one_point_and_of_many(shape: str) -> None:
     random = np.random.default_rng(3)

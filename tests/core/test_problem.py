@@ -106,7 +106,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"longitudinal_creepage": Q(101, "%")}, "longitudinal_creepage: must not exceed 1 in magnitude, got 101.0 %"),
     ({"lateral_creepage": Q(-2, "")}, "lateral_creepage: must not exceed 1 in magnitude, got -2.000"),
     ({"poisson_ratio": 0.6}, "poisson_ratio: must lie between 0 and 0.5, got 0.6"),
-    ({"poisson_ratio": "steel"}, "poisson_ratio: 'steel' is not a real number; give a plain number, such as 0.28"),
+    ({"poisson_ratio": "steel"}, "poisson_ratio: 'steel' is not a number with a unit; give poisson_ratio as"),
     ({"friction_coefficient": 0.0}, "friction_coefficient: must be a positive finite number, got 0"),
     ({"a": Q([1, 2], "mm"), "b": Q([1, 2, 3], "mm")}, "the shapes of the conditions do not broadcast"),
 ]

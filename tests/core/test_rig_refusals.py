@@ -98,8 +98,12 @@ WRONG_CONDITIONS: list[tuple[dict[str, Any], type[Exception], list[str]]] = [
     ({"creepage": 1j}, wl.UnitError, ["creepage: got 1j"]),
     ({"creepage": Q([], "%")}, wl.ConditionsError, ["creepage: is empty; give at least one value"]),
     ({"friction_coefficient": 0}, wl.UnitError, ["friction_coefficient: must be a positive finite number, got 0"]),
-    ({"friction_coefficient": -0.3}, wl.UnitError, ["friction_coefficient: ", "got -0.3", "such as 0.46"]),
-    ({"friction_coefficient": Q(0.4, "m")}, wl.UnitError, ["friction_coefficient: got 0.4000 m", "such as 0.46"]),
+    ({"friction_coefficient": -0.3}, wl.UnitError, ["friction_coefficient: ", "got -0.3", "such as 0.3 or '30 %'"]),
+    (
+        {"friction_coefficient": Q(0.4, "m")},
+        wl.UnitError,
+        ["friction_coefficient: got 0.4000 m", "such as 0.3 or '30 %'"],
+    ),
     ({"friction_coefficient": []}, wl.ConditionsError, ["friction_coefficient: is empty"]),
     ({"traction_coefficient": -0.3}, wl.UnitError, ["traction_coefficient: ", "got -0.3"]),
     (

@@ -164,7 +164,7 @@ def test_si_floats_are_written_in_a_unit() -> None:
 @pytest.mark.parametrize(
     ("value", "said"),
     [
-        ("0.4", "'0.4' is not a real number"),
+        ("0.4", "'0.4' is not a number with a unit"),
         (True, "True is not a real number"),
         (1j, "1j is not a real number"),
         (np.nan, "must be a positive finite number, got nan"),
@@ -182,11 +182,23 @@ def test_wrong_coefficient_is_refused_with_field_value_and_fix(value: Any, said:
     message = str(caught.value)
     assert message.startswith("friction_coefficient: ")
     assert said in message
-    assert message.endswith("give friction_coefficient as a plain number, such as 0.46")
+    assert message.endswith("give friction_coefficient as a plain number or in percent, such as 0.3 or '30 %'")
 
 
 def test_a_coefficient_may_be_given_in_percent() -> None:
-    assert coefficient(Q(46, "%"), "friction_coefficient") == pytest.approx(0.46, rel=1e-15)
+    for value in (Q(46, "%"), "46 %", "0.46 dimensionless"):
+        # The factor of a percent and the product are rounded.
+        assert wl.coefficient(value, "friction_coefficient") == pytest.approx(0.46, rel=np.finfo(float).eps)
+
+
+def test_a_field_without_unit_takes_percent_and_refuses_a_dimension() -> None:
+    given: dict[str, Any] = {"limit_ratio": 1.0, "decay": "1 s/m"}
+    for static in (Q(25.0, "%"), "25 %"):
+        assert wl.FallingFriction(static_coefficient=static, **given).static_coefficient == 0.25
+    for wrong in (Q(0.25, "m"), "0.25 m", True):
+        said = r"static_coefficient: .* give it as a plain number or in percent"
+        with pytest.raises(wl.ConfigurationError, match=said):
+            wl.FallingFriction(static_coefficient=wrong, **given)
 
 
 def test_real_array_keeps_the_memory_of_float64() -> None:

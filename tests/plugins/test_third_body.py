@@ -261,7 +261,11 @@ def test_a_measured_traction_stays() -> None:
         ({"reduction": 1.2}, "reduction: input should be less than or equal to 1, got 1.2"),
         ({"reduction": float("nan")}, "reduction: input should be"),
         ({"reduction": "0.8"}, "reduction: input should be a valid number, got '0.8'"),
-        ({"reduction": Q(0.8, "mm")}, "reduction: input should be a valid number"),
+        ({"reduction": Q(0.8, "mm")}, "reduction: got 0.8000 mm, which is not a ratio"),
+        (
+            {"reduction": 0.8, "limit_reduction": Q(0.5, "mm"), "reduction_decay": 1.0},
+            "limit_reduction: got 0.5000 mm, which is not a ratio; give it as a plain number or in percent",
+        ),
         ({"reduction": 0.8, "limit_reduction": 0.5}, "give both for a factor that falls, or none of them"),
         ({"reduction": 0.8, "reduction_decay": 0.5}, "give both for a factor that falls, or none of them"),
         (

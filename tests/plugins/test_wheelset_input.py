@@ -70,9 +70,12 @@ def test_a_wheelset_that_cannot_be_is_refused(changed: dict[str, Any], message: 
         ({"lateral_displacement": "60 mm"}, wl.ConditionsError, "at 60 mm the left wheel does not touch its rail"),
         ({"yaw": "7 rad"}, wl.ConditionsError, r"yaw: must be at most 0\.2 rad, got 7 rad; is it in mrad"),
         ({"vertical_load": "-5 kN"}, wl.UnitError, "vertical_load"),
-        ({"friction_coefficient": 0.0}, wl.UnitError, "friction_coefficient: must be positive and finite"),
-        ({"friction_coefficient": "rough"}, wl.UnitError, "friction_coefficient: must be a plain number"),
+        ({"friction_coefficient": 0.0}, wl.UnitError, "friction_coefficient: must be a positive finite number"),
+        ({"friction_coefficient": "rough"}, wl.UnitError, "friction_coefficient: 'rough' is not a number with a unit"),
+        ({"friction_coefficient": Q(0.3, "m")}, wl.UnitError, r"friction_coefficient: got 0\.3000 m, .* not a ratio"),
+        ({"friction_coefficient": True}, wl.UnitError, "friction_coefficient: True is not a real number"),
         ({"flange_friction_coefficient": np.nan}, wl.UnitError, "flange_friction_coefficient"),
+        ({"flange_friction_coefficient": Q(0.3, "m")}, wl.UnitError, "flange_friction_coefficient: got .* not a ratio"),
         (
             {"lateral_displacement": Q([1.0, 2.0, 3.0], "mm"), "friction_coefficient": [0.2, 0.3]},
             wl.ConditionsError,
@@ -92,6 +95,42 @@ def test_wrong_conditions_are_named(changed: dict[str, Any], error: type[Excepti
     predict: Any = pair() | wl.contact_model("fastsim")
     with pytest.raises(error, match=message):
         predict(**{**GIVEN, **changed})
+
+
+def test_friction_in_percent_is_a_ratio() -> None:
+    friction = {"friction_coefficient": 0.25, "flange_friction_coefficient": 0.125}
+    given = {**GIVEN, **friction, "lateral_displacement": "6.2 mm"}
+    in_percent = {"friction_coefficient": Q(25.0, "%"), "flange_friction_coefficient": "12.5 %"}
+    one, other = (pair().problem(**values).friction_coefficient for values in (given, {**given, **in_percent}))
+    assert {*one[np.isfinite(one)]} == {0.25, 0.125}
+    np.testing.assert_allclose(other, one, rtol=2 * np.finfo(float).eps)  # the factor and the product round
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"roll": Q([0.0, 1.0], "mrad")}, r"roll: must be one value, got an array of shape \(2,\)"),
+        ({"within": Q([0.1, 0.2], "mm")}, r"within: must be one value, got an array of shape \(2,\)"),
+        ({"within": "-1 mm"}, "within: must not be negative, got -1 mm"),
+    ],
+)
+def test_wrong_arguments_of_the_geometry_are_named(changed: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.UnitError, match=message):
+        pair().geometry(**{"lateral_displacement": "3 mm", **changed})
+
+
+def test_the_conicity_has_one_amplitude() -> None:
+    with pytest.raises(wl.UnitError, match=r"amplitude: must be one value, got an array of shape \(2,\)"):
+        pair().equivalent_conicity(amplitude=Q([1.0, 2.0], "mm"))
+
+
+@pytest.mark.parametrize("unit", ["mm", "m", "cm"])
+def test_coordinates_of_the_geometry_are_the_values_given(unit: str) -> None:
+    given = np.array([-6.5, -0.3, 0.1, 5.7]) / {"mm": 1.0, "m": 1e3, "cm": 10.0}[unit]
+    data = pair().geometry(lateral_displacement=Q(given, unit), yaw="0.3 mrad").dataset
+    assert [float(data.sel(lateral_displacement=one).lateral_displacement) for one in given] == given.tolist()
+    assert data.lateral_displacement.units == unit
+    assert (float(data.yaw), data.yaw.units) == (0.3, "mrad")
 
 
 def test_contact_models_that_do_not_solve_strips_are_refused_at_once() -> None:

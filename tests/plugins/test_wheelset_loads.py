@@ -183,6 +183,31 @@ def test_flanges_have_their_own_friction(pressure: Pressure) -> None:
     assert carried(result) == pytest.approx(np.full((2, 2), 60e3), rel=2.0 * BALANCED)
 
 
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+def test_friction_falls_with_the_creep_speed_of_each_patch(pressure: Pressure) -> None:
+    tread = wl.FallingFriction(static_coefficient=0.5, limit_ratio=0.4, decay="2 s/m")
+    flange = wl.FallingFriction(static_coefficient=0.2, limit_ratio=0.5, decay="4 s/m")
+    found = predicted(
+        PAIRS[pressure],
+        lateral_displacement=Q([3.0, 6.9], "mm"),
+        yaw="10 mrad",
+        friction_coefficient=tread,
+        flange_friction_coefficient=flange,
+    )
+    problem = found.problem
+    assert problem.contact_angle is not None
+    there = np.isfinite(problem.longitudinal_creepage)
+    steep = np.abs(problem.contact_angle[there]) > np.radians(30.0)
+    assert 0 < steep.sum() < steep.size
+    speed = 20.0 * np.hypot(problem.longitudinal_creepage[there], problem.lateral_creepage[there])
+    due = np.where(
+        steep, 0.2 * (0.5 * np.exp(-4.0 * speed) + 0.5), 0.5 * (0.6 * np.exp(-2.0 * speed) + 0.4)
+    )  # Polach (2005), eq. (9)
+    assert (due < np.where(steep, 0.2, 0.5) - 0.01).all()
+    np.testing.assert_allclose(problem.friction_coefficient[there], due, rtol=8 * np.finfo(float).eps)
+    np.testing.assert_allclose(carried(found), 60e3, rtol=1e-6)  # as with one coefficient
+
+
 @pytest.mark.parametrize("displacement", [0.0, 4.8, 4.9, 4.95])
 @pytest.mark.parametrize("pressure", ["kpec", "hertz"])
 def test_patches_share_the_load_by_their_penetration(pressure: Pressure, displacement: float) -> None:

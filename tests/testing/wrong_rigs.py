@@ -218,6 +218,14 @@ class NumberWithoutUnit(Weight):
         return super().problem(mass=given, creepage=creepage, friction_coefficient=friction_coefficient)
 
 
+class PercentAsNumber(Weight):
+    """Reads the number of a coefficient whatever its unit."""
+
+    def problem(self, *, mass: Any, creepage: wl.QuantityLike, friction_coefficient: Any) -> wl.Problem:
+        given = getattr(friction_coefficient, "magnitude", friction_coefficient)
+        return super().problem(mass=mass, creepage=creepage, friction_coefficient=given)
+
+
 class FieldWithoutUnit(Weight):
     """Reads the number of the arm's length, which happens to be in centimetres."""
 
@@ -436,6 +444,7 @@ CAUGHT: dict[type[wl.Rig], str] = {
     TakesAnyDimension: "units_of_conditions_are_checked",
     NamesWhatIsNotGiven: "units_of_conditions_are_checked",
     NumberWithoutUnit: "units_of_conditions_do_not_matter",
+    PercentAsNumber: "units_of_conditions_do_not_matter",
     FieldWithoutUnit: "units_of_parameters_do_not_matter",
     TakesUnknownConditions: "unknown_conditions_are_refused",
     MissingKey: "missing_conditions_are_named",

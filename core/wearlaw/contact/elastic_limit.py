@@ -50,6 +50,7 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, PlasticityWarning, shortened
+from wearlaw.units.quantities import coefficient
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -105,7 +106,7 @@ def first_yield(
     shear_yield_stress : array_like of float
         Yield stress in shear, k [Pa]: Y/√3 of the yield stress Y in tension by von Mises's criterion, Y/2 by Tresca's.
     traction_coefficient : array_like of float
-        The transmitted traction, T/N [-].
+        The transmitted traction, T/N [-], of either sign.
     friction_coefficient : array_like of float, optional
         μ [-]; if it exceeds T/N, the patch slips in part. Without it the whole patch slips.
     poisson_ratio : float
@@ -118,7 +119,7 @@ def first_yield(
     Raises
     ------
     InputError
-        If the criterion is unknown.
+        If the criterion is unknown, or a coefficient or axis ratio is not a finite number or is negative.
 
     Notes
     -----
@@ -255,14 +256,21 @@ def _overload(
 
 def _peak_of(measure: str, nu: float, traction: ArrayLike, friction: ArrayLike | None, axis_ratio: ArrayLike) -> Array:
     """Return `_peak` of arguments that broadcast; friction may be None."""
-    t = np.abs(np.asarray(traction, dtype=np.float64))
-    mu = t if friction is None else np.asarray(friction, dtype=np.float64)
-    t, mu, ratio = np.broadcast_arrays(t, mu, np.asarray(axis_ratio, dtype=np.float64))
+    t = np.abs(coefficient(traction, "traction_coefficient", positive=False))
+    mu = t if friction is None else _not_negative(friction, "friction_coefficient")
+    t, mu, ratio = np.broadcast_arrays(t, mu, _not_negative(axis_ratio, "axis_ratio"))
     peak: Array = np.empty(t.shape)
     line = ratio == 0.0
     peak[line] = _peak(measure, nu, t[line], mu[line])
     peak[~line] = _peak(measure, nu, t[~line], mu[~line], ratio[~line])
     return peak
+
+
+def _not_negative(value: ArrayLike, name: str) -> Array:
+    array = coefficient(value, name, positive=False)
+    if (array < 0.0).any():
+        raise InputError(f"{name}: must not be negative, got {array.min():g}")
+    return array
 
 
 def _peak(measure: str, nu: float, traction: Array, friction: Array, axis_ratio: Array | None = None) -> Array:

@@ -33,7 +33,9 @@ class FallingFriction(Configuration):
 
     if TYPE_CHECKING:
 
-        def __init__(self, *, static_coefficient: float, limit_ratio: float, decay: QuantityLike) -> None: ...
+        def __init__(
+            self, *, static_coefficient: float | QuantityLike, limit_ratio: float | QuantityLike, decay: QuantityLike
+        ) -> None: ...
 
     def coefficient(self, creep_speed: Array) -> Array:
         """Return μ [-] at creep speeds w ≥ 0 [m/s], of their shape."""

@@ -19,8 +19,8 @@ from wearlaw.arrays.array import Array, steady
 from wearlaw.contact import hertz
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material
-from wearlaw.errors import CompositionError, ConditionsError, InputError, UnitError, shortened
-from wearlaw.units.quantities import QuantityLike, coefficient, real_array, scalar_si
+from wearlaw.errors import CompositionError, ConditionsError, InputError, shortened
+from wearlaw.units.quantities import QuantityLike, coefficient, scalar_si
 from wearlaw.units.variables import VARIABLES
 
 if TYPE_CHECKING:
@@ -631,10 +631,7 @@ def _si(
 
 
 def _poisson_ratio(value: object) -> Array:
-    try:
-        ratio = real_array(value)
-    except UnitError as error:
-        raise UnitError(f"poisson_ratio: {error}; give a plain number, such as 0.28") from None
+    ratio = coefficient(value, "poisson_ratio", positive=False)
     if not ((ratio >= 0.0) & (ratio <= 0.5)).all():
         raise InputError(f"poisson_ratio: must lie between 0 and 0.5, got {shortened(value)}")
     return ratio

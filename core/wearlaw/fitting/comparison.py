@@ -26,7 +26,7 @@ from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.arguments import expect
 from wearlaw.sweeping.progress import Bar
-from wearlaw.units.quantities import WEAR_RATE, in_unit
+from wearlaw.units.quantities import WEAR_RATE, coefficient, in_unit
 from wearlaw.units.variables import label, name_of
 from wearlaw.wear_tests.tests import WearTests
 
@@ -456,7 +456,7 @@ def _cross_validated(
     name = old.names.label
 
     def predict(again: Fit, held: NDArray[np.intp]) -> Array:
-        own = friction if np.ndim(friction) == 0 else np.asarray(friction)[held]
+        own = friction if np.ndim(friction) == 0 else coefficient(friction, FRICTION)[held]
         return _predicted(name, again, _law(again, outcome), tests[held], own, Notes())
 
     predicted = cross_validated(name, fit, tests, parts, predict, shown)

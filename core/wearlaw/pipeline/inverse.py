@@ -11,10 +11,10 @@ from scipy.optimize import elementwise
 from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.conditions import is_friction_law
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, ConditionsError, UnitError
+from wearlaw.errors import CompositionError, ConditionsError
 from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.pipeline.pipeline import Rig, expect_pipeline
-from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si, real_array
+from wearlaw.units.quantities import Quantity, QuantityLike, Unit, coefficient, from_si
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -51,7 +51,7 @@ def creepage_for(
         A rig and a contact model.
     tangential_force : Quantity or str, optional
         The longitudinal force, T [N].
-    traction_coefficient : array_like of float, optional
+    traction_coefficient : array_like of float, Quantity or str, optional
         T/N [-], in place of `tangential_force`.
     **conditions
         All conditions of the rig except the longitudinal creepage: for discs the load and the friction coefficient, for
@@ -76,7 +76,8 @@ def creepage_for(
         )
     problem = _at_rest(predict, conditions)
     if tangential_force is None:
-        target = _finite(traction_coefficient)
+        assert traction_coefficient is not None
+        target = coefficient(traction_coefficient, "traction_coefficient", positive=False)
     else:
         target = Unit("N", positive=False).si(tangential_force, "tangential_force") / problem.normal_force
     shape = _broadcast(target.shape, problem.batch_shape)
@@ -162,16 +163,6 @@ def _broadcast(traction: tuple[int, ...], conditions: tuple[int, ...]) -> tuple[
         raise ConditionsError(
             f"the shapes of the traction {traction} and of the conditions {conditions} do not broadcast"
         ) from None
-
-
-def _finite(traction_coefficient: object) -> Array:
-    try:
-        target = real_array(traction_coefficient)
-        if not np.isfinite(target).all():
-            raise UnitError("must be finite")
-    except UnitError as error:
-        raise UnitError(f"traction_coefficient: {error}; give T/N as plain numbers, such as 0.3") from None
-    return target
 
 
 def _where(values: Array, first: int, shape: tuple[int, ...]) -> str:

@@ -51,9 +51,9 @@ class TwinDiscConditions(TypedDict, total=False):
         Hertz's maximum pressure, p0 [Pa].
     creepage : Quantity or str
         Creepage, ξ [-], positive if disc 1 is the faster one, of magnitude at most 1.
-    friction_coefficient : array_like of float, or FallingFriction
+    friction_coefficient : array_like of float, Quantity, str or FallingFriction
         Friction coefficient, μ [-].
-    traction_coefficient : array_like of float
+    traction_coefficient : array_like of float, Quantity or str
         Measured tangential over normal force, T/N [-], for contact models that can use it.
     rolled_distance : Quantity or str
         Distance that the bodies have rolled since they were new [m], for laws of running-in.
@@ -225,9 +225,9 @@ class TwinDisc(Rig):
             The load, exactly one of them: N [N], P [N/m] or p0 [Pa].
         creepage : Quantity or str
             ξ, a ratio or in percent, of magnitude at most 1.
-        friction_coefficient : array_like of float, or FallingFriction
+        friction_coefficient : array_like of float, Quantity, str or FallingFriction
             μ [-].
-        traction_coefficient : array_like of float, optional
+        traction_coefficient : array_like of float, Quantity or str, optional
             Measured T/N [-], for contact models that can use it.
         rolled_distance : Quantity or str, optional
             Distance rolled since the discs were new [m], for laws of running-in.

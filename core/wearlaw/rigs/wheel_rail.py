@@ -47,7 +47,7 @@ class WheelRailConditions(TypedDict, total=False):
         Spin, φ [1/m]; that of the contact angle, sin δ / r, if not given.
     contact_angle : Quantity or str
         Contact angle, δ [rad], between -90 and 90 deg; that of the rig if not given.
-    friction_coefficient : array_like of float, or FallingFriction
+    friction_coefficient : array_like of float, Quantity, str or FallingFriction
         Friction coefficient, μ [-].
     rolled_distance : Quantity or str
         Distance that the bodies have rolled since they were new [m], for laws of running-in.
@@ -207,7 +207,7 @@ class WheelRail(Rig):
             φ [1/m]; sin δ / r if not given.
         contact_angle : Quantity or str
             δ [rad], between -90 and 90 deg; that of the rig if not given.
-        friction_coefficient : array_like of float, or FallingFriction
+        friction_coefficient : array_like of float, Quantity, str or FallingFriction
             μ [-].
         rolled_distance : Quantity or str, optional
             Distance rolled since the bodies were new [m], for laws of running-in.

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from threading import RLock
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from types import NoneType
+from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, get_args, get_origin
 
 import pint
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, ValidationError, field_validator, model_validator
 
 from wearlaw.errors import (
     UNWRITABLE,
@@ -24,13 +25,13 @@ from wearlaw.errors import (
 )
 from wearlaw.settings.docstrings import field_docstrings, place_of_statement
 from wearlaw.settings.toml_files import DEEPEST
-from wearlaw.units.quantities import shown
+from wearlaw.units.quantities import plain_number, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from inspect import Signature
 
-    from pydantic import GetJsonSchemaHandler
+    from pydantic import GetJsonSchemaHandler, ValidationInfo
     from pydantic_core import CoreSchema, ErrorDetails
 
 LINE = 100
@@ -71,6 +72,13 @@ class Configuration(BaseModel):
         if wrong:
             raise ConfigurationError(cls.subject(), wrong)
         return fields
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _ratios_as_numbers(cls, value: Any, info: ValidationInfo) -> Any:
+        """Take a ratio such as "30 %" in a field without a unit, and refuse a value with a dimension."""
+        field = cls.model_fields.get(info.field_name or "")
+        return plain_number(value) if field is not None and _is_number(field.annotation) else value
 
     if not TYPE_CHECKING:  # checkers keep the signature that pydantic derives from the fields
 
@@ -156,6 +164,16 @@ class Configuration(BaseModel):
     def __repr_args__(self) -> Any:
         for name, value in super().__repr_args__():
             yield name, _Text(shown(value)) if isinstance(value, pint.Quantity) else value
+
+
+def _is_number(annotation: Any) -> bool:
+    """Return whether a field holds a float, or a float or None."""
+    if annotation is float:
+        return True
+    inner = get_args(annotation)
+    if get_origin(annotation) is Annotated:
+        return _is_number(inner[0])
+    return len(inner) == 2 and inner[1] is NoneType and _is_number(inner[0])
 
 
 def unwritable(value: object, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str]]:

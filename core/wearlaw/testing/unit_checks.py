@@ -109,8 +109,15 @@ def _made(rig: Rig, given: Mapping[str, Any]) -> Array:
 
 
 def _compare_conditions(rig: Rig) -> None:
-    """Compare the problem of the example in SI with that in its own units, or in hundredths of SI units."""
-    quantities = {name: value for name, value in varied(rig).items() if isinstance(value, pint.Quantity)}
+    """Compare the problem of the example in SI with that in its own units, or in hundredths of SI units.
+
+    A coefficient, which the example gives as a plain number, is compared in percent.
+    """
+    quantities = {
+        name: value if isinstance(value, pint.Quantity) else Q(value, "")
+        for name, value in varied(rig).items()
+        if not isinstance(value, int)
+    }
     in_si = {name: value.to_base_units() for name, value in quantities.items()}
     values = {name: value.magnitude * np.ones(1) for name, value in in_si.items()}
     units = {}

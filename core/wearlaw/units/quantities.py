@@ -281,23 +281,69 @@ def real_array(value: object) -> NDArray[np.float64]:
     return array if array.ndim else array[()]
 
 
-def coefficient(value: object, name: str) -> NDArray[np.float64]:
-    """Return a positive, finite number without unit, such as a friction coefficient, as float64.
+def coefficient(value: object, name: str, *, positive: bool = True) -> NDArray[np.float64]:
+    """Return a coefficient without dimension, such as that of friction, as float64.
+
+    Parameters
+    ----------
+    value : array_like of float, Quantity or str
+        Plain numbers, or a ratio with its unit: 0.3, Q(30, "%") and "30 %" are the same. Of any shape.
+    name : str
+        The argument's name, for the message.
+    positive : bool
+        Whether the value must be greater than zero.
+
+    Returns
+    -------
+    ndarray of float64
+        The value as a ratio, a NumPy scalar if it has no axes. It shares memory with the input if the numbers do not
+        change.
 
     Raises
     ------
     UnitError
-        If it has a dimension, or is not a positive finite real number.
+        If it has a dimension, or is not a finite real number.
     """
     try:
-        array = Unit("")._checked(value)[1] if isinstance(value, pint.Quantity) else real_array(value)
+        array = _ratios(value)
         low, high = extremes(array) if array.size else (1.0, 1.0)
-        if not (low > 0.0 and high < np.inf):
-            first, where = _first(array, ~(np.isfinite(array) & (array > 0)))
-            raise UnitError(f"must be a positive finite number, got {first:g}{where}")
+        if not ((low > 0.0 if positive else low > -np.inf) and high < np.inf):
+            first, where = _first(array, ~(np.isfinite(array) & ((array > 0) | (not positive))))
+            raise UnitError(f"must be a {'positive ' if positive else ''}finite number, got {first:g}{where}")
     except UnitError as error:
-        raise UnitError(f"{name}: {error}; give {name} as a plain number, such as 0.46") from None
+        raise UnitError(f"{name}: {error}; give {name} {_AS_RATIO}") from None
     return array
+
+
+def plain_number(value: object) -> object:
+    """Return a ratio such as "30 %" as a number, for a field that holds one; other text and numbers stay.
+
+    Raises
+    ------
+    UnitError
+        If the value has a dimension or axes, or is True or False.
+    """
+    if isinstance(value, str):
+        try:
+            value = parse(value)
+        except UnitError:
+            return value
+    if not isinstance(value, pint.Quantity | bool | np.bool_):
+        return value
+    try:
+        array = _ratios(value)
+    except UnitError as error:
+        raise UnitError(f"{error}; give it {_AS_RATIO}") from None
+    if array.ndim:
+        raise UnitError(f"must be one value, got an array of shape {array.shape}")
+    return float(array)
+
+
+def _ratios(value: object) -> NDArray[np.float64]:
+    return _RATIO._checked(value)[1] if isinstance(value, pint.Quantity | str) else real_array(value)
+
+
+_RATIO, _AS_RATIO = Unit("", positive=False), "as a plain number or in percent, such as 0.3 or '30 %'"
 
 
 def scalar_si(quantity: Quantity, unit: str) -> float:
