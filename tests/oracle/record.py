@@ -1,0 +1,119 @@
+"""How results become rows of the oracle, and how two oracles differ."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+import wearlaw as wl
+
+FILE = Path(__file__).with_name("oracle.json")
+
+Row = dict[str, Any]
+"""What is recorded of a call: {"values": numbers by name with unit, "warns": types}, or {"raises": type, "names": field}."""
+
+TOLERANCE, FIT_TOLERANCE = 1e-12, 1e-8
+"""Greatest relative change of a number, and of one from a fit.
+
+The same code gives the same bits on one machine. Other processors sum in another order and use other fused operations,
+which moves numbers by some 1e-15 times the few hundred operations behind each. A fit ends where its steps fall below
+1e-10 of the parameters, so another rounding may end it a step earlier.
+"""
+
+
+def recorded(call: Callable[[], Any], field: str | None = None) -> Row:
+    """Return the row of a call: its numbers and the types of its warnings, or its error and whether that names a field."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            values = dict(numbers(call()))
+        except wl.WearlawError as error:
+            words = re.findall(r"\w+", str(error))
+            return {"raises": type(error).__name__, "names": field if field in words else None}
+    return {"values": values, "warns": sorted({warning.category.__name__ for warning in caught})}
+
+
+def numbers(result: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield all numbers of a result, as lists of floats or texts, each under a name that ends with its unit."""
+    if isinstance(result, xr.Dataset):
+        for column, array in result.variables.items():
+            unit = array.attrs.get("units")
+            yield from numbers(array.values, f"{name}{column}" + (f" [{unit}]" if unit else ""))
+    elif isinstance(result, pd.DataFrame):
+        for column in result.columns:
+            yield from numbers(result[column].to_numpy(), f"{name}{column}")
+    elif isinstance(result, Mapping):
+        for key, value in result.items():
+            yield from numbers(value, f"{name}.{key}" if name else str(key))
+    elif isinstance(result, wl.Quantity):
+        yield f"{name} [{result.units:~C}]", _listed(result.magnitude)
+    else:
+        yield name, _listed(result)
+
+
+def _listed(values: Any) -> Any:
+    array = np.asarray(values)
+    return array.tolist() if array.dtype.kind in "fiub" else array.astype(str).tolist()
+
+
+def written(rows: Mapping[str, Row]) -> str:
+    """Return the text of the oracle's file, with a line for each number, so that a change shows as a small difference."""
+    lines = []
+    for key, row in rows.items():
+        parts = [f"  {json.dumps(name)}: {_written(value)}" for name, value in row.items()]
+        lines.append(f" {json.dumps(key, ensure_ascii=False)}: {{\n" + ",\n".join(parts) + "}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def _written(value: Any) -> str:
+    if not isinstance(value, dict):
+        return json.dumps(value)
+    return "{\n" + ",\n".join(f"   {json.dumps(k, ensure_ascii=False)}: {json.dumps(v)}" for k, v in value.items()) + "}"
+
+
+def differences(old: Mapping[str, Row], new: Mapping[str, Row]) -> list[str]:
+    """Return what differs, in words: whatever is not a number first, then the numbers, the greatest change first."""
+    others = [f"{key}: is gone" for key in old if key not in new]
+    others += [f"{key}: is new" for key in new if key not in old]
+    moved: list[tuple[float, str]] = []
+    for key in (key for key in old if key in new):
+        was, now = dict(_flat(old[key])), dict(_flat(new[key]))
+        for name in dict.fromkeys((*was, *now)):
+            a, b = was.get(name, "nothing"), now.get(name, "nothing")
+            if isinstance(a, float | int) and isinstance(b, float | int):
+                change = _change(a, b, was, name)
+                if change > (FIT_TOLERANCE if key.startswith("fit ") else TOLERANCE):
+                    moved.append((change, f"{key}: {name}: was {a!r}, is {b!r}, a relative change of {change:.1e}"))
+            elif a != b:
+                others.append(f"{key}: {name}: was {a!r}, is {b!r}")
+    return others + [line for _, line in sorted(moved, key=lambda pair: -pair[0])]
+
+
+def _flat(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the single numbers and texts of a row, with their places in arrays."""
+    if isinstance(value, dict):
+        for key, part in value.items():
+            yield from _flat(part, key if name in ("", "values") else f"{name} {key}")
+    elif isinstance(value, list) and name != "warns":
+        yield f"{name} length", str(len(value))
+        for place, part in enumerate(value):
+            yield from _flat(part, f"{name}[{place}]")
+    else:
+        yield name, value
+
+
+def _change(a: float, b: float, was: Mapping[str, Any], name: str) -> float:
+    """Return the relative change of a number."""
+    if a == b or (math.isnan(a) and math.isnan(b)):
+        return 0.0
+    change = abs(b - a) / max(abs(a), abs(b))
+    return math.inf if math.isnan(change) else change
