@@ -34,7 +34,12 @@ CONDITIONS: list[tuple[str, str, dict[str, Any], str]] = [
     ("creepage above one", "twin_disc", {"creepage": "150 %"}, "creepage"),
     ("a misspelt condition", "twin_disc", {"crepage": "1 %"}, "crepage"),
     ("a condition of another rig", "twin_disc", {"spin": "0.2 1/m"}, "spin"),
-    ("shapes that differ", "twin_disc", {"creepage": Q([1, 2], "%"), "friction_coefficient": [0.1, 0.2, 0.3]}, "creepage"),
+    (
+        "shapes that differ",
+        "twin_disc",
+        {"creepage": Q([1, 2], "%"), "friction_coefficient": [0.1, 0.2, 0.3]},
+        "creepage",
+    ),
     ("a measured traction not used", "twin_disc", {"traction_coefficient": 0.3}, "traction_coefficient"),
     ("spin without a unit", "wheel_rail", {"spin": 0.2}, "spin"),
     ("creepage of discs", "wheel_rail", {"creepage": "1 %"}, "creepage"),
@@ -54,7 +59,7 @@ OTHERS: list[tuple[str, Callable[[], Any], str]] = [
     ("a misspelt parameter set", lambda: wl.wear_law("usfd", fitted_for="exakt"), "fitted_for"),
     ("a misspelt option", lambda: wl.contact_model("fastsim", bound="parabola"), "bound"),
     ("Poisson's ratio in percent", lambda: wl.steel(poisson_ratio=28), "poisson_ratio"),
-    ("a disc without its unit", lambda: wl.TwinDisc.suros(diameter=47), "diameter"),
+    ("a disc without its unit", lambda: wl.TwinDisc.suros(diameter=47), "diameter"),  # type: ignore[arg-type]
     ("a hollow too narrow", lambda: wl.rig("wheel_rail", **WHEEL_RAIL, wheel_profile_radius="-200 mm"),
         "wheel_profile_radius"),
     ("a gauge of another track", lambda: wl.rig("wheelset", **WHEELSET | {"gauge": "1600 mm"}), "gauge"),
@@ -85,7 +90,7 @@ OTHERS: list[tuple[str, Callable[[], Any], str]] = [
 ]  # fmt: skip
 """A name, a call, and the field or name that the message should hold."""
 
-FILES: list[tuple[str, str, Callable[[Path], Any], str, str]] = [
+FILES: list[tuple[str, str, Callable[[Any], Any], str, str]] = [
     ("tests without a unit", "tests.csv", wl.read_tests, "creepage,normal_force [kN],wear_rate [ug/m/mm^2]\n1,7,2\n",
         "creepage"),
     ("tests with a word", "tests.csv", wl.read_tests, "creepage [%],normal_force [kN],wear_rate [ug/m/mm^2]\n1,7,two\n",
@@ -109,7 +114,7 @@ def mistakes() -> Iterator[tuple[str, Callable[[], Any], str]]:
         yield f"mistake: {name}", partial(_read, file, read, text), field
 
 
-def _read(file: str, read: Callable[[Path], Any], text: str) -> None:
+def _read(file: str, read: Callable[[Any], Any], text: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, file)
         path.write_text(text, encoding="utf-8")
