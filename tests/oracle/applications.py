@@ -13,7 +13,7 @@ import pandas as pd
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.oracle.cases import CONTACTS, HOLLOW, LAWS, POINT, RIGS, seen, thinned
+from tests.oracle.cases import CONTACTS, HOLLOW, LAWS, POINT, RIGS, STAGES, seen, thinned
 from wearlaw import Q
 
 FILES = Path(__file__).parents[2] / "docs" / "examples"
@@ -107,6 +107,7 @@ def applications() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "law of a function", lambda: seen((EXACT | two_slopes)(**POINT["twin_disc"]), contact=False)
     yield "two laws", lambda: seen((FASTSIM | LAWS["usfd"][0] | LAWS["wlrm"][0])(**POINT["wheel_rail"]), contact=False)
     yield "contact of arrays", _of_arrays
+    yield "temperatures", _temperatures
     for option in ({}, {"wheel_radius": "460 mm", "density": "7800 kg/m^3"}):
         yield f"contacts of CONTACT {[*option]}", partial(_of_contact_files, option)
     yield (
@@ -169,6 +170,13 @@ def _of_arrays() -> dict[str, Any]:
     wear, of_means = contact | wl.wear_law("kth"), contact.patch_mean() | wl.wear_law("brr")
     return {"local": wear.local_wear_rate, "mean": wear.wear_rate, "mass": wear.mass_per_distance,
         "of means": of_means.wear_rate}  # fmt: skip
+
+
+def _temperatures() -> dict[str, Any]:
+    thermal: Any = STAGES["thermal"][0]
+    contacts = {"line": EXACT(**POINT["twin_disc"]).contact, "ellipse": FASTSIM(**POINT["wheel_rail"]).contact}
+    rises = {f"{name}, mean": thermal.mean_rise(contact) for name, contact in contacts.items()}
+    return rises | {f"{name}, flash": thermal.flash_temperature(contact) for name, contact in contacts.items()}
 
 
 def _of_contact_files(options: dict[str, Any]) -> dict[str, Any]:

@@ -123,7 +123,7 @@ STAGES: dict[str, list[wl.Stage]] = {
     "thermal and patch_mean": [wl.stage("thermal", hot_ratio=0.4, temperature_range="500 K"), wl.patch_mean()],
 }
 
-STAGED = {("twin_disc", "exact"), ("wheel_rail", "fastsim"), ("wheel_rail", "polach"), ("wheelset", "fastsim")}
+STAGED = (("twin_disc", "exact"), ("wheel_rail", "fastsim"), ("wheel_rail", "polach"), ("wheelset", "fastsim"))
 """Rigs and contact models that the stages are put around."""
 
 SPECIAL: dict[str, tuple[str, str, dict[str, Any]]] = {
