@@ -1,8 +1,9 @@
-"""Each model that comes with wearlaw, as it is without further options, passes the kit; `test_conformance.py` varies them."""
+"""Each model that comes with wearlaw passes the kit with its own options; `test_conformance.py` tries all options."""
 
 from __future__ import annotations
 
 from importlib.metadata import distribution
+from typing import Any
 
 import pytest
 
@@ -10,14 +11,18 @@ import wearlaw as wl
 from wearlaw.models.contact_model import Model
 from wearlaw.testing import checks
 
-NEEDED = {
+NEEDED: dict[str, dict[str, Any]] = {
     "archard": {"coefficient": 1e-4},
     "energy": {"mass_per_energy": "5 ug/J"},
     "thermal": {"hot_ratio": 0.4, "temperature_range": "500 K"},
     "third_body": {"reduction": 0.7},
     "wlrm": {
-        **{"threshold": "20 N", "peak": "65 N", "balance": "175 N", "peak_damage": 1e-5},
-        **{"beyond": "falls", "traction": "either"},
+        "threshold": "20 N",
+        "peak": "65 N",
+        "balance": "175 N",
+        "peak_damage": 1e-5,
+        "beyond": "falls",
+        "traction": "either",
     },
 }
 """The fields without which there is no such model; a rig has an example of its own."""
@@ -25,9 +30,7 @@ NEEDED = {
 OURS = {point.value for point in distribution("wearlaw").entry_points if point.group == "wearlaw"}
 INSTALLED = {**wl.contact_models(), **wl.stages(), **wl.wear_laws(), **wl.laws(), **wl.rigs()}
 SHIPPED = {
-    name: cls
-    for name, cls in INSTALLED.items()
-    if cls.__module__ in OURS or cls.__module__.rpartition(".")[0] in OURS
+    name: cls for name, cls in INSTALLED.items() if cls.__module__ in OURS or cls.__module__.rpartition(".")[0] in OURS
 }
 
 
