@@ -35,6 +35,9 @@ sys.dont_write_bytecode = False
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+ROOT = Path(__file__).parent
+SLOW = {ROOT / line for line in (ROOT / "tests/slow.txt").read_text(encoding="utf-8").split()}
+"""The files and folders of the slow tests."""
 MATLAB_READS = re.compile(r'(\w*read\w*)\("([^"]+)"(?:, "([^"]+)")?(?:, "([^"]+)")?')
 """A function of MATLAB, its file, and the variable and attribute that it reads there."""
 DOWNLOAD = re.compile(r"\{download\}`[^`<]*<([^>]+)>`")
@@ -53,6 +56,11 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
     config.option.loadscopereorder = False  # keep the order below, where xdist since 3.8 puts many tests first
     return Scheduling(config, log)
+
+
+def pytest_ignore_collect(collection_path: Path) -> bool | None:
+    """Leave out the slow tests, unless their files are named, as `pytest @tests/slow.txt` does."""
+    return True if collection_path in SLOW else None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

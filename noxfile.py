@@ -9,6 +9,9 @@ nox.needs_version = ">=2025.2"
 nox.options.default_venv_backend = "venv"
 
 PYPROJECT = nox.project.load_toml()
+FOR_SLOW = nox.project.dependency_groups(PYPROJECT, "slow")
+SLOW = "@tests/slow.txt"
+"""The files of the slow tests, as pytest takes them from a file."""
 
 
 @nox.session(python=["3.11", "3.12", "3.13", "3.14"])
@@ -19,17 +22,26 @@ def tests(session: nox.Session) -> None:
 
 
 @nox.session(python="3.11", default=False)
+def slow(session: nox.Session) -> None:
+    """Run the slow tests, those of the files in tests/slow.txt."""
+    session.install("-e", ".[test]", *FOR_SLOW)
+    session.run("pytest", "-n", "auto", SLOW, *session.posargs)
+
+
+@nox.session(python="3.11", default=False)
 def deep(session: nox.Session) -> None:
     """Measure the coverage, and let property tests and the conformance kit draw ten times the examples."""
-    session.install("-e", ".[test]")
-    session.run("pytest", "-n", "auto", "--cov")
-    session.run("pytest", "-n", "auto", "--hypothesis-profile=deep", "-m", "hypothesis")
+    session.install("-e", ".[test]", *FOR_SLOW)
+    session.run("pytest", "-n", "auto", "--cov", "--cov-report=", "--cov-fail-under=0")
+    session.run("pytest", "-n", "auto", "--cov", "--cov-append", SLOW)
+    for files in ((), (SLOW,)):
+        session.run("pytest", "-n", "auto", "--hypothesis-profile=deep", "-m", "hypothesis", *files)
 
 
 @nox.session(python="3.11", default=False)
 def fuzz(session: nox.Session) -> None:
     """Call wearlaw in random ways and damage its files: `nox -s fuzz -- --seconds 3600`."""
-    session.install("-e", ".[test]")
+    session.install("-e", ".[test]", *FOR_SLOW)
     session.run("python", "-m", "tests.fuzz", *session.posargs)
 
 
@@ -52,7 +64,7 @@ def docs(session: nox.Session) -> None:
 @nox.session(python="3.11", default=False)
 def pictures(session: nox.Session) -> None:
     """Draw the pictures of the README and the documentation anew; that of the report needs chromium."""
-    session.install("-e", ".[test]")
+    session.install("-e", ".[test]", *FOR_SLOW)
     session.run("python", "-m", "docs.pictures")
 
 

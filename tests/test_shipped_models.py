@@ -1,0 +1,43 @@
+"""Each model that comes with wearlaw passes the kit with its own options; `test_conformance.py` tries all options."""
+
+from __future__ import annotations
+
+from importlib.metadata import distribution
+from typing import Any
+
+import pytest
+
+import wearlaw as wl
+from wearlaw.models.contact_model import Model
+from wearlaw.testing import checks
+
+NEEDED: dict[str, dict[str, Any]] = {
+    "archard": {"coefficient": 1e-4},
+    "energy": {"mass_per_energy": "5 ug/J"},
+    "thermal": {"hot_ratio": 0.4, "temperature_range": "500 K"},
+    "third_body": {"reduction": 0.7},
+    "wlrm": {
+        "threshold": "20 N",
+        "peak": "65 N",
+        "balance": "175 N",
+        "peak_damage": 1e-5,
+        "beyond": "falls",
+        "traction": "either",
+    },
+}
+"""The fields without which there is no such model; a rig has an example of its own."""
+
+OURS = {point.value for point in distribution("wearlaw").entry_points if point.group == "wearlaw"}
+INSTALLED = {**wl.contact_models(), **wl.stages(), **wl.wear_laws(), **wl.laws(), **wl.rigs()}
+SHIPPED = {
+    name: cls for name, cls in INSTALLED.items() if cls.__module__ in OURS or cls.__module__.rpartition(".")[0] in OURS
+}
+
+
+@pytest.mark.hypothesis  # `nox -s deep` takes it with the tests that hypothesis marks itself
+@pytest.mark.parametrize("name", SHIPPED)
+def test_the_model_conforms(name: str) -> None:
+    model: Model = SHIPPED[name](**getattr(SHIPPED[name], "example_fields", NEEDED.get(name, {})))
+    for check in checks(model):
+        if not check.name.startswith("round_trip_"):  # each starts a process; `test_conformance.py` starts one for all
+            check()
