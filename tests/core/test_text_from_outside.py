@@ -224,7 +224,7 @@ COMMANDS = [
     ["check", "{}"],
     ["check", "usfd", "--option", "{}=1"],
     ["check", "usfd", "--option", "fitted_for={}"],
-    ["new-plugin", "{}", "--law"],
+    ["new-plugin", "{}", "--wear-law"],
     ["fit", "{}"],
     ["fit", "t.csv", "--law", "{}", "--free", "q_s"],
     ["fit", "t.csv", "--law", "usfd", "--free", "{}"],

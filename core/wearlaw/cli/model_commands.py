@@ -15,7 +15,7 @@ from rich.table import Table
 
 from wearlaw.cli.describe import accuracies
 from wearlaw.cli.explain import explain
-from wearlaw.cli.scaffold import Kind, Licence, next_commands, write_plugin
+from wearlaw.cli.scaffold import Kind, write_plugin
 from wearlaw.cli.shared import echo, fields, values
 from wearlaw.errors import (
     ConfigurationError,
@@ -66,11 +66,8 @@ def show(name: str) -> None:
 @click.command("new-plugin")
 @click.argument("name")
 @click.option("--wear-law", "kind", flag_value="wear_law", help="Start from a wear law: Archard's.")
-@click.option("--law", "kind", flag_value="law", help="Start from a law of another outcome: fatigue damage.")
 @click.option("--contact-model", "kind", flag_value="contact_model", help="Start from a contact model: full slip.")
-@click.option("--stage", "kind", flag_value="stage", help="Start from a stage: friction lowered by a factor.")
 @click.option("--rig", "kind", flag_value="rig", help="Start from a rig: a weight on two rollers.")
-@click.option("--material", "kind", flag_value="material", help="Start from a material: a steel with its hardness.")
 @click.option(
     "-o",
     "--output",
@@ -78,28 +75,20 @@ def show(name: str) -> None:
     default=Path(),
     help="Folder in which wearlaw-NAME is made [default: the working folder].",
 )
-@click.option(
-    "--license",
-    "licence",
-    type=click.Choice(["bsd-3-clause", "mit", "none"]),
-    default="none",
-    show_default=True,
-    help="Licence of the plugin; with none, LICENSE says how to choose one.",
-)
-def new_plugin(name: str, kind: Kind | None, output: Path, licence: Licence) -> None:
-    """Begin a plugin: write a small distribution, wearlaw-NAME, with a model or a material to replace.
+def new_plugin(name: str, kind: Kind | None, output: Path) -> None:
+    """Begin a plugin: write a small distribution, wearlaw-NAME, with a model to replace.
 
-    It holds a module of about 30 lines, its entry point, its tests, a README, a licence and a CI workflow, and passes
-    its tests, ruff and mypy --strict as it is. NAME is what the model will be called in wearlaw.wear_law("NAME") or
-    wearlaw.rig("NAME") and in case files: lower-case letters, digits and underscores.
+    It holds a module of about 30 lines, its entry point, its tests, a README and a CI workflow, and passes its tests,
+    ruff and mypy --strict as it is. NAME is what the model will be called in wearlaw.wear_law("NAME") or
+    wearlaw.rig("NAME") and in case files: lower-case letters, digits and underscores. For a stage, a law of another
+    outcome or a material, begin with a wear law and replace its module by one of the documentation.
     """
     if kind is None:
-        *others, last = (f"--{one.replace('_', '-')}" for one in get_args(Kind))
-        raise click.UsageError(f"say what the plugin provides: {', '.join(others)} or {last}")
-    folder = write_plugin(name, kind, output, licence)
+        raise click.UsageError("say what the plugin provides: --wear-law, --contact-model or --rig")
+    folder = write_plugin(name, kind, output)
     echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}.py. Next:")
-    commands = (f"cd {shlex.quote(str(folder))}", 'python -m pip install -e ".[test]"', "pytest", "wearlaw plugins")
-    for line in dict.fromkeys([*commands, next_commands(name, kind)[-1]]):
+    install = 'python -m pip install -e ".[test]"'
+    for line in (f"cd {shlex.quote(str(folder))}", install, "pytest", "wearlaw plugins", f"wearlaw check {name}"):
         echo(f"  {line}")
 
 
