@@ -112,13 +112,10 @@ def run_here(command: str) -> str:
 
 
 def run_in_shell(command: str, installed: Path) -> str:
-    """Run a command in a shell, which finds what the page has installed.
-
-    What it says of slow plugins depends on how busy the machine is, and is left out.
-    """
+    """Run a command in a shell, which finds what the page has installed."""
     variables, output = environment(str(installed)), subprocess.PIPE
     done = subprocess.run(command, shell=True, env=variables, stdout=output, stderr=subprocess.STDOUT, text=True)
-    return re.sub(r"^wearlaw is still loading .*\n", "", done.stdout, flags=re.MULTILINE)
+    return done.stdout
 
 
 def environment(installed: str) -> dict[str, str]:

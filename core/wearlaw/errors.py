@@ -208,7 +208,7 @@ class ResumeWarning(WearlawWarning):
 
 
 class PluginWarning(WearlawWarning):
-    """A plugin, or a part of it, could not be used and is left out, or it changed the process while it was loaded."""
+    """A plugin, or a part of it, could not be used and is left out."""
 
 
 _WORDS = re.compile(r"[^\W_]{3,}")

@@ -16,7 +16,6 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import wearlaw
 from tests.core.distributions import FIRST_PARTY_LAWS, FIRST_PARTY_MODELS, LAW, Install, write_distribution
 from wearlaw.plugins import loader
 
@@ -177,18 +176,13 @@ def test_a_broken_plugin_is_warned_of_once_and_then_left_alone(install: Install)
     ["import signal\nsignal.raise_signal(signal.SIGINT)", "raise KeyboardInterrupt"],
     ids=["by a person", "by the plugin"],
 )
-def test_ctrl_c_while_a_plugin_is_loading_ends_the_program_and_names_the_plugin(
+def test_ctrl_c_while_a_plugin_is_loading_ends_the_program(
     source: str, install: Install, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     install("slow_plugin", source)
     monkeypatch.setattr(signal, "raise_signal", lambda number: signal.default_int_handler(number, None))  # in any shell
-    with pytest.raises(KeyboardInterrupt) as interrupt:
+    with pytest.raises(KeyboardInterrupt):
         wl.wear_laws()
-    assert interrupt.value.__notes__ == ["wearlaw was loading slow_plugin 1.0 (plugin 'slow_plugin')"]
-    result = wearlaw("show", "usfd")
-    assert result.exit_code == 130
-    assert result.stdout == ""
-    assert result.stderr == f"Stopped; {interrupt.value.__notes__[0]}; nothing was written\n"
 
 
 def test_every_broken_plugin_is_warned_of(install: Install) -> None:
@@ -316,12 +310,6 @@ def test_a_name_near_to_none_gets_the_list_only(name: str) -> None:
     with pytest.raises(wl.UnknownModelError) as error:
         wl.wear_law(name)
     assert str(error.value) == f"no wear law is called {name!r}. Installed: archard, brr, energy, kth, usfd"
-
-
-@pytest.mark.parametrize("name", [3, None])
-def test_what_is_no_name_is_refused(name: object) -> None:
-    with pytest.raises(wl.InputError, match=f"^wear law: must be a name; got {name!r}$"):
-        wl.wear_law(name)  # type: ignore[arg-type]
 
 
 def test_an_unknown_option_is_named_with_the_fields_there_are() -> None:

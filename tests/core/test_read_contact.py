@@ -120,7 +120,7 @@ def test_files_that_cannot_be_read_are_named(install: Install, tmp_path: Path) -
     path = printed(tmp_path)
     with pytest.raises(wl.DataError, match=r"there is no file '.*onee.prt'; did you mean 'one.prt'\?"):
         wl.read_contact(path.with_name("onee.prt"))
-    with pytest.raises(wl.DataError, match=r"cannot read '.*': it is a folder; give a file"):
+    with pytest.raises(wl.DataError, match=r"cannot read '.*': Is a directory"):
         wl.read_contact(tmp_path)
     with pytest.raises(wl.DataError, match=r"no reader reads files that end in '.csv'; those .* end in .mat, .prt"):
         wl.read_contact(printed(tmp_path, name="one.csv"))

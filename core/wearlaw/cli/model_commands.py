@@ -48,8 +48,6 @@ def list_plugins() -> None:
     Console().print(table)
     for plugin in found.broken:
         echo(f"left out: {plugin}", err=True)
-    for remark in found.remarks:
-        echo(f"note: {remark}", err=True)
 
 
 @click.command()

@@ -260,7 +260,6 @@ def compare(
     """
     given = _given(predictors)
     expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
-    expect(str | None, outcome, "outcome", "the name of an outcome, such as 'wear_rate'")
     chosen = _chosen(given, tests, outcome)
     names = _names(given, chosen)
     if isinstance(predictors, Mapping):

@@ -15,7 +15,6 @@ from wearlaw.models.law import Law
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import specification
-from wearlaw.settings.arguments import expect_path
 from wearlaw.settings.text_files import read_text, reason_of
 from wearlaw.settings.toml_files import LARGEST, parse_toml
 
@@ -87,7 +86,6 @@ def read_law(path: str | os.PathLike[str]) -> Law:
     InputError
         If the file is missing, is not TOML, or does not describe a law of an installed plugin.
     """
-    expect_path(path, "path", "a TOML file")
     contents = read_toml("wear law", path)
     kind = "law" if "law" in contents and "wear_law" not in contents else "wear_law"
     fields = contents.get(kind)

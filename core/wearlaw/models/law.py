@@ -34,7 +34,6 @@ from wearlaw.errors import (
     shortened,
 )
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale
-from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
 from wearlaw.units.quantities import Quantity, Unit, from_si
@@ -156,7 +155,6 @@ class Outcome:
             if self.name != WEAR:
                 raise InputError(f"outcome '{self.name}': this name has a meaning, {known.name}; choose another one")
             return
-        expect(str, self.unit, f"outcome '{self.name}': unit", "a text, such as 'mm', or '' for a plain number")
         try:
             unit_in_si(self.unit)
         except UnitError as error:

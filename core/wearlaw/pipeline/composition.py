@@ -14,7 +14,6 @@ from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError
 from wearlaw.models.contact_model import ContactModel, Model, Scale
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.plugins import loader
-from wearlaw.settings.arguments import expect
 
 PEAKS = (
     "The peak of the traction is 4/π or 3/2 times its mean on a line (elliptic or parabolic bound), but 3/2 or 2 times"
@@ -54,8 +53,6 @@ def law_among(laws: Sequence[Law], model: ContactModel, outcome: str, body: str 
     CompositionError
         If no law predicts the outcome, or if several laws do and no body is given.
     """
-    expect(str, outcome, "outcome", f"the name of an outcome, such as '{WEAR}'")
-    expect(str | None, body, "body", "the name of a body in the rig, such as 'disc_1'")
     found = [index for index, law in enumerate(laws) if law.outcome.name == outcome]
     if not found:
         if outcome == WEAR:

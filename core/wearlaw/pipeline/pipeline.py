@@ -405,8 +405,6 @@ class Pipeline(Configuration, Generic[P]):
         CompositionError
             If the application needs one patch and the rig makes several.
         """
-        if type(conditions) is not dict:  # the test for a mapping takes long
-            expect(Mapping, conditions, "conditions", "a table of conditions by name")
         rig, problem = self.rig, self.rig.checked_problem(conditions)
         if of_one_patch:
             check_one_patch(problem, rig, of_one_patch)
@@ -434,8 +432,6 @@ class Pipeline(Configuration, Generic[P]):
         stacklevel : int
             The caller that warnings name; 2 is the caller of this method.
         """
-        if type(problem) is not Problem:
-            expect(Problem, problem, "problem", "a wearlaw.Problem, from the `problem` method of the rig")
         if self.rig.patch_geometry not in (None, problem.geometry):
             raise InputError(
                 f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"

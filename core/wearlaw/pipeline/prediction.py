@@ -41,7 +41,6 @@ from wearlaw.pipeline.profiles import across_patch, along_patch, on_profile
 from wearlaw.pipeline.ranges import RangeWatch, elastic_limits, outside_range
 from wearlaw.pipeline.selection import Index, Label, Selection
 from wearlaw.pipeline.variables import ERROR, default_variables, long_name, outcome_units
-from wearlaw.settings.arguments import expect
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
 from wearlaw.units.variables import UNITS
 
@@ -131,9 +130,6 @@ class Prediction:
             If the contact holds impossible values, or a law fails.
         """
         laws = (law, *more)
-        expect(Contact, contact, "contact", "a wearlaw.Contact, such as read_contact returns")
-        for one in laws:
-            expect(Law, one, "law", "a law, such as wl.wear_law('usfd')")
         problem = contact.problem
         if problem is None:
             raise InputError(

@@ -21,7 +21,6 @@ from wearlaw.numerics.solved import Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import unknown
-from wearlaw.settings.arguments import expect, expect_path
 from wearlaw.settings.text_files import read_start
 
 File: TypeAlias = str | os.PathLike[str]
@@ -59,13 +58,8 @@ def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, 
         If the reader fails, or returns a contact with impossible values.
     """
     if isinstance(paths, str | os.PathLike):
-        expect_path(paths, "paths", "a file, or several")
         return _read(Path(paths), reader, options)
-    expect(Sequence, paths, "paths", "the path of a file, or a list of several")
-    given = list(paths)
-    for path in given:
-        expect_path(path, "paths", "a file, or several")
-    files = [Path(path) for path in given]
+    files = [Path(path) for path in paths]
     if not files:
         raise InputError("paths: give at least one file")
     return _stacked(files, [_read(path, reader, options) for path in files])

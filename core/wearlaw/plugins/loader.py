@@ -27,9 +27,7 @@ from wearlaw.models.law import Law
 from wearlaw.models.reader import Reader
 from wearlaw.models.stage import Stage
 from wearlaw.models.wear_law import WearLaw
-from wearlaw.plugins.isolation import Isolation
 from wearlaw.plugins.shelf import Broken, Origin, Shelf, add_model, unknown
-from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import Configuration, known_as
 
 
@@ -46,8 +44,6 @@ class Installed:
         All plugins.
     broken : list of Broken
         Plugins that raised an error, and are left out from there on.
-    remarks : list of Broken
-        Plugins with side effects while they were loaded, such as printing.
     """
 
     rigs: Shelf[type[Any]] = field(default_factory=lambda: Shelf("rig", type))
@@ -64,7 +60,6 @@ class Installed:
     sections: Shelf[Callable[..., Any]] = field(default_factory=lambda: Shelf("section", Callable))  # type: ignore[arg-type]
     plugins: list[Origin] = field(default_factory=list)
     broken: list[Broken] = field(default_factory=list)
-    remarks: list[Broken] = field(default_factory=list)
 
     def shelves(self) -> tuple[Shelf[Any], ...]:
         """Return the shelf of each kind."""
@@ -97,8 +92,6 @@ def _search() -> Installed:
         _under_way.clear()
     for plugin in found.broken:
         warnings.warn(f"left out: {plugin}", PluginWarning, stacklevel=4)
-    for remark in found.remarks:
-        warnings.warn(str(remark), PluginWarning, stacklevel=4)
     return found
 
 
@@ -113,26 +106,23 @@ def _discover(found: Installed) -> None:
     manager = _Manager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)
     loaded: list[tuple[_Plugin, Origin]] = []
-    with Isolation() as isolation:
-        for entry_point, origin in _entry_points():
-            found.plugins.append(origin)
-            with _left_out_if_broken(found, origin, isolation):
-                plugin = _Plugin(manager, _load(manager, entry_point, origin))
-                _add_models(plugin, origin, found)
-                loaded.append((plugin, origin))
-        for plugin, origin in loaded:
-            with _left_out_if_broken(found, origin, isolation):
-                _add_named(plugin, origin, found)
+    for entry_point, origin in _entry_points():
+        found.plugins.append(origin)
+        with _left_out_if_broken(found, origin):
+            plugin = _Plugin(manager, _load(manager, entry_point, origin))
+            _add_models(plugin, origin, found)
+            loaded.append((plugin, origin))
+    for plugin, origin in loaded:
+        with _left_out_if_broken(found, origin):
+            _add_named(plugin, origin, found)
 
 
 @contextmanager
-def _left_out_if_broken(found: Installed, origin: Origin, isolation: Isolation) -> Iterator[None]:
-    """Record any exception of a plugin and its side effects, and go on; only Ctrl-C ends the program."""
+def _left_out_if_broken(found: Installed, origin: Origin) -> Iterator[None]:
+    """Record any exception of a plugin, even an exit of the process, and go on; only Ctrl-C ends the program."""
     try:
-        with isolation.of(origin, lambda remark: found.remarks.append(Broken(origin, remark))):
-            yield
-    except KeyboardInterrupt as interrupt:  # the plugin may have raised it itself, so name the plugin
-        interrupt.add_note(f"wearlaw was loading {origin}")
+        yield
+    except KeyboardInterrupt:
         raise
     except BaseException as error:
         found.broken.append(Broken(origin, described(error)))
@@ -203,7 +193,6 @@ def wear_law(name: str, /, **options: Any) -> WearLaw:
 
     Parameters and errors are those of `contact_model`.
     """
-    expect(str, name, "wear law", "a name")
     found = installed()
     if name in found.parameter_sets.providers and name not in found.wear_laws.providers:
         return known_as(name, found.parameter_sets.find(name, found.broken).model_copy(update=options))
@@ -229,7 +218,6 @@ def law(name: str, /, **options: Any) -> Law:
 
     Parameters and errors are those of `contact_model`.
     """
-    expect(str, name, "law", "a name")
     found = installed()
     if name in found.laws.providers and name not in {**found.wear_laws.providers, **found.parameter_sets.providers}:
         return found.laws.find(name, found.broken)(**options)
@@ -253,7 +241,6 @@ def material(name: str, /, **options: Any) -> Material:
     ConfigurationError
         If a field is missing or unknown, or has a wrong value.
     """
-    expect(str, name, "material", "a name")
     found = installed()
     if name in found.materials.providers:
         known = found.materials.find(name, found.broken)

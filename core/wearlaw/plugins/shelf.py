@@ -9,7 +9,6 @@ from typing import Any, Generic, TypeVar
 
 from wearlaw.errors import UnknownModelError, did_you_mean, quoted, shortened
 from wearlaw.models.contact_model import Model
-from wearlaw.settings.arguments import expect
 
 T = TypeVar("T")
 ModelT = TypeVar("ModelT", bound=Model)
@@ -75,7 +74,6 @@ class Shelf(Generic[T]):
 
     def find(self, name: str, broken: Iterable[Broken]) -> T:
         """Return the item with a name, or raise an `UnknownModelError` that lists the installed names."""
-        expect(str, name, self.kind, "a name")
         found = self.providers.get(name, [])
         if len(found) == 1:
             return found[0][0]

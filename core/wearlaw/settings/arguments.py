@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 from wearlaw.errors import InputError, shortened
@@ -16,7 +15,7 @@ def expect(kind: Any, value: object, name: str, wanted: str) -> None:
     kind : type or union of types
         The type.
     value : object
-        The value, which may be anything. Nothing is asked of it, since to compare or hash it could fail.
+        The value.
     name : str
         The argument.
     wanted : str
@@ -24,13 +23,6 @@ def expect(kind: Any, value: object, name: str, wanted: str) -> None:
     """
     if not isinstance(value, kind):
         raise InputError(f"{name}: must be {wanted}; got {shortened(value)}")
-
-
-def expect_path(value: object, name: str, of: str) -> None:
-    """Raise an `InputError` that names the argument unless its value is a path; `of` says of what."""
-    wanted = f"the path of {of}"
-    expect(str | os.PathLike, value, name, wanted)
-    expect(str, os.fspath(value), name, wanted)  # type: ignore[call-overload]  # a path may be of bytes
 
 
 def expect_names(value: object, name: str, example: str, least: int = 1) -> list[str]:

@@ -8,23 +8,18 @@ from types import NoneType
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, get_args, get_origin
 
 import pint
-from pydantic import BaseModel, ConfigDict, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, ValidationError, field_validator
 
 from wearlaw.errors import (
-    UNWRITABLE,
     ConfigurationError,
     Fault,
     FrozenError,
-    WearlawError,
     did_you_mean,
     excerpt,
-    message_of,
-    printable,
     quoted,
     shortened,
 )
 from wearlaw.settings.docstrings import field_docstrings, place_of_statement
-from wearlaw.settings.toml_files import DEEPEST
 from wearlaw.units.quantities import plain_number, shown
 
 if TYPE_CHECKING:
@@ -63,15 +58,6 @@ class Configuration(BaseModel):
             for key in {name, cls.model_fields[name].alias} & properties.keys():
                 properties[key] |= {"description": text} if text else {}
         return found
-
-    @model_validator(mode="before")
-    @classmethod
-    def _without_control_characters(cls, fields: Any) -> Any:
-        """Refuse text that no file of results could hold and no terminal should see."""
-        wrong = [Fault(path, message) for path, message in unwritable(fields)] if isinstance(fields, dict) else []
-        if wrong:
-            raise ConfigurationError(cls.subject(), wrong)
-        return fields
 
     @field_validator("*", mode="before")
     @classmethod
@@ -176,22 +162,6 @@ def _is_number(annotation: Any) -> bool:
     return len(inner) == 2 and inner[1] is NoneType and _is_number(inner[0])
 
 
-def unwritable(value: object, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Yield the place of each text in a value that has control characters, and a message about it."""
-    if isinstance(value, str):
-        found = UNWRITABLE.search(value)
-        if found:
-            yield path, f"has the control character {quoted(found[0])}, which no text may have, in {quoted(value)}"
-    elif len(path) > DEEPEST:
-        return
-    elif isinstance(value, dict):
-        for key, inner in value.items():
-            yield from unwritable(inner, (*path, str(key)))
-    elif isinstance(value, (list, tuple)):
-        for number, inner in enumerate(value):
-            yield from unwritable(inner, (*path, str(number)))
-
-
 _BUILDING = RLock()
 
 
@@ -265,8 +235,8 @@ def configuration_error(subject: str, model: type[BaseModel], error: ValidationE
 
 def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
     cause = details.get("ctx", {}).get("error")
-    if isinstance(cause, Exception):  # that of a plugin may hold line breaks of the value
-        return str(cause) if isinstance(cause, WearlawError) else printable(message_of(cause))
+    if isinstance(cause, Exception):
+        return str(cause)
     if details["type"] == "extra_forbidden":
         known = [field.alias or name for name, field in model.model_fields.items()]
         hint = did_you_mean(str(details["loc"][-1]), known)

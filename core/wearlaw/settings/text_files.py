@@ -1,26 +1,20 @@
-"""Reading files from outside: regular ones, up to a size, in the encodings that editors and shells write."""
+"""Reading files from outside: up to a size, in the encodings that editors and shells write."""
 
 from __future__ import annotations
 
 import errno
 import os
-import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
-from typing import BinaryIO
 
-from wearlaw.errors import InputError, quoted
+from wearlaw.errors import InputError
 
 MIB = 2**20
 
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 """The byte order marks of UTF-16, which `>` writes in Windows PowerShell 5."""
-
-_KINDS = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket"}
-"""What is no regular file; the rest are devices."""
-
 
 _READ: ContextVar[Path | None] = ContextVar("folder of the file that is being read", default=None)
 
@@ -45,38 +39,9 @@ def beside(path: str | os.PathLike[str]) -> Path:
     return Path(path) if folder is None else folder / path
 
 
-def _opened(path: str | os.PathLike[str]) -> BinaryIO:
-    """Open a regular file. Anything else may never end, or never begin."""
-    if "\0" in os.fspath(path):
-        raise InputError("a name cannot have a null character")
-    _check_regular(os.stat(path))  # first, since opening a device may do something
-    file = open(path, "rb", opener=_without_waiting)  # noqa: SIM115
-    try:
-        _check_regular(os.fstat(file.fileno()))  # it may have been replaced meanwhile
-    except InputError:
-        file.close()
-        raise
-    return file
-
-
-def _without_waiting(path: str, flags: int) -> int:
-    """Open a file at once: a pipe would wait for a program that writes to it."""
-    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
-
-
-def _check_regular(status: os.stat_result) -> None:
-    if not stat.S_ISREG(status.st_mode):
-        kind = _KINDS.get(stat.S_IFMT(status.st_mode), "a device")
-        do = "give a file" if kind == "a folder" else "save what it gives to a file, and give that file"
-        raise InputError(f"it is {kind}; {do}")
-
-
 def reason_of(error: Exception) -> str:
     """Return why a file cannot be opened, read or written, without its name."""
-    if isinstance(error, UnicodeEncodeError):
-        return f"a name cannot have the character {error.object[error.start]!a}"
-    text = getattr(error, "strerror", None) or str(error)
-    return text.replace("embedded null byte", "a name cannot have a null character")
+    return getattr(error, "strerror", None) or str(error)
 
 
 def place_of(folder: Path) -> Path:
@@ -101,7 +66,7 @@ def place_of(folder: Path) -> Path:
 
 
 def read_start(path: str | os.PathLike[str], count: int) -> bytes:
-    """Return the first bytes of a regular file, all if it has no more than `count`.
+    """Return the first bytes of a file, all if it has no more than `count`.
 
     Raises
     ------
@@ -109,20 +74,16 @@ def read_start(path: str | os.PathLike[str], count: int) -> bytes:
         As for `read_file`.
     """
     try:
-        with _opened(path) as file:
-            return file.read(count) or b""
+        with open(path, "rb") as file:
+            return file.read(count)
     except FileNotFoundError:
-        if os.path.islink(path):
-            raise InputError(f"it is a link to {quoted(os.readlink(path))}, which does not exist") from None
-        raise
-    except InputError:
         raise
     except (OSError, ValueError) as error:
         raise InputError(reason_of(error)) from None
 
 
 def read_file(path: str | os.PathLike[str], most: int) -> bytes:
-    """Return the content of a regular file of at most so many bytes.
+    """Return the content of a file of at most so many bytes.
 
     Parameters
     ----------
@@ -136,8 +97,7 @@ def read_file(path: str | os.PathLike[str], most: int) -> bytes:
     FileNotFoundError
         If there is no such file.
     InputError
-        If it is larger, cannot be read, or is a folder, pipe, device or broken link; the message follows the name of
-        the file.
+        If it is larger or cannot be read; the message follows the name of the file.
     """
     content = read_start(path, most + 1)
     if len(content) > most:
@@ -146,7 +106,7 @@ def read_file(path: str | os.PathLike[str], most: int) -> bytes:
 
 
 def read_text(path: str | os.PathLike[str], most: int) -> str:
-    """Return the text of a regular file of at most so many bytes.
+    """Return the text of a file of at most so many bytes.
 
     Raises
     ------

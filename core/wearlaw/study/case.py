@@ -54,7 +54,6 @@ from wearlaw.pipeline.pipeline import Pipeline, Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
 from wearlaw.plugins.shelf import Shelf
-from wearlaw.settings.arguments import expect_path
 from wearlaw.settings.configuration import Configuration, configuration_error, known_as
 from wearlaw.settings.text_files import beside, read_text, reading
 from wearlaw.settings.toml_files import LARGEST, parse_toml
@@ -587,7 +586,6 @@ def load_case(name_or_path: str) -> Case:
     CaseError
         If the file is missing, is not TOML, or has wrong fields, which the message names by their paths.
     """
-    expect_path(name_or_path, "case", "a case file, or the name of a shipped case")
     name_or_path = os.fspath(name_or_path)
     text = case_text(name_or_path)
     try:

@@ -29,7 +29,7 @@ from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig, expect_pipeline
 from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import default_variables
-from wearlaw.settings.arguments import expect_names, expect_path
+from wearlaw.settings.arguments import expect_names
 from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.settings.configuration import parts
 from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
@@ -125,8 +125,6 @@ def sweep(
     expect_pipeline(predict)
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise InputError(f"workers: must be the number of processes, at least 1; got {shortened(workers)}")
-    if store is not None:
-        expect_path(store, "store", 'a folder, such as "map.zarr"')
     with kept_in(store), _points(predict, table, conditions, columns, keep, store, progress) as points:
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)

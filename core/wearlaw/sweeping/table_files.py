@@ -18,7 +18,6 @@ import xarray
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import DataError, InputError, described, quoted, shortened
-from wearlaw.settings.arguments import expect_path
 from wearlaw.settings.csv_files import kind_of, preamble, rows
 from wearlaw.settings.text_files import UTF_16, decoded, read_start, reason_of
 from wearlaw.units.quantities import HEAD
@@ -134,7 +133,6 @@ def open_table(path: str | os.PathLike[str]) -> TableFile:
     DataError
         If there is no such file, or it holds no table.
     """
-    expect_path(path, "table", "a file")
     path = Path(path)
     if os.path.isdir(path):
         if not any((path / name).exists() for name in ZARR):

@@ -25,7 +25,6 @@ from wearlaw.pipeline.composition import check_traction, warn_of_unlike_material
 from wearlaw.pipeline.named_numbers import Kind, Place, check_loads_stay, staged_models
 from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.pipeline.ranges import RangeWatch
-from wearlaw.settings.arguments import expect
 from wearlaw.uncertainties.distributions import Distribution, PublishedRange
 from wearlaw.uncertainties.inputs import OTHERS, Uncertain, check_samples, numbers_of, split
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si
@@ -89,8 +88,6 @@ def uncertainty(
         If nothing is distributed, or a distribution is impossible for its condition or parameter.
     """
     expect_pipeline(predict)
-    for name, given in {"law": law, "stage": stage}.items():
-        expect(Mapping | None, given, name, "a table of distributions by the names of numbers, as in {'m_m': ...}")
     return Uncertainty(predict, conditions, law or {}, samples, seed, stage or {})
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.errors import DataError, InputError, did_you_mean, excerpt, quoted, shortened
 from wearlaw.plugins import loader
-from wearlaw.settings.arguments import expect_names, expect_path
+from wearlaw.settings.arguments import expect_names
 from wearlaw.settings.csv_files import kind_of
 from wearlaw.settings.text_files import MIB, UTF_16, decoded, read_file
 from wearlaw.units.quantities import Q
@@ -48,7 +48,6 @@ def read_tests(path_or_name: str | Path, *, outcomes: Collection[str] = ()) -> W
     UnknownModelError
         If several plugins ship tests of that name.
     """
-    expect_path(path_or_name, "tests", "a CSV file, or the name of shipped tests")
     if isinstance(outcomes, str):
         raise DataError(f'outcomes: give a list of names, such as ["{outcomes}"]')
     outcomes = expect_names(outcomes, "outcomes", "rcf_damage", least=0)
