@@ -152,7 +152,7 @@ CREEPAGE_FIX = "give creepage in percent or as a ratio"
         ("friction_coefficient", [], "Grid: friction_coefficient: is empty; give at least one value"),
         ("friction_coefficient", float("nan"), "Grid: friction_coefficient: must be finite, got nan"),
         ("friction_coefficient", [0.1, float("inf")], "Grid: friction_coefficient: must be finite, got inf"),
-        ("friction_coefficient", "0.4", "friction_coefficient: '0.4' is not a real number"),
+        ("friction_coefficient", "0.4", "friction_coefficient: '0.4' is not a number with a unit"),
         ("friction_coefficient", 0, "friction_coefficient: must be a positive finite number, got 0"),
         ("friction_coefficient", -0.1, "friction_coefficient: must be a positive finite number, got -0.1"),
         ("traction_coefficient", -0.1, "traction_coefficient: must be a positive finite number, got -0.1"),

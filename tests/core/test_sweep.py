@@ -263,7 +263,6 @@ def test_wrong_tables_are_refused(table: Any, conditions: Any, message: str) -> 
         ({"outputs": []}, "outputs: must be a list of names"),
         ({"outputs": 5}, "outputs: must be a list of names, .*, got 5"),
         ({"outputs": [5]}, r"outputs: must be a list of names, .*, got \[5\]"),
-        ({"store": 5}, 'store: must be the path of a folder, such as "map.zarr"; got 5'),
         ({"workers": 0}, "workers: must be the number of processes, at least 1; got 0"),
         ({"resume": True}, "resume: needs the store"),
         ({"creepage": "1 %", "normal_force": "1 kN", "friction_coefficient": 0.3}, "no condition is an axis"),
