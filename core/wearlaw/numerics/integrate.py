@@ -537,7 +537,8 @@ def _on_own_nodes(solver: Solver, laws: Mapping[int, tuple[Law, Numbers]], probl
 
     def columns(part: Problem, points: slice) -> Columns:
         contact = solver.solve(part)
-        found = {"longitudinal": contact.tangential_force, **_sliding(solver, [law for law, _ in laws.values()], contact)}
+        found = {"longitudinal": contact.tangential_force}
+        found |= _sliding(solver, [law for law, _ in laws.values()], contact)
         if not isinstance(model, LineContactModel):
             found["patch_area"] = contact.patch_area
         for index, (law, p) in laws.items():

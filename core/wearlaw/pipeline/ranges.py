@@ -21,7 +21,6 @@ from wearlaw.numerics.integrate import SLIDING
 from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import UNITS
 
-
 SLIDING_TOLERANCE = 0.05
 """Share by which μ∫p·s dA may differ from ∫q·s dA without a warning."""
 
@@ -110,8 +109,8 @@ class RangeWatch:
             lie = "lies" if seen.outside == 1 else "lie"
             warnings.warn(
                 f"{' and '.join(dict.fromkeys(laws))}: the rate follows pressure times slip, p·s, but where the contact"
-                " slips its traction is not μp, as with the parabolic bound of fastsim. ∫p·s dA is then not Tγ/μ, and the"
-                " rate is off by about the same factor. The two agree with exact, for discs, and with fastsim's"
+                " slips its traction is not μp, as with the parabolic bound of fastsim. ∫p·s dA is then not Tγ/μ, and"
+                " the rate is off by about the same factor. The two agree with exact, for discs, and with fastsim's"
                 f' bound="elliptic" and adaptive march; {seen.outside} of {self.points} {self.counted} {lie} more than'
                 f" {100.0 * SLIDING_TOLERANCE:.0f} % off, as far as {farthest:.3g} times Tγ/μ",
                 RangeWarning,
