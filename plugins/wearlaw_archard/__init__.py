@@ -54,6 +54,7 @@ class Archard(wl.WearLaw):
     name: ClassVar[str] = "archard"
     source: ClassVar[str] = "J. F. Archard, J. Appl. Phys. 24 (1953) 981-988"
     monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("pressure", "slip")
+    follows_pressure_times_slip: ClassVar[bool] = True
 
     coefficient: Annotated[float, Field(gt=0.0, strict=True, examples=["1e-4"])]
     """Wear coefficient of V = k N s / H, k [-]."""

@@ -70,6 +70,7 @@ class KTH(wl.WearLaw):
     source: ClassVar[str] = (
         "T. Jendel, Wear 253 (2002) 89-99, after Tassini et al., Wear 268 (2010) 660-667, Table 2 and eq. (15)"
     )
+    follows_pressure_times_slip: ClassVar[bool] = True
 
     coefficient: Literal["low", "mid", "high"] | Coefficients = "mid"
     """The published values of k are ranges. Choose their low end, middle or high end, or give your own values."""

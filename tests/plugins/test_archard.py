@@ -101,7 +101,7 @@ def test_it_is_kth_within_one_field_of_the_map() -> None:
 def test_each_body_wears_by_the_hardness_of_its_own_material() -> None:
     both = (
         rail(material=SOFT, rail_material=HARD)
-        | wl.contact_model("fastsim")
+        | wl.contact_model("fastsim", bound="elliptic")
         | archard(body="wheel")
         | archard(body="rail")
     )

@@ -208,6 +208,10 @@ class Law(Model):
     zero_in_stick: ClassVar[bool] = False
     """Whether the value is zero at nodes that stick."""
 
+    follows_pressure_times_slip: ClassVar[bool] = False
+    """Whether the value at a node goes with pressure times slip, p·s, as in Archard's law. wearlaw then warns if a
+    contact model bounds its traction otherwise than by μp, so that ∫p·s dA is not the dissipated energy over μ."""
+
     fitted_for: Calibration | None = None
     """Record of the tests that the numbers are from, with their range; `wl.fit` fills it in."""
     body: str | None = None

@@ -65,6 +65,9 @@ ROUNDINGS = 32.0
 
 EPS = float(np.finfo(np.float64).eps)
 
+SLIDING = "sliding_ratio"
+"""Column for laws in p·s: μ∫p·s dA over Tγ = ξFx + ηFy + φMz [-], which is 1 under Coulomb's law, q = μp in slip."""
+
 ALL = slice(None)
 """All operating points."""
 
@@ -275,7 +278,7 @@ def _over_ellipse(
         contact = solver.solve(part)
         area = contact.patch_area
         keeps = contact.strip_width.shape[-1] * problem.size <= KEPT_STRIPS
-        found = {"patch_area": area, **_columns(contact.forces)}
+        found = {"patch_area": area, **_columns(contact.forces), **_sliding(solver, [law for law, _ in laws], contact)}
         for index, (law, p) in enumerate(laws):
             seen, own = _contact_of(law, contact, part), _at_points(p, points)
             if law.outcome.of == "patch":
@@ -493,6 +496,21 @@ def _per_point(number: float | Array, points: slice) -> float | Array:
     return number[points, 0] if isinstance(number, np.ndarray) and number.ndim else number
 
 
+def _sliding(solver: Solver, laws: Sequence[Law], contact: Contact) -> Columns:
+    """Return the column `SLIDING`, or none if no law goes with p·s or friction may differ from node to node.
+
+    Only a bare contact model has the one μ of its problem: a stage that changes the solved contact and another program
+    may have any friction.
+    """
+    model, problem = solver.model, contact.problem
+    follows = model.scale == "cells" and any(law.follows_pressure_times_slip for law in laws)
+    if not follows or problem is None or isinstance(model, Staged | Solved):
+        return {}
+    sliding = problem.friction_coefficient * np.abs(contact.integral(contact.pressure, contact.slip))
+    energy = contact.wear_index
+    return {SLIDING: np.divide(sliding, energy, out=np.ones_like(energy), where=energy > 0.0)}
+
+
 def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:
     """Return the numbers of a law at some operating points."""
     return {name: value[points] if isinstance(value, np.ndarray) else value for name, value in p.items()}
@@ -517,6 +535,7 @@ def _on_own_nodes(solver: Solver, laws: Mapping[int, tuple[Law, Numbers]], probl
     def columns(part: Problem, points: slice) -> Columns:
         contact = solver.solve(part)
         found = {"longitudinal": contact.tangential_force}
+        found |= _sliding(solver, [law for law, _ in laws.values()], contact)
         if not isinstance(model, LineContactModel):
             found["patch_area"] = contact.patch_area
         for index, (law, p) in laws.items():
@@ -604,7 +623,8 @@ def _over_panels(
     slipping = weighted[..., sticking.length.shape[-1] :]
     error = ROUNDINGS * EPS * np.abs(weighted).sum(axis=-1) + remainder(slipping)
     area = problem.patch_area
-    return {"value": total / area, "error": error / area, "longitudinal": contact.tangential_force}
+    found = {"value": total / area, "error": error / area, "longitudinal": contact.tangential_force}
+    return found | _sliding(solver, [law], contact)
 
 
 def thinning_error(contact: Contact, rate: Array) -> Array:

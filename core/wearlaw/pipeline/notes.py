@@ -13,8 +13,8 @@ from wearlaw.errors import WearlawWarning
 _SUBJECT = re.compile(r"((?:sweep|profile|section) '[^']*'): (.*)", re.DOTALL)
 """A note about a part of a case."""
 
-_RANGE = re.compile(r"(.* has a known range of .*?)( \(.*\))?; (\d+ of \d+ .* outside, as far as .*)", re.DOTALL)
-"""A warning of `RangeWatch`: the range, its source, and the points outside."""
+_RANGE = re.compile(r"(.*?)( \(.*\))?; (\d+ of \d+ .*, as far as .*)", re.DOTALL)
+"""A warning of `RangeWatch`: the remark, the source of a range if any, and the points outside."""
 
 
 @dataclass

@@ -17,17 +17,24 @@ from wearlaw.errors import CompositionError, ModelError, RangeWarning
 from wearlaw.models.contact_model import Blame
 from wearlaw.models.law import Law
 from wearlaw.numerics.blocks import Columns
+from wearlaw.numerics.integrate import SLIDING
 from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import UNITS
+
+SLIDING_TOLERANCE = 0.05
+"""Share by which μ∫p·s dA may differ from Tγ without a warning."""
 
 
 class RangeWatch:
     """Sees operating points block by block and warns once for each variable that leaves the range of a law.
 
+    It also warns if a law goes with p·s where the contact model's ∫p·s dA is not that of Coulomb friction.
+
     Attributes
     ----------
     seen : dict of str to Seen
-        The points outside, by the index of the law and the variable that leaves its range, as in "0 pressure".
+        The points outside, by the index of the law and the variable that leaves its range, as in "0 pressure", or by
+        `SLIDING`.
     overload : Overload or None
         The operating point furthest beyond first yield.
     counted : str
@@ -50,15 +57,19 @@ class RangeWatch:
         """Record a number of operating points; `mean_over_patch` returns the mean of a variable of `Contact` in SI."""
         self.points += points
         for key, (low, high) in self.ranges.items():
-            values = mean_over_patch(key.partition(" ")[2])
-            lowest, highest = extremes(values)
-            if lowest < low or highest > high:
-                self.see_outside(key, Seen(lowest, highest, int(((values < low) | (values > high)).sum())))
+            self._see_outside_of(key, mean_over_patch(key.partition(" ")[2]), low, high)
 
     def see_block(self, part: Problem, columns: Columns) -> None:
         """Record a block of operating points, with forces [N] and areas [m²] in columns."""
         self.see(part.size, partial(mean_over_patch, part, columns))
         self.see_overload(overload_of(part, tangential_force(part, columns)))
+        if SLIDING in columns:
+            self._see_outside_of(SLIDING, columns[SLIDING], 1.0 - SLIDING_TOLERANCE, 1.0 + SLIDING_TOLERANCE)
+
+    def _see_outside_of(self, key: str, values: Array, low: float, high: float) -> None:
+        lowest, highest = extremes(values)
+        if lowest < low or highest > high:
+            self.see_outside(key, Seen(lowest, highest, int(((values < low) | (values > high)).sum())))
 
     def see_outside(self, key: str, more: Seen) -> None:
         """Record points outside the range of a law, by a key as in `seen`."""
@@ -91,6 +102,21 @@ class RangeWatch:
                     RangeWarning,
                     stacklevel=stacklevel + 1,
                 )
+        if SLIDING in self.seen:
+            seen = self.seen[SLIDING]
+            farthest = seen.highest if seen.highest - 1.0 >= 1.0 - seen.lowest else seen.lowest
+            laws = [f"{law.kind} '{law.name}'" for law in self.laws if law.follows_pressure_times_slip]
+            lie = "lies" if seen.outside == 1 else "lie"
+            warnings.warn(
+                f"{' and '.join(dict.fromkeys(laws))}: the rate follows pressure times slip, p·s, but where the"
+                " contact slips its traction is not μp, as with the parabolic bound of fastsim. ∫p·s dA is then not"
+                " Tγ/μ, and the rate is off by about the same factor. The two agree with exact, for discs, and with"
+                ' fastsim\'s bound="elliptic" and adaptive march, under spin with slip="scaled" too;'
+                f" {seen.outside} of {self.points} {self.counted} {lie} more than"
+                f" {100.0 * SLIDING_TOLERANCE:.0f} % off, as far as {farthest:.3g} times Tγ/μ",
+                RangeWarning,
+                stacklevel=stacklevel + 1,
+            )
 
 
 class Seen(NamedTuple):
