@@ -22,7 +22,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, extremes, steadily, steady
+from wearlaw.arrays.array import Array, extremes, read_only, steadily, steady
 from wearlaw.arrays.kernels import accelerated
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import CreepForces, Problem
@@ -240,7 +240,7 @@ def integrate_laws(
         If the model or a law breaks its contract.
     """
     model, problem = prepared(model, problem)
-    numbered = list(zip(laws, numbers or [law.numbers for law in laws], strict=True))
+    numbered = list(zip(laws, map(_frozen, numbers or [law.numbers for law in laws]), strict=True))
     across: tuple[Across | None, ...] = (None,) * len(laws)
     if problem.geometry == "line":
         found, solver = _over_line(model, numbered, problem, on_block)
@@ -335,7 +335,8 @@ def _over_line(
 
 def _ramps(law: Law, p: Numbers) -> tuple[tuple[Any, Any], ...] | None:
     with Blame(law, p):
-        return law.ramps(p)
+        ramps = law.ramps(p)
+        return None if ramps is None else tuple((threshold, slope) for threshold, slope in ramps)
 
 
 def _contact_of(law: Law, contact: Contact, problem: Problem) -> Contact:
@@ -402,7 +403,7 @@ def integrate_across(
     model, problem = prepared(model, problem)
     solver, flat = Solver(model), problem.flatten()
     edges = np.linspace(-1.0, 1.0, (strips or 0) + 1)
-    shares = 0.5 * (edges[1:] + edges[:-1])
+    shares = read_only(0.5 * (edges[1:] + edges[:-1]))
 
     def solved(part: Problem) -> Contact:
         chosen = None
@@ -491,6 +492,11 @@ def closed_form(
 def _per_point(number: float | Array, points: slice) -> float | Array:
     """Return a number, or an array of one number for each operating point, without the axis of the nodes."""
     return number[points, 0] if isinstance(number, np.ndarray) and number.ndim else number
+
+
+def _frozen(p: Numbers) -> Numbers:
+    """Return the numbers of a law with arrays that the law cannot change."""
+    return {name: read_only(value) if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
 
 def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:
