@@ -28,9 +28,13 @@ steady = steadily()
 """The same as a decorator, in less than half the time. It counts as a caller in the `stacklevel` of warnings."""
 
 
+WRITEABLE = 0x0400
+"""The bit of `flags.num` for `flags.writeable`, which warns if an array is from `np.broadcast_arrays`."""
+
+
 def read_only(array: ArrayT) -> ArrayT:
     """Return an array that cannot be written to: itself, or a view of it, so that its owner still can write."""
-    if array.flags.writeable:
+    if array.flags.num & WRITEABLE:
         array = array.view()
         array.flags.writeable = False
     return array
@@ -40,7 +44,7 @@ def freeze(record: object, names: Iterable[str]) -> None:
     """Make those fields of a frozen record read-only that are arrays."""
     for name in names:
         value = getattr(record, name)
-        if type(value) is np.ndarray and value.flags.writeable:
+        if type(value) is np.ndarray and value.flags.num & WRITEABLE:
             object.__setattr__(record, name, read_only(value))
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import WRITEABLE, Array
 from wearlaw.errors import InputError
 
 SETTING = "WEARLAW_ACCELERATE"
@@ -133,7 +133,7 @@ def compiled_loop(signature: str) -> Callable[[Callable[..., None]], Callable[..
 
 
 def _is_read_only(argument: object) -> bool:
-    return isinstance(argument, np.ndarray) and not argument.flags.writeable
+    return isinstance(argument, np.ndarray) and not argument.flags.num & WRITEABLE
 
 
 def _types_of(signature: str, read_only: frozenset[int]) -> Any:

@@ -197,8 +197,10 @@ class Rig(Model):
                 " as from `Problem.replaced`"
             )
             raise ModelError(with_origin(self, message))
+        if balanced.exists is not None and balanced.exists is not problem.exists:
+            balanced = self._masked(balanced)
         check_problem(self, balanced)
-        return balanced if balanced.exists is None or balanced.exists is problem.exists else self._masked(balanced)
+        return balanced
 
     def _placed(self, problem: Problem, name: str) -> Body:
         """Return a body with the places of its patches on its profile in the shape of the batch."""

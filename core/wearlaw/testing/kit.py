@@ -141,7 +141,7 @@ def checks(model: Model) -> Iterator[Check]:
     if held := sorted(FOR_ANY_MODEL & {*model.exemptions}):
         raise InputError(
             f"{model.kind} '{model.name}': `exemptions` names {', '.join(held)}, which must hold for any {model.kind};"
-            " take it out, and correct the model if the check fails"
+            " take them out, and correct the model if a check fails"
         )
     trip = RoundTrip(model)
     ways = {f"round_trip_{way.__name__}": way for way in (trip.through_toml, trip.through_json, trip.through_pickle)}
