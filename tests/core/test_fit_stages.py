@@ -284,5 +284,5 @@ def test_a_number_without_a_stated_range_keeps_its_sign_unless_bounds_say_otherw
     bounds = {"reduction": (0.3, 1.5)}
     within = wl.fit(predict, tests, ["reduction"], bootstrap=0, bounds=bounds)
     assert within.parameters["reduction"].magnitude == pytest.approx(0.6, rel=1e-7)
-    said = "that the stage or the contact model does not accept; give bounds, .*: contact model 'exact'"
+    said = "that the stage or the contact model does not accept; give bounds, .*: stage 'unbounded'"
     refused(said, predict, tests, ["reduction"], bounds={"reduction": (-1.0, 1.0)})

@@ -16,6 +16,7 @@ import pytest
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Array, Q
+from wearlaw.arrays import kernels
 
 pytestmark = pytest.mark.usefixtures("by_size_again")
 
@@ -190,3 +191,28 @@ def test_predictions_are_the_same_compiled_or_not_and_alone(model: str, law: str
     assert np.count_nonzero(rates[False]) == 0.9 * points
     assert (np.abs(rates[True] - rates[False]) <= allowed).all()
     assert (np.abs(alone - rates[False]) <= allowed).all()
+
+
+@needs_numba
+def test_a_compiled_loop_takes_arrays_that_it_only_reads_read_only_and_is_compiled_once_more(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    @wl.compiled_loop("void(float64[::1], float64[::1])")
+    def doubled(x: Array, twice: Array) -> None:
+        for i in range(x.size):
+            twice[i] = 2.0 * x[i]
+
+    made = []
+    compiled = kernels.compiled
+    monkeypatch.setattr(kernels, "compiled", lambda *args, **options: made.append(args) or compiled(*args, **options))
+    contact = wl.TwinDisc.suros().problem(normal_force=Q([6.0, 7.0], "kN"), creepage="1 %", friction_coefficient=0.4)
+    own, twice = np.array([1.0, 2.0]), np.empty(2)
+    for given in (own, contact.normal_force, own, contact.normal_force):
+        doubled(given, twice)
+        assert twice.tolist() == (2.0 * given).tolist()
+    assert len(made) == 2
+    with pytest.raises(Exception, match="readonly array"):
+        doubled(own, contact.normal_force)
+    assert contact.normal_force.tolist() == [6e3, 7e3]
+    doubled(own, twice)
+    assert twice.tolist() == [2.0, 4.0]

@@ -33,6 +33,14 @@ LAB = """
         warnings.warn("beyond all tests", wl.RangeWarning)
         return wl.Section("Warned", f"It has {len(study.pairs)} pairs.")
 
+    def in_millionths(study):
+        for dataset in (*study.sweeps.values(), *study.profiles.values()):
+            for values in dataset.data_vars.values():
+                values *= 1e-6
+            dataset["made_up"] = 0.0
+        study.sweeps.clear()
+        return wl.Section("In millionths", "")
+
     def needs_load(study):
         return wl.Section("Loads", str(study.sweep("lod")))
 
@@ -45,7 +53,8 @@ LAB = """
     @wl.hookimpl
     def wearlaw_sections():
         return {
-            "highest": highest, "warned": warned, "needs_load": needs_load, "wrong": wrong, "raises": raises
+            "highest": highest, "warned": warned, "needs_load": needs_load, "wrong": wrong, "raises": raises,
+            "in_millionths": in_millionths,
         }
 """
 
@@ -108,6 +117,15 @@ def test_a_claim_has_one_of_four_verdicts(verdict: Any) -> None:
     message = "verdict: must be one of 'holds', 'holds in part', 'does not hold', 'cannot be decided', got "
     with pytest.raises(wl.InputError, match=f"{message}{verdict!r}"):
         wl.CheckedClaim("It wears little.", "section 3", "Below 60.", "It reaches 55.", verdict)
+
+
+def test_a_section_that_changes_its_tables_changes_no_others(install: Install) -> None:
+    install("lab", LAB)
+    study, without = run(case(sections=["in_millionths", "highest"])), run(case())
+    for kept, expected in ((study.sweeps, without.sweeps), (study.profiles, without.profiles)):
+        assert [*kept] == [*expected]
+        assert all(kept[name].equals(expected[name]) for name in kept)
+    assert study.sections[1].claims[0].verdict == "does not hold"
 
 
 def test_a_warning_becomes_one_note_of_the_section(install: Install) -> None:

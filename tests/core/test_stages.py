@@ -208,7 +208,7 @@ class WrongContact(Wrong):
         (Wrong(fault="nothing"), "`altered` of stage 'wrong' returned None, not a wearlaw.Problem"),
         (Wrong(fault="shape"), r"`altered` of stage 'wrong' returned a problem .* shape \(1,\) for one .* \(2,\)"),
         (Wrong(fault="raises"), "stage 'wrong' failed: ZeroDivisionError"),
-        (Wrong(fault="friction"), "not finite"),
+        (Wrong(fault="friction"), "stage 'wrong' posed a problem with a friction coefficient of nan"),
         (WrongContact(fault="nothing"), "stage 'wrong_contact' returned None, not a wearlaw.Contact"),
         (WrongContact(fault="shape"), r"stage 'wrong_contact' gave a pressure of shape \(1, "),
         (WrongContact(fault="raises"), "stage 'wrong_contact' failed: ZeroDivisionError"),

@@ -125,6 +125,41 @@ def test_a_check_of_a_rig_and_a_single_one_of_a_contact_model_can_be_exempt() ->
         next(check for check in checks(exempt) if check.name == "exemptions_are_claims")()
 
 
+def test_what_must_hold_for_any_model_cannot_be_exempt(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Growing(Linear):
+        """The rate of `Linear` with the other sign."""
+
+        def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+            return -super().rate(contact, p)
+
+    every = {check.name for check in checks(Growing())} - {"exemptions_are_claims"}
+    monkeypatch.setattr(Growing, "exemptions", dict.fromkeys(every, "for a test"))
+    with pytest.raises(wl.InputError) as error:
+        next(checks(Growing()))
+    assert str(error.value) == (
+        f"wear law '{Linear.name}': `exemptions` names rate_has_the_shape_of_the_nodes, rate_is_finite,"
+        " rate_is_never_negative, runtime_takes_the_rate, units_of_conditions_do_not_matter,"
+        " units_of_parameters_do_not_matter, which must hold for any wear law; take them out, and correct the model if"
+        " a check fails"
+    )
+
+
+@pytest.mark.parametrize(
+    ("model", "claim"),
+    [
+        (cells.Cells(), "contact_is_finite"),
+        (Weight(), "units_of_conditions_are_checked"),
+        (wl.patch_mean(), "pipelines_take_the_contact"),
+    ],
+)
+def test_no_contact_model_rig_or_stage_is_exempt_from_it(
+    model: wl.Rig | wl.ContactModel | wl.Stage, claim: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(type(model), "exemptions", {claim: "for a test"})
+    with pytest.raises(wl.InputError, match=f"`exemptions` names {claim}, which must hold for any {model.kind}"):
+        conformance(model)
+
+
 def test_a_check_of_what_a_model_does_not_claim_is_not_there_to_fail() -> None:
     with pytest.raises(wl.InputError, match="what_sticks_does_not_slip"):
         conformance(wl.contact_model("global"), expected_failures={"what_sticks_does_not_slip": "one cell"})

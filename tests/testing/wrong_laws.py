@@ -141,8 +141,7 @@ class ChangesInput(Linear):
     """Takes the magnitude of the slip in place."""
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        if contact.slip.flags.writeable:
-            np.abs(contact.slip, out=contact.slip)
+        np.abs(contact.slip, out=contact.slip)
         return SLOPE * np.abs(contact.traction) * np.abs(contact.slip)
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import WRITEABLE, Array
 from wearlaw.errors import InputError
 
 SETTING = "WEARLAW_ACCELERATE"
@@ -104,23 +104,42 @@ def compiled_loop(signature: str) -> Callable[[Callable[..., None]], Callable[..
     Parameters
     ----------
     signature : str
-        Types of the arguments, as numba reads them. The function uses only code that numba can compile, such as `math`
-        and functions of its module with the same limits.
+        Types of the arguments, as numba reads them, such as "void(float64[::1], float64[::1])". Any array that the
+        function only reads may be read-only. The function uses only code that numba can compile, such as `math` and
+        functions of its module with the same limits.
     """
     options = {"fastmath": {"contract"}, "error_model": "numpy"}
 
     def decorate(function: Callable[..., None]) -> Callable[..., None]:
+        seen: frozenset[int] = frozenset()
+
         @functools.cache
-        def made() -> Any:
-            return compiled("njit", _with_compiled(function, _numba().njit(**options)), signature, **options)
+        def made(read_only: frozenset[int]) -> Any:
+            types = _types_of(signature, read_only)
+            return compiled("njit", _with_compiled(function, _numba().njit(**options)), types, **options)
 
         @functools.wraps(function)
         def run(*arguments: object) -> None:
-            made()(*arguments)
+            nonlocal seen
+            # What has been compiled for a read-only array takes any other as well, so few calls compile it again.
+            read_only = seen.union(i for i, one in enumerate(arguments) if _is_read_only(one))
+            loop = made(read_only)
+            seen = read_only
+            loop(*arguments)
 
         return run
 
     return decorate
+
+
+def _is_read_only(argument: object) -> bool:
+    return isinstance(argument, np.ndarray) and not argument.flags.num & WRITEABLE
+
+
+def _types_of(signature: str, read_only: frozenset[int]) -> Any:
+    """Return the types of a signature of numba, with those of some arguments read-only."""
+    types, returned = _numba().core.sigutils.normalize_signature(signature)
+    return returned(*(one.copy(readonly=True) if i in read_only else one for i, one in enumerate(types)))
 
 
 def compiled(compiler: str, function: Callable[..., Any], signature: object, **options: Any) -> Any:

@@ -110,7 +110,7 @@ class _Commands(click.Group):
             with _readable_usage_errors():
                 return super().invoke(ctx)
         except WearlawError as error:
-            raise click.ClickException(message_of(error)) from None
+            raise click.ClickException("\n".join([message_of(error), *getattr(error, "__notes__", [])])) from None
         except KeyboardInterrupt as interrupt:
             left = ctx.meta.get(LEFT, lambda: "nothing was written")()
             raise _Stopped("; ".join(["Stopped", *getattr(interrupt, "__notes__", []), left])) from None

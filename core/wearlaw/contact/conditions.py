@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeGuard
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import Array, extremes
+from wearlaw.arrays.array import Array, extremes, read_only
 from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described, did_you_mean, excerpt
 from wearlaw.units.quantities import Q, Unit, coefficient, parse, real_array
 from wearlaw.units.registry import symbol
@@ -180,15 +180,10 @@ def broadcast(arrays: Arrays) -> Arrays:
     if 0 in shape:
         empty = next(name for name, array in arrays.items() if array.size == 0)
         raise ConditionsError(f"{empty}: is empty; give at least one value")
-    return {name: _read_only(array, shape) for name, array in arrays.items()}
-
-
-def _read_only(array: Array, shape: tuple[int, ...]) -> Array:
-    if array.shape != shape:
-        return np.broadcast_to(array, shape)
-    view = array.view()
-    view.setflags(write=False)
-    return view
+    return {
+        name: read_only(array) if array.shape == shape else np.broadcast_to(array, shape)
+        for name, array in arrays.items()
+    }
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
 """The solved contact: the record that a contact model returns and a wear law reads.
 
-The record is frozen and holds SI float64 arrays. Its first axes are the *batch*, with one entry for each operating
-point; a scalar prediction has no batch axis. The axes after the batch are the *nodes* of the patch. An ellipse has two
-of them, along a strip and from strip to strip.
+The record is frozen and holds SI float64 arrays, which are read-only, because all laws read the same ones. Its first
+axes are the *batch*, with one entry for each operating point; a scalar prediction has no batch axis. The axes after the
+batch are the *nodes* of the patch. An ellipse has two of them, along a strip and from strip to strip.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, Literal, Self, TypeAlias, get_args
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, freeze
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import CompositionError, InputError, ModelError, did_you_mean, quoted
@@ -171,7 +171,8 @@ class Contact:
     problem: Problem | None = None
 
     def __post_init__(self) -> None:
-        """Fill in the vector components of a contact without strips."""
+        """Make the arrays read-only, and fill in the vector components of a contact without strips."""
+        freeze(self, self.__slots__)
         if self.on_strips:
             return
         nothing, none = np.zeros(np.shape(self.traction)), np.zeros(np.shape(self.tangential_force))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias
 
 import numpy as np
 
-from wearlaw.arrays.array import Array, steady
+from wearlaw.arrays.array import Array, freeze, steady
 from wearlaw.contact import hertz
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material
@@ -62,6 +62,10 @@ class Body:
     profile_position: Array | float | None = None
     profile_direction: float | Array = 1.0
 
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, ("rolling_radius", "profile_position", "profile_direction"))
+
     @cached_property
     def strength(self) -> tuple[float, float] | None:
         """Yield stress in shear [Pa] and Poisson's ratio of the material; None if the yield stress is unknown."""
@@ -101,6 +105,10 @@ class Strips:
     width: Array
     half_length: Array
     max_pressure: Array
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, self.__slots__)
 
     @property
     def area(self) -> Array:
@@ -165,11 +173,11 @@ class Problem:
 
     It is Hertzian on a line or an ellipse; on strips the pressure is given.
 
-    The arrays have one shape, the *batch*, with one entry for each operating point. `Problem.line` and
-    `Problem.ellipse` make a problem from quantities. If bodies touch in several places, such as two wheels with up to
-    three patches each, the rig adds axes to the batch, names them in `dims` and marks the existing patches in `exists`.
-    Unlike materials enter through the effective modulus and Kalker's mean of ν/G. Contact models neglect the coupling
-    of normal and tangential displacement between unlike bodies, and wearlaw warns where it matters.
+    The arrays are read-only. They have one shape, the *batch*, with one entry for each operating point. `Problem.line`
+    and `Problem.ellipse` make a problem from quantities. If bodies touch in several places, such as two wheels with up
+    to three patches each, the rig adds axes to the batch, names them in `dims` and marks the existing patches in
+    `exists`. Unlike materials enter through the effective modulus and Kalker's mean of ν/G. Contact models neglect the
+    coupling of normal and tangential displacement between unlike bodies, and wearlaw warns where it matters.
 
     Attributes
     ----------
@@ -237,6 +245,10 @@ class Problem:
     bodies: Mapping[str, Body] = field(default_factory=dict)
     dims: Mapping[str, tuple[str | int, ...]] = field(default_factory=dict)
     exists: NDArray[np.bool_] | None = None
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, ARRAYS)
 
     @classmethod
     @np.errstate(all="ignore")  # `_checked_size` rejects what overflows

@@ -5,7 +5,7 @@ A model is its configuration: a frozen pydantic record. Its fields carry units, 
 
 import inspect
 from abc import ABC
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast, final, get_args
 
@@ -15,7 +15,7 @@ from pydantic import model_validator
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import PATCHES, CreepForces, Geometry, Problem
-from wearlaw.errors import CompositionError, ModelError, WearlawError, described, did_you_mean
+from wearlaw.errors import CompositionError, InputError, ModelError, WearlawError, described, did_you_mean
 from wearlaw.settings.configuration import Configuration
 
 Scale: TypeAlias = Literal["patch", "cells"]
@@ -40,6 +40,12 @@ OF_ARRAYS = (
 )
 """Hint for a law that fails with arrays instead of numbers."""
 
+OF_READ_ONLY = (
+    "\nThe arrays that a model is given are read-only, because other models read them too. Make a new array, as in"
+    " mpa = pressure / 1e6 instead of mpa = pressure; mpa /= 1e6, or begin with pressure.copy()"
+)
+"""Hint for a model that fails because it writes into an array that it was given."""
+
 
 class Model(Configuration, ABC):
     """Base class of rigs, contact models and wear laws."""
@@ -52,6 +58,13 @@ class Model(Configuration, ABC):
 
     source: ClassVar[str]
     """Literature source of the model."""
+
+    _provided_by: ClassVar[Callable[[type[Any]], str]]
+    """Where a class of models comes from, in words; set by the look-up of plugins."""
+
+    def _origin(self) -> str:
+        """Return the class of this model in words, with the distribution or the module that it comes from."""
+        return f"class {type(self).__name__}{self._provided_by(type(self))}"
 
     @classmethod
     def subject(cls) -> str:
@@ -72,10 +85,28 @@ class Model(Configuration, ABC):
             )
 
 
+def fault(model: Model, what: str) -> ModelError:
+    """Return the error for a model that is at fault; it names the model, its class and its distribution.
+
+    Parameters
+    ----------
+    model : Model
+    what : str
+        What the model did, such as "returned rates of shape (3,)"; the message begins with kind and name of the model.
+    """
+    return ModelError(with_origin(model, f"{model.kind} '{model.name}' {what}"))
+
+
+def with_origin(model: Model, message: str) -> str:
+    """Return a message about a model with the class of the model and the distribution or module that it comes from."""
+    return f"{message}\nThe {model.kind} is {model._origin()}"
+
+
 class Blame:
     """A context that turns an exception in a model's code into a `ModelError` that names the model.
 
-    wearlaw's own errors pass unchanged, because their messages are complete. Ctrl-C and a lack of memory pass as well.
+    Errors of wearlaw pass, because their messages are complete. An `InputError` gets a note that names the model, but
+    not one of a rig, which is about the conditions. Ctrl-C and a lack of memory pass as well.
 
     Parameters
     ----------
@@ -94,12 +125,18 @@ class Blame:
         return None
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
+        model = self._model
+        if isinstance(error, InputError) and model.kind != "rig" and not hasattr(error, "__notes__"):
+            error.add_note(f"raised in {model.kind} '{model.name}', {model._origin()}")
         if error is None or isinstance(error, WearlawError | KeyboardInterrupt | MemoryError):
             return
-        arrays = any(isinstance(number, np.ndarray) for number in (self._p or {}).values())
-        raise ModelError(
-            f"{self._model.kind} '{self._model.name}' failed: {described(error)}{OF_ARRAYS if arrays else ''}"
-        ) from error
+        said = described(error)
+        hint = ""
+        if "read-only" in said or "readonly" in said:  # as NumPy and numba say it
+            hint = OF_READ_ONLY
+        elif any(isinstance(number, np.ndarray) for number in (self._p or {}).values()):
+            hint = OF_ARRAYS
+        raise fault(model, f"failed: {said}{hint}") from error
 
 
 def check_scale(model: Model | type[Model], scale: object, known: tuple[str, ...]) -> None:

@@ -33,7 +33,7 @@ from wearlaw.errors import (
     quoted,
     shortened,
 )
-from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale
+from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale, fault, with_origin
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
 from wearlaw.units.quantities import Quantity, Unit, from_si
@@ -257,7 +257,7 @@ class Law(Model):
         return self
 
     def check_variables(self) -> None:
-        """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` name an unknown variable."""
+        """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` names no variable."""
         with Blame(self):
             known = (*LAW_VARIABLES, *self.own_variables)
             declared = {
@@ -267,7 +267,19 @@ class Law(Model):
                 "valid_range": (self.valid_range, PATCH_VARIABLES),
             }
         for name, (variables, allowed) in declared.items():
-            check_variables(f"{self.kind} '{self.name}': `{name}`", variables, allowed)
+            if name in ("breakpoints", "jumps"):
+                self._check_points(name, variables)
+            try:
+                check_variables(f"{self.kind} '{self.name}': `{name}`", variables, allowed)
+            except ModelError as error:
+                raise ModelError(with_origin(self, str(error))) from None
+
+    def _check_points(self, name: str, points: object) -> None:
+        """Raise a `ModelError` unless the values of each variable are a sequence, as in {"pressure": (2.1e9,)}."""
+        by_variable = points if isinstance(points, Mapping) else {"": points}
+        for values in by_variable.values():
+            if not isinstance(values, tuple | list | np.ndarray):
+                raise fault(self, f'gives {shortened(points)} as `{name}`; it must be like {{"pressure": (2.1e9,)}}')
 
     def __repr_args__(self) -> Any:
         inherited = Law.model_fields
@@ -306,28 +318,28 @@ class Law(Model):
         with Blame(self, p):
             rate = self.rate(contact, p)
         if type(rate) not in (np.ndarray, np.float64) or rate.dtype != np.float64:
-            raise ModelError(
-                f"{self.kind} '{self.name}' returned {self._values} of type {type_name(rate)}; it must return a float64"
-                " array"
-            )
+            raise fault(self, f"returned {self._values} of type {type_name(rate)}; it must return a float64 array")
         of_patch = self.outcome.of == "patch"
         shape = contact.rolling_speed.shape if of_patch else contact.pressure.shape
         if rate.shape != shape:
-            raise ModelError(
-                f"{self.kind} '{self.name}' returned {self._values} of shape {rate.shape} for"
+            raise fault(
+                self,
+                f"returned {self._values} of shape {rate.shape} for"
                 f" {'patches' if of_patch else 'nodes'} of shape {shape}; it must return one"
-                f" {'value a patch' if of_patch else f'{self._values[:-1]} a node'}"
+                f" {'value a patch' if of_patch else f'{self._values[:-1]} a node'}",
             )
         low, high = extremes(rate) if rate.size else (0.0, 0.0)
         if not (math.isfinite(low) and math.isfinite(high)):
-            raise ModelError(
-                f"{self.kind} '{self.name}' returned a {self._values[:-1]} that is not finite; are its numbers, the"
-                " loads and the materials right?"
+            raise fault(
+                self,
+                f"returned a {self._values[:-1]} that is not finite; are its numbers, the"
+                " loads and the materials right?",
             )
         if self.zero_in_stick and not of_patch and rate[contact.slip == 0.0].any():
-            raise ModelError(
-                f"{self.kind} '{self.name}' gives {'wear' if self.outcome.name == WEAR else self.outcome.name} where"
-                f" the bodies stick; the {self._values[:-1]} must be zero if the slip is zero"
+            raise fault(
+                self,
+                f"gives {'wear' if self.outcome.name == WEAR else self.outcome.name} where"
+                f" the bodies stick; the {self._values[:-1]} must be zero if the slip is zero",
             )
         return rate
 
@@ -372,7 +384,7 @@ class Law(Model):
         if low < 0.0 and (value < -error()).any():
             of = self.outcome.name.replace("_", " ")
             shown = from_si(low, self.outcome.unit)
-            raise ModelError(f"{self.kind} '{self.name}' gives a negative {of}, {shown!r}; see its parameters")
+            raise fault(self, f"gives a negative {of}, {shown!r}; see its parameters")
 
     def _warn_of_calibration(self, contact: Contact, scale: Scale) -> None:
         """Warn if the parameters were fitted for another kind of contact, as far as the contact shows its kind."""
@@ -414,7 +426,10 @@ class Law(Model):
     def value_at(self, contact: Contact, name: str) -> Array:
         """Return a variable of the law's own or of the contact at the nodes, in SI."""
         own = self.own_variables.get(name)
-        return variable_at_nodes(contact, name) if own is None else own(contact)
+        if own is None:
+            return variable_at_nodes(contact, name)
+        with Blame(self):
+            return own(contact)
 
     def jumps(self, p: Numbers) -> BreakpointMap:  # noqa: ARG002
         """Return the breakpoints at which the rate jumps."""

@@ -13,6 +13,7 @@ from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Nodes, Zone
 from wearlaw.errors import ModelError
+from wearlaw.models.contact_model import with_origin
 from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
 
 SAMPLES = 32
@@ -141,10 +142,11 @@ def _searched(variable: _Variable, value: Array) -> Array:
                 args=(point.astype(np.float64),),
             )
             if not root.success.all():
-                raise ModelError(
+                message = (
                     f"contact model '{variable.model.name}': its {variable.name} crosses a breakpoint, but the crossing"
                     " cannot be found; it must be finite in the whole slip zone, and the same at each call"
                 )
+                raise ModelError(with_origin(variable.model, message))
             found[point, column] = root.x
     return found
 

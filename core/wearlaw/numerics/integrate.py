@@ -22,7 +22,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, extremes, steadily, steady
+from wearlaw.arrays.array import Array, extremes, read_only, steadily, steady
 from wearlaw.arrays.kernels import accelerated
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import CreepForces, Problem
@@ -243,7 +243,7 @@ def integrate_laws(
         If the model or a law breaks its contract.
     """
     model, problem = prepared(model, problem)
-    numbered = list(zip(laws, numbers or [law.numbers for law in laws], strict=True))
+    numbered = list(zip(laws, map(_frozen, numbers or [law.numbers for law in laws]), strict=True))
     across: tuple[Across | None, ...] = (None,) * len(laws)
     if problem.geometry == "line":
         found, solver = _over_line(model, numbered, problem, on_block)
@@ -338,7 +338,8 @@ def _over_line(
 
 def _ramps(law: Law, p: Numbers) -> tuple[tuple[Any, Any], ...] | None:
     with Blame(law, p):
-        return law.ramps(p)
+        ramps = law.ramps(p)
+        return None if ramps is None else tuple((threshold, slope) for threshold, slope in ramps)
 
 
 def _contact_of(law: Law, contact: Contact, problem: Problem) -> Contact:
@@ -405,7 +406,7 @@ def integrate_across(
     model, problem = prepared(model, problem)
     solver, flat = Solver(model), problem.flatten()
     edges = np.linspace(-1.0, 1.0, (strips or 0) + 1)
-    shares = 0.5 * (edges[1:] + edges[:-1])
+    shares = read_only(0.5 * (edges[1:] + edges[:-1]))
 
     def solved(part: Problem) -> Contact:
         chosen = None
@@ -509,6 +510,11 @@ def _sliding(solver: Solver, laws: Sequence[Law], contact: Contact) -> Columns:
     sliding = problem.friction_coefficient * np.abs(contact.integral(contact.pressure, contact.slip))
     energy = contact.wear_index
     return {SLIDING: np.divide(sliding, energy, out=np.ones_like(energy), where=energy > 0.0)}
+
+
+def _frozen(p: Numbers) -> Numbers:
+    """Return the numbers of a law with arrays that the law cannot change."""
+    return {name: read_only(value) if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
 
 def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:

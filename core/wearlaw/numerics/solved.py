@@ -24,8 +24,8 @@ class Solved(ContactModel):
 
     contact: SkipValidation[Any]
     """The contacts, with a batch of one axis, and none of them missing."""
-    read_by: str | None = None
-    """Name of the reader that read them, for messages."""
+    read_by: SkipValidation[Any] = None
+    """The reader that read them, for messages."""
 
     @property
     def kind(self) -> str:  # type: ignore[override]
@@ -35,7 +35,10 @@ class Solved(ContactModel):
     @property
     def name(self) -> str:  # type: ignore[override]
         """Name of the origin of the contacts in messages."""
-        return self.read_by or "solved"
+        return "solved" if self.read_by is None else str(self.read_by.name)
+
+    def _origin(self) -> str:
+        return "not known: the contact was solved elsewhere" if self.read_by is None else str(self.read_by._origin())
 
     @property
     def scale(self) -> Scale:

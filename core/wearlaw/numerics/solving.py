@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.contact import TOTALS, Contact
-from wearlaw.contact.problem import Problem
+from wearlaw.contact.problem import ARRAYS, Problem, Strips
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import ModelError, shortened
-from wearlaw.models.contact_model import QUADRATURE, Blame, ContactModel
+from wearlaw.models.contact_model import QUADRATURE, Blame, ContactModel, Model, fault
 from wearlaw.models.law import Law, Numbers
 from wearlaw.models.line_contact_model import LineContactModel
 from wearlaw.numerics.blocks import Columns, OfBlock, OnBlock, by_block
@@ -49,6 +49,14 @@ FIELDS = ("pressure", "traction", "slip", "area", "traction_bound", "x")
 
 VECTORS = ("traction_x", "traction_y", "slip_x", "slip_y", "y")
 """Arrays with one value for each node that a line contact derives from `FIELDS`."""
+
+ABOVE_ZERO = (
+    "a", "b", "normal_force", "max_pressure", "effective_modulus", "friction_coefficient", "rolling_speed", "density",
+)  # fmt: skip
+"""Numbers of a problem that must be above zero."""
+
+POSED = {name: 0.0 if name in ABOVE_ZERO else -math.inf for name in ARRAYS if name != "exists"}
+"""The numbers of a problem, each with the bound that it must be above."""
 
 LINE_TOTALS = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
 """The totals that a line contact does not derive from others."""
@@ -150,6 +158,33 @@ class Solver:
             raise
 
 
+def check_problem(maker: Model, problem: Problem) -> None:
+    """Raise a `ModelError` that names a rig or a stage if its problem has numbers that no contact has."""
+    for name, least in POSED.items():
+        values = getattr(problem, name)
+        if values is not None:
+            _check_posed(maker, problem, name, values, least)
+    for name in Strips.__slots__ if problem.strips is not None else ():
+        _check_posed(maker, problem, f"{name} of strips", getattr(problem.strips, name), -math.inf)
+
+
+def _check_posed(maker: Model, problem: Problem, name: str, values: Any, least: float) -> None:
+    if getattr(values, "ndim", 0):
+        if problem.exists is not None:
+            values = values[problem.exists]
+        elif not any(values.strides):  # one number for all operating points
+            values = values.reshape(-1)[:1]
+        if not values.size:
+            return
+        lowest, highest = extremes(values)
+    else:
+        lowest = highest = values
+    if not least < lowest <= highest < math.inf:  # as for NaN
+        first = lowest if not lowest > least else highest
+        above = " and above zero" if least == 0.0 else ""
+        raise fault(maker, f"posed a problem with {_words(name)} of {first:g} in SI units; it must be finite{above}")
+
+
 def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Problem) -> None:
     """Raise a `ModelError` unless each column holds one finite float64 for each operating point."""
     for name, values in columns.items():
@@ -162,18 +197,19 @@ def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Pr
 def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> None:
     ellipse = problem.geometry != "line"
     if not isinstance(contact, Contact):
-        raise ModelError(f"{model.kind} '{model.name}' returned {shortened(contact)}, not a wearlaw.Contact")
+        raise fault(model, f"returned {shortened(contact)}, not a wearlaw.Contact")
     if ellipse and not contact.on_strips:
-        raise ModelError(
-            f"{model.kind} '{model.name}' returned a contact without strips for an ellipse; make it with"
-            " wearlaw.Contact.from_strips or wearlaw.Contact.of_patch"
+        raise fault(
+            model,
+            "returned a contact without strips for an ellipse; make it with"
+            " wearlaw.Contact.from_strips or wearlaw.Contact.of_patch",
         )
     batch = problem.batch_shape
     nodes: tuple[int, ...] = getattr(contact.pressure, "shape", ())
     axes = len(batch) + (2 if ellipse else 1)
     if len(nodes) != axes or nodes[: len(batch)] != batch or 0 in nodes:
         wanted = ", ".join([*map(str, batch), "nodes", *(["strips"] if ellipse else [])])
-        raise ModelError(f"{model.kind} '{model.name}' gave a pressure of shape {nodes}; it must be ({wanted})")
+        raise fault(model, f"gave a pressure of shape {nodes}; it must be ({wanted})")
     _check_fields(model, contact, (*FIELDS, *VECTORS) if ellipse else FIELDS, nodes)
     _check_fields(model, contact, TOTALS if ellipse else LINE_TOTALS, batch)
     if ellipse:
@@ -190,11 +226,9 @@ def _check_fields(model: ContactModel, contact: Contact, names: tuple[str, ...],
 def check_type(model: ContactModel, name: str, values: Any, shape: tuple[int, ...]) -> None:
     """Raise a `ModelError` unless a value is a float64 array of a shape, or a number if the shape has no axes."""
     if type(values) not in (np.ndarray, np.float64) or values.dtype != FLOAT64:
-        raise ModelError(
-            f"{model.kind} '{model.name}' gave {_words(name)} of type {type_name(values)}; it must be a float64 array"
-        )
+        raise fault(model, f"gave {_words(name)} of type {type_name(values)}; it must be a float64 array")
     if values.shape != shape:
-        raise ModelError(f"{model.kind} '{model.name}' gave {_words(name)} of shape {values.shape}; it must be {shape}")
+        raise fault(model, f"gave {_words(name)} of shape {values.shape}; it must be {shape}")
 
 
 def _check_values(model: ContactModel, contact: Contact, problem: Problem, *, areas: bool) -> None:
@@ -310,7 +344,7 @@ def _error(model: ContactModel, what: str, problem: Problem, wrong: NDArray[np.b
         f" and maximum pressure {from_si(problem.max_pressure[point], 'MPa')!r}"
     )
     at = f"node {', '.join(map(str, node))} at " if node else ""
-    return ModelError(f"{model.kind} '{model.name}' {what}, first for {at}{conditions}")
+    return fault(model, f"{what}, first for {at}{conditions}")
 
 
 def _first(wrong: NDArray[np.bool_]) -> tuple[int, ...]:
@@ -320,6 +354,8 @@ def _first(wrong: NDArray[np.bool_]) -> tuple[int, ...]:
 def _words(name: str) -> str:
     """Return the words for a field in messages, with an article."""
     words = {
+        "a": "half length",
+        "b": "half width",
         "force_x": "longitudinal force",
         "force_y": "lateral force",
         "moment_z": "spin moment",

@@ -9,9 +9,9 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, ModelError, shortened
-from wearlaw.models.contact_model import Blame, Claim, ContactModel, Scale
+from wearlaw.models.contact_model import Blame, Claim, ContactModel, Scale, with_origin
 from wearlaw.models.stage import Forces, Solve, Stage
-from wearlaw.numerics.solving import Solver
+from wearlaw.numerics.solving import Solver, check_problem
 
 
 class Staged(ContactModel):
@@ -31,6 +31,9 @@ class Staged(ContactModel):
     def name(self) -> str:  # type: ignore[override]
         """Name of the stage."""
         return self.stage.name
+
+    def _origin(self) -> str:
+        return self.stage._origin()
 
     @property
     def scale(self) -> Scale:
@@ -65,15 +68,19 @@ class Staged(ContactModel):
         with Blame(self.stage):
             found = self.stage.altered(there, forces)
         if not isinstance(found, Problem):
-            raise ModelError(f"`altered` of stage '{self.name}' returned {shortened(found)}, not a wearlaw.Problem")
+            raise self._altered_wrongly(f"{shortened(found)}, not a wearlaw.Problem")
         if (found.geometry, found.batch_shape) != (there.geometry, there.batch_shape):
-            raise ModelError(
-                f"`altered` of stage '{self.name}' returned a problem of geometry '{found.geometry}' and shape"
-                f" {found.batch_shape} for one of geometry '{there.geometry}' and shape {there.batch_shape}"
+            raise self._altered_wrongly(
+                f"a problem of geometry '{found.geometry}' and shape {found.batch_shape} for one of geometry"
+                f" '{there.geometry}' and shape {there.batch_shape}"
             )
+        check_problem(self, found)
         if there is problem:
             return found
         return found.mapped(problem.unflatten, problem.unflatten).replaced(dims=problem.dims, exists=problem.exists)
+
+    def _altered_wrongly(self, what: str) -> ModelError:
+        return ModelError(with_origin(self, f"`altered` of stage '{self.name}' returned {what}"))
 
     def refined(self) -> ContactModel | None:
         """Return the stage around the refined model, or None if the model cannot be refined."""
@@ -103,8 +110,13 @@ class Staged(ContactModel):
             return None
 
     def _around(self, problem: Problem, inner: Solve) -> Contact:
+        def checked(one: Problem) -> Contact:
+            if one is not problem:
+                check_problem(self, one)
+            return inner(one)
+
         with Blame(self.stage):
-            return self.stage.solve(problem, inner)
+            return self.stage.solve(problem, checked)
 
 
 class _CannotChooseError(CompositionError):

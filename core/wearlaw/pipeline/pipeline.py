@@ -13,16 +13,18 @@ from functools import cached_property, partial
 from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast
 
 import numpy as np
+import pint
 from pydantic import model_validator
 
-from wearlaw.arrays.array import Array, extremes, steadily, steady, type_name
+from wearlaw.arrays.array import Array, extremes, read_only, steadily, steady, type_name
 from wearlaw.contact.conditions import COEFFICIENTS
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, excerpt, shortened
-from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale
+from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, fault, with_origin
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.stage import Stage
 from wearlaw.numerics.integrate import integrate_forces, prepared
+from wearlaw.numerics.solving import check_problem
 from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.composition import (
     check_geometry,
@@ -163,7 +165,7 @@ class Rig(Model):
             self.check_names(conditions)
             raise
         if not isinstance(problem, Problem):
-            raise ModelError(f"rig '{self.name}' returned {shortened(problem)}, not a wearlaw.Problem")
+            raise fault(self, f"returned {shortened(problem)}, not a wearlaw.Problem")
         if problem.dims:
             self._check_dims(problem)
         for body in problem.bodies.values():
@@ -173,6 +175,7 @@ class Rig(Model):
                 break
         if problem.exists is not None:
             problem = self._masked(problem)
+        check_problem(self, problem)
         return problem if problem.bodies else problem.replaced(bodies=self.bodies)
 
     def _checked_balance(self, problem: Problem, balanced: Problem) -> Problem:
@@ -184,15 +187,20 @@ class Rig(Model):
             If it is no problem, or not one of the same geometry, shape and axes.
         """
         if not isinstance(balanced, Problem):
-            raise ModelError(f"`balanced` of rig '{self.name}' returned {shortened(balanced)}, not a wearlaw.Problem")
+            message = f"`balanced` of rig '{self.name}' returned {shortened(balanced)}, not a wearlaw.Problem"
+            raise ModelError(with_origin(self, message))
         shapes = [(one.geometry, one.batch_shape, one.dims) for one in (balanced, problem)]
         if shapes[0] != shapes[1]:
             found, given = (f"geometry '{one[0]}', shape {one[1]} and axes {one[2]!r}" for one in shapes)
-            raise ModelError(
+            message = (
                 f"`balanced` of rig '{self.name}' returned a problem of {found} for one of {given}; return one like it,"
                 " as from `Problem.replaced`"
             )
-        return balanced if balanced.exists is None or balanced.exists is problem.exists else self._masked(balanced)
+            raise ModelError(with_origin(self, message))
+        if balanced.exists is not None and balanced.exists is not problem.exists:
+            balanced = self._masked(balanced)
+        check_problem(self, balanced)
+        return balanced
 
     def _placed(self, problem: Problem, name: str) -> Body:
         """Return a body with the places of its patches on its profile in the shape of the batch."""
@@ -205,12 +213,13 @@ class Rig(Model):
             try:
                 found[field] = np.broadcast_to(np.asarray(given, dtype=np.float64), batch)
             except (TypeError, ValueError):
-                raise ModelError(
-                    f"rig '{self.name}' gave {type_name(given)} of shape {np.shape(given)} as `{field}` of {name}; it"
-                    f" must be a number or an array that broadcasts to the shape of the batch, {batch}"
+                raise fault(
+                    self,
+                    f"gave {type_name(given)} of shape {np.shape(given)} as `{field}` of {name}; it"
+                    f" must be a number or an array that broadcasts to the shape of the batch, {batch}",
                 ) from None
         if not (np.abs(found["profile_direction"]) == 1.0).all():
-            raise ModelError(f"rig '{self.name}' gave a `profile_direction` of {name} that is neither 1 nor -1")
+            raise fault(self, f"gave a `profile_direction` of {name} that is neither 1 nor -1")
         return dataclasses.replace(body, **found)
 
     def _check_dims(self, problem: Problem) -> None:
@@ -220,18 +229,20 @@ class Rig(Model):
         except (AttributeError, TypeError):
             labels = None
         if labels is None or problem.batch_shape[-len(labels) :] != labels:
-            raise ModelError(
-                f"rig '{self.name}' gave {problem.dims!r} as `dims` of a batch of shape {problem.batch_shape}; `dims`"
-                ' holds the names of its last axes with a label for each entry, such as {"side": ("left", "right")}'
+            raise fault(
+                self,
+                f"gave {problem.dims!r} as `dims` of a batch of shape {problem.batch_shape}; `dims`"
+                ' holds the names of its last axes with a label for each entry, such as {"side": ("left", "right")}',
             )
 
     def _masked(self, problem: Problem) -> Problem:
         """Return the problem with NaN for patches that do not exist."""
         exists = problem.exists
         if type(exists) is not np.ndarray or exists.dtype != np.bool_ or exists.shape != problem.batch_shape:
-            raise ModelError(
-                f"rig '{self.name}' gave {type_name(exists)} as `exists`; it must be an array of bool of the shape of"
-                f" the batch, {problem.batch_shape}"
+            raise fault(
+                self,
+                f"gave {type_name(exists)} as `exists`; it must be an array of bool of the shape of"
+                f" the batch, {problem.batch_shape}",
             )
         of_strips = exists[..., None]
         masked = problem.mapped(
@@ -271,7 +282,16 @@ class Rig(Model):
 
 @steady
 def _posed(rig: Rig, conditions: Mapping[str, Any]) -> Problem:
-    return rig.problem(**conditions)
+    return rig.problem(**{name: _read_only(value) for name, value in conditions.items()})
+
+
+def _read_only(value: Any) -> Any:
+    """Return a condition whose array, if it has one, cannot be written to; the next contact model reads it too."""
+    if isinstance(value, np.ndarray):
+        return read_only(value)
+    if isinstance(value, pint.Quantity) and isinstance(value.magnitude, np.ndarray):
+        return type(value)(read_only(value.magnitude), value.units)
+    return value
 
 
 RigField = Annotated[Rig, *RIG]

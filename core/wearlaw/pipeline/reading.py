@@ -15,7 +15,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import ARRAYS, Body, Problem, Strips
 from wearlaw.errors import DataError, InputError, ModelError, UnknownModelError, did_you_mean, quoted, shortened
-from wearlaw.models.contact_model import Blame
+from wearlaw.models.contact_model import Blame, fault
 from wearlaw.models.reader import Reader
 from wearlaw.numerics.solved import Solved, flat
 from wearlaw.numerics.solving import Solver
@@ -72,10 +72,8 @@ def _read(path: Path, name: str | None, options: dict[str, Any]) -> Contact:
     with Blame(reader):
         contact = reader.read(path)
     if not isinstance(contact, Contact) or contact.problem is None:
-        raise ModelError(
-            f"reader '{reader.name}' returned {shortened(contact)}, not a wearlaw.Contact with its problem"
-        )
-    model = Solved(contact=flat(contact, contact.problem), read_by=reader.name)
+        raise fault(reader, f"returned {shortened(contact)}, not a wearlaw.Contact with its problem")
+    model = Solved(contact=flat(contact, contact.problem), read_by=reader)
     try:
         Solver(model).check(model.contact, model.contact.problem, totals=True)
     except ModelError as error:

@@ -22,7 +22,7 @@ from packaging.utils import canonicalize_name
 from wearlaw import hookspecs
 from wearlaw.contact.material import Material
 from wearlaw.errors import PluginWarning, UnknownModelError, described, shortened
-from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.law import Law
 from wearlaw.models.reader import Reader
 from wearlaw.models.stage import Stage
@@ -259,6 +259,18 @@ def material(name: str, /, **options: Any) -> Material:
 
 
 Material._look_up = staticmethod(material)  # for tables of materials with a `type`
+
+
+def _provided_by(cls: type[Any]) -> str:
+    """Return the plugin that provides a class of models, or the module of a class from no plugin, in words."""
+    for shelf in installed().shelves():
+        for provided, origin in shelf.providers.get(getattr(cls, "name", ""), ()):
+            if provided is cls:
+                return f" of {origin}"
+    return f", defined in module {cls.__module__}"
+
+
+Model._provided_by = staticmethod(_provided_by)  # for errors at run time
 
 
 def materials() -> Mapping[str, Material]:

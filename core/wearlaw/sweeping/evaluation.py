@@ -16,7 +16,8 @@ from wearlaw.arrays import kernels
 from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, InputError, ModelError, RangeWarning, did_you_mean, quoted
+from wearlaw.errors import CompositionError, InputError, RangeWarning, did_you_mean, quoted
+from wearlaw.models.contact_model import fault
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
@@ -119,10 +120,11 @@ def _check_axes(job: Job, problem: Problem, part: Points) -> None:
     """Raise an error unless the axes of a block's problem are the operating points and the rig's own axes."""
     wanted = (part.size, *job.own_shape) if part.dims else job.own_shape
     if problem.dims != job.dims or problem.batch_shape != wanted:
-        raise ModelError(
-            f"rig '{job.pipeline.rig.name}' gave a batch of shape {problem.batch_shape} with the axes {problem.dims!r}"
+        raise fault(
+            job.pipeline.rig,
+            f"gave a batch of shape {problem.batch_shape} with the axes {problem.dims!r}"
             f" for {part.size} operating points, but of shape {wanted} with {job.dims!r} for the first of them. In the"
-            " rig, give each condition an axis of length one for each of the rig's axes, as in values[..., None, None]"
+            " rig, give each condition an axis of length one for each of the rig's axes, as in values[..., None, None]",
         )
 
 

@@ -19,12 +19,12 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import (
     ConditionsError,
     InputError,
-    ModelError,
     ResumeWarning,
     WorkerWarning,
     quoted,
     shortened,
 )
+from wearlaw.models.contact_model import fault
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig, expect_pipeline
 from wearlaw.pipeline.prediction import unsolved
@@ -259,7 +259,7 @@ def _check_names(rig: Rig, problem: Problem, points: Points) -> None:
     """Raise an error if an axis of the rig has the name of a condition."""
     taken = {*points.dims, *points.coordinates(), *points.fixed} & problem.dims.keys()
     if taken:
-        raise ModelError(f"rig '{rig.name}' has an axis and a condition named '{min(taken)}'; rename one of the two")
+        raise fault(rig, f"has an axis and a condition named '{min(taken)}'; rename one of the two")
 
 
 def weight(problem: Problem) -> float:

@@ -60,6 +60,28 @@ OF_SHAPES = (
 """Checks without which no other check is run: arrays of a wrong shape may broadcast, and fill the memory."""
 
 
+FOR_ANY_MODEL = frozenset(
+    function.__name__
+    for function in (
+        *OF_SHAPES,
+        law_shape.runtime_takes_the_rate,
+        law_shape.rate_is_finite,
+        law_shape.rate_is_never_negative,
+        contact_checks.contact_is_finite,
+        contact_checks.no_node_gains_energy,
+        stage_checks.pipelines_take_the_contact,
+        stage_checks.contact_is_finite,
+        stage_checks.contact_does_not_gain_energy,
+        rig_checks.problem_is_finite_and_positive,
+        rig_checks.problem_has_the_shape_of_the_conditions,
+        rig_checks.units_of_conditions_are_checked,
+        rig_checks.values_that_are_no_numbers_are_refused,
+        *unit_checks.CHECKS,
+    )
+)
+"""Checks of shape, finite values, sign and units, from which no model can be exempt, whatever its theory."""
+
+
 class NotRunError(AssertionError):
     """A check was not run, because what the model returns has a wrong shape."""
 
@@ -113,9 +135,14 @@ def checks(model: Model) -> Iterator[Check]:
     Raises
     ------
     InputError
-        If this is not a model, or is a rig without an `example`.
+        If this is not a model, or is a rig without an `example`, or is exempt from what must hold for any model.
     """
     functions, idle = _of(model)
+    if held := sorted(FOR_ANY_MODEL & {*model.exemptions}):
+        raise InputError(
+            f"{model.kind} '{model.name}': `exemptions` names {', '.join(held)}, which must hold for any {model.kind};"
+            " take them out, and correct the model if a check fails"
+        )
     trip = RoundTrip(model)
     ways = {f"round_trip_{way.__name__}": way for way in (trip.through_toml, trip.through_json, trip.through_pickle)}
     known = [*(function.__name__ for function in functions), *ways]
