@@ -513,7 +513,8 @@ class Wheelset(wl.Rig):
             point, side = (int(index[over][0]) for index in (found.point, found.side))
             displacement = 1e3 * balance.task.displacement[point]
             warnings.warn(
-                f"at a lateral displacement of {displacement:.4g} mm the {DIMS['side'][side]} wheel climbs its rail: it stands on its flange beyond the steepest point",
+                f"at a lateral displacement of {displacement:.4g} mm the {DIMS['side'][side]} wheel climbs its rail: it"
+                " stands on its flange beyond the steepest point",
                 wl.RangeWarning,
                 stacklevel=5,
             )
