@@ -129,7 +129,7 @@ def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing:
         found.samples[some] = np.where(inside, normal, np.inf)
 
 
-def separated(found: Candidates, saddle: Array, penetration: Array) -> Candidates:
+def separated(found: Candidates, saddle: Array, penetration: Array, share: Array) -> Candidates:
     """Return the places that are patches of their own, each with the gap on its own side of the saddles between them.
 
     Parameters
@@ -139,8 +139,10 @@ def separated(found: Candidates, saddle: Array, penetration: Array) -> Candidate
         Vertical gap of the saddle between each place and the first one of its wheel [m].
     penetration : ndarray
         Estimate of the vertical penetration of each place's wheel [m].
+    share : ndarray
+        Share of the penetration that the saddle must exceed, `SEPARATE` or less.
     """
-    own = (found.number == 0) | ((found.gap < SPARE * penetration) & (saddle > SEPARATE * penetration))
+    own = (found.number == 0) | ((found.gap < SPARE * penetration) & (saddle > share * penetration))
     first = np.full(found.wheel.max(initial=-1) + 1, np.nan)
     first[found.wheel[found.number == 0]] = found.arc[found.number == 0]
     own &= (found.number == 0) | (np.abs(found.arc - first[found.wheel]) > SPACING)  # a place may be listed twice

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset import _normal
-from wearlaw_wheelset._candidates import SPACING, Candidates, candidates, sample, separated
+from wearlaw_wheelset._candidates import SEPARATE, SPACING, Candidates, candidates, sample, separated
 from wearlaw_wheelset._motion import Creepages, Place, creepages, placed, roll_rate
 from wearlaw_wheelset._search import Section, Touching, both_sides, searched
 from wearlaw_wheelset._search_loops import LEAST_LEVER
@@ -232,6 +232,8 @@ class Balance:
     """Whether the loads of each position balance."""
     imbalance: Array
     """Greatest share of the load of a wheel, or of the torque of full slip, that is left over at each position [-]."""
+    share: Array
+    """Share of the penetration by which the gap must rise between patches of each position [-]."""
     scale: Array
     """Factor on the pressure of each wheel's patches, 1 except where the load jumps as a hump joins a patch."""
     correction: Array
@@ -253,7 +255,8 @@ class Balance:
         wheels, pairs, right = np.zeros(2 * count), np.zeros((count, 2)), np.ones(count, dtype=np.bool_)
         balance = cls(
             section, elastic, task, hertz, strips, roll.copy(), wheels, np.zeros(count), wheels.copy(), pairs,
-            pairs.copy(), np.zeros(count), right, np.zeros(count), np.ones(2 * count), np.zeros((count, 4, 4)),
+            pairs.copy(), np.zeros(count), right, np.zeros(count), np.full(count, SEPARATE), np.ones(2 * count),
+            np.zeros((count, 4, 4)),
         )  # fmt: skip
         balance._stand(np.arange(count), roll, touching)
         balance.penetration = balance.whole.copy()
@@ -286,7 +289,7 @@ class Balance:
             self.whole[places.wheel[again]] = self._alone(
                 places, again, self.whole[places.wheel[again]] if known else None
             )
-        kept = separated(places, saddle, self.whole[places.wheel])
+        kept = separated(places, saddle, self.whole[places.wheel], self.share[places.point])
         self.roll[rows], self.height[rows] = roll, touching.least
         first = places.part(first)
         place = Place(*(array.reshape(-1, 2) for array in placed(self.section, first.position, first.arc)))
@@ -359,7 +362,18 @@ class Balance:
             Returns the creep forces of a problem with one entry for each patch. None leaves out the creep forces; the
             speed of rotation then stays as it is.
         """
-        names = ("roll", "penetration", "rotation", "whole", "height", "lever", "roll_rate", "imbalance", "correction")
+        names = (
+            "roll",
+            "penetration",
+            "rotation",
+            "whole",
+            "height",
+            "lever",
+            "roll_rate",
+            "imbalance",
+            "share",
+            "correction",
+        )
         copies = {name: getattr(self, name).copy() for name in names}
         every = np.ones(self.balanced.shape, dtype=np.bool_)
         found = replace(self, scale=np.ones(self.scale.shape), balanced=every, shapes=dict(self.shapes), **copies)
@@ -369,6 +383,16 @@ class Balance:
         left = found.imbalance > ROUGH
         if left.any() and rolls:
             found._rolled(forces, left)
+            left &= found.imbalance > ROUGH
+            rows = np.flatnonzero(left)
+            # The level jumps where one of two humps of a patch takes over; as patches of their own they share the load.
+            found.share[rows] = 0.0
+            found.correction[rows] = 0.0
+            found._turn(rows, found.roll[rows])
+            found._newton(forces, left, rolls)
+            left &= found.imbalance > ROUGH
+            if left.any():
+                found._rolled(forces, left)
         elif left.any():
             found._bracketed(forces, left)
         return found
