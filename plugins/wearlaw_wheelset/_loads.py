@@ -51,13 +51,16 @@ FOLD = 2e-2
 """Imbalance of the torque that stays where two penetrations carry a load, and the creep forces jump from one to the
 other as the speed of rotation changes."""
 
+SMALL_ROLL = 2e-5
+"""Change of the roll that leaves the estimated penetration as it is: it changes by about a thousandth [rad]."""
+
 FAR = 3.0
 """Gap over the estimated penetration beyond which a place cannot touch as the roll changes in steps."""
 
 MOST = 100.0
 """Greatest penetration that is tried, over that of the load without creep forces."""
 
-NEWTON_STEPS, STEPS = 20, 100
+NEWTON_STEPS, STEPS = 12, 100
 """Greatest number of steps by Newton's method, of which three or four are usual, and within bounds."""
 
 WIDEST_STEP, MOST_TURN, WIDEST_ROLL = 1.0, 0.01, 1e-3
@@ -222,6 +225,8 @@ class Balance:
     """Speed of rotation at each position, Ω [rad/s]."""
     whole: Array
     """The penetration if one patch of each wheel carried the load without creep forces [m]."""
+    estimated: Array
+    """Roll at which `whole` was found [rad]."""
     height: Array
     """Least gap of each wheel plus a constant, as `Touching.least` [m], (positions, 2)."""
     lever: Array
@@ -254,8 +259,8 @@ class Balance:
         count = roll.size
         wheels, pairs, right = np.zeros(2 * count), np.zeros((count, 2)), np.ones(count, dtype=np.bool_)
         balance = cls(
-            section, elastic, task, hertz, strips, roll.copy(), wheels, np.zeros(count), wheels.copy(), pairs,
-            pairs.copy(), np.zeros(count), right, np.zeros(count), np.full(count, SEPARATE), np.ones(2 * count),
+            section, elastic, task, hertz, strips, roll.copy(), wheels, np.zeros(count), wheels.copy(), roll.copy(),
+            pairs, pairs.copy(), np.zeros(count), right, np.zeros(count), np.full(count, SEPARATE), np.ones(2 * count),
             np.zeros((count, 4, 4)),
         )  # fmt: skip
         balance._stand(np.arange(count), roll, touching)
@@ -281,14 +286,15 @@ class Balance:
         first = np.flatnonzero(places.number == 0)
         again = first
         if known:  # `whole` decides where places are close, and how wide the samples must be
-            wide = np.zeros(self.whole.size, dtype=np.bool_)
-            wide[self.found.wheel] = (self.found.number == 0) & (self.found.step > SPACING)
-            wide[places.wheel] |= places.number > 0
-            again = first[wide[places.wheel[first]]]
+            turned = self._chosen(rows[np.abs(roll - self.estimated[rows]) > SMALL_ROLL])
+            wheels = np.zeros(self.whole.size, dtype=np.bool_)
+            wheels[places.wheel[(places.number > 0) & turned[places.point]]] = True
+            wheels[self.found.wheel[self.found.step > SPACING]] = True
+            again = first[wheels[places.wheel[first]]]
         if again.size:
-            self.whole[places.wheel[again]] = self._alone(
-                places, again, self.whole[places.wheel[again]] if known else None
-            )
+            guess = self.whole[places.wheel[again]] if known else None
+            self.whole[places.wheel[again]] = self._alone(places, again, guess)
+            self.estimated[places.point[again]] = roll[np.searchsorted(rows, places.point[again])]
         kept = separated(places, saddle, self.whole[places.wheel], self.share[places.point])
         self.roll[rows], self.height[rows] = roll, touching.least
         first = places.part(first)
@@ -367,6 +373,7 @@ class Balance:
             "penetration",
             "rotation",
             "whole",
+            "estimated",
             "height",
             "lever",
             "roll_rate",
