@@ -70,6 +70,25 @@ class Candidates:
         found = {name: getattr(self, name)[rows] for name in self.__dataclass_fields__ if name != "position"}
         return Candidates(position=Position(*(array[rows] for array in self.position)), **found)
 
+    def put(self, rows: NDArray[np.intp], other: Candidates) -> None:
+        """Replace some of the places, in place."""
+        for name in self.__dataclass_fields__:
+            if name != "position":
+                getattr(self, name)[rows] = getattr(other, name)
+        for array, values in zip(self.position, other.position, strict=True):
+            array[rows] = values
+
+    def joined(self, other: Candidates) -> tuple[Candidates, NDArray[np.intp]]:
+        """Return the places of both in the order of their positions, and which of this, then the other, each is."""
+        order = np.argsort(np.concatenate([self.point, other.point]), kind="stable")
+        found = {
+            name: np.concatenate([getattr(self, name), getattr(other, name)])[order]
+            for name in self.__dataclass_fields__
+            if name != "position"
+        }
+        pairs = zip(self.position, other.position, strict=True)
+        return Candidates(position=Position(*(np.concatenate(pair)[order] for pair in pairs)), **found), order
+
 
 def candidates(section: Section, position: Position, touching: Touching) -> Candidates:
     """Return all places where wheels come close to their rails; positions are of shape (positions, sides)."""
@@ -110,7 +129,7 @@ def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing:
         found.samples[some] = np.where(inside, normal, np.inf)
 
 
-def separated(found: Candidates, saddle: Array, penetration: Array) -> Candidates:
+def separated(found: Candidates, saddle: Array, penetration: Array, share: Array) -> Candidates:
     """Return the places that are patches of their own, each with the gap on its own side of the saddles between them.
 
     Parameters
@@ -120,8 +139,13 @@ def separated(found: Candidates, saddle: Array, penetration: Array) -> Candidate
         Vertical gap of the saddle between each place and the first one of its wheel [m].
     penetration : ndarray
         Estimate of the vertical penetration of each place's wheel [m].
+    share : ndarray
+        Share of the penetration that the saddle must exceed, `SEPARATE` or less.
     """
-    own = (found.number == 0) | ((found.gap < SPARE * penetration) & (saddle > SEPARATE * penetration))
+    own = (found.number == 0) | ((found.gap < SPARE * penetration) & (saddle > share * penetration))
+    first = np.full(found.wheel.max(initial=-1) + 1, np.nan)
+    first[found.wheel[found.number == 0]] = found.arc[found.number == 0]
+    own &= (found.number == 0) | (np.abs(found.arc - first[found.wheel]) > SPACING)  # a place may be listed twice
     kept = found.part(own)
     order = np.argsort(kept.wheel, kind="stable")
     for shift in (1, 2):

@@ -5,10 +5,15 @@ axle is the given one:
 
     ∑ (N cos δ + Fy sin δ) = Q,  V ∑ (Fx ∂ξ/∂Ω + Fy ∂η/∂Ω + Mz ∂φ/∂Ω) = M.
 
-The unknowns are the vertical penetration h of each wheel and the speed of rotation Ω. All patches of a wheel are
-penetrated by (h - g) cos δ, with the gap g at first touching. Newton's method finds ln h and Ω together. It estimates
-the rates and learns from its steps, so that each step costs the creep forces once. Where it fails, because the load
-jumps, each unknown is found by the secant method within the bounds found so far.
+The unknowns are the vertical penetration h of each wheel, the speed of rotation Ω and, unless it is given, the roll ρ.
+All patches of a wheel are penetrated by (h - g) cos δ, with the gap g at first touching. The axle is rigid, so the
+wheels sink together: with the heights of the axle at which either wheel touches first,
+
+    height + h of the right wheel = height + h of the left wheel.
+
+Newton's method finds ln h, Ω and ρ together. It estimates the rates and learns from its steps, so that each step costs
+the creep forces once. Where it fails, because the load jumps, each unknown is found by the secant method within the
+bounds found so far, the roll outermost.
 """
 
 from __future__ import annotations
@@ -23,9 +28,10 @@ from numpy.typing import NDArray
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset import _normal
-from wearlaw_wheelset._candidates import SPACING, Candidates, candidates, sample, separated
-from wearlaw_wheelset._motion import Creepages, Place, creepages, placed
-from wearlaw_wheelset._search import Position, Section, Touching
+from wearlaw_wheelset._candidates import SEPARATE, SPACING, Candidates, candidates, sample, separated
+from wearlaw_wheelset._motion import Creepages, Place, creepages, placed, roll_rate
+from wearlaw_wheelset._search import Section, Touching, both_sides, searched
+from wearlaw_wheelset._search_loops import LEAST_LEVER
 
 WIDENINGS = 2
 """How often the distance is doubled at most."""
@@ -45,17 +51,30 @@ FOLD = 2e-2
 """Imbalance of the torque that stays where two penetrations carry a load, and the creep forces jump from one to the
 other as the speed of rotation changes."""
 
+SMALL_ROLL = 2e-5
+"""Change of the roll that leaves the estimated penetration as it is: it changes by about a thousandth [rad]."""
+
+FAR = 3.0
+"""Gap over the estimated penetration beyond which a place cannot touch as the roll changes in steps."""
+
 MOST = 100.0
 """Greatest penetration that is tried, over that of the load without creep forces."""
 
-NEWTON_STEPS, STEPS = 20, 100
+NEWTON_STEPS, STEPS = 12, 100
 """Greatest number of steps by Newton's method, of which three or four are usual, and within bounds."""
 
-WIDEST_STEP, MOST_TURN = 1.0, 0.01
-"""Greatest step of the logarithm of the penetration, and of the speed of rotation as a share of it."""
+WIDEST_STEP, MOST_TURN, WIDEST_ROLL = 1.0, 0.01, 1e-3
+"""Greatest step of the logarithm of the penetration, of the speed of rotation as a share of it, and of the roll [rad].
+"""
 
-COUPLED = np.array([[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, 1.0, 1.0]])
-"""Which of ln h of both wheels and Ω the load of each wheel and the torque depend on."""
+LEVEL = 1e-10
+"""Greatest difference between the heights at which both wheels carry the axle [m]."""
+
+JUMP = 1e-3
+"""Share of the difference of level that the roll explains, below which it jumps."""
+
+COUPLED = np.array([[1.0, 0.0, 1.0, 1.0], [0.0, 1.0, 1.0, 1.0], [1.0, 1.0, 1.0, 1.0], [1.0, 1.0, 0.0, 1.0]])
+"""Which of ln h of both wheels, Ω and ρ the load of each wheel, the torque and the level depend on."""
 
 LEAST_SHARE = 0.1
 """Smallest share of the load that a step of the penetration counts with."""
@@ -89,8 +108,10 @@ class Task:
 
     Attributes
     ----------
-    speed, lateral_velocity, turn_rate, roll_rate : ndarray
-        V and v_y [m/s], ω_z and ρ' [rad/s].
+    displacement, yaw : ndarray
+        u [m] and ψ [rad].
+    speed, lateral_velocity, yaw_velocity, turn_rate : ndarray
+        V and v_y [m/s], the rate of the yaw and ω_z [rad/s].
     load : ndarray
         Vertical load of each wheel, Q [N].
     friction : pair of ndarray or FallingFriction
@@ -101,17 +122,22 @@ class Task:
         Torque on the axle, M [N m], positive if it drives.
     rotation : ndarray or None
         Given speed of rotation, Ω [rad/s]; the torque then follows.
+    free : bool
+        Whether the wheelset finds its roll; a given one stays, and has no rate.
     """
 
+    displacement: Array
+    yaw: Array
     speed: Array
     lateral_velocity: Array
+    yaw_velocity: Array
     turn_rate: Array
-    roll_rate: Array
     load: Array
     friction: tuple[Friction, Friction]
     flange_angle: float
     torque: Array
     rotation: Array | None
+    free: bool
 
     def friction_of(self, point: NDArray[np.intp], flange: NDArray[np.bool_], creep_speed: Array) -> Array:
         """Return the friction coefficients of patches [-] at creep speeds [m/s]."""
@@ -178,8 +204,9 @@ class _State(NamedTuple):
         Vertical load that each wheel carries [N].
     grip : ndarray, (positions,)
         Torque of full slip [N m].
-    miss : ndarray, (positions, 3)
-        Logarithm of the load of both wheels over the given one, and the excess of the torque over `grip`.
+    miss : ndarray, (positions, 4)
+        Logarithm of the load of both wheels over the given one, the excess of the torque over `grip`, and how much
+        lower the left wheel carries the axle than the right one, over the mean of `Balance.whole`.
     """
 
     part: Candidates
@@ -198,46 +225,120 @@ class Balance:
     section: Section
     elastic: Elastic
     task: Task
-    found: Candidates
     hertz: bool
     strips: int
+    roll: Array
+    """Roll at each position, positive if it lowers the right wheel, ρ [rad]."""
     penetration: Array
     """Vertical penetration of each wheel, h [m]."""
     rotation: Array
     """Speed of rotation at each position, Ω [rad/s]."""
     whole: Array
     """The penetration if one patch of each wheel carried the load without creep forces [m]."""
+    estimated: Array
+    """Roll at which `whole` was found [rad]."""
+    height: Array
+    """Least gap of each wheel plus a constant, as `Touching.least` [m], (positions, 2)."""
+    lever: Array
+    """y + z tan δ of the first place of each wheel, by which a roll changes its gap [m], (positions, 2)."""
+    roll_rate: Array
+    """Rate of the roll, ρ' [rad/s]."""
     balanced: NDArray[np.bool_]
     """Whether the loads of each position balance."""
+    imbalance: Array
+    """Greatest share of the load of a wheel, or of the torque of full slip, that is left over at each position [-]."""
+    share: Array
+    """Share of the penetration by which the gap must rise between patches of each position [-]."""
     scale: Array
     """Factor on the pressure of each wheel's patches, 1 except where the load jumps as a hump joins a patch."""
     correction: Array
-    """What Newton's method has learnt of the rates of `_State.miss`, (positions, 3, 3)."""
+    """What Newton's method has learnt of the rates of `_State.miss`, (positions, 4, 4)."""
     shapes: dict[str, Array] = field(default_factory=dict)
     """Strips or ellipses of all places at the last step of each."""
+    found: Candidates = field(init=False)
+    """The places of contact at this roll."""
 
     @classmethod
     def begun(
-        cls, section: Section, elastic: Elastic, task: Task, position: Position, touching: Touching, hertz: bool,
-        strips: int,
-    ) -> Balance:  # fmt: skip
-        """Return the loads without creep forces, under which the wheelset turns with the mean of its radii."""
-        found = candidates(section, position, touching)
-        first = found.number == 0
-        wheels = 2 * task.load.size
-        whole = np.zeros(wheels)
-        whole[found.wheel[first]] = cls._alone(section, elastic, task, found, np.flatnonzero(first))
-        saddle = touching.saddle[found.point, found.side, found.number]
-        kept = separated(found, saddle, whole[found.wheel])
-        radius = np.full(wheels, np.nan)
-        first = kept.number == 0
-        radius[kept.wheel[first]] = placed(section, kept.part(first).position, kept.arc[first]).radius
-        rotation = task.speed / radius.reshape(-1, 2).mean(axis=-1) if task.rotation is None else task.rotation
-        none = np.zeros((task.load.size, 3, 3))
-        right = np.ones(task.load.size, dtype=np.bool_)
-        return cls(
-            section, elastic, task, kept, hertz, strips, whole, rotation, whole, right, np.ones(wheels), none
-        ).solved(None)
+        cls, section: Section, elastic: Elastic, task: Task, roll: Array, touching: Touching, hertz: bool, strips: int
+    ) -> Balance:
+        """Return the loads without creep forces, under which the wheelset turns with the mean of its radii.
+
+        The roll, and where the wheels touch, are the given ones or those of rigid wheels.
+        """
+        count = roll.size
+        wheels, pairs, right = np.zeros(2 * count), np.zeros((count, 2)), np.ones(count, dtype=np.bool_)
+        balance = cls(
+            section, elastic, task, hertz, strips, roll.copy(), wheels, np.zeros(count), wheels.copy(), roll.copy(),
+            pairs, pairs.copy(), np.zeros(count), right, np.zeros(count), np.full(count, SEPARATE), np.ones(2 * count),
+            np.zeros((count, 4, 4)),
+        )  # fmt: skip
+        balance._stand(np.arange(count), roll, touching)
+        balance.penetration = balance.whole.copy()
+        if task.free:  # a first step to the roll under load
+            ahead = np.clip(-balance._lower() / balance._levers(), -WIDEST_ROLL, WIDEST_ROLL)
+            balance._turn(np.arange(count), roll + ahead)
+        first = balance.found.part(balance.found.number == 0)
+        radius = placed(section, first.position, first.arc).radius.reshape(-1, 2).mean(axis=-1)
+        balance.rotation = task.speed / radius if task.rotation is None else task.rotation
+        return balance.solved(None)
+
+    def _stand(self, rows: NDArray[np.intp], roll: Array, touching: Touching) -> None:
+        """Put some positions at rolls, in place, where their wheels touch as given."""
+        task, known = self.task, bool(self.whole.all())
+        position = both_sides(task.displacement[rows], roll, task.yaw[rows])
+        if known:  # places that are far from touching need no samples
+            far = touching.gap > FAR * self.whole.reshape(-1, 2)[rows][..., None]
+            touching = touching._replace(arc=np.where(far, np.nan, touching.arc))
+        places = candidates(self.section, position, touching)
+        saddle = touching.saddle[places.point, places.side, places.number]
+        places = replace(places, point=rows[places.point])
+        first = np.flatnonzero(places.number == 0)
+        again = first
+        if known:  # `whole` decides where places are close, and how wide the samples must be
+            turned = self._chosen(rows[np.abs(roll - self.estimated[rows]) > SMALL_ROLL])
+            wheels = np.zeros(self.whole.size, dtype=np.bool_)
+            wheels[places.wheel[(places.number > 0) & turned[places.point]]] = True
+            wheels[self.found.wheel[self.found.step > SPACING]] = True
+            again = first[wheels[places.wheel[first]]]
+        if again.size:
+            guess = self.whole[places.wheel[again]] if known else None
+            self.whole[places.wheel[again]] = self._alone(places, again, guess)
+            self.estimated[places.point[again]] = roll[np.searchsorted(rows, places.point[again])]
+        kept = separated(places, saddle, self.whole[places.wheel], self.share[places.point])
+        self.roll[rows], self.height[rows] = roll, touching.least
+        first = places.part(first)
+        place = Place(*(array.reshape(-1, 2) for array in placed(self.section, first.position, first.arc)))
+        self.lever[rows] = place.y + place.z * np.tan(place.angle)
+        if task.free:
+            self.roll_rate[rows] = roll_rate(place, task.lateral_velocity[rows], task.yaw_velocity[rows])
+        if rows.size == self.roll.size:
+            self.found = kept
+            return
+        stay = ~self._chosen(rows)[self.found.point]
+        if np.array_equal(self.found.wheel[~stay], kept.wheel):  # as many as before
+            self.found.put(np.flatnonzero(~stay), kept)
+            return
+        self.found, order = self.found.part(stay).joined(kept)
+        for name, array in self.shapes.items():  # those of the new places follow at the next step
+            none = np.full((kept.point.size, *array.shape[1:]), np.nan)
+            self.shapes[name] = np.concatenate([array[stay], none])[order]
+
+    def _chosen(self, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+        """Return whether each position is among some."""
+        chosen = np.zeros(self.roll.shape, dtype=np.bool_)
+        chosen[rows] = True
+        return chosen
+
+    def _turn(self, rows: NDArray[np.intp], roll: Array) -> None:
+        """Roll some positions, in place; those whose wheels would leave the rails stay."""
+        task = self.task
+        if not rows.size:
+            return
+        _, touching = searched(self.section, task.displacement[rows], task.yaw[rows], roll)
+        on = ~np.isnan(touching.arc[..., 0]).any(axis=-1)
+        if on.any():
+            self._stand(rows[on], roll[on], Touching(*(array[on] for array in touching)))
 
     def check_torque(self) -> None:
         """Raise an error for a torque that friction cannot transmit."""
@@ -251,22 +352,21 @@ class Balance:
                 f" {grip[point]:.4g} N*m under this load"
             )
 
-    @staticmethod
-    def _alone(section: Section, elastic: Elastic, task: Task, found: Candidates, rows: NDArray[np.intp]) -> Array:
+    def _alone(self, found: Candidates, rows: NDArray[np.intp], guess: Array | None) -> Array:
         """Return the vertical penetration if one patch of each wheel carries the whole load, and widen its samples."""
         penetration = np.empty(rows.size)
         open_ = np.arange(rows.size)
         for widening in range(WIDENINGS + 1):
             part = found.part(rows[open_])
             patch = _normal.loaded(
-                part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, elastic.modulus,
-                task.load[part.point] / part.cosine, 5,
+                part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
+                self.task.load[part.point] / part.cosine, 5, guess if guess is None else guess[open_] * part.cosine,
             )  # fmt: skip
             penetration[open_] = patch.penetration / part.cosine
             open_ = open_[patch.narrow]
             if not open_.size or widening == WIDENINGS:
                 break
-            sample(section, found, rows[open_], SPACING * 2.0 ** (widening + 1))
+            sample(self.section, found, rows[open_], SPACING * 2.0 ** (widening + 1))
         return penetration
 
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> Balance:
@@ -278,34 +378,70 @@ class Balance:
             Returns the creep forces of a problem with one entry for each patch. None leaves out the creep forces; the
             speed of rotation then stays as it is.
         """
-        copies = {name: getattr(self, name).copy() for name in ("penetration", "rotation", "correction")}
+        names = (
+            "roll",
+            "penetration",
+            "rotation",
+            "whole",
+            "estimated",
+            "height",
+            "lever",
+            "roll_rate",
+            "imbalance",
+            "share",
+            "correction",
+        )
+        copies = {name: getattr(self, name).copy() for name in names}
         every = np.ones(self.balanced.shape, dtype=np.bool_)
-        found = replace(self, scale=np.ones(self.scale.shape), balanced=every, **copies)
-        left = found._newton(forces)
-        if left.any():
+        found = replace(self, scale=np.ones(self.scale.shape), balanced=every, shapes=dict(self.shapes), **copies)
+        found.found = self.found.part(np.arange(self.found.point.size))
+        rolls = self.task.free and forces is not None
+        found._newton(forces, every, rolls)
+        left = found.imbalance > ROUGH
+        if left.any() and rolls:
+            found._rolled(forces, left)
+            left &= found.imbalance > ROUGH
+            rows = np.flatnonzero(left)
+            # The level jumps where one of two humps of a patch takes over; as patches of their own they share the load.
+            found.share[rows] = 0.0
+            found.correction[rows] = 0.0
+            found._turn(rows, found.roll[rows])
+            found._newton(forces, left, rolls)
+            left &= found.imbalance > ROUGH
+            if left.any():
+                found._rolled(forces, left)
+        elif left.any():
             found._bracketed(forces, left)
         return found
 
-    def _newton(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> NDArray[np.bool_]:
-        """Balance the loads by Newton's method in place, and return which positions it leaves.
+    def _newton(
+        self, forces: Callable[[wl.Problem], wl.CreepForces] | None, chosen: NDArray[np.bool_], rolls: bool
+    ) -> None:
+        """Balance the loads of some positions by Newton's method, in place; their rolls stay unless `rolls`.
 
         Broyden's method corrects the estimated rates, in Schubert's form, which keeps those that are zero. The speed
-        of rotation counts with the torque that it changes.
+        of rotation and the roll count with the torque and the level that they change.
         """
         count = self.task.load.size
-        open_, unit = np.ones(count, dtype=np.bool_), np.ones((count, 1, 3))
-        step, before = np.zeros((2, count, 3))
-        worst = np.zeros(count)
+        open_, unit = chosen.copy(), np.ones((count, 1, 4))
+        step, before = np.zeros((2, count, 4))
         for iteration in range(NEWTON_STEPS):
             state = self._state(forces, open_)
-            worst = np.abs(state.miss).max(axis=-1)
-            open_ &= worst > BALANCED
+            if not rolls:
+                state.miss[:, 3] = 0.0
+            self._note(state, open_)
+            worst, tilt = np.abs(state.miss[:, :3]).max(axis=-1), np.abs(state.miss[:, 3]) * self._depths()
+            open_ &= (worst > BALANCED) | (tilt > LEVEL)
             rows = np.flatnonzero(open_)
             if not rows.size or iteration == NEWTON_STEPS - 1:
                 break
             rates, miss = self._rates(state)[rows], state.miss[rows]
+            near = (tilt > 0.5 * LEVEL) | (worst * self._depths() > 0.5 * LEVEL)
+            turns = rolls & near[rows]
+            if not rolls:
+                rates[:, 3] = 0.0, 0.0, 0.0, 1.0
             if iteration == 0:
-                unit[rows, 0, 2] = rates[:, 2, 2]
+                unit[rows, 0, 2:] = np.diagonal(rates, axis1=1, axis2=2)[:, 2:]
             rates /= unit[rows]
             moved = step[rows] * unit[rows, 0]
             unforeseen = miss - before[rows] - ((rates + self.correction[rows]) @ moved[..., None])[..., 0]
@@ -313,15 +449,62 @@ class Balance:
             self.correction[rows] += (
                 unforeseen[..., None] * own / np.maximum((own**2).sum(axis=-1), BALANCED**2)[..., None]
             )
-            ahead = -np.linalg.solve(rates + self.correction[rows], miss[..., None])[..., 0] / unit[rows, 0]
+            rates += self.correction[rows]
+            rates[~turns, 3], rates[~turns, 3, 3], sought = 0.0, 1.0, miss.copy()
+            sought[~turns, 3] = 0.0
+            ahead = -np.linalg.solve(rates, sought[..., None])[..., 0] / unit[rows, 0]
             ahead[:, :2] = np.clip(ahead[:, :2], -WIDEST_STEP, WIDEST_STEP)
             most = MOST_TURN * self.rotation[rows]
             ahead[:, 2] = np.clip(ahead[:, 2], -most, most)
-            step[rows], before[rows] = ahead, miss
+            ahead[:, 3] = np.clip(ahead[:, 3], -WIDEST_ROLL, WIDEST_ROLL)
             self.penetration.reshape(-1, 2)[rows] *= np.exp(ahead[:, :2])
             self.rotation[rows] += ahead[:, 2]
-        rough: NDArray[np.bool_] = open_ & (worst > ROUGH)
-        return rough
+            was = self.roll[rows]
+            self._turn(rows[turns], (was + ahead[:, 3])[turns])
+            ahead[:, 3] = self.roll[rows] - was
+            step[rows], before[rows] = ahead, miss
+
+    def _depths(self) -> Array:
+        """Return the mean of `whole` at each position [m]."""
+        return np.asarray(self.whole.reshape(-1, 2).mean(axis=-1))
+
+    def _note(self, state: _State, chosen: NDArray[np.bool_]) -> None:
+        """Keep what some positions leave over; a difference of level counts with the load that it would carry."""
+        left = np.abs(state.miss)
+        left[:, 3] *= 1.5
+        self.imbalance = np.where(chosen, left.max(axis=-1), self.imbalance)
+
+    def _rolled(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> None:
+        """Find the rolls of some positions within bounds, in place, with the loads balanced at each roll."""
+        going = open_.copy()
+        rolls = _Root.begun(self.roll, np.nan, WIDEST_ROLL)
+        for _ in range(STEPS):
+            self.scale[going.repeat(2)], self.balanced[going] = 1.0, True
+            self._newton(forces, going, False)
+            left = going & (self.imbalance > ROUGH)
+            if left.any():
+                self._bracketed(forces, left)
+            lower = self._lower()
+            self.imbalance = np.where(going, np.maximum(self.imbalance, 1.5 * np.abs(lower)), self.imbalance)
+            jump = (rolls.high - rolls.low) * self._levers() < JUMP * np.abs(lower)
+            going &= (np.abs(lower) * self._depths() > LEVEL) & ~jump
+            if not going.any():
+                break
+            if np.isnan(rolls.slope).all():
+                rolls.slope = self._levers()
+            rolls.step(lower, going)
+            rows = np.flatnonzero(going)
+            self._turn(rows, rolls.x[rows])
+            going &= self.roll == rolls.x
+
+    def _lower(self) -> Array:
+        """Return how much lower the left wheel carries the axle than the right one, over the mean of `whole`."""
+        carried = self.height + self.penetration.reshape(-1, 2)
+        return np.asarray((carried[:, 0] - carried[:, 1]) / self._depths())
+
+    def _levers(self) -> Array:
+        """Return the rate of `_lower` with the roll [1/rad]."""
+        return np.asarray(np.maximum(np.abs(self.lever.sum(axis=-1)), LEAST_LEVER) / self._depths())
 
     def _bracketed(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> None:
         """Balance some positions in place, the torque within bounds, and at each speed of rotation the loads.
@@ -341,8 +524,11 @@ class Balance:
                 turns.slope = np.maximum(self._rates(state)[:, 2, 2], TINY)
             turns.step(state.miss[:, 2], going)
             self.rotation = turns.x
-        final = np.abs(self._state(forces, open_).miss) > (ROUGH, ROUGH, FOLD)
-        self.balanced &= ~(open_ & final.any(axis=-1))
+        state = self._state(forces, open_)
+        state.miss[:, 3] = 0.0
+        self._note(state, open_)
+        lacking = np.abs(state.miss[:, :3]) > (ROUGH, ROUGH, FOLD)
+        self.balanced = np.where(open_, ~lacking.any(axis=-1), self.balanced)
 
     def _carried(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> _State:
         """Balance the vertical loads of some positions at their speed of rotation, in place."""
@@ -379,10 +565,12 @@ class Balance:
         problem, patch = self._posed(part, shapes)
         force = None if forces is None else forces(problem)
         load, torque, grip = self._sums(part, patch, problem, force)
-        miss = np.zeros((open_.size, 3))
+        miss = np.zeros((open_.size, 4))
         miss[:, :2] = np.log(np.maximum(load / self.task.load.repeat(2), LEAST_SHARE)).reshape(-1, 2)
         if force is not None and self.task.rotation is None:
             miss[:, 2] = (torque - self.task.torque) / np.maximum(grip, TINY)
+        if self.task.free:
+            miss[:, 3] = np.where(open_, self._lower(), 0.0)
         return _State(part, problem, patch, force, load, grip, miss)
 
     def _sums(
@@ -404,7 +592,7 @@ class Balance:
         return np.asarray(load, np.float64), torques, grips
 
     def _rates(self, state: _State) -> Array:
-        """Return estimates of the rates of `_State.miss` with ln h of both wheels and Ω, (positions, 3, 3).
+        """Return estimates of the rates of `_State.miss` with ln h of both wheels, Ω and ρ, (positions, 4, 4).
 
         The normal force grows with the power 3/2 of the penetration. The creep forces start with Kalker's rates. As f,
         their share of μN, grows, the rate along the force falls to (1 - f)^(2/3), and that across it to f/(3d) with
@@ -413,7 +601,7 @@ class Balance:
         """
         part, problem, patch, force, load, grip, _ = state
         count = load.size // 2
-        found = np.zeros((count, 3, 3))
+        found = np.zeros((count, 4, 4))
         own, side = patch.normal_force * np.cos(patch.place.angle), np.where(part.side == 1, 1.0, -1.0)
         grip = np.maximum(grip, TINY)
         depth = self.penetration[part.wheel]
@@ -438,9 +626,19 @@ class Balance:
             turned = np.bincount(part.wheel, growth * speed * (xi * x + eta * y) * swelling, 2 * count)
             found[:, 2, :2] = turned.reshape(-1, 2) / grip[:, None]
         if force is None or self.task.rotation is not None:
-            found[:, 2] = 0.0, 0.0, 1.0
+            found[:, 2] = 0.0, 0.0, 1.0, 0.0
         vertical = np.bincount(part.wheel, growth * own, 2 * count) / load
         found[:, (0, 1), (0, 1)] = vertical.reshape(-1, 2)
+        found[:, 3, 3] = 1.0
+        if self.task.free:
+            # A roll brings a further place nearer to its rail than the first one by the difference of their levers.
+            tilt = side * (
+                patch.place.y + patch.place.z * np.tan(patch.place.angle) - self.lever[part.point, part.side]
+            )
+            nearer = np.where(part.number == 0, 0.0, growth * own * tilt / depth)
+            found[:, :2, 3] = (np.bincount(part.wheel, nearer, 2 * count) / load).reshape(-1, 2)
+            found[:, 3, 3] = self._levers()
+            found[:, 3, :2] = self.penetration.reshape(-1, 2) * (1.0, -1.0) / self._depths()[:, None]
         return found
 
     def posed(self) -> tuple[wl.Problem, Patches]:
@@ -454,7 +652,7 @@ class Balance:
         place = placed(self.section, part.position, arc)
         sliding = creepages(
             part.position, place, task.speed[part.point], side * task.lateral_velocity[part.point],
-            side * task.turn_rate[part.point], side * task.roll_rate[part.point], side,
+            side * task.turn_rate[part.point], side * self.roll_rate[part.point], side,
         )  # fmt: skip
         flange = np.abs(place.angle) > task.flange_angle
         longitudinal, lateral, spin = sliding.at(self.rotation[part.point])

@@ -18,7 +18,6 @@ from wearlaw_wheelset._conicity import equivalent_conicity
 from wearlaw_wheelset._curve import steady
 from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
 from wearlaw_wheelset._loads import Balance, Elastic, Friction, Task
-from wearlaw_wheelset._motion import placed, roll_rate
 from wearlaw_wheelset._pictures import Profiles
 from wearlaw_wheelset._profile import Profile
 from wearlaw_wheelset._search import Section, Touching, both_sides, searched, section
@@ -59,6 +58,10 @@ MOST_PLAY = 40e-3
 MOST_YAW = 0.2
 """Greatest yaw [rad]: a locomotive in the tightest curve has a tenth of it."""
 
+IMBALANCE = 1e-3
+"""Share of the load that may be left over without a warning; the forces of FASTSIM jump by less than that, as a strip
+begins to stick once more."""
+
 MARGIN = 1e-3
 """Displacement beyond the amplitude at which the conicity needs radii [m]: waves need not be about the middle."""
 
@@ -95,11 +98,32 @@ Angle = Annotated[wl.Quantity, wl.Unit("deg")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Posed(wl.Problem):
-    """A problem that knows the balance that it comes from."""
+class WheelsetProblem(wl.Problem):
+    """The contact problem of a wheelset, and how the wheelset stands; arrays have the shape of the batch.
 
+    Attributes
+    ----------
+    roll : ndarray
+        Roll of the wheelset, positive if it lowers the right wheel [rad].
+    penetration : ndarray
+        Vertical approach of wheel and rail from first touching, at each patch [m].
+    imbalance : ndarray
+        What the balance leaves over, the greatest of these shares [-]: of the vertical load of a wheel, of the torque
+        of full slip, and of the load that the rails would move from wheel to wheel to sink equally.
+    """
+
+    roll: Array
+    penetration: Array
+    imbalance: Array
     balance: Balance
     shape: tuple[int, ...]
+
+    def mapped(
+        self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None
+    ) -> WheelsetProblem:
+        """Return the problem with a function applied to each of its arrays; `of_strips` as in `Problem.mapped`."""
+        found = wl.Problem.mapped(self, function, of_strips)
+        return found.replaced(**{name: function(getattr(self, name)) for name in ("roll", "penetration", "imbalance")})
 
 
 class Wheelset(wl.Rig):
@@ -383,11 +407,22 @@ class Wheelset(wl.Rig):
 
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
-        assert isinstance(problem, _Posed)
+        assert isinstance(problem, WheelsetProblem)
         distance = problem.rolled_distance
         balance = problem.balance.solved(forces)
+        self._warn_of_climbing(balance)
         if not balance.balanced.all():
             self._warn_of_jams(balance)
+        left = np.where(balance.balanced, balance.imbalance, 0.0)
+        if (left > IMBALANCE).any():
+            point = int(left.argmax())
+            warnings.warn(
+                f"the loads of {np.count_nonzero(left > IMBALANCE)} of {left.size} positions do not balance: at a"
+                f" lateral displacement of {1e3 * balance.task.displacement[point]:.4g} mm, {left[point]:.2g} of the"
+                " load is left over, as where a patch joins another one; see imbalance of the problem",
+                wl.RangeWarning,
+                stacklevel=4,
+            )
         return self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
 
     def _balance(self, given: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Balance:
@@ -398,23 +433,17 @@ class Wheelset(wl.Rig):
         single, which = np.unique(places, axis=1, return_inverse=True)
         rolls, found = searched(self._section, single[0], single[1], None if roll is None else single[2])
         self._check_contact(single[0], found)
-        self._warn_of_climbing(single[0], found)
         which = which.reshape(-1)
         rolls, found = rolls[which], Touching(*(array[which] for array in found))
         speed = np.full(displacement.shape, scalar(self.rolling_speed))
         turn_rate = given["yaw_velocity"] + speed / given["curve_radius"]
-        position = both_sides(displacement, rolls, yaw)
-        rolling = np.zeros(displacement.shape)
-        if roll is None:
-            place = placed(self._section, position, found.arc[..., 0])
-            rolling = roll_rate(place, given["lateral_velocity"], given["yaw_velocity"])
         task = Task(
-            speed, given["lateral_velocity"], turn_rate, rolling, given["vertical_load"],
-            friction, scalar(self.flange_angle), given.get("axle_torque", np.zeros(displacement.shape)),
-            given.get("angular_speed"),
+            displacement, yaw, speed, given["lateral_velocity"], given["yaw_velocity"], turn_rate,
+            given["vertical_load"], friction, scalar(self.flange_angle),
+            given.get("axle_torque", np.zeros(displacement.shape)), given.get("angular_speed"), roll is None,
         )  # fmt: skip
         hertz = self.pressure == "hertz"
-        balance = Balance.begun(self._section, self._elastic, task, position, found, hertz, self.strips)
+        balance = Balance.begun(self._section, self._elastic, task, rolls, found, hertz, self.strips)
         balance.check_torque()
         return balance
 
@@ -451,7 +480,12 @@ class Wheelset(wl.Rig):
                 *shape, 2, PATCHES
             )
         fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES)}
-        return _Posed(**fields, balance=balance, shape=shape)
+        stance = {
+            "roll": wide(balance.roll[found.point]),
+            "penetration": wide(balance.penetration[found.wheel] - found.gap),
+            "imbalance": wide(balance.imbalance[found.point]),
+        }
+        return WheelsetProblem(**fields, **stance, balance=balance, shape=shape)
 
     @staticmethod
     def _check_yaw(yaw: Array) -> None:
@@ -472,14 +506,16 @@ class Wheelset(wl.Rig):
                 " touch its rail within the profiles; wider profiles are needed, or the wheel has left the rail"
             )
 
-    def _warn_of_climbing(self, displacement: Array, found: Touching) -> None:
+    def _warn_of_climbing(self, balance: Balance) -> None:
         """Warn of a wheel that stands on the top of its flange."""
-        over = found.arc[..., 0] < self._steepest
+        found = balance.found
+        over = (found.number == 0) & (found.arc < self._steepest)
         if over.any():
-            point, side = (int(index[0]) for index in np.nonzero(over))
+            point, side = (int(index[over][0]) for index in (found.point, found.side))
+            displacement = 1e3 * balance.task.displacement[point]
             warnings.warn(
-                f"at a lateral displacement of {1e3 * displacement[point]:.4g} mm the {DIMS['side'][side]} wheel climbs"
-                " its rail: it stands on its flange beyond the steepest point",
+                f"at a lateral displacement of {displacement:.4g} mm the {DIMS['side'][side]} wheel climbs its rail: it"
+                " stands on its flange beyond the steepest point",
                 wl.RangeWarning,
                 stacklevel=5,
             )
@@ -488,8 +524,7 @@ class Wheelset(wl.Rig):
     def _warn_of_jams(balance: Balance) -> None:
         """Warn of positions without a balance of loads."""
         point = int(np.argmin(balance.balanced))
-        here = balance.found.point == point
-        displacement = float(balance.found.position.displacement[here & (balance.found.side == 1)][0])
+        displacement = float(balance.task.displacement[point])
         warnings.warn(
             f"{np.count_nonzero(~balance.balanced)} of {balance.balanced.size} positions have no result, the first at a"
             f" lateral displacement of {1e3 * displacement:.4g} mm: no normal forces were found that carry the vertical"

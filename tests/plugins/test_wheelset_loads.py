@@ -215,9 +215,7 @@ def test_patches_share_the_load_by_their_penetration(pressure: Pressure, displac
     where: dict[str, Any] = {"lateral_displacement": Q(displacement, "mm")}
     result = predicted(pair, **where, vertical_load="10 kN")
     problem: Any = result.problem
-    data = pair.geometry(**where, within="1 mm").dataset
-    wheel = ("left", "right")[1]
-    one = data.sel(side=wheel)
+    one = pair.geometry(**where, roll=Q(problem.roll[1, 0], "rad"), within="1 mm").dataset.sel(side="right")
     exists = problem.exists[1]
     assert exists[:2].all()
     gap, cosine = 1e-3 * one.gap.values[exists], np.cos(np.radians(one.contact_angle.values[exists]))
@@ -308,7 +306,8 @@ def test_cones_wear_like_single_wheels(share: float) -> None:
     )  # fmt: skip
     # The curvature of the spline through the rail's points is off by (56 µm/300 mm)²/12 = 3e-9.
     problem: Any = result.problem
-    one = CONES.geometry(lateral_displacement="2 mm", yaw="3 mrad").dataset.sel(patch=1)
+    roll = Q(problem.roll[0, 0], "rad")
+    one = CONES.geometry(lateral_displacement="2 mm", yaw="3 mrad", roll=roll).dataset.sel(patch=1)
     for number, side in enumerate(("left", "right")):
         radius = one.rolling_radius.sel(side=side).item() / np.cos(np.radians(one.contact_angle.sel(side=side).item()))
         single = wl.WheelRail(

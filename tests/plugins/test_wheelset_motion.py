@@ -99,9 +99,9 @@ def slips(
 
 
 def creepages(pair: ws.Wheelset, state: State) -> wl.Problem:
-    """Return the problem, with creepages of the axes side and patch."""
+    """Return the problem, with creepages of the axes side and patch, under a load too small to sink the wheels."""
     return pair.problem(
-        lateral_displacement=Q(state.displacement, "m"), yaw=Q(state.yaw, "rad"), vertical_load="1 kN",
+        lateral_displacement=Q(state.displacement, "m"), yaw=Q(state.yaw, "rad"), vertical_load="1e-5 N",
         friction_coefficient=0.3, angular_speed=Q(state.rotation, "rad/s"),
         lateral_velocity=Q(state.lateral_velocity, "m/s"), yaw_velocity=Q(state.yaw_velocity, "rad/s"),
         curve_radius=Q(state.curve_radius, "m"),
@@ -245,8 +245,9 @@ class Balanced(NamedTuple):
 
 
 def balanced(pair: ws.Wheelset, displacement: float, yaw: float, **conditions: Any) -> Balanced:
-    """Return all patches of a wheelset under load, at places found by its geometry."""
+    """Return all patches of a wheelset under load, at places found by its geometry, with the roll of rigid wheels."""
     where = {"lateral_displacement": Q(displacement, "m"), "yaw": Q(yaw, "rad")}
+    where["roll"] = Q(pair.geometry(**where).dataset["roll"].item(), "mrad")
     result = (pair | wl.contact_model("fastsim"))(
         **where, vertical_load="60 kN", friction_coefficient=0.35, **conditions
     )
