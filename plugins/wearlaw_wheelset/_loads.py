@@ -307,8 +307,8 @@ class Balance:
             self.estimated[places.point[again]] = roll[np.searchsorted(rows, places.point[again])]
         kept = separated(places, saddle, self.whole[places.wheel], self.share[places.point])
         self.roll[rows], self.height[rows] = roll, touching.least
-        first = places.part(first)
-        place = Place(*(array.reshape(-1, 2) for array in placed(self.section, first.position, first.arc)))
+        lowest = places.part(first)
+        place = Place(*(array.reshape(-1, 2) for array in placed(self.section, lowest.position, lowest.arc)))
         self.lever[rows] = place.y + place.z * np.tan(place.angle)
         if task.free:
             self.roll_rate[rows] = roll_rate(place, task.lateral_velocity[rows], task.yaw_velocity[rows])

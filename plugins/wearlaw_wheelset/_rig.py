@@ -480,7 +480,7 @@ class Wheelset(wl.Rig):
                 *shape, 2, PATCHES
             )
         fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES)}
-        stance = {
+        stance: dict[str, Any] = {
             "roll": wide(balance.roll[found.point]),
             "penetration": wide(balance.penetration[found.wheel] - found.gap),
             "imbalance": wide(balance.imbalance[found.point]),

@@ -202,9 +202,14 @@ def test_a_compiled_loop_takes_arrays_that_it_only_reads_read_only_and_is_compil
         for i in range(x.size):
             twice[i] = 2.0 * x[i]
 
-    made = []
+    made: list[Any] = []
     compiled = kernels.compiled
-    monkeypatch.setattr(kernels, "compiled", lambda *args, **options: made.append(args) or compiled(*args, **options))
+
+    def counted(*args: Any, **options: Any) -> Any:
+        made.append(args)
+        return compiled(*args, **options)
+
+    monkeypatch.setattr(kernels, "compiled", counted)
     contact = wl.TwinDisc.suros().problem(normal_force=Q([6.0, 7.0], "kN"), creepage="1 %", friction_coefficient=0.4)
     own, twice = np.array([1.0, 2.0]), np.empty(2)
     for given in (own, contact.normal_force, own, contact.normal_force):

@@ -64,7 +64,8 @@ class Model(Configuration, ABC):
 
     def _origin(self) -> str:
         """Return the class of this model in words, with the distribution or the module that it comes from."""
-        return f"class {type(self).__name__}{self._provided_by(type(self))}"
+        cls = type(self)
+        return f"class {cls.__name__}{cls._provided_by(cls)}"
 
     @classmethod
     def subject(cls) -> str:

@@ -178,7 +178,7 @@ class Rig(Model):
         check_problem(self, problem)
         return problem if problem.bodies else problem.replaced(bodies=self.bodies)
 
-    def _checked_balance(self, problem: Problem, balanced: Problem) -> Problem:
+    def _checked_balance(self, problem: Problem, balanced: object) -> Problem:
         """Return the result of `balanced` for a problem, with NaN for patches that have lifted off.
 
         Raises
