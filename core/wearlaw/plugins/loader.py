@@ -131,8 +131,7 @@ def _left_out_if_broken(found: Installed, origin: Origin, isolation: Isolation) 
     try:
         with isolation.of(origin, lambda remark: found.remarks.append(Broken(origin, remark))):
             yield
-    except KeyboardInterrupt as interrupt:  # the plugin may have raised it itself, so name the plugin
-        interrupt.add_note(f"wearlaw was loading {origin}")
+    except KeyboardInterrupt:
         raise
     except BaseException as error:
         found.broken.append(Broken(origin, described(error)))

@@ -79,27 +79,6 @@ def reason_of(error: Exception) -> str:
     return text.replace("embedded null byte", "a name cannot have a null character")
 
 
-def place_of(folder: Path) -> Path:
-    """Return the path of a folder without links in it, after checks of whether it can be made.
-
-    Raises
-    ------
-    OSError
-        If it cannot, since a name is too long, links lead in a circle, or something above it is no folder.
-    ValueError
-        If a name has a null character.
-    """
-    try:
-        target = folder.resolve()
-    except RuntimeError:  # before Python 3.13
-        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP)) from None
-    there = next(parent for parent in (target, *target.parents) if os.path.lexists(parent))
-    for path in (target, *(there / name for name in target.relative_to(there).parts)):
-        with suppress(FileNotFoundError):
-            os.stat(path)
-    return target
-
-
 def read_start(path: str | os.PathLike[str], count: int) -> bytes:
     """Return the first bytes of a regular file, all if it has no more than `count`.
 

@@ -16,7 +16,6 @@ from typing import Any, Literal, TypeAlias
 from packaging.utils import canonicalize_name
 
 from wearlaw.errors import InputError, OutputError, quoted, shortened
-from wearlaw.output.folder import fresh_folder
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import Shelf
 from wearlaw.version import __version__
@@ -113,9 +112,7 @@ def write_plugin(name: str, kind: Kind, parent: Path, licence: Licence = "none")
     folder = parent / f"wearlaw-{name}"
     if os.path.lexists(folder):
         raise OutputError(f"output: {quoted(folder)} exists and is left as it is; choose another parent folder with -o")
-    contents = _files(name, kind, licence)
-    with fresh_folder(folder) as fresh:
-        _write(contents, fresh)
+    _write(_files(name, kind, licence), folder)
     return folder
 
 
