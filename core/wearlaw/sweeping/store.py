@@ -132,6 +132,7 @@ class Store:
         if RECORDS not in group:
             group.create_array(RECORDS, shape=(len(points.blocks()),), chunks=(1,), dtype=str, compressors=CHECKED)
         small = dataset(points, {}, self.job).assign_attrs(attributes(INCOMPLETE, self._provenance))
+        small = small.drop_vars(self.job.units, errors="ignore")  # a case keeps some of its conditions as outputs
         large = {name: column for name, column in points.coordinates().items() if column.on_disk}
         for name in (*small.coords, *large):  # those of an interrupted sweep may be damaged
             shutil.rmtree(self.path / str(name), ignore_errors=True)
