@@ -26,7 +26,7 @@ def test_a_study_is_run_and_its_files_are_listed_as_they_are(folder: Path) -> No
     assert result.exit_code == 0
     assert f"\nComputed with wearlaw {wl.__version__}\nResults in out folder:\n" in result.stdout
     listing = result.stdout.partition("Results in out folder:\n")[2].splitlines()
-    assert {line.strip() for line in listing} == files(folder) - {"my case.toml", "out folder/.wearlaw.json"}
+    assert {line.strip() for line in listing} == files(folder) - {"my case.toml", "out folder/.wearlaw-files"}
     assert listing[0] == "  out folder/report.html"
     assert len(listing) == 4 + 3 + 3 + 1
     notes = result.stderr.splitlines()

@@ -100,9 +100,7 @@ def test_a_changed_case_or_version_is_not_resumed_and_told_what_changed(
     before = contents(folder / "out.partial")
     assert_refused(wearlaw("run", case, "-o", "out"), "'out.partial' holds the finished blocks of an interrupted run")
     long_case(folder / "big.toml", sweeps={"long": {**LONG, "friction_coefficient": 0.3}})
-    assert_refused(
-        wearlaw("run", case, "-o", "out", "--resume"), "conditions.friction_coefficient: was 0.46, is 0.3"
-    )
+    assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "conditions.friction_coefficient: was 0.46, is 0.3")
     long_case(folder / "big.toml")
     monkeypatch.setattr("wearlaw.sweeping.provenance.__version__", "99.0")
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "is 99.0")

@@ -177,18 +177,17 @@ def test_a_broken_plugin_is_warned_of_once_and_then_left_alone(install: Install)
     ["import signal\nsignal.raise_signal(signal.SIGINT)", "raise KeyboardInterrupt"],
     ids=["by a person", "by the plugin"],
 )
-def test_ctrl_c_while_a_plugin_is_loading_ends_the_program_and_names_the_plugin(
+def test_ctrl_c_while_a_plugin_is_loading_ends_the_program(
     source: str, install: Install, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     install("slow_plugin", source)
     monkeypatch.setattr(signal, "raise_signal", lambda number: signal.default_int_handler(number, None))  # in any shell
-    with pytest.raises(KeyboardInterrupt) as interrupt:
+    with pytest.raises(KeyboardInterrupt):
         wl.wear_laws()
-    assert interrupt.value.__notes__ == ["wearlaw was loading slow_plugin 1.0 (plugin 'slow_plugin')"]
     result = wearlaw("show", "usfd")
     assert result.exit_code == 130
     assert result.stdout == ""
-    assert result.stderr == f"Stopped; {interrupt.value.__notes__[0]}; nothing was written\n"
+    assert result.stderr == "Stopped\n"
 
 
 def test_every_broken_plugin_is_warned_of(install: Install) -> None:

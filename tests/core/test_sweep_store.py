@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import runpy
 import shutil
@@ -138,7 +139,7 @@ def test_a_store_whose_array_is_not_described_is_refused(tmp_path: Path) -> None
     store = tmp_path / "map.zarr"
     wl.sweep(predictor(), **GIVEN, store=store)
     (store / "wear_rate" / "zarr.json").write_text("garbage")
-    with pytest.raises(wl.OutputError, match="map.zarr' is damaged .*; remove it to start again"):
+    with pytest.raises(wl.OutputError, match=r"map.zarr' is damaged .*; remove it to start again"):
         wl.sweep(predictor(), **GIVEN, store=store, resume=True)
 
 
@@ -234,7 +235,7 @@ def test_the_worked_example_draws_its_picture_from_what_it_stored(
 
 
 SCRIPT = """
-import signal, sys, time
+import signal
 
 import numpy as np
 import wearlaw as wl
@@ -248,52 +249,64 @@ given = dict(
     creepage=wl.Q(np.linspace(0.1, 5, 100), "%"), normal_force=wl.Q(np.linspace(1, 9, 100), "kN"),
     friction_coefficient=0.3, outputs=["wear_rate", "tangential_force"],
 )
-def begin(workers, **more):
-    print("begun", flush=True)
-    start = time.perf_counter()
-    swept = wl.sweep(predict, **given, store="map.zarr", workers=workers, **more)
-    print(time.perf_counter() - start, flush=True)
-    return swept
 """
 """A sweep of 50 blocks."""
 
 
 def started(folder: Path, workers: int) -> subprocess.Popen[str]:
-    """Start a sweep in a process, and return when it has begun."""
-    running = subprocess.Popen(
-        [sys.executable, "-W", "ignore", "-c", f"{SCRIPT}\nbegin({workers})"],
+    """Start a sweep in a process."""
+    return subprocess.Popen(
+        [
+            sys.executable,
+            "-W",
+            "ignore",
+            "-c",
+            f"{SCRIPT}\nwl.sweep(predict, **given, store='map.zarr', workers={workers})",
+        ],
         cwd=folder,
         start_new_session=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
-    assert running.stdout is not None
-    assert running.stdout.readline() == "begun\n"
-    return running
+
+
+def records(folder: Path) -> list[Path]:
+    """Return a file for each finished block."""
+    return [path for path in folder.glob("map.zarr/blocks/record/c/*") if path.suffix != ".partial"]
+
+
+def wait_for(blocks: int, running: subprocess.Popen[str], folder: Path) -> None:
+    while running.poll() is None and len(records(folder)) < blocks:
+        time.sleep(0.005)
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::wearlaw.ResumeWarning")
 @pytest.mark.skipif(os.name == "nt", reason="there is no SIGKILL")
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_sweep_killed_at_any_moment_resumes_to_the_same_numbers(workers: int, tmp_path: Path) -> None:
     scope: dict[str, Any] = {}
     exec(SCRIPT, scope)
     whole = wl.sweep(scope["predict"], **scope["given"])
-    finished = started(tmp_path, workers)
-    seconds = float(finished.communicate(timeout=100)[0])
     random = np.random.default_rng(38)
     kept: list[int] = []
     for _ in range(10):
         shutil.rmtree(tmp_path / "map.zarr", ignore_errors=True)
         running = started(tmp_path, workers)
-        time.sleep(seconds * random.random())
-        os.killpg(running.pid, signal.SIGKILL) if random.random() < 0.5 else running.kill()  # its workers live on
+        wait_for(random.integers(50), running, tmp_path)
+        time.sleep(0.1 * random.random())
+        if random.random() < 0.5:
+            os.killpg(running.pid, signal.SIGKILL)
+        else:
+            running.kill()  # its workers finish their blocks
         running.wait()
-        kept.append(len(list((tmp_path / "map.zarr").glob("blocks/record/c/*"))))
+        kept.append(len(records(tmp_path)))
         resumed = wl.sweep(scope["predict"], **scope["given"], store=tmp_path / "map.zarr", resume=True)
         xr.testing.assert_identical(resumed.load(), whole)
         assert resumed.attrs["status"] == "complete"
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(running.pid, signal.SIGKILL)
         running.communicate()
     assert len({*kept} - {0, 50}) > 3  # the moments fall into the sweep
 
@@ -301,12 +314,10 @@ def test_a_sweep_killed_at_any_moment_resumes_to_the_same_numbers(workers: int, 
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends Ctrl-C to consoles, not to processes")
 def test_ctrl_c_in_a_terminal_ends_a_sweep_at_once_and_keeps_finished_blocks(tmp_path: Path) -> None:
     running = started(tmp_path, 2)
-    records = tmp_path / "map.zarr" / "blocks" / "record" / "c"
-    while running.poll() is None and not (records.is_dir() and len(list(records.iterdir())) > 3):
-        time.sleep(0.01)
+    wait_for(4, running, tmp_path)
     os.killpg(running.pid, signal.SIGINT)  # as a terminal does, to all its processes
     _, errors = running.communicate(timeout=30)
     assert running.returncode in (-signal.SIGINT, 130)
     assert errors.strip().endswith("KeyboardInterrupt")
     assert errors.count("Traceback") <= 1  # none of a worker
-    assert 3 < len(list(records.iterdir())) <= 50
+    assert 3 < len(records(tmp_path)) <= 50

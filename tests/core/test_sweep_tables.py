@@ -16,7 +16,7 @@ import xarray as xr
 
 import wearlaw as wl
 from tests.core.axles import KTH, Axle
-from tests.core.sweeps import contents, interrupted_after, predictor
+from tests.core.sweeps import interrupted_after, predictor
 from wearlaw import Q
 from wearlaw.sweeping import points, table_files, tables
 from wearlaw.sweeping.table_files import CsvFile
@@ -438,9 +438,7 @@ def test_columns_belong_to_a_table(argument: str) -> None:
 
 
 @pytest.mark.usefixtures("small_blocks")
-def test_an_interrupted_sweep_over_a_file_is_resumed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_interrupted_sweep_over_a_file_is_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("zarr")
     write_csv(tmp_path / "run.csv")
     whole = swept(tmp_path / "run.csv", store=tmp_path / "whole.zarr").load()
@@ -465,9 +463,7 @@ def test_a_changed_file_is_not_resumed(column: str, name: str, tmp_path: Path) -
     table = frame()
     table.loc[50, column] += 1e-3
     table.to_csv(tmp_path / "run.csv", index=False)
-    with pytest.raises(
-        wl.OutputError, match=rf"since these have changed:\n  {name}: was 100 values.* of run.csv, SHA"
-    ):
+    with pytest.raises(wl.OutputError, match=rf"since these have changed:\n  {name}: was 100 values.* of run.csv, SHA"):
         swept(tmp_path / "run.csv", store=tmp_path / "map.zarr", resume=True)
 
 

@@ -59,6 +59,7 @@ class Stopped(click.ClickException):
     exit_code = 128 + signal.SIGINT
 
     def show(self, file: IO[Any] | None = None) -> None:
+        """Print the line, without click's "Error:"."""
         click.echo(readable(self.message), file=file, err=True)
 
 

@@ -204,7 +204,9 @@ class Store:
 def write_block(store: str, block: Block, outputs: Outputs, record: BlockRecord) -> None:
     """Write a block; its record comes last, since it says that the block is finished."""
     for name, values in outputs.items():
-        array = zarr.open_array(store, path=name, mode="r+").with_config({"write_empty_chunks": True})  # NaN is a result
+        array = zarr.open_array(store, path=name, mode="r+").with_config(
+            {"write_empty_chunks": True}
+        )  # NaN is a result
         shape = tuple(part.stop - part.start for part in block.slices)
         array[(*block.slices, ...)] = values.reshape(shape + values.shape[1:])
     zarr.open_array(store, path=RECORDS, mode="r+")[block.number] = json.dumps(asdict(record))

@@ -272,9 +272,7 @@ def weight(problem: Problem) -> float:
     return math.prod(map(len, problem.dims.values())) * (1.0 + 0.25 * strips)
 
 
-def run(
-    target: Memory | Store, on_block: Callable[[int], None], workers: int = 1, client: Any = None
-) -> list[Warning]:
+def run(target: Memory | Store, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[Warning]:
     """Evaluate the remaining blocks and return the warnings that belong to the results.
 
     Parameters

@@ -24,9 +24,6 @@ Evaluated: TypeAlias = Generator[tuple[Block, Outputs, BlockRecord], None, None]
 AHEAD = 4
 """Blocks submitted for each worker, so that none waits for work."""
 
-IDLE_S = 60
-"""Seconds after which idle worker processes end."""
-
 DEATHS = 3
 """Deaths of worker processes at which a sweep is given up."""
 
@@ -34,7 +31,9 @@ CHECKED_S = 1.0
 """Seconds between two counts of the workers of a cluster."""
 
 
-def here(job: Job, store: str | None, points: Points, blocks: list[Block], on_block: Callable[[int], None]) -> Evaluated:
+def here(
+    job: Job, store: str | None, points: Points, blocks: list[Block], on_block: Callable[[int], None]
+) -> Evaluated:
     """Evaluate blocks in this process, with progress also within a block."""
     for block in blocks:
         yield block, *_evaluated(job, block, points.part(block.slices), store, on_block)
@@ -76,7 +75,7 @@ def in_processes(workers: int, job: bytes, store: str | None, points: Points, bl
 
     waiting, deaths = deque(blocks), 0
     while waiting:
-        pool = loky.get_reusable_executor(workers, timeout=IDLE_S, initializer=_leave_ctrl_c_to_the_parent)
+        pool = loky.get_reusable_executor(workers, initializer=_leave_ctrl_c_to_the_parent)
         pending: dict[Future[tuple[Outputs, BlockRecord]], Block] = {}
         try:
             while waiting or pending:
@@ -138,7 +137,9 @@ def on_cluster(client: Any, job: bytes, store: str | None, points: Points, block
             hand_out()
             for address in members.lost(at_once=not pending):
                 warnings.warn(
-                    f"worker {address} left the cluster, and its blocks are evaluated again", WorkerWarning, stacklevel=4
+                    f"worker {address} left the cluster, and its blocks are evaluated again",
+                    WorkerWarning,
+                    stacklevel=4,
                 )
             yield block, outputs, record
     finally:
