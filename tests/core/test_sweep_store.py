@@ -294,7 +294,7 @@ def test_a_sweep_killed_at_any_moment_resumes_to_the_same_numbers(workers: int, 
     for _ in range(10):
         shutil.rmtree(tmp_path / "map.zarr", ignore_errors=True)
         running = started(tmp_path, workers)
-        wait_for(random.integers(50), running, tmp_path)
+        wait_for(int(random.integers(50)), running, tmp_path)
         time.sleep(0.1 * random.random())
         if random.random() < 0.5:
             os.killpg(running.pid, signal.SIGKILL)

@@ -37,9 +37,12 @@ def test_several_processes_give_the_same_bytes_as_one() -> None:
 def test_the_processes_are_kept_for_the_next_sweep(monkeypatch: pytest.MonkeyPatch) -> None:
     pools: list[Any] = []
     of_loky = loky.get_reusable_executor
-    monkeypatch.setattr(
-        loky, "get_reusable_executor", lambda *a, **more: pools.append(of_loky(*a, **more)) or pools[-1]
-    )
+
+    def get(*arguments: Any, **options: Any) -> Any:
+        pools.append(of_loky(*arguments, **options))
+        return pools[-1]
+
+    monkeypatch.setattr(loky, "get_reusable_executor", get)
     wl.sweep(predictor(), **CONDITIONS, workers=2)
     before = {*pools[0]._processes}
     wl.sweep(predictor(), **CONDITIONS, workers=2)

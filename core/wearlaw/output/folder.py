@@ -38,12 +38,12 @@ def results_folder(folder: Path, overwrite: bool, marker: str) -> Iterator[Path]
     """
     made = False
     try:
-        earlier = _earlier(folder, overwrite, marker)
+        _earlier(folder, overwrite, marker)
         made = not folder.exists()
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryDirectory(prefix=BESIDE, dir=folder) as temporary:
             yield Path(temporary)
-            _move(Path(temporary), folder, earlier)
+            _move(Path(temporary), folder, _earlier(folder, overwrite, marker))  # another run may have come first
     except OSError as error:
         if isinstance(error, OutputError):
             raise

@@ -15,6 +15,7 @@ import numpy as np
 import xarray
 import zarr
 from pydantic import TypeAdapter
+from zarr.codecs import Crc32cCodec
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import OutputError, quoted
@@ -27,7 +28,7 @@ from wearlaw.sweeping.room import check_disk
 RECORDS = "blocks/record"
 """Array with the record of each finished block. It is in a group of its own, which xarray leaves alone."""
 
-CHECKED = zarr.codecs.Crc32cCodec()
+CHECKED = Crc32cCodec()
 """Every chunk ends with its CRC-32C, so that a damaged one does not decode."""
 
 
@@ -127,7 +128,7 @@ class Store:
                     compressors=CHECKED,
                     fill_value=np.nan,
                     dimension_names=(*points.dims, *self.job.dims),
-                    attributes=self.job.attributes(name),
+                    attributes={**self.job.attributes(name)},
                 )
         if RECORDS not in group:
             group.create_array(RECORDS, shape=(len(points.blocks()),), chunks=(1,), dtype=str, compressors=CHECKED)
@@ -166,7 +167,7 @@ class Store:
             text = zarr.open_array(self.store, path=RECORDS, mode="r")[block.number]
             record = TypeAdapter(BlockRecord).validate_json(str(text))
             for name in self.job.units:
-                array = zarr.open_array(self.store, path=name, mode="r")
+                array: Any = zarr.open_array(self.store, path=name, mode="r")
                 if not self._chunk(array, block).is_file():  # zarr would read it as NaN
                     return None
                 array[(*block.slices, ...)]
@@ -178,7 +179,7 @@ class Store:
         """Return the file of a block in the array of an output."""
         which = [one.start // size for one, size in zip(block.slices, self.points.block_shape, strict=True)]
         key = array.metadata.encode_chunk_key((*which, *(0 for _ in self.job.dims)))
-        return self.path / array.name.strip("/") / str(key)
+        return self.path / str(array.path) / str(key)
 
     def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:  # noqa: ARG002
         """Note that a block is finished; the process that evaluated it has written it."""
@@ -204,7 +205,7 @@ class Store:
 def write_block(store: str, block: Block, outputs: Outputs, record: BlockRecord) -> None:
     """Write a block; its record comes last, since it says that the block is finished."""
     for name, values in outputs.items():
-        array = zarr.open_array(store, path=name, mode="r+").with_config(
+        array: Any = zarr.open_array(store, path=name, mode="r+").with_config(
             {"write_empty_chunks": True}
         )  # NaN is a result
         shape = tuple(part.stop - part.start for part in block.slices)

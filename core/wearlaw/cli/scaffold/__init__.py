@@ -6,6 +6,7 @@ import datetime
 import keyword
 import os
 import re
+import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import resources
@@ -194,6 +195,7 @@ def _write(contents: dict[str, str], folder: Path) -> None:
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             (folder / path).write_text(text, encoding="utf-8")
     except OSError as error:
+        shutil.rmtree(folder, ignore_errors=True)
         raise OutputError(f"output: cannot write the plugin: {error.strerror or error}") from None
 
 
