@@ -163,11 +163,6 @@ def wider_batches(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(wl.hertz, "half_width", lambda p, *a: half_width(p, *a) * (factor if p.size > 1 else 1.0))
 
 
-def trusted_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Accept the blocks of a journal without their checksums."""
-    monkeypatch.setattr("wearlaw.sweeping.storage.is_undamaged", lambda *_: True)
-
-
 def unchecked_values(monkeypatch: pytest.MonkeyPatch) -> None:
     """Take any number of a test."""
     monkeypatch.setattr("wearlaw.wear_tests.reader._check_values", lambda *_: None)
@@ -189,7 +184,6 @@ PLANTED: dict[str, tuple[Patch, str]] = {
     "case_files": (broken_spelling("wearlaw.settings.configuration"), "KeyError: 'planted'"),
     "wear_test_csv": (unchecked_values, "Broken"),
     "sweep_tables": (broken_spelling("wearlaw.sweeping.tables"), "KeyError: 'planted'"),
-    "journal": (trusted_blocks, "bytes differ from an undisturbed sweep"),
     "profiles": (lowered_copies, "a copy differs"),
     "contact_result_files": (broken_refusals, "KeyError: 'planted'"),
 }
@@ -221,20 +215,20 @@ def run(monkeypatch: pytest.MonkeyPatch, folder: Path, *arguments: str) -> int:
 def test_the_program_ends_well_if_nothing_is_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(TARGETS, "journal", Small(lambda _: None))
-    assert run(monkeypatch, tmp_path, "--target", "journal", "--cases", "3", "--seed", "5") == 0
+    monkeypatch.setitem(TARGETS, "profiles", Small(lambda _: None))
+    assert run(monkeypatch, tmp_path, "--target", "profiles", "--cases", "3", "--seed", "5") == 0
     printed = capsys.readouterr().out.split("\n")
     assert printed[0] == "seed 5"
-    assert [row.split()[:2] for row in printed[-3:-1]] == [["journal", "3"], ["all", "3"]]
+    assert [row.split()[:2] for row in printed[-3:-1]] == [["profiles", "3"], ["all", "3"]]
     assert [*tmp_path.iterdir()] == []
 
 
 def test_the_program_tells_each_finding_once_with_its_seed_and_keeps_the_case(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(TARGETS, "journal", Small(lambda text: fail(KeyError("x")) if text != "valid" else None))
-    assert run(monkeypatch, tmp_path, "--target", "journal", "--cases", "3", "--seed", "5") == 1
+    monkeypatch.setitem(TARGETS, "profiles", Small(lambda text: fail(KeyError("x")) if text != "valid" else None))
+    assert run(monkeypatch, tmp_path, "--target", "profiles", "--cases", "3", "--seed", "5") == 1
     printed = capsys.readouterr().out
-    assert printed.count("journal, seed 5: KeyError in no function of wearlaw") == 1
+    assert printed.count("profiles, seed 5: KeyError in no function of wearlaw") == 1
     assert "seed 6" not in printed
-    assert [path.name for path in chain(tmp_path.iterdir(), tmp_path.glob("*/*"))] == ["journal-5", "a.txt"]
+    assert [path.name for path in chain(tmp_path.iterdir(), tmp_path.glob("*/*"))] == ["profiles-5", "a.txt"]

@@ -200,11 +200,11 @@ class FitWarning(WearlawWarning):
 
 
 class WorkerWarning(WearlawWarning):
-    """A worker process of a sweep died, and its block is computed again."""
+    """A worker process of a sweep died, and its blocks are computed again."""
 
 
 class ResumeWarning(WearlawWarning):
-    """Blocks of an interrupted sweep are damaged on disk, and are computed again."""
+    """Some blocks of a resumed sweep are missing or damaged, and are computed."""
 
 
 class PluginWarning(WearlawWarning):

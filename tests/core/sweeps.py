@@ -105,24 +105,3 @@ def interrupted_after(blocks: int, monkeypatch: pytest.MonkeyPatch) -> None:
 def contents(folder: Path) -> dict[str, bytes]:
     """Return all files below a folder."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-
-
-def overwrite(path: Path, start: int, values: bytes) -> None:
-    """Damage a file from some byte on."""
-    with path.open("rb+") as file:
-        file.seek(start)
-        file.write(values)
-
-
-def swap(one: Path, other: Path) -> None:
-    """Exchange the bytes of two files."""
-    first, second = one.read_bytes(), other.read_bytes()
-    one.write_bytes(second)
-    other.write_bytes(first)
-
-
-def replace(path: Path, before: str, after: str) -> None:
-    """Replace text in a file that has it."""
-    text = path.read_text(encoding="utf-8")
-    assert before in text
-    path.write_text(text.replace(before, after), encoding="utf-8")

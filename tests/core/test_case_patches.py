@@ -21,6 +21,7 @@ from tests.core.axle_case import AXLES, EXISTS, FLANGING, MOVED, MOVING, ON_AXLE
 from tests.core.cases import InstallModel, Table, assert_refused, changed, wearlaw
 from tests.core.distributions import Install
 from tests.core.panels import by_label, by_name, one_panel
+from tests.core.sweeps import interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.figures.drawing import draw
@@ -559,18 +560,8 @@ def test_a_case_runs_from_the_command_line_and_again_from_what_it_wrote() -> Non
 def test_an_interrupted_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(points, "BLOCK", 2)
     cases.write(Path("c.toml"), ON_AXLE)
-    from wearlaw.sweeping import evaluation, sweep
-
-    evaluated, count = evaluation.evaluated, []
-
-    def interrupt(*arguments: Any, **named: Any) -> Any:
-        count.append(1)
-        if len(count) == 3:
-            raise KeyboardInterrupt
-        return evaluated(*arguments, **named)
-
     with monkeypatch.context() as patch:
-        patch.setattr(sweep, "evaluated", interrupt)
+        interrupted_after(3, patch)
         assert wearlaw("run", "c.toml", "-o", "out").exit_code != 0
     assert Path("out.partial").is_dir()
     assert wearlaw("run", "c.toml", "-o", "out", "--resume").exit_code == 0
@@ -604,17 +595,17 @@ def test_blocks_hold_fewer_points_of_several_patches_and_workers_give_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(points, "BLOCK", 8)  # two points of four patches
-    from wearlaw.sweeping import evaluation, sweep
+    from wearlaw.sweeping import evaluation, workers
 
     blocks = []
 
-    def counted(job: Any, block: Any, *arguments: Any) -> Any:
-        blocks.append(block)
-        return evaluation.evaluated(job, block, *arguments)
+    def counted(job: Any, part: Any, *arguments: Any) -> Any:
+        blocks.append(part)
+        return evaluation.evaluate(job, part, *arguments)
 
     case = Case(**{**ON_AXLE, "contact_models": ["fastsim"], "wear_laws": ["kth"], "profiles": {}})
     with monkeypatch.context() as patch:
-        patch.setattr(sweep, "evaluated", counted)
+        patch.setattr(workers, "evaluate", counted)
         alone = run(case).sweeps["moving"]
     assert len(blocks) == 3 * (3 + 1)  # of five points and of one, with both ends of the band
     xarray.testing.assert_identical(alone, run(case, workers=2).sweeps["moving"])

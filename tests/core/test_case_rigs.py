@@ -19,6 +19,7 @@ from tests.core import cases
 from tests.core.cases import OWN_TESTS, Table, changed, load, wearlaw
 from tests.core.distributions import Install
 from tests.core.panels import by_label, by_name
+from tests.core.sweeps import interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.output.results import table as results_table
@@ -337,18 +338,8 @@ def test_its_uncertainty_is_that_of_direct_samples() -> None:
 def test_a_run_that_was_interrupted_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(points, "BLOCK", 4)
     cases.write(Path("c.toml"), ON_RAIL)
-    from wearlaw.sweeping import evaluation, sweep
-
-    evaluated, count = evaluation.evaluated, []
-
-    def interrupt(*arguments: Any, **named: Any) -> Any:
-        count.append(1)
-        if len(count) == 4:
-            raise KeyboardInterrupt
-        return evaluated(*arguments, **named)
-
     with monkeypatch.context() as patch:
-        patch.setattr(sweep, "evaluated", interrupt)
+        interrupted_after(4, patch)
         assert wearlaw("run", "c.toml", "-o", "out").exit_code != 0
     assert Path("out.partial").is_dir()
     assert wearlaw("run", "c.toml", "-o", "out", "--resume").exit_code == 0

@@ -32,9 +32,9 @@ def test_predictors_are_ranked_and_the_files_are_listed_as_they_are(folder: Path
         "kth on exact",
         "brr on global",
     }
-    assert listed(result, "cmp") == files(folder) - {"tests.csv", "cmp/.wearlaw.json"}
+    assert listed(result, "cmp") == files(folder) - {"tests.csv", "cmp/.wearlaw-files"}
     assert {Path(name).name for name in files(folder / "cmp")} == {
-        ".wearlaw.json",
+        ".wearlaw-files",
         "ranking.csv", "ranking.tex", "predictions.csv", "predictions.tex", "measured_against_predicted.png",
         "comparison.json",
     }  # fmt: skip

@@ -33,9 +33,9 @@ def test_a_fit_is_printed_and_its_files_are_listed_as_they_are(folder: Path) -> 
     for name, value in direct.parameters.items():
         assert f"  {name} " in result.stdout
         assert f"{value.magnitude:.4g}" in result.stdout
-    assert listed(result, "my fit") == files(folder) - {"tests.csv", "my fit/.wearlaw.json"}
+    assert listed(result, "my fit") == files(folder) - {"tests.csv", "my fit/.wearlaw-files"}
     assert files(folder / "my fit") == {
-        ".wearlaw.json",
+        ".wearlaw-files",
         "law.toml",
         "parameters.csv",
         "residuals.csv",
@@ -126,7 +126,7 @@ def test_the_friction_coefficient_is_fitted_to_traction_without_a_law() -> None:
     result = wearlaw("fit", "lewis2004", "--contact", "exact", "--free", "friction_coefficient", "--bootstrap", "0")
     assert result.exit_code == 0
     assert "friction_coefficient" in result.stdout
-    assert files(Path("lewis2004-fit")) == {".wearlaw.json", "parameters.csv", "residuals.csv", "fit.png", "fit.json"}
+    assert files(Path("lewis2004-fit")) == {".wearlaw-files", "parameters.csv", "residuals.csv", "fit.png", "fit.json"}
     record = json.loads(Path("lewis2004-fit/fit.json").read_text(encoding="utf-8"))
     assert "rig" in record["predict"]
 

@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import shlex
-import shutil
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import numpy as np
 import pandas as pd
 import pytest
 
 import wearlaw as wl
 from tests.core.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
-from tests.core.sweeps import contents, interrupted_after, overwrite
+from tests.core.sweeps import contents, interrupted_after
 from wearlaw.output import results as output
-from wearlaw.sweeping import checkpoint, storage
+from wearlaw.sweeping import room
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 
@@ -40,10 +35,7 @@ def interrupted(case: str, monkeypatch: pytest.MonkeyPatch, blocks: int = 6) -> 
         interrupted_after(blocks, patched)
         result = wearlaw("run", case, "-o", "out")
     assert result.exit_code == 130
-    again = f"wearlaw run --resume {shlex.quote(case)} -o out"
-    assert result.stderr.splitlines()[-1] == (
-        f"Stopped; finished blocks are kept in 'out.partial', go on with: {again}"
-    )
+    assert result.stderr.splitlines()[-1] == "Stopped; finished blocks are in 'out.partial', and --resume goes on"
     assert not Path("out").exists()
 
 
@@ -53,7 +45,7 @@ def whole() -> dict[str, bytes]:
     with TemporaryDirectory() as folder:
         result = wearlaw("run", long_case(Path(folder) / "big.toml"), "-o", f"{folder}/whole")
         assert result.exit_code == 0, result.output
-        assert "damaged" not in result.stderr
+        assert "blocks" not in result.stderr
         return contents(Path(folder) / "whole")
 
 
@@ -63,9 +55,9 @@ def test_a_resumed_run_writes_the_same_bytes_as_an_uninterrupted_one_on_any_numb
 ) -> None:
     case = long_case(folder / "big.toml")
     interrupted(case, monkeypatch)
-    assert len(list((folder / "out.partial").glob("*/journal"))) >= 2
     resumed = wearlaw("run", case, "-o", "out", "--workers", "2", "--resume")
     assert resumed.exit_code == 0, resumed.output
+    assert re.search(r"note: run: \d of 12 blocks are kept in 'out.partial'", resumed.stderr)
     assert not (folder / "out.partial").exists()
     assert contents(folder / "out") == whole()
 
@@ -81,111 +73,16 @@ def test_what_is_done_is_not_done_again(folder: Path, monkeypatch: pytest.Monkey
     assert sum(seen) == 300
 
 
-RATE = "long-0/wear_rate.f64"
-"""A file of four blocks, 25 numbers or 200 bytes each."""
-
-
-def swapped(path: Path) -> None:
-    content = path.read_bytes()
-    path.write_bytes(content[200:400] + content[:200] + content[400:])
-
-
-DAMAGE: dict[str, tuple[Callable[[Path], object], int]] = {
-    "cut off": (lambda left: os.truncate(left / RATE, 500), 2),
-    "empty": (lambda left: os.truncate(left / RATE, 0), 4),
-    "missing": (lambda left: (left / RATE).unlink(), 4),
-    "zeroed": (lambda left: overwrite(left / RATE, 208, bytes(8)), 1),
-    "a bit": (lambda left: overwrite(left / RATE, 208, b"\x01"), 1),
-    "swapped": (lambda left: swapped(left / RATE), 2),
-    "outputs swapped": (lambda left: (left / RATE).replace(left / "long-0/mean_slip.f64"), 4),
-    "garbage": (lambda left: (left / RATE).write_bytes(b"garbage"), 4),
-    "another format": (
-        lambda left: (left / RATE).write_bytes(b"\x93NUMPY" + bytes(121) + (left / RATE).read_bytes()),
-        4,
-    ),
-}
-"""What may happen to the folder that an interrupted run leaves, and how many blocks are lost by it."""
-
-
-@pytest.mark.usefixtures("small_blocks", "blank_figures")
-@pytest.mark.parametrize("what", DAMAGE)
-def test_damaged_blocks_are_computed_again_and_said(what: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.usefixtures("small_blocks")
+def test_a_damaged_block_of_a_run_is_computed_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     case = long_case(folder / "big.toml")
-    interrupted(case, monkeypatch, blocks=8)
-    listed = sum(path.read_bytes().count(b"\n") - 1 for path in folder.glob("out.partial/*/journal"))
-    assert listed > 4
-    damage, count = DAMAGE[what]
-    damage(folder / "out.partial")
-    resumed = wearlaw("run", case, "-o", "out", "--resume")
-    assert resumed.exit_code == 0, resumed.output
-    note = f"note: {count} of the {listed} blocks kept in 'out.partial' were damaged, and are computed again\n"
-    assert note in resumed.stderr
+    interrupted(case, monkeypatch)
+    chunk = folder / "out.partial" / "long-0.zarr" / "wear_rate" / "c" / "1"
+    content = bytearray(chunk.read_bytes())
+    content[9] ^= 1
+    chunk.write_bytes(content)
+    assert wearlaw("run", case, "-o", "out", "--resume").exit_code == 0
     assert contents(folder / "out") == whole()
-
-
-@pytest.mark.usefixtures("small_blocks", "blank_figures")
-def test_longer_files_lose_what_is_too_much_and_no_block(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    case = long_case(folder / "big.toml")
-    interrupted(case, monkeypatch)
-    with (folder / "out.partial" / RATE).open("ab") as file:
-        file.write(b"more")
-    assert "damaged" not in wearlaw("run", case, "-o", "out", "--resume").stderr
-    assert contents(folder / "out") == whole()
-
-
-@pytest.mark.usefixtures("small_blocks")
-@pytest.mark.parametrize("name", ["long-0", "long-0/journal", RATE, "run.json"])
-def test_what_is_in_the_way_of_a_resumed_run_is_named(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    case = long_case(folder / "big.toml")
-    interrupted(case, monkeypatch)
-    path = folder / "out.partial" / name
-    if path.is_dir():
-        shutil.rmtree(path)
-        path.write_text("a file in the place of a folder")
-    else:
-        path.unlink()
-        path.mkdir()
-    result = wearlaw("run", case, "-o", "out", "--resume")
-    assert_refused(result, "out.partial")
-    assert "remove" in result.stderr
-
-
-@pytest.mark.usefixtures("small_blocks")
-@pytest.mark.parametrize("line", ["[0, 1]", "null", '{"block": 0}'])
-def test_a_spoilt_journal_is_refused_with_what_to_remove(
-    line: str, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    case = long_case(folder / "big.toml")
-    interrupted(case, monkeypatch)
-    with (folder / "out.partial" / "long-0" / "journal").open("a", encoding="utf-8") as file:
-        file.write(line + "\n")
-    message = f"is not the journal of a sweep that can be resumed; remove it and '{Path('out.partial') / 'long-0'}'"
-    assert_refused(wearlaw("run", case, "-o", "out", "--resume"), message)
-
-
-@pytest.mark.usefixtures("small_blocks")
-def test_a_file_in_the_place_of_the_checkpoint_is_kept(folder: Path) -> None:
-    (folder / "out.partial").write_text("thesis")
-    result = wearlaw("run", long_case(folder / "big.toml"), "-o", "out", "--resume")
-    assert_refused(result, "'out.partial' is in the way, and holds no unfinished run")
-    assert (folder / "out.partial").read_text() == "thesis"
-
-
-@pytest.mark.usefixtures("small_blocks", "blank_figures")
-def test_results_are_on_disk_before_the_journal_lists_their_block(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    flushed: list[str] = []
-
-    def flush(self: np.memmap[Any, Any]) -> None:
-        path = Path(str(self.filename))
-        assert (path.parent / storage.JOURNAL).read_bytes().count(b"\n") == 1
-        flushed.append(f"{path.parent.name}/{path.name}")
-
-    monkeypatch.setattr(np.memmap, "flush", flush)
-    assert wearlaw("run", long_case(folder / "big.toml"), "-o", "out").exit_code == 0
-    assert flushed.count(RATE) == 1
-    assert {Path(name).parent.name for name in flushed} == {"long-0", "long-0-wear_rate_low", "long-0-wear_rate_high"}
 
 
 def test_resuming_where_nothing_was_left_is_running(folder: Path) -> None:
@@ -203,42 +100,19 @@ def test_a_changed_case_or_version_is_not_resumed_and_told_what_changed(
     before = contents(folder / "out.partial")
     assert_refused(wearlaw("run", case, "-o", "out"), "'out.partial' holds the finished blocks of an interrupted run")
     long_case(folder / "big.toml", sweeps={"long": {**LONG, "friction_coefficient": 0.3}})
-    assert_refused(
-        wearlaw("run", case, "-o", "out", "--resume"), "case.sweeps.long.friction_coefficient: was 0.46, is 0.3"
-    )
+    assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "conditions.friction_coefficient: was 0.46, is 0.3")
     long_case(folder / "big.toml")
-    monkeypatch.setattr("wearlaw.study.study.__version__", "99.0")
+    monkeypatch.setattr("wearlaw.sweeping.provenance.__version__", "99.0")
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "is 99.0")
     assert contents(folder / "out.partial") == before
 
 
-@pytest.mark.usefixtures("small_blocks")
-def test_the_record_of_what_is_run_is_written_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    case = long_case(folder / "big.toml")
-    interrupted(case, monkeypatch)
-    record = folder / "out.partial" / checkpoint.RUN
-    os.utime(record, ns=(0, 0))
-    monkeypatch.setattr("wearlaw.cli.study_commands.discard", lambda *_: None)
-    assert wearlaw("run", case, "-o", "out", "--resume").exit_code == 0
-    assert record.stat().st_mtime_ns == 0
-
-
-@pytest.mark.usefixtures("small_blocks")
-@pytest.mark.parametrize("record", ["", '{"wearlaw": ', "\x00\xff"])
-def test_a_spoilt_record_of_what_is_run_is_refused(record: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    case = long_case(folder / "big.toml")
-    interrupted(case, monkeypatch)
-    (folder / "out.partial" / checkpoint.RUN).write_text(record, encoding="latin-1")
-    message = "run.json' is not the record of a run; remove 'out.partial' to start again"
-    assert_refused(wearlaw("run", case, "-o", "out", "--resume"), message)
-
-
-def test_something_else_in_the_place_of_the_checkpoint_is_kept(folder: Path) -> None:
+@pytest.mark.usefixtures("small_blocks", "blank_figures")
+def test_other_files_in_the_folder_of_finished_blocks_are_kept(folder: Path) -> None:
     (folder / "out.partial").mkdir()
     (folder / "out.partial" / "thesis.txt").touch()
-    result = wearlaw("run", long_case(folder / "big.toml"), "-o", "out", "--resume")
-    assert_refused(result, "'out.partial' is in the way, and holds no unfinished run")
-    assert (folder / "out.partial" / "thesis.txt").exists()
+    assert wearlaw("run", long_case(folder / "big.toml"), "-o", "out", "--resume").exit_code == 0
+    assert contents(folder / "out.partial") == {"thesis.txt": b""}
 
 
 def test_a_case_too_large_for_memory_or_disk_says_what_it_needs_before_it_starts(
@@ -246,57 +120,18 @@ def test_a_case_too_large_for_memory_or_disk_says_what_it_needs_before_it_starts
 ) -> None:
     million = {**LONG, "creepage": {"from": "0.1 %", "to": "10 %", "points": 10_000_000}}
     case = long_case(folder / "big.toml", sweeps={"long": million})
-    monkeypatch.setattr(storage, "available_memory", lambda: 2**30)
+    monkeypatch.setattr(room, "available_memory", lambda: 2**30)
     # 20 numbers twice and a row of the table of 800 bytes for each point: 10^7 (20 x 16 + 800) / 2^30 GiB
     assert_refused(wearlaw("run", case, "--csv"), "the results need 10.4 GiB of memory, but 1 GiB are free")
     assert_refused(wearlaw("run", case), "the results need 2.98 GiB of memory, but 1 GiB are free")  # no table
-    monkeypatch.setattr(storage, "available_memory", lambda: 2**40)
+    monkeypatch.setattr(room, "available_memory", lambda: 2**40)
     monkeypatch.setattr("shutil.disk_usage", lambda _: type("Usage", (), {"free": 2**30}))
     assert_refused(wearlaw("run", case, "--csv"), "the results need 6.71 GiB on disk, but")
     assert [path.name for path in folder.iterdir()] == ["big.toml"]
 
 
-@pytest.mark.usefixtures("small_blocks", "blank_figures")
-def test_a_run_whose_folder_was_taken_keeps_its_results_beside_and_no_checkpoint(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    case = long_case(folder / "big.toml")
-    write_results = output.write
-
-    def late(*arguments: Any) -> list[str]:
-        assert (folder / "out.partial").is_dir()
-        (folder / "out").mkdir()
-        (folder / "out" / "thesis.txt").touch()
-        return write_results(*arguments)
-
-    with monkeypatch.context() as patched:
-        patched.setattr("wearlaw.cli.study_commands.write", late)
-        assert_refused(wearlaw("run", case, "-o", "out"), f"The results are in '{folder / 'out-2'}'")
-    assert sorted(path.name for path in folder.iterdir()) == ["big.toml", "out", "out-2"]
-    assert contents(folder / "out-2") == whole()
-
-
-@pytest.mark.usefixtures("small_blocks")
-def test_a_checkpoint_that_another_run_made_meanwhile_is_left_to_it(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    case = long_case(folder / "big.toml")
-    monkeypatch.setattr("wearlaw.cli.study_commands.check_room", lambda *_: (folder / "out.partial").mkdir())
-    message = "'out.partial' was meanwhile created by another run; choose another folder with -o"
-    assert_refused(wearlaw("run", case, "-o", "out"), message)
-    assert contents(folder).keys() == {"big.toml"}
-    assert (folder / "out.partial").is_dir()
-
-
-@pytest.mark.usefixtures("small_blocks")
-def test_a_checkpoint_that_cannot_be_written_is_refused(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(checkpoint, "write_whole", full_disk)
-    message = "cannot write to 'out.partial': No space left on device; choose another folder with -o"
-    assert_refused(wearlaw("run", long_case(folder / "big.toml"), "-o", "out"), message)
-
-
-def test_a_small_run_makes_no_checkpoint(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(checkpoint, "Files", None)
+def test_a_small_run_keeps_no_blocks(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("wearlaw.sweeping.store.Store", None)
     assert wearlaw("run", long_case(folder / "small.toml"), "--figure-format", "svg").exit_code == 0
 
 

@@ -49,9 +49,9 @@ def test_forces_powers_and_wear_of_each_body_are_printed(folder: Path) -> None:
         result.stderr
     )
     assert "note: wear: the parameters of wear law 'usfd' were fitted for line contacts" in result.stderr
-    written = {"wear.csv", "profile_wheel.csv", "profile_rail.csv", "wear.png", "wear.json", ".wearlaw.json"}
+    written = {"wear.csv", "profile_wheel.csv", "profile_rail.csv", "wear.png", "wear.json", ".wearlaw-files"}
     assert files(folder / "half_space.0001-wear") == written
-    assert all(f"half_space.0001-wear/{name}" in result.stdout for name in written - {".wearlaw.json"})
+    assert all(f"half_space.0001-wear/{name}" in result.stdout for name in written - {".wearlaw-files"})
 
 
 def test_several_files_make_a_table_with_a_row_each() -> None:
@@ -93,7 +93,7 @@ def test_a_law_of_the_patch_takes_the_means(folder: Path) -> None:
     assert_refused(wearlaw("wear", TREAD, "--law", "brr"), "take the means first, contact.patch_mean() or --patch-mean")
     result = wearlaw("wear", TREAD, "--law", "brr", "--patch-mean")
     assert result.exit_code == 0
-    assert files(folder / f"{Path(TREAD).stem}-wear") == {"wear.csv", "wear.json", ".wearlaw.json"}
+    assert files(folder / f"{Path(TREAD).stem}-wear") == {"wear.csv", "wear.json", ".wearlaw-files"}
 
 
 def test_mistakes_are_one_message_and_leave_no_folder(folder: Path) -> None:

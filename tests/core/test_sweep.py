@@ -17,7 +17,7 @@ import wearlaw as wl
 from tests.core.cases import Linear
 from tests.core.sweeps import CONDITIONS, OUTPUTS, predictor
 from wearlaw import Q
-from wearlaw.sweeping import storage
+from wearlaw.sweeping import room
 from wearlaw.sweeping.points import BLOCK, Points, Varying
 
 
@@ -293,12 +293,12 @@ def test_a_sweep_too_large_for_the_disk_says_what_it_needs_and_leaves_nothing(tm
 
 
 def test_where_the_free_memory_is_unknown_nothing_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(storage, "available_memory", lambda: None)
-    storage.check_memory(2**80, "")
+    monkeypatch.setattr(room, "available_memory", lambda: None)
+    room.check_memory(2**80, "")
 
 
 def test_the_free_memory_is_known_here() -> None:
-    there = storage.available_memory()
+    there = room.available_memory()
     assert there is not None
     assert 2**20 < there < 2**50
 
@@ -311,9 +311,9 @@ def test_without_proc_the_memory_is_all_of_the_machine_and_unknown_where_that_is
 
     monkeypatch.setattr(Path, "read_text", missing)
     monkeypatch.setattr(os, "sysconf", {"SC_PHYS_PAGES": 3 * 2**18, "SC_PAGE_SIZE": 4096}.__getitem__)
-    assert storage.available_memory() == 3 * 2**30
+    assert room.available_memory() == 3 * 2**30
     monkeypatch.delattr(os, "sysconf")
-    assert storage.available_memory() is None
+    assert room.available_memory() is None
 
 
 @pytest.mark.usefixtures("small_blocks")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import queue
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import loky
 import numpy as np
 import pytest
 import xarray as xr
@@ -16,7 +16,6 @@ import wearlaw as wl
 from tests.core.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, ending, predictor
 from wearlaw import Q
 from wearlaw.arrays import kernels
-from wearlaw.sweeping import workers
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 
@@ -36,65 +35,45 @@ def test_several_processes_give_the_same_bytes_as_one() -> None:
 
 
 def test_the_processes_are_kept_for_the_next_sweep(monkeypatch: pytest.MonkeyPatch) -> None:
-    predict = predictor()
-    wl.sweep(predict, **CONDITIONS, workers=2)
-    monkeypatch.setattr(subprocess, "Popen", None)
-    wl.sweep(predict, **CONDITIONS, workers=2)
+    pools: list[Any] = []
+    of_loky = loky.get_reusable_executor
 
+    def get(*arguments: Any, **options: Any) -> Any:
+        pools.append(of_loky(*arguments, **options))
+        return pools[-1]
 
-def test_where_no_room_for_larger_pipes_is_left_workers_have_those_of_the_system(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    sizes: list[int | None] = []
-
-    class Refused(subprocess.Popen[bytes]):
-        def __init__(self, command: list[str], *, pipesize: int | None = None, **rest: Any) -> None:
-            sizes.append(pipesize)
-            if pipesize is not None:
-                raise PermissionError(1, "Operation not permitted")
-            super().__init__(command, **rest)
-
-    monkeypatch.setattr(subprocess, "Popen", Refused)
-    monkeypatch.setattr(workers, "_idle", queue.SimpleQueue())
-    predict = predictor()
-    swept = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, workers=2)
-    workers._close()
-    assert None in sizes
-    assert workers.PIPE in sizes
-    assert swept.identical(wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
+    monkeypatch.setattr(loky, "get_reusable_executor", get)
+    wl.sweep(predictor(), **CONDITIONS, workers=2)
+    before = {*pools[0]._processes}
+    wl.sweep(predictor(), **CONDITIONS, workers=2)
+    assert {*pools[1]._processes} == before
 
 
 def test_a_worker_that_dies_is_reported_and_its_block_evaluated_again(tmp_path: Path) -> None:
     predict = deadly(tmp_path / "die once")
-    with pytest.warns(
-        wl.WorkerWarning, match=r"a worker process died \(exit code 9\) at block \d, which is evaluated again"
-    ):
+    with pytest.warns(wl.WorkerWarning, match="a worker process died; its blocks are evaluated again"):
         swept = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, workers=2)
     xr.testing.assert_equal(swept, wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
 
 
-def test_a_block_at_which_every_worker_dies_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workers, "ATTEMPTS", 2)
+@pytest.mark.filterwarnings("ignore::wearlaw.WorkerWarning")
+def test_a_sweep_whose_workers_die_again_and_again_is_given_up(tmp_path: Path) -> None:
     predict = deadly(tmp_path / "die always", always=True)
-    with pytest.raises(
-        wl.SweepError, match=r"block \d was given up, since the worker processes died in all 2 attempts"
-    ):
+    with pytest.raises(wl.SweepError, match="the sweep was given up, since worker processes died 3 times"):
         wl.sweep(predict, **{**CONDITIONS, "normal_force": Q([2.0, 5.0], "kN"), "friction_coefficient": 0.3}, workers=2)
 
 
-def test_what_a_model_raises_in_a_worker_is_raised_here_and_the_worker_lives_on() -> None:
+def test_what_a_model_raises_in_a_worker_is_raised_here() -> None:
     failing = predictor(Failing(slope=Q(1.0, "mm")))
     with pytest.raises(wl.ModelError, match="wear law 'failing' failed: OverflowError: too much"):
         wl.sweep(failing, **CONDITIONS, workers=2)
-    assert workers._idle.qsize() > 0
     assert wl.sweep(predictor(), **CONDITIONS, workers=2).wear_rate.notnull().all()
 
 
 @pytest.mark.parametrize("error", ["SystemExit", "KeyboardInterrupt", "GeneratorExit"])
-def test_what_would_end_a_worker_is_an_error_here_and_the_worker_lives_on(error: str) -> None:
+def test_what_would_end_a_worker_is_an_error_here(error: str) -> None:
     with pytest.raises(wl.ModelError, match=f"{error}: 0"):
         wl.sweep(ending(error), **CONDITIONS, workers=2)
-    assert workers._idle.qsize() > 0
 
 
 class Choosing(Failing):

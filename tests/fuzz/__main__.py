@@ -11,12 +11,12 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from tests.fuzz import api, case_files, contact_result_files, journal, profiles, sweep_tables, wear_test_csv
+from tests.fuzz import api, case_files, contact_result_files, profiles, sweep_tables, wear_test_csv
 from tests.fuzz.harness import Files, Finding, finding, fuzz, smaller, target
 
 TARGETS = {
     module.__name__.rpartition(".")[2]: target(module)
-    for module in (api, case_files, wear_test_csv, sweep_tables, journal, profiles, contact_result_files)
+    for module in (api, case_files, wear_test_csv, sweep_tables, profiles, contact_result_files)
 }
 
 MEMORY = 4 * 2**30

@@ -36,7 +36,6 @@ COMMANDS = {
     "schema": _Command("case_commands", "schema", "Print the JSON Schema of case files."),
     "show": _Command("model_commands", "show", "Explain anything that wearlaw plugins lists."),
     "uncertainty": _Command("study_commands", "uncertainty", "Say how uncertain the predictions of a case are."),
-    "verify": _Command("verify_commands", "verify", "Check that results are as they were written."),
     "wear": _Command("wear_commands", "wear", "Predict the wear of contacts that another program solved."),
 }
 """All commands. Their modules import pandas, matplotlib and more, so each is loaded when a command of it is used."""
@@ -54,19 +53,13 @@ def _readable_usage_errors() -> Iterator[None]:
         raise
 
 
-ARGUMENTS = "wearlaw.arguments"
-"""Name under which click's context keeps the arguments of the command line."""
-
-LEFT = "wearlaw.left"
-"""Name under which click's context keeps a function that says what an interrupted command leaves."""
-
-
-class _Stopped(click.ClickException):
+class Stopped(click.ClickException):
     """The line that an interrupted command prints."""
 
     exit_code = 128 + signal.SIGINT
 
     def show(self, file: IO[Any] | None = None) -> None:
+        """Print the line, without click's "Error:"."""
         click.echo(readable(self.message), file=file, err=True)
 
 
@@ -101,19 +94,14 @@ class _Commands(click.Group):
         with _readable_usage_errors():
             return super().make_context(*args, **options)
 
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        ctx.meta[ARGUMENTS] = list(args)
-        return super().parse_args(ctx, args)
-
     def invoke(self, ctx: click.Context) -> Any:
         try:
             with _readable_usage_errors():
                 return super().invoke(ctx)
         except WearlawError as error:
             raise click.ClickException("\n".join([message_of(error), *getattr(error, "__notes__", [])])) from None
-        except KeyboardInterrupt as interrupt:
-            left = ctx.meta.get(LEFT, lambda: "nothing was written")()
-            raise _Stopped("; ".join(["Stopped", *getattr(interrupt, "__notes__", []), left])) from None
+        except KeyboardInterrupt:
+            raise Stopped("Stopped") from None
         except Exception:
             raise
         except BaseException as error:  # such as a model's SystemExit(0), which would look like success

@@ -20,7 +20,6 @@ from wearlaw.cli.shared import (
     print_notes,
     print_results,
     read_rig,
-    results_folder,
     stage,
     value,
     values,
@@ -34,6 +33,7 @@ from wearlaw.fitting.fit import fit as fit_parameters
 from wearlaw.fitting.result import Fit
 from wearlaw.models.law import Law
 from wearlaw.output.analyses import COMPARISON, FIT, write_comparison, write_fit
+from wearlaw.output.folder import results_folder
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.parameters import numbers

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
 import click
 
-from wearlaw.cli import LEFT
 from wearlaw.errors import ConfigurationError, InputError, printable, quoted, readable, with_problems
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.fitting.law_files import read_law, read_toml
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
-from wearlaw.output.folder import fresh_folder, identity
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import Configuration
@@ -38,31 +35,6 @@ def written_formats(command: CommandT) -> CommandT:
     )
     latex = click.option("--latex", is_flag=True, help="Write the tables for LaTeX too.")
     return formats(latex(command))
-
-
-@contextmanager
-def results_folder(
-    folder: Path, overwrite: bool, marker: str, kept: Callable[[], str | None] = lambda: None
-) -> Iterator[Path]:
-    """Yield a temporary folder as `fresh_folder` does, and tell an interrupted command what it leaves.
-
-    Parameters
-    ----------
-    folder, overwrite, marker
-        As for `fresh_folder`.
-    kept : callable, optional
-        Returns what is kept for a later run, if anything is.
-    """
-    before = identity(folder)
-
-    def left() -> str:
-        if identity(folder) != before:
-            return f"the results in {quoted(folder)} are complete"
-        return kept() or "nothing was written"
-
-    click.get_current_context().meta[LEFT] = left
-    with fresh_folder(folder, overwrite, marker) as fresh:
-        yield fresh
 
 
 class _WithRig(Configuration, extra="ignore"):

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import shlex
-import subprocess
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import shutil
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,21 +13,19 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from wearlaw.cli import ARGUMENTS
-from wearlaw.cli.shared import echo, folder_for, print_notes, print_results, results_folder, written_formats
-from wearlaw.errors import printable, quoted
+from wearlaw.cli import Stopped
+from wearlaw.cli.shared import echo, folder_for, print_notes, print_results, written_formats
+from wearlaw.errors import OutputError, printable, quoted
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.output.analyses import UNCERTAINTY, write_uncertainty
-from wearlaw.output.folder import ElsewhereError, identity
+from wearlaw.output.folder import results_folder
 from wearlaw.output.results import RESULTS, check_room, without_csv, write
-from wearlaw.output.temporary import discard, to_the_end
 from wearlaw.pipeline.notes import Notes, grouped
 from wearlaw.report.tables import NamedTable, summaries
 from wearlaw.study.case import load_case
-from wearlaw.study.study import Study, evaluations, provenance, used
+from wearlaw.study.study import Study, evaluations, used
 from wearlaw.study.study import run as run_case
 from wearlaw.study.uncertainty import uncertainty_of
-from wearlaw.sweeping.checkpoint import Checkpoint
 from wearlaw.sweeping.progress import Bar
 from wearlaw.version import __version__
 
@@ -66,45 +61,51 @@ def run(
     loaded = load_case(case)
     folder = output if output is not None else folder_for(case, "results")
     notes = Notes()
-    checkpoint = Checkpoint(folder.parent / f"{folder.name}.partial", provenance(loaded), resume)
-    with _kept(checkpoint, folder), results_folder(folder, overwrite, RESULTS, _how_to_go_on(checkpoint)) as fresh:
-        left_out = without_csv(loaded, csv)
-        check_room(loaded, folder, left_out is None)
-        with Bar(evaluations(loaded)) as shown:
-            study = run_case(loaded, shown, workers, checkpoint)
-            if left_out is not None:
-                study = replace(study, notes=(*study.notes, left_out))
-            with notes.of("figures"):
-                names = write(study, fresh, figure_formats, latex, shown.stage, left_out is None)
-    print_notes(grouped([*study.notes, *checkpoint.notes(), *notes.texts]))
+    partial = _partial(folder, resume)
+    try:
+        with results_folder(folder, overwrite, RESULTS) as fresh:
+            left_out = without_csv(loaded, csv)
+            check_room(loaded, folder, left_out is None)
+            with Bar(evaluations(loaded)) as shown, notes.of("run"):
+                study = run_case(loaded, shown, workers, partial, resume)
+                if left_out is not None:
+                    study = replace(study, notes=(*study.notes, left_out))
+                with notes.of("figures"):
+                    names = write(study, fresh, figure_formats, latex, shown.stage, left_out is None)
+    except KeyboardInterrupt:
+        if partial.exists():
+            raise Stopped(f"Stopped; finished blocks are in {quoted(partial)}, and --resume goes on") from None
+        raise
+    _discard(partial)
+    print_notes(grouped([*study.notes, *notes.texts]))
     for table in summaries(study):
         Console().print(_summary(table))
     _print_used(study)
     print_results(folder, names)
 
 
-@contextmanager
-def _kept(checkpoint: Checkpoint, folder: Path) -> Iterator[None]:
-    """Keep the checkpoint until the results are in a folder."""
-    before, elsewhere = identity(folder), False
-    try:
-        yield
-    except ElsewhereError:
-        elsewhere = True
-        raise
-    finally:
-        checkpoint.close()
-        if checkpoint.exists and (elsewhere or identity(folder) != before):
-            to_the_end(lambda: discard(checkpoint.folder, folder))
+def _partial(folder: Path, resume: bool) -> Path:
+    """Return the folder of finished blocks for a folder of results.
+
+    Raises
+    ------
+    OutputError
+        If it exists and is not to be resumed.
+    """
+    partial = folder.with_name(f"{folder.name}.partial")
+    if partial.exists() and not resume:
+        raise OutputError(
+            f"output: {quoted(partial)} holds the finished blocks of an interrupted run; add --resume to go on with it,"
+            " remove it, or choose another folder with -o"
+        )
+    return partial
 
 
-def _how_to_go_on(checkpoint: Checkpoint) -> Callable[[], str | None]:
-    """Return a function that says how to go on with finished blocks, once there are any."""
-    command, *arguments = click.get_current_context().meta[ARGUMENTS]
-    again = ["wearlaw", command, "--resume", *(one for one in arguments if one != "--resume")]
-    text = subprocess.list2cmdline(again) if sys.platform == "win32" else shlex.join(again)
-    kept = f"finished blocks are kept in {quoted(checkpoint.folder)}, go on with: {text}"
-    return lambda: kept if checkpoint.exists else None
+def _discard(partial: Path) -> None:
+    for store in partial.glob("*.zarr"):
+        shutil.rmtree(store, ignore_errors=True)
+    with suppress(OSError):  # it does not exist, or other files are in it
+        partial.rmdir()
 
 
 def _print_used(study: Study) -> None:

@@ -16,7 +16,6 @@ from wearlaw.cli.shared import (
     law_of,
     print_notes,
     print_results,
-    results_folder,
     written_formats,
 )
 from wearlaw.contact.contact import Contact
@@ -25,6 +24,7 @@ from wearlaw.figures.curves import FigureFormat
 from wearlaw.figures.worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
 from wearlaw.models.law import Law
 from wearlaw.output.analyses import WEAR, write_wear
+from wearlaw.output.folder import results_folder
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.reading import read_contact

@@ -29,7 +29,7 @@ from wearlaw.study.case import CASE_FILE, Case, written
 from wearlaw.study.results import patch_axes
 from wearlaw.study.study import Study, numbers
 from wearlaw.sweeping.points import ITEM
-from wearlaw.sweeping.storage import FULL, check_disk, check_memory, set_size
+from wearlaw.sweeping.room import FULL, check_disk, check_memory, set_size
 
 RESULTS = "results.nc"
 CSV = "results.csv"

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import errno
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
 
@@ -42,27 +41,6 @@ def beside(path: str | os.PathLike[str]) -> Path:
 def reason_of(error: Exception) -> str:
     """Return why a file cannot be opened, read or written, without its name."""
     return getattr(error, "strerror", None) or str(error)
-
-
-def place_of(folder: Path) -> Path:
-    """Return the path of a folder without links in it, after checks of whether it can be made.
-
-    Raises
-    ------
-    OSError
-        If it cannot, since a name is too long, links lead in a circle, or something above it is no folder.
-    ValueError
-        If a name has a null character.
-    """
-    try:
-        target = folder.resolve()
-    except RuntimeError:  # before Python 3.13
-        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP)) from None
-    there = next(parent for parent in (target, *target.parents) if os.path.lexists(parent))
-    for path in (target, *(there / name for name in target.relative_to(there).parts)):
-        with suppress(FileNotFoundError):
-            os.stat(path)
-    return target
 
 
 def read_start(path: str | os.PathLike[str], count: int) -> bytes:

@@ -10,6 +10,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -43,7 +44,7 @@ from wearlaw.study.figures import figures_of
 from wearlaw.study.pairs import Pair, pairs_of
 from wearlaw.study.results import PATCH_AXES, Results, axes_of
 from wearlaw.study.sections import Section
-from wearlaw.sweeping.checkpoint import Checkpoint, Evaluator
+from wearlaw.sweeping.evaluator import Evaluator
 from wearlaw.sweeping.points import Points
 from wearlaw.sweeping.sweep import weight
 from wearlaw.units.variables import UNITS
@@ -116,7 +117,8 @@ def run(
     case: Case,
     on_block: Callable[[int], None] = lambda _: None,
     workers: int = 1,
-    checkpoint: Checkpoint | None = None,
+    store: Path | None = None,
+    resume: bool = False,
 ) -> Study:
     """Run a case.
 
@@ -128,14 +130,17 @@ def run(
         Called with the number of evaluations just done, to show progress; `evaluations(case)` is their sum.
     workers : int
         How many processes evaluate the sweeps.
-    checkpoint : Checkpoint, optional
-        Folder in which an interrupted run keeps finished blocks.
+    store : Path, optional
+        Folder for the stores of sweeps of more than 10⁵ points, in which an interrupted run keeps its finished blocks.
+    resume : bool
+        Whether to go on with the stores there.
     """
     expect(Case, case, "case", "a wearlaw.Case, as from wl.load_case")
     notes = Notes()
-    evaluator = Evaluator(on_block, workers, checkpoint)
+    evaluator = Evaluator(on_block, workers, store, resume)
     pairs = pairs_of(case, notes)
     sweeps = {name: _sweep(name, grid, case, pairs, notes, evaluator) for name, grid in case.sweeps.items()}
+    evaluator.warn_if_resumed()
     profiles = {name: _profile(name, grid, case, pairs, notes) for name, grid in case.profiles.items()}
     for dataset in (*sweeps.values(), *profiles.values()):
         dataset.attrs.update(title=case.title, provenance=json.dumps(provenance(case)))

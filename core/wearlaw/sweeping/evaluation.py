@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import functools
-import json
-import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -26,7 +23,7 @@ from wearlaw.pipeline.ranges import Seen
 from wearlaw.pipeline.variables import long_name, outcome_units, unit_of
 from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.sweeping.located import posed
-from wearlaw.sweeping.points import Block, Points
+from wearlaw.sweeping.points import Points
 from wearlaw.units.quantities import Quantity
 
 Outputs = dict[str, Array]
@@ -65,7 +62,7 @@ class Job:
 
 @dataclass(frozen=True)
 class BlockRecord:
-    """Record of an evaluated block besides its outputs: for warnings, and to detect damage on disk.
+    """What the warnings of a sweep need to know of a block.
 
     Attributes
     ----------
@@ -76,10 +73,6 @@ class BlockRecord:
     ranges : mapping of str to tuple
         For each variable that leaves the range of the law: lowest and highest mean over the patch in SI, and the number
         of points outside.
-    checksum : int
-        Checksum of the other values of the record.
-    outputs : tuple of int
-        Checksum of each output, in their order.
     remarks : tuple of str
         Warnings of the rig, such as that a wheel climbs its rail.
     """
@@ -87,8 +80,6 @@ class BlockRecord:
     points: int
     overload: Overload | None
     ranges: Mapping[str, tuple[float, float, int]]
-    checksum: int
-    outputs: tuple[int, ...]
     remarks: tuple[str, ...] = ()
 
 
@@ -111,9 +102,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
         outputs = {name: _in_unit(prediction[name], unit) for name, unit in job.units.items()}
     else:  # the bodies touch nowhere
         outputs = {name: np.full(problem.batch_shape, np.nan) for name in job.units}
-    sums = tuple(map(checksum, outputs.values()))
-    seen = BlockRecord(watch.points, watch.overload, watch.seen, checksum=0, outputs=sums, remarks=tuple(remarks))
-    return outputs, replace(seen, checksum=record_checksum(seen))
+    return outputs, BlockRecord(watch.points, watch.overload, watch.seen, tuple(remarks))
 
 
 def _check_axes(job: Job, problem: Problem, part: Points) -> None:
@@ -138,58 +127,6 @@ def _in_points(on_block: Callable[[int], None], points: int, patches: int) -> Ca
         on_block(done * points // patches - before)
 
     return advance
-
-
-def evaluated(
-    job: Job, block: Block, part: Points, store: str | None, on_block: Callable[[int], None] | None = None
-) -> tuple[Outputs, BlockRecord]:
-    """Evaluate a block and return its outputs and record; with a store, write the outputs there and return none."""
-    outputs, seen = evaluate(job, part, on_block)
-    if store is None:
-        return outputs, seen
-    write_block(store, block, {name: values.reshape(part.shape + job.own_shape) for name, values in outputs.items()})
-    return {}, seen
-
-
-def write_block(store: str, block: Block, outputs: Mapping[str, Array]) -> None:
-    """Write the outputs of a block to a zarr store."""
-    group = zarr_group(store)
-    for name, values in outputs.items():
-        group[name][(*block.slices, ...)] = values
-
-
-@functools.lru_cache(maxsize=8)
-def zarr_group(store: str) -> Any:
-    """Return the group of a store, open for writing."""
-    return load_zarr().open_group(store, mode="r+")
-
-
-def load_zarr() -> Any:
-    """Return the package zarr, or raise an error that says how to install it."""
-    try:
-        import zarr
-    except ImportError:
-        raise InputError('store: zarr is not installed; python -m pip install "wearlaw[dask]"') from None
-    return zarr
-
-
-def checksum(output: Array) -> int:
-    """Return the CRC-32 of an output of a block.
-
-    CRC-32 is the fastest checksum of the standard library, above 1 GB/s, and misses one in 2³² cases of accidental
-    damage. It does not protect against forgery.
-    """
-    return zlib.crc32(np.ascontiguousarray(output).data)
-
-
-def record_checksum(seen: BlockRecord) -> int:
-    """Return the CRC-32 of a block's record."""
-    return zlib.crc32(json.dumps([seen.points, seen.overload, seen.ranges, seen.outputs, seen.remarks]).encode())
-
-
-def is_undamaged(seen: BlockRecord, outputs: Iterable[Array]) -> bool:
-    """Return whether a block's record and its outputs are as they were evaluated."""
-    return seen.checksum == record_checksum(seen) and seen.outputs == tuple(map(checksum, outputs))
 
 
 def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:

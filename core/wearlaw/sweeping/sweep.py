@@ -7,7 +7,7 @@ import math
 import os
 import pickle
 import warnings
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,7 +20,6 @@ from wearlaw.errors import (
     ConditionsError,
     InputError,
     ResumeWarning,
-    WorkerWarning,
     quoted,
     shortened,
 )
@@ -32,17 +31,19 @@ from wearlaw.pipeline.variables import default_variables
 from wearlaw.settings.arguments import expect_names
 from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.settings.configuration import parts
-from wearlaw.sweeping.evaluation import Job, evaluated, output_units, range_warnings
+from wearlaw.sweeping.evaluation import Job, output_units, range_warnings
 from wearlaw.sweeping.located import posed
-from wearlaw.sweeping.points import BLOCK, Block, Points, outer_product
+from wearlaw.sweeping.points import BLOCK, Points, outer_product
 from wearlaw.sweeping.progress import Bar
-from wearlaw.sweeping.storage import Memory, Store, Target, damage, finished, kept_in
+from wearlaw.sweeping.results import Memory
+from wearlaw.sweeping.room import writing_to
 from wearlaw.sweeping.tables import from_table
-from wearlaw.sweeping.workers import Done, in_processes, on_cluster
+from wearlaw.sweeping.workers import here, in_processes, on_cluster
 
 if TYPE_CHECKING:
     import pandas
 
+    from wearlaw.sweeping.store import Store
 
 MOST = 2**24
 """Most numbers of a sweep whose outputs are not named; a larger sweep keeps the outcomes of laws alone."""
@@ -96,8 +97,8 @@ def sweep(
         A folder for the results in zarr format, written block by block. An interrupted sweep keeps its finished blocks
         there. Default: results in memory.
     resume : bool
-        Whether to go on with an unfinished sweep in `store`, if there is one. Damaged blocks are computed again, with a
-        `ResumeWarning`.
+        Whether to go on with the sweep in `store`, if there is one. Blocks that are missing or damaged are computed,
+        and a `ResumeWarning` says how many were kept.
     progress : bool
         Whether to show a progress bar with rate and time left.
     **conditions
@@ -118,42 +119,43 @@ def sweep(
     InputError
         If conditions or outputs are invalid, or the results would not fit into memory or on the disk.
     OutputError
-        If `store` holds anything but an unfinished part of the same sweep, or cannot be written.
+        If `store` holds anything but the same sweep, cannot be written, or another process is writing it.
     SweepError
         If workers die again and again.
     """
     expect_pipeline(predict)
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise InputError(f"workers: must be the number of processes, at least 1; got {shortened(workers)}")
-    with kept_in(store), _points(predict, table, conditions, columns, keep, store, progress) as points:
+    with writing_to(store), _points(predict, table, conditions, columns, keep, store, progress) as points:
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
         points = dataclasses.replace(points, weight=weight(first))
         job, notes = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
-        if store is None:
-            if resume:
-                raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
-            target: Memory | Store = Memory(job, points)
-        else:
-            path = Path(store)
-            there = finished(job, points, path, resume)
-            if there is not None:
-                return there
-            target = Store(job, points, path, resume)
-            if target.damaged:
-                warnings.warn(damage(target.damaged, target.listed, path), ResumeWarning, stacklevel=2)
+        if store is None and resume:
+            raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
+        target = target_of(job, points, None if store is None else Path(store), resume)
+        blocks = len(points.blocks())
+        if target.resumed and len(target.done) < blocks:
+            warnings.warn(kept(len(target.done), blocks, Path(target.store or "")), ResumeWarning, stacklevel=2)
         with closing(target), Bar(points.size, progress) as bar:
-            try:
-                found = run(target, bar, workers, client)
-            except KeyboardInterrupt as interrupt:
-                if store is not None:
-                    interrupt.add_note(
-                        f"finished blocks are kept in {quoted(store)}; the same call with resume=True goes on"
-                    )
-                raise
-            for warning in found:
+            of_results = run(target, bar, workers, client)
+            for warning in of_results:
                 warnings.warn(warning, stacklevel=2)
-            return target.finish([*notes, *(str(warning) for warning in found)])
+            return target.finish([*notes, *map(str, of_results)])
+
+
+def target_of(job: Job, points: Points, store: Path | None, resume: bool) -> Memory | Store:
+    """Return where the results of a sweep go: to memory, or to a store."""
+    if store is None:
+        return Memory(job, points)
+    from wearlaw.sweeping.store import Store  # zarr takes half a second
+
+    return Store(job, points, store, resume)
+
+
+def kept(count: int, of: int, where: Path) -> str:
+    """Return the remark of a sweep that is resumed, with numbers of blocks."""
+    return f"{count} of {of} blocks are kept in {quoted(where)}; the others are missing or damaged, and are computed"
 
 
 @contextmanager
@@ -268,44 +270,32 @@ def weight(problem: Problem) -> float:
     return math.prod(map(len, problem.dims.values())) * (1.0 + 0.25 * strips)
 
 
-def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[Warning]:
+def run(target: Memory | Store, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[Warning]:
     """Evaluate the remaining blocks and return the warnings that belong to the results.
 
     Parameters
     ----------
-    target : Target
+    target : Memory or Store
         Target of the results. It keeps the finished blocks after an interrupt.
     on_block : callable
         Called with the number of points in each finished block, and first with those finished earlier.
     workers, client
         As in `sweep`.
     """
-    left = [block for block in target.points.blocks() if block.number not in target.done]
-    on_block(target.points.size - sum(block.size for block in left))
+    points = target.points
+    left = [block for block in points.blocks() if block.number not in target.done]
+    on_block(points.size - sum(block.size for block in left))
     several = client is not None or workers > 1
-    with closing(_elsewhere(target, left, workers, client) if several else _here(target, left, on_block)) as every:
-        for block, seen, deaths in every:
-            target.add(block.number, seen)
-            for death in deaths:
-                warnings.warn(death, WorkerWarning, stacklevel=3)
+    job = pickle.dumps(target.job) if several else b""
+    if client is not None:
+        evaluated = on_cluster(client, job, target.store, points, left)
+    elif several:
+        evaluated = in_processes(workers, job, target.store, points, left)
+    else:
+        evaluated = here(target.job, target.store, points, left, on_block)
+    with closing(evaluated):
+        for block, outputs, record in evaluated:
+            target.add(block, outputs, record)
             if several:
                 on_block(block.size)
     return range_warnings(target.job, (target.done[number] for number in sorted(target.done)))
-
-
-def _elsewhere(target: Target, blocks: list[Block], workers: int, client: Any) -> Generator[Done, None, None]:
-    """Evaluate blocks in other processes."""
-    job = pickle.dumps(target.job)
-    if client is None:
-        return in_processes(workers, job, target.store, target.points, blocks, target.places)
-    return on_cluster(client, job, target.store, target.points, blocks, target.places)
-
-
-def _here(target: Target, blocks: list[Block], on_block: Callable[[int], None]) -> Generator[Done, None, None]:
-    """Evaluate blocks in this process, with progress also within a block."""
-    for block in blocks:
-        part = target.points.part(block.slices)
-        outputs, seen = evaluated(target.job, block, part, target.store, on_block)
-        for place, values in zip(target.places(block), outputs.values(), strict=True):
-            place[:] = values
-        yield block, seen, []
