@@ -204,7 +204,12 @@ def test_a_compiled_loop_takes_arrays_that_it_only_reads_read_only_and_is_compil
 
     made = []
     compiled = kernels.compiled
-    monkeypatch.setattr(kernels, "compiled", lambda *args, **options: made.append(args) or compiled(*args, **options))
+
+    def counted(*arguments: Any, **options: Any) -> Any:
+        made.append(arguments)
+        return compiled(*arguments, **options)
+
+    monkeypatch.setattr(kernels, "compiled", counted)
     contact = wl.TwinDisc.suros().problem(normal_force=Q([6.0, 7.0], "kN"), creepage="1 %", friction_coefficient=0.4)
     own, twice = np.array([1.0, 2.0]), np.empty(2)
     for given in (own, contact.normal_force, own, contact.normal_force):

@@ -130,7 +130,8 @@ def test_what_must_hold_for_any_model_cannot_be_exempt(monkeypatch: pytest.Monke
         """The rate of `Linear` with the other sign."""
 
         def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
-            return -super().rate(contact, p)
+            rate: wl.Array = -super().rate(contact, p)
+            return rate
 
     every = {check.name for check in checks(Growing())} - {"exemptions_are_claims"}
     monkeypatch.setattr(Growing, "exemptions", dict.fromkeys(every, "for a test"))
