@@ -285,7 +285,8 @@ class Rig(Model):
 
 @steady
 def _posed(rig: Rig, conditions: Mapping[str, Any]) -> Problem:
-    return rig.problem(**{name: _read_only(value) for name, value in conditions.items()})
+    given = {name: value if type(value) in (str, float) else _read_only(value) for name, value in conditions.items()}
+    return rig.problem(**given)
 
 
 def _read_only(value: Any) -> Any:
