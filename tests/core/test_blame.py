@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -150,7 +149,7 @@ def with_numbers(law: wl.Law) -> object:
     return integrate_laws(EXACT, (law,), RIG.problem(**CONDITIONS)[None], numbers=[{"factor": np.array([[1e-9]])}])
 
 
-WRITING: dict[str, Callable[[], object]] = {
+WRITING: dict[str, Any] = {
     "LawOnPressure": lambda: silently(RAILS, FASTSIM, wl.wear_law("law_on_pressure"))(**ON_RAILS),
     "LawOnArea": lambda: silently(RAILS, FASTSIM, wl.wear_law("law_on_area"))(**ON_RAILS),
     "LawOnBody": lambda: silently(RIG, EXACT, wl.wear_law("law_on_body"))(**{**CONDITIONS, "creepage": Q([1, 2], "%")}),

@@ -202,12 +202,12 @@ def test_a_compiled_loop_takes_arrays_that_it_only_reads_read_only_and_is_compil
         for i in range(x.size):
             twice[i] = 2.0 * x[i]
 
-    made: list[Any] = []
+    made = []
     compiled = kernels.compiled
 
-    def counted(*args: Any, **options: Any) -> Any:
-        made.append(args)
-        return compiled(*args, **options)
+    def counted(*arguments: Any, **options: Any) -> Any:
+        made.append(arguments)
+        return compiled(*arguments, **options)
 
     monkeypatch.setattr(kernels, "compiled", counted)
     contact = wl.TwinDisc.suros().problem(normal_force=Q([6.0, 7.0], "kN"), creepage="1 %", friction_coefficient=0.4)

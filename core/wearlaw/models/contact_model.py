@@ -59,7 +59,7 @@ class Model(Configuration, ABC):
     source: ClassVar[str]
     """Literature source of the model."""
 
-    _provided_by: ClassVar[Callable[[type[Any]], str]]
+    _provided_by: ClassVar[Callable[..., str]]
     """Where a class of models comes from, in words; set by the look-up of plugins."""
 
     def _origin(self) -> str:
@@ -107,7 +107,7 @@ class Blame:
     """A context that turns an exception in a model's code into a `ModelError` that names the model.
 
     Errors of wearlaw pass, because their messages are complete. An `InputError` gets a note that names the model, but
-    not one of a rig, which is about the conditions. Ctrl-C and a lack of memory pass as well.
+    not one of a rig or a reader, which is about the conditions or a file. Ctrl-C and a lack of memory pass as well.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class Blame:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
         model = self._model
-        if isinstance(error, InputError) and model.kind != "rig" and not hasattr(error, "__notes__"):
+        if isinstance(error, InputError) and model.kind not in ("rig", "reader") and not hasattr(error, "__notes__"):
             error.add_note(f"raised in {model.kind} '{model.name}', {model._origin()}")
         if error is None or isinstance(error, WearlawError | KeyboardInterrupt | MemoryError):
             return

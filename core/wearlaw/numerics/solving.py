@@ -162,27 +162,24 @@ def check_problem(maker: Model, problem: Problem) -> None:
     """Raise a `ModelError` that names a rig or a stage if its problem has numbers that no contact has."""
     for name, least in POSED.items():
         values = getattr(problem, name)
-        if values is not None:
-            _check_posed(maker, problem, name, values, least)
+        if values is None or (type(values) is np.float64 and least < values < math.inf):
+            continue
+        _check_posed(maker, problem, name, values, least)
     for name in Strips.__slots__ if problem.strips is not None else ():
         _check_posed(maker, problem, f"{name} of strips", getattr(problem.strips, name), -math.inf)
 
 
 def _check_posed(maker: Model, problem: Problem, name: str, values: Any, least: float) -> None:
-    if getattr(values, "ndim", 0):
-        if problem.exists is not None:
-            values = values[problem.exists]
-        elif not any(values.strides):  # one number for all operating points
-            values = values.reshape(-1)[:1]
-        if not values.size:
-            return
-        lowest, highest = extremes(values)
-    else:
-        lowest = highest = values
+    values = np.asarray(values)
+    if problem.exists is not None:
+        values = values[problem.exists]
+    elif not any(values.strides):  # one number for all operating points
+        values = values.reshape(-1)[:1]
+    lowest, highest = extremes(values) if values.size else (1.0, 1.0)
     if not least < lowest <= highest < math.inf:  # as for NaN
-        first = lowest if not lowest > least else highest
+        wrong = lowest if not lowest > least else highest
         above = " and above zero" if least == 0.0 else ""
-        raise fault(maker, f"posed a problem with {_words(name)} of {first:g} in SI units; it must be finite{above}")
+        raise fault(maker, f"posed a problem with {_words(name)} of {wrong:g} in SI units; it must be finite{above}")
 
 
 def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Problem) -> None:

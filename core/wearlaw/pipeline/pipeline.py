@@ -187,8 +187,11 @@ class Rig(Model):
             If it is no problem, or not one of the same geometry, shape and axes.
         """
         if not isinstance(balanced, Problem):
-            message = f"`balanced` of rig '{self.name}' returned {shortened(balanced)}, not a wearlaw.Problem"
-            raise ModelError(with_origin(self, message))
+            raise ModelError(
+                with_origin(
+                    self, f"`balanced` of rig '{self.name}' returned {shortened(balanced)}, not a wearlaw.Problem"
+                )
+            )
         shapes = [(one.geometry, one.batch_shape, one.dims) for one in (balanced, problem)]
         if shapes[0] != shapes[1]:
             found, given = (f"geometry '{one[0]}', shape {one[1]} and axes {one[2]!r}" for one in shapes)
@@ -282,7 +285,8 @@ class Rig(Model):
 
 @steady
 def _posed(rig: Rig, conditions: Mapping[str, Any]) -> Problem:
-    return rig.problem(**{name: _read_only(value) for name, value in conditions.items()})
+    given = {name: value if type(value) in (str, float) else _read_only(value) for name, value in conditions.items()}
+    return rig.problem(**given)
 
 
 def _read_only(value: Any) -> Any:
