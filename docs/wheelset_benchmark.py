@@ -182,6 +182,40 @@ def summary() -> Rows:
     return rows
 
 
+def service() -> Rows:
+    """Return the differences under 80 kN a wheel and 12 mrad of yaw, on the right wheel, at the roll of CONTACT.
+
+    A last column holds the roll that wearlaw finds without friction, as CONTACT did.
+    """
+    contact = pd.read_csv(DATA / "contact_service.csv", comment="#")
+    where: dict[str, Any] = {"lateral_displacement": Q(contact.displacement.to_numpy(), "mm"), "yaw": "12 mrad"}
+    where |= {"vertical_load": "80 kN", "angular_speed": Q(2.0 / 0.46, "rad/s")}
+    shares, rolls = {}, {}
+    for pressure in PRESSURES:
+        predict: Any = wheelset(pressure) | wl.contact_model("fastsim")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wl.WearlawWarning)  # at 7 mm a wheel climbs, and steel yields
+            rolls[pressure] = predict(**where, friction_coefficient=1e-9).problem.roll[:, 1, 0]
+            r = predict(**where, friction_coefficient=0.3, roll=Q(contact.roll.to_numpy(), "rad"))
+        force = r.normal_force.m_as("N")[:, 1]
+        whole = np.nansum(force, axis=-1)
+        angle = np.nansum(force * r.contact_angle.m_as("rad")[:, 1], axis=-1) / whole
+        power = np.nansum(r.wear_index.m_as("N")[:, 1], axis=-1)
+        shares[pressure] = (
+            np.isfinite(force).sum(axis=-1), 1e3 * (angle - contact.delta), 100.0 * (whole / contact.fn - 1.0),
+            100.0 * (np.nanmax(r.max_pressure.m_as("MPa")[:, 1], axis=-1) / contact.pmax - 1.0),
+            100.0 * (-power / contact.tgamma - 1.0), 1e3 * (rolls[pressure] - contact.roll),
+        )  # fmt: skip
+    heads = ("patches", "δ [mrad]", "N [%]", "p_max [%]", "power [%]", "roll [mrad]")
+    rows: Rows = [("`pressure`", "displacement [mm]", *heads)]
+    for pressure in PRESSURES:
+        for case, displacement in enumerate(contact.displacement):
+            patches, *cells = (column[case] for column in shares[pressure])
+            digits = zip(cells, (1, 1, 0, 1, 3), strict=True)
+            rows.append((f"`{pressure}`", f"{displacement:g}", f"{patches}", *(shown(one, n) for one, n in digits)))
+    return rows
+
+
 def of_two_patches() -> Rows:
     """Return the results of both programs for two patches on one wheel."""
     table = pd.read_csv(DATA / "contact_two_patches.csv", comment="#")
@@ -285,7 +319,7 @@ def _two_humps(axes: Axes) -> None:
 
 def tables() -> dict[str, str]:
     """Return the tables by the names of their files."""
-    found = {"summary": summary(), "humps": humps(), "two_patches": of_two_patches()} | {
+    found = {"summary": summary(), "humps": humps(), "service": service(), "two_patches": of_two_patches()} | {
         one: table(one) for one in PRESSURES
     }
     return {name: as_csv(rows) for name, rows in found.items()}

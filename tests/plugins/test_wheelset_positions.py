@@ -273,8 +273,10 @@ def test_a_gauge_that_cannot_be_is_an_error(gauge: str) -> None:
 
 
 def test_a_climbing_wheel_is_warned_of_and_has_a_result() -> None:
+    # Where a wheel climbs shows under load, with the roll.
+    contact = STANDARD | wl.contact_model("fastsim")
     with pytest.warns(wl.RangeWarning, match=r"6.5 mm the right wheel climbs"):
-        STANDARD.problem(lateral_displacement="6.5 mm", vertical_load="10 kN", friction_coefficient=0.3)
+        contact.posed({"lateral_displacement": "6.5 mm", "vertical_load": "10 kN", "friction_coefficient": 0.3})
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        STANDARD.problem(lateral_displacement="6 mm", vertical_load="10 kN", friction_coefficient=0.3)
+        contact.posed({"lateral_displacement": "6 mm", "vertical_load": "10 kN", "friction_coefficient": 0.3})

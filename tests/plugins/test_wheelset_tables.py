@@ -41,7 +41,7 @@ def test_the_patches_at_the_jumps_are_as_far_apart_as_the_page_says() -> None:
 def test_the_furthest_points_are_where_the_page_says() -> None:
     kpec, hertz = differences("kpec"), differences("hertz")
     flange = np.abs(reference()["delta"]) > wheelset_benchmark.FLANGE
-    for place, head, where in ((flange, "N [%]", 6.5), (flange, "ξ [10⁻⁵]", 6.5), (~flange, "p_max [%]", 1.0)):
+    for place, head, where in ((flange, "δ [mrad]", 6.0), (flange, "ξ [10⁻⁵]", 6.5), (~flange, "p_max [%]", 1.0)):
         off = np.where(place & ~at_jumps(), np.abs(kpec[head]), 0.0)
         assert STEPS[np.unravel_index(off.argmax(), off.shape)[0]] == where
     moved = np.where(at_jumps(), 0.0, np.abs(hertz["y [mm]"])).max()
