@@ -1,4 +1,4 @@
-"""The paper of Tassini et al. (2010) by the formulas and integrals of tests/reference.py, and helpers for its claims."""
+"""The paper of Tassini et al. (2010) by the formulas and integrals of tests/reference.py."""
 
 from __future__ import annotations
 
