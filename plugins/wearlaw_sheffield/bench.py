@@ -26,13 +26,6 @@ PARTIAL = np.array([0.1, 0.5, 1.0])
 WINDOW = 350.0 / 6.2934
 """Upper end of the severe wear window in the paper's Figure 6c: 350 N on its patch of 6.2934 mm² [N/mm²]."""
 
-SPEEDS = {"disc_1": "if disc 1 keeps its speed", "mean": "if the mean does"}
-"""Whose surface speed the rig can keep, `TwinDisc.speed_of`, in words for a list of both. The paper defines V as the
-mean of the surface speeds, but gives neither its value nor which speed its rig keeps."""
-
-KEPT = {"disc_1": "the surface speed of disc 1", "mean": "the mean of the surface speeds"}
-"""Whose surface speed the rig can keep, in words for one rig."""
-
 
 def borders(law: str, variable: str) -> tuple[float, ...]:
     """Return the values of a variable, in SI, at which a law branches."""
@@ -164,18 +157,16 @@ class Bench:
         return 100.0 * slip_speed / mean if mean > 0.0 else np.inf
 
     def at_speeds(self) -> dict[str, Bench]:
-        """Return this bench with disc 1 keeping its speed, and with the mean keeping it, by these words."""
-        return {
-            words: replace(self, rig=self.rig.model_copy(update={"speed_of": kept})) for kept, words in SPEEDS.items()
-        }
+        """Return this bench with disc 1 keeping its speed, and with the mean keeping it, by `TwinDisc.speed_of`.
 
-    def creepages_at(self, slip_speed: float, digits: int = 2) -> str:
-        """Return, in words, the creepage of a slip speed [m/s], whichever speed the rig keeps."""
-        found = {words: one.creepage_at(slip_speed) for words, one in self.at_speeds().items()}
-        return ", ".join(
-            f"{f'{creepage:.{digits}f} %' if np.isfinite(creepage) else 'no creepage'} {words}"
-            for words, creepage in found.items()
-        )
+        The paper defines V as the mean of the surface speeds, but not which speed its rig keeps.
+        """
+        return {kept: replace(self, rig=self.rig.model_copy(update={"speed_of": kept})) for kept in ("disc_1", "mean")}
+
+    def measured_wear_index(self, tests: tuple[Array, Array]) -> Array:
+        """Return the measured Tγ [N] of tests, creepages [%] and T/N [-], at the load of the bench."""
+        creepage, traction = tests
+        return np.asarray(traction * float(self.problem.normal_force) * creepage / 100.0)
 
     @cached_property
     def slow(self) -> NDArray[np.bool_]:

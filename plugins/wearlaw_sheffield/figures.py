@@ -7,8 +7,6 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_sheffield.bench import TESTED, WEAR_RATE, Bench
-from wearlaw_sheffield.law_claims import measured_wear_index
-from wearlaw_sheffield.local_claims import local_models
 
 PROFILE = 0.5
 """The creepage in partial slip of Figures 3 and 4 in the case [%]; the paper does not state its own."""
@@ -28,8 +26,13 @@ def figures(bench: Bench, tests: tuple[Array, Array]) -> tuple[wl.FigureData, ..
 
 def slip_along_patch(bench: Bench) -> wl.FigureData:
     """Return Figure 4 with both versions of the exact theory's slip."""
+    models: dict[str, wl.ContactModel] = {
+        "the exact theory": wl.contact_model("exact"),
+        "the exact theory with eq. (7) as printed": wl.contact_model("exact", slip="as_printed"),
+        "FASTSIM": wl.contact_model("fastsim"),
+    }
     curves, x = [], np.zeros(0)
-    for number, (words, model) in enumerate(local_models().items()):
+    for number, (words, model) in enumerate(models.items()):
         profile = bench.predict(model, wl.wear_law("usfd"), PROFILE).profile
         x = profile["x"].values
         curves.append(wl.Curve(words, x, profile["slip"].values, colour=number, dash=number))
@@ -84,7 +87,7 @@ def measured_index(bench: Bench, tests: tuple[Array, Array]) -> wl.FigureData:
     """Return Figure 9 with USFD at the measured Tγ in place of the measured wear."""
     law = wl.wear_law("usfd")
     inside = bench.creepage <= TESTED[1]
-    rates = bench.rate_at_index(law, measured_wear_index(bench, tests))
+    rates = bench.rate_at_index(law, bench.measured_wear_index(tests))
     curve = wl.Curve("USFD at the modelled Tγ", bench.creepage[inside], bench.rate("global", law)[inside])
     points = wl.Curve("USFD at the measured Tγ of the tests", tests[0], rates, colour=6, points=True, hollow=True)
     return wl.FigureData(

@@ -12,8 +12,8 @@ import pandas as pd
 import wearlaw as wl
 from wearlaw import Array, Q
 from wearlaw_sheffield.bench import TESTED, WEAR_RATE, Bench
+from wearlaw_sheffield.claims import SIMILAR, percent, verdict
 from wearlaw_sheffield.tables import USFD_UNITS, number, shown_unit, usfd_parameters
-from wearlaw_sheffield.wording import SIMILAR, percent, verdict
 
 FREE = ("q_s", "m_c", "tr_sc")
 """The parameters that the paper changed; it kept m_m."""
@@ -144,29 +144,19 @@ def _spread(fits: list[Fitted], model: str) -> str:
 
 def follows_from_a_fit(fits: list[Fitted]) -> wl.CheckedClaim:
     """Compare the paper's sets with the fits for other ranges and measures of the difference."""
-    parts, found = [], []
+    parts, ours = [], []
     for model, words in THEORY.items():
         published, of_model = usfd_parameters(model), [one for one in fits if one.model == model]
         apart = [max(abs(one.parameters[name] / published[name] - 1.0) for name in FREE) for one in of_model]
         near = sum(share < SIMILAR for share in apart)
-        nearest = of_model[apart.index(min(apart))]
-        listed = ", ".join(
-            f"{name} {nearest.parameters[name]:.1f} against {published[name]:g} {shown_unit(name)}" for name in FREE
-        )
         parts += [near > 0, near == len(of_model)]
-        found.append(
-            f"For the {words} {near} of {len(of_model)} fits are similar. The closest, by {nearest.norm} differences up"
-            f" to {nearest.highest:g} %, gives {listed}; no parameter differs by more than {100 * min(apart):.1f} %."
-            f" In the farthest, one parameter differs by {100 * max(apart):.0f} %."
-        )
+        ours.append(f"{near} of {len(of_model)} fits similar, the closest to {100 * min(apart):.1f} % ({words})")
     return wl.CheckedClaim(
-        statement="The corrected parameters are those that make the local USFD reproduce the global one.",
+        theirs="The corrected parameters are those that make the local USFD reproduce the global one.",
         where="Section 5.2, Table 4",
-        criterion="All parameters are similar to those of a least-squares fit. The paper states neither range nor"
-        f" measure, so the fits go up to {', '.join(f'{highest:g}' for highest in HIGHEST)} % creepage, each by"
-        " absolute and by relative differences. Holds in part if some of the fits are similar.",
-        found="\n\n".join(found),
+        ours="; ".join(ours),
         verdict=verdict(parts),
+        why="The paper states neither range nor measure of its fit, on which the parameters depend.",
     )
 
 

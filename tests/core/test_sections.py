@@ -25,7 +25,7 @@ LAB = """
     def highest(study):
         rate = float(study.sweep("creepage")["wear_rate"].max())
         verdict = "holds" if rate < 60.0 else "does not hold"
-        claim = wl.CheckedClaim("It wears little.", "section 3", "Below 60.", f"It reaches {rate:.1f}.", verdict)
+        claim = wl.CheckedClaim("It wears little.", "section 3", f"It reaches {rate:.1f}.", verdict, "Below 60.")
         return wl.Section("Highest", "One paragraph.", claims=(claim,))
 
     def warned(study):
@@ -107,7 +107,7 @@ def test_a_study_holds_the_sections_in_the_order_of_the_case(install: Install) -
     rate = float(study.sweeps["creepage"]["wear_rate"].max())
     assert rate > 60.0
     found = f"It reaches {rate:.1f}."
-    assert claim == wl.CheckedClaim("It wears little.", "section 3", "Below 60.", found, "does not hold")
+    assert claim == wl.CheckedClaim("It wears little.", "section 3", found, "does not hold", "Below 60.")
     assert study.sections[0].text == "It has 5 pairs."
     assert run(case()).sections == ()
 
@@ -116,7 +116,7 @@ def test_a_study_holds_the_sections_in_the_order_of_the_case(install: Install) -
 def test_a_claim_has_one_of_four_verdicts(verdict: Any) -> None:
     message = "verdict: must be one of 'holds', 'holds in part', 'does not hold', 'cannot be decided', got "
     with pytest.raises(wl.InputError, match=f"{message}{verdict!r}"):
-        wl.CheckedClaim("It wears little.", "section 3", "Below 60.", "It reaches 55.", verdict)
+        wl.CheckedClaim("It wears little.", "section 3", "It reaches 55.", verdict, "Below 60.")
 
 
 def test_a_section_that_changes_its_tables_changes_no_others(install: Install) -> None:

@@ -1,14 +1,9 @@
-"""The paper of Tassini et al. (2010) by the formulas and integrals of tests/reference.py, and helpers for its claims.
-
-A number in a claim is right if it is the expected one in the digits that it shows.
-"""
+"""The paper of Tassini et al. (2010) by the formulas and integrals of tests/reference.py."""
 
 from __future__ import annotations
 
-import dataclasses
 import functools
 import math
-import re
 from collections.abc import Callable
 from typing import Any
 
@@ -49,10 +44,6 @@ def mean_speed(creepage: float) -> float:
 
 ROLLING_SPEEDS: dict[Any, Callable[[float], float]] = {"disc_1": mean_speed, "mean": lambda _: SPEED}
 """V [m/s] at a creepage [%], by whose surface speed the rig keeps; the rig of the paper keeps that of disc 1."""
-
-
-KEPT: dict[Any, str] = {"disc_1": "if disc 1 keeps its speed", "mean": "if the mean does"}
-"""What the claims say of these."""
 
 
 def point(creepage: float, load: float = LOAD, kept: str = "disc_1") -> reference.Point:
@@ -108,11 +99,6 @@ def kth_of(creepage: float, k: tuple[float, ...] = KTH_MID) -> float:
 K = {"low": (300e-4, 1e-4, 30e-4, 1e-4), "mid": KTH_MID, "high": (400e-4, 10e-4, 40e-4, 10e-4)}
 
 
-def numbers(text: str, before: str) -> list[str]:
-    """Return the number that follows each occurrence of some words."""
-    return re.findall(re.escape(before) + r"\s*([+-]?\d+(?:\.\d+)?)", text)
-
-
 def densities(model: str, creepage: Array, cells: int) -> Array:
     """Return q·s [N/mm²] at the middles of uniform cells, of shape (creepages, cells)."""
     a = np.sqrt(4.0 * LOAD * RADIUS / (np.pi * MODULUS))
@@ -128,38 +114,6 @@ def densities(model: str, creepage: Array, cells: int) -> Array:
     bound = FRICTION * 2.0 * LOAD / (np.pi * a) * np.sqrt(1.0 - (x / a) ** 2)
     slip = np.where(c > 0.0, k * np.sqrt(np.maximum((x + a - c) ** 2 - c**2, 0.0)), xi + k * x)
     return np.where(x < 2.0 * c - a, 0.0, bound * slip) / 1e6
-
-
-def paragraph(claim: wl.CheckedClaim, start: str) -> wl.CheckedClaim:
-    """Return a claim with only the paragraph of its findings that begins with `start`."""
-    (found,) = (text for text in claim.found.split("\n\n") if text.startswith(start))
-    return dataclasses.replace(claim, found=found)
-
-
-def assert_says(claim: wl.CheckedClaim, before: str, *expected: float, slack: float = 0.0) -> None:
-    """The numbers after these words are the expected ones, to half of their last digit."""
-    found = numbers(claim.found, before)
-    assert len(found) == len(expected), (before, claim.found)
-    for text, value in zip(found, expected, strict=True):
-        last_digit = 10.0 ** -len(text.partition(".")[2])
-        assert abs(float(text) - value) <= 0.5001 * last_digit + slack, (text, value, claim.found)
-
-
-def assert_shares_at(claim: wl.CheckedClaim, share: Callable[[float], float], *creepages: float) -> None:
-    """Each "SHARE % at CREEPAGE %" is the expected one."""
-    for creepage in creepages:
-        (text,) = re.findall(rf"([+-]?\d+(?:\.\d+)?) %\)? at {creepage:g} %", claim.found)[:1]
-        last_digit = 10.0 ** -len(text.partition(".")[2])
-        assert abs(float(text) - 100.0 * share(creepage)) <= 0.5001 * last_digit, (creepage, claim.found)
-
-
-def assert_extreme(claim: wl.CheckedClaim, share: Callable[[float], float], pattern: str) -> float:
-    """The greatest share in a claim, and where it is, are met by the reference within a step of the creepages."""
-    ((text, where),) = re.findall(pattern, claim.found)
-    last_digit = 10.0 ** -len(text.partition(".")[2])
-    around = [100.0 * share(float(where) + step) for step in np.linspace(-STEP, STEP, 9)]
-    assert min(around) - 0.5 * last_digit <= float(text) <= max(around) + 0.5 * last_digit, (text, around)
-    return float(where)
 
 
 def exact_force(creepage: float) -> float:

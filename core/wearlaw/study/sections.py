@@ -22,21 +22,21 @@ VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 @dataclass(frozen=True)
 class CheckedClaim:
-    """A claim of the literature, tested against computed numbers.
+    """A claim of the literature beside computed results: a row of a table.
 
     Attributes
     ----------
-    statement : str
-        The claim.
+    theirs : str
+        What the source claims.
     where : str
         Paper and section.
-    criterion : str
-        Which numbers decide, and how near they must be.
-    found : str
-        The computed result, with numbers and units; blank lines separate paragraphs, such as one for each variant.
+    ours : str
+        The computed result, with numbers and units.
     verdict : {"holds", "holds in part", "does not hold", "cannot be decided"}
         "holds in part": for some variants, or over part of the range. "cannot be decided": it depends on something
         that the source does not state.
+    why : str
+        What decides, or the cause of a difference, in a sentence.
 
     Raises
     ------
@@ -44,11 +44,11 @@ class CheckedClaim:
         If the verdict is none of these.
     """
 
-    statement: str
+    theirs: str
     where: str
-    criterion: str
-    found: str
+    ours: str
     verdict: Verdict
+    why: str
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
