@@ -261,7 +261,7 @@ def test_a_wrong_shape_ends_the_run_of_the_checks(install_model: InstallModel) -
     install_model(Pairs)
     result = wearlaw("check", "pairs", "--option", "slope=1 m")
     first, second, last = result.stdout.splitlines()
-    assert first.startswith("FAILED rate_has_the_shape_of_the_nodes: rates of shape ")
+    assert first.startswith("FAILED rate_has_the_right_shape: rates of shape ")
     assert second == "ok exemptions_are_claims"
     assert re.fullmatch(r"1 ok, 1 failed, 3\d not run, 0 not claimed", last)
     assert result.exit_code == 1

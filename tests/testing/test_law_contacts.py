@@ -10,7 +10,7 @@ import pytest
 
 import wearlaw as wl
 from tests.testing.wrong_contacts import WrongBatchShape
-from tests.testing.wrong_law_nodes import Memory, PairOfPoints
+from tests.testing.wrong_law_nodes import PairOfPoints
 from tests.testing.wrong_laws import SLOPE, Linear, Raises
 from wearlaw.testing import checks
 from wearlaw.testing.examples import _examples
@@ -137,8 +137,7 @@ class ByTheBound(Linear):
 @pytest.mark.parametrize("law", [Behind(), ByTheBound()], ids=lambda law: type(law).__name__)
 def test_a_law_may_branch_by_position_and_by_the_traction_bound(law: wl.WearLaw) -> None:
     for check in checks(law):
-        if not check.name.startswith("round_trip"):
-            check()
+        check()
 
 
 class ByTemperature(Linear):
@@ -168,18 +167,10 @@ def test_a_law_of_the_nodes_gets_lines_strips_and_means() -> None:
     assert axes == {(2, False), (3, False), (3, True)}
 
 
-def test_each_check_has_a_law_of_its_own() -> None:
-    law = Memory()
-    for check in checks(law):
-        if check.name in ("rate_is_finite", "no_slip_no_wear"):
-            check()
-    assert not law._calls
-
-
 @pytest.mark.parametrize(
     ("model", "of_shape", "message"),
     [
-        (PairOfPoints(), "rate_has_the_shape_of_the_nodes", "rates of shape"),
+        (PairOfPoints(), "rate_has_the_right_shape", "rates of shape"),
         (WrongBatchShape(), "contact_has_the_shape_of_the_problem", "on a line: "),
     ],
     ids=["law", "contact_model"],
@@ -193,7 +184,7 @@ def test_a_wrong_shape_ends_the_run(model: Any, of_shape: str, message: str) -> 
             outcomes[check.name] = error
     assert not isinstance(outcomes.pop(of_shape), NotRunError)
     assert all(isinstance(error, NotRunError) for error in outcomes.values())
-    assert len(outcomes) > 30
+    assert len(outcomes) > 15
     reasons = {str(error) for error in outcomes.values()}
     assert len(reasons) == 1
     assert reasons.pop().startswith(f"not run, since the model returns a wrong shape: {message}")
@@ -202,7 +193,7 @@ def test_a_wrong_shape_ends_the_run(model: Any, of_shape: str, message: str) -> 
 def test_a_model_that_raises_has_no_wrong_shape() -> None:
     found = {check.name: check for check in checks(Raises())}
     with pytest.raises(AssertionError, match="the model raised ZeroDivisionError: no slip"):
-        found["rate_has_the_shape_of_the_nodes"]()
+        found["rate_has_the_right_shape"]()
     with pytest.raises(AssertionError, match="the model raised ZeroDivisionError: no slip"):
         found["no_slip_no_wear"]()
     found["declared_names_are_variables"]()

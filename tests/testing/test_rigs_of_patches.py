@@ -44,7 +44,9 @@ class Sticky(Axle):
         return found.replaced(dims=PATCHES, exists=exists)
 
 
-@pytest.mark.parametrize(("rig", "broken"), [(Unlifted, "conditions_broadcast"), (Sticky, "arrays_equal_single_calls")])
+@pytest.mark.parametrize(
+    ("rig", "broken"), [(Unlifted, "arrays_equal_single_calls"), (Sticky, "arrays_equal_single_calls")]
+)
 def test_mistakes_in_the_axes_of_patches_are_found(rig: type[wl.Rig], broken: str) -> None:
     failing = []
     for check in checks(rig()):

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-from typing import Annotated, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
-from pydantic import Field
 
 import wearlaw as wl
 from tests.testing.wrong_laws import SLOPE, Linear
@@ -174,49 +172,6 @@ class UnknownVariable(Linear):
         return {"temperature": (0.0, 1.0)}
 
 
-class Undocumented(Linear):
-    """A field without unit."""
-
-    slope: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = Field(
-        default="5 ug/m/N", validate_default=True, description="Slope"
-    )
-
-
-class NoSource(Linear):
-    """No source."""
-
-    source: ClassVar[str] = " "
-
-
-class LosesField(Linear):
-    """Writes no parameter, so that the reader takes the default."""
-
-    slope: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = Field(
-        default="5 ug/m/N", validate_default=True, exclude=True, description="Slope [kg/m/N]."
-    )
-
-
-class LosesFieldInJSON(LosesField):
-    """The same, for JSON."""
-
-
-class FieldWithoutDocstring(Linear):
-    """A field without a docstring."""
-
-    extra: int = 1
-
-
-class Unpicklable(Linear):
-    """Holds a function in what is pickled."""
-
-    @cached_property
-    def cached(self) -> Any:
-        return lambda: None
-
-    def __reduce__(self) -> Any:
-        return self.cached, ()
-
-
 class BandUpsideDown(Linear):
     """The low end wears most."""
 
@@ -259,7 +214,7 @@ CAUGHT: dict[type[wl.WearLaw], str] = {
     SmallHiddenJump: "rate_jumps_only_where_declared",
     JumpElsewhere: "rate_jumps_only_where_declared",
     JumpThatIsNone: "declared_jumps_exist",
-    JumpWithoutBreakpoint: "jumps_are_breakpoints",
+    JumpWithoutBreakpoint: "declared_jumps_exist",
     HiddenKink: "rate_has_kinks_only_where_declared",
     SmallHiddenKink: "rate_has_kinks_only_where_declared",
     KinkElsewhere: "rate_has_kinks_only_where_declared",
@@ -272,12 +227,6 @@ CAUGHT: dict[type[wl.WearLaw], str] = {
     FallsWithSpeed: "is_monotone_as_declared",
     FallsDespiteDeclaration: "is_monotone_as_declared",
     UnknownVariable: "declared_names_are_variables",
-    Undocumented: "model_is_documented",
-    NoSource: "model_is_documented",
-    LosesField: "round_trip_through_toml",
-    LosesFieldInJSON: "round_trip_through_json",
-    FieldWithoutDocstring: "json_schema_is_complete",
-    Unpicklable: "round_trip_through_pickle",
     BandUpsideDown: "band_is_ordered",
     UnknownClaim: "exemptions_are_claims",
     NoReason: "exemptions_are_claims",

@@ -132,39 +132,12 @@ class LeaksBetweenPoints(Spoilt):
         return times(contact, 1.0 - 1e-6 * (np.abs(problem.spin) < np.abs(problem.spin).max()))
 
 
-class TurnsTheProblem(Spoilt):
-    """Doubles the spin in place."""
-
-    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-        np.multiply(problem.spin, 2.0, out=problem.spin)
-        return contact
-
-
-CALLS: list[int] = []
-
-
-class SofterEachTime(Spoilt):
-    """Softer with each call."""
-
-    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-        CALLS.append(1)
-        return times(contact, 1.0 - 1e-12 * len(CALLS))
-
-
 class SinglePrecisionForces(Strips):
     """The forces are rounded to single precision."""
 
     def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
         forces = super().creep_forces(problem)
         return dataclasses.replace(forces, longitudinal=forces.longitudinal.astype(np.float32).astype(np.float64))
-
-
-class FirstPatchForAll(Spoilt):
-    """With one axis of operating points, all slip as the first."""
-
-    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-        one_axis = len(problem.batch_shape) == 1
-        return contact.replaced(slip_x=np.broadcast_to(contact.slip_x[0], contact.x.shape)) if one_axis else contact
 
 
 class WeakerBrakes(Spoilt):
@@ -262,10 +235,7 @@ CAUGHT: dict[Any, str] = {
     SumOfForces: "magnitudes_are_those_of_the_vectors",
     SlipsAgainstLateralTraction: "no_node_gains_energy",
     LeaksBetweenPoints: "batch_equals_loop",
-    TurnsTheProblem: "problem_is_not_changed",
-    SofterEachTime: "solutions_agree_to_the_bit",
     SinglePrecisionForces: "solution_is_in_double_precision",
-    FirstPatchForAll: "wear_laws_run_on_the_ellipse",
     WeakerBrakes: "forces_are_odd_in_the_creepages",
     LeftIsNotRight: "forces_are_mirrored_with_the_creepages",
     AlwaysWears: "zero_creepage_gives_nothing",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -62,14 +62,6 @@ class MissingUnit(Linear):
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return 1e-9 * float(self.slope.magnitude) * contact.wear_index_density
-
-
-class WholePascals(Linear):
-    """A millionth more where the pressure is a whole number of pascals."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        whole = (contact.pressure > 0) & (contact.pressure == np.rint(contact.pressure))
-        return SLOPE * contact.wear_index_density * np.where(whole, 1.0 + 1e-6, 1.0)
 
 
 def _arrays(w: Any) -> Any:
@@ -137,43 +129,12 @@ class PlainMean(Linear):
         return np.broadcast_to(SLOPE * contact.wear_index_density.mean(axis=-1, keepdims=True), contact.slip.shape)
 
 
-class ChangesInput(Linear):
-    """Takes the magnitude of the slip in place."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        np.abs(contact.slip, out=contact.slip)
-        return SLOPE * np.abs(contact.traction) * np.abs(contact.slip)
-
-
 class NaNAtCorner(Linear):
     """Divides zero by zero where the pressure is zero."""
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         with np.errstate(all="ignore"):
             return SLOPE * contact.wear_index_density * (contact.pressure / contact.pressure)
-
-
-CALLS: list[int] = []
-
-
-class KeepsState(Linear):
-    """Wears more with each call."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        CALLS.append(1)
-        return SLOPE * contact.wear_index_density * (1.0 + 1e-9 * len(CALLS))
-
-
-BUFFER: dict[tuple[int, ...], Any] = {}
-
-
-class ReusesBuffer(Linear):
-    """Returns the same array again."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        buffer = BUFFER.setdefault(contact.slip.shape, np.empty(contact.slip.shape))
-        buffer[...] = SLOPE * contact.wear_index_density
-        return buffer
 
 
 class SinglePrecision(Linear):
@@ -197,31 +158,6 @@ class WrongShape(Linear):
         return SLOPE * contact.wear_index_density.mean(axis=-1)
 
 
-class FlattensMemory(Linear):
-    """Reads the memory of an array in its order."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        return SLOPE * contact.wear_index_density.ravel(order="K").reshape(contact.slip.shape)
-
-
-class IntegerArithmetic(Linear):
-    """Fills an array of the type of the input."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        rate = np.zeros_like(contact.pressure)
-        rate[...] = SLOPE * contact.wear_index_density
-        return rate
-
-
-class PatchOnCells(Linear):
-    """States that it is for the whole patch, but takes cells."""
-
-    scale: ClassVar[Literal["patch", "any"]] = "patch"
-
-    def __ror__(self, contact: wl.Contact) -> wl.LocalWear:
-        return wl.LocalWear(contact, self.checked_rate(contact), self.outcome)
-
-
 class Raises(Linear):
     """Refuses a corner."""
 
@@ -243,14 +179,6 @@ class BranchesInPython(Linear):
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return (p["slope"] if p["slope"] < 1e-6 else 1e-6) * contact.wear_index_density
-
-
-class ChangesNumbers(Linear):
-    """Makes the slope steeper for the next call."""
-
-    def rate(self, contact: wl.Contact, p: Any) -> Any:
-        rate, p["slope"] = p["slope"] * contact.wear_index_density, p["slope"] * (1.0 + 1e-9)
-        return rate
 
 
 class BreakpointOfItself(Linear):
@@ -281,32 +209,24 @@ CAUGHT: dict[type[wl.WearLaw], str] = {
     ReadsItself: "parameters_may_vary",
     BranchesInPython: "parameters_may_vary",
     BreakpointOfItself: "parameters_may_vary",
-    ChangesNumbers: "inputs_are_not_changed",
     OneForAll: "parameters_may_vary",
     AxisOfPoints: "parameters_may_vary",
     WrongSign: "rate_is_never_negative",
     SignedSlip: "rate_is_never_negative",
-    ForwardOnly: "sign_of_creepage_does_not_matter",
+    ForwardOnly: "direction_of_creepage_does_not_matter",
     Offset: "no_slip_no_wear",
     MissingUnit: "units_of_parameters_do_not_matter",
-    WholePascals: "units_of_conditions_do_not_matter",
     KernelDiffers: "acceleration_does_not_matter",
     TwelveDigits: "precision_is_double",
     NodeOrder: "order_of_nodes_does_not_matter",
     BatchLeak: "batching_does_not_matter",
     NeighbourLeak: "each_node_wears_by_itself",
     CountsNodes: "splitting_a_node_does_not_matter",
-    PlainMean: "nodes_without_area_do_not_matter",
-    ChangesInput: "inputs_are_not_changed",
+    PlainMean: "splitting_a_node_does_not_matter",
     NaNAtCorner: "rate_is_finite",
-    KeepsState: "calls_agree_to_the_bit",
-    ReusesBuffer: "calls_agree_to_the_bit",
     SinglePrecision: "precision_is_double",
     ReturnsSingle: "precision_is_double",
-    WrongShape: "rate_has_the_shape_of_the_nodes",
-    FlattensMemory: "memory_layout_does_not_matter",
-    IntegerArithmetic: "integer_input_does_not_matter",
-    PatchOnCells: "scale_is_respected",
+    WrongShape: "rate_has_the_right_shape",
     Raises: "no_slip_no_wear",
 }
 """The check that must catch each."""

@@ -2,41 +2,12 @@
 
 from __future__ import annotations
 
-import json
-from typing import Any
-
 import numpy as np
-import pint
 
 from wearlaw.contact.contact import LAW_VARIABLES, PATCH_VARIABLES, Contact
-from wearlaw.models.contact_model import Model
 from wearlaw.models.law import Law
-from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.testing.law_contacts import for_each_contact
 from wearlaw.testing.sampling import forward
-
-
-def model_is_documented(model: Model) -> None:
-    """The class has a name, a docstring of its own and a source; each field has a docstring with its unit."""
-    cls = type(model)
-    assert isinstance(getattr(cls, "name", None), str), "the class has no name"
-    assert cls.name.isidentifier(), f"the name must be an identifier, got {cls.name!r}"
-    assert (cls.__doc__ or "").strip(), f"{cls.__name__} has no docstring"
-    assert str(getattr(cls, "source", "")).strip(), f"{cls.__name__} names no source"
-    for name, description in field_docstrings(cls).items():
-        assert description.strip(), f"the field '{name}' has no docstring"
-        if isinstance(getattr(model, name), (float, pint.Quantity)):
-            assert "[" in description, f"the docstring of the field '{name}' names no unit, such as [N/m²] or [-]"
-
-
-def json_schema_is_complete(model: Model) -> None:
-    """The class has a JSON Schema, with a description of each field, that can be written as JSON."""
-    schema: dict[str, Any] = json.loads(json.dumps(type(model).model_json_schema()))
-    properties = schema.get("properties", {})
-    for name, field in type(model).model_fields.items():
-        key = field.alias or name
-        assert key in properties, f"the schema lacks the field '{key}'"
-        assert properties[key].get("description"), f"the schema does not describe the field '{key}'"
 
 
 def declared_names_are_variables(law: Law) -> None:
@@ -72,5 +43,4 @@ def band_is_ordered(law: Law) -> None:
     for_each_contact(law, examine)
 
 
-COMMON = (model_is_documented, json_schema_is_complete)
 OF_LAWS = (declared_names_are_variables, band_is_ordered)

@@ -28,20 +28,18 @@ from wearlaw.testing import (
     law_branches,
     law_checks,
     law_shape,
-    patch_laws,
     rig_checks,
     stage_checks,
     unit_checks,
 )
 from wearlaw.testing.examples import ModelRaisedError, as_failure
-from wearlaw.testing.roundtrip import RoundTrip
 from wearlaw.testing.shapes import Claims
 
 CheckFunction: TypeAlias = Callable[..., None]
 
 TestFunction = TypeVar("TestFunction", bound="Callable[[Check], None]")
 
-COMMON: tuple[CheckFunction, ...] = (*declarations.COMMON, *unit_checks.CHECKS)
+COMMON: tuple[CheckFunction, ...] = (unit_checks.units_of_parameters_do_not_matter,)
 """Checks of every model."""
 
 OF_CONTACTS = (contact_nodes, contact_checks, contact_force, contact_limits, contact_energy, contact_fields)
@@ -53,8 +51,7 @@ CLAIMS: Claims = {
 """Claims of contact models that have a name of their own, with their checks; any other claim is the name of a check."""
 
 OF_SHAPES = (
-    law_shape.rate_has_the_shape_of_the_nodes,
-    patch_laws.value_has_the_shape_of_the_batch,
+    law_shape.rate_has_the_right_shape,
     contact_checks.contact_has_the_shape_of_the_problem,
 )
 """Checks without which no other check is run: arrays of a wrong shape may broadcast, and fill the memory."""
@@ -64,7 +61,6 @@ FOR_ANY_MODEL = frozenset(
     function.__name__
     for function in (
         *OF_SHAPES,
-        law_shape.runtime_takes_the_rate,
         law_shape.rate_is_finite,
         law_shape.rate_is_never_negative,
         contact_checks.contact_is_finite,
@@ -76,7 +72,8 @@ FOR_ANY_MODEL = frozenset(
         rig_checks.problem_has_the_shape_of_the_conditions,
         rig_checks.units_of_conditions_are_checked,
         rig_checks.values_that_are_no_numbers_are_refused,
-        *unit_checks.CHECKS,
+        unit_checks.units_of_conditions_do_not_matter,
+        *COMMON,
     )
 )
 """Checks of shape, finite values, sign and units, from which no model can be exempt, whatever its theory."""
@@ -143,9 +140,7 @@ def checks(model: Model) -> Iterator[Check]:
             f"{model.kind} '{model.name}': `exemptions` names {', '.join(held)}, which must hold for any {model.kind};"
             " take them out, and correct the model if a check fails"
         )
-    trip = RoundTrip(model)
-    ways = {f"round_trip_{way.__name__}": way for way in (trip.through_toml, trip.through_json, trip.through_pickle)}
-    known = [*(function.__name__ for function in functions), *ways]
+    known = [function.__name__ for function in functions]
     left_out = {function.__name__ for function in idle}
     for claim in model.exemptions:
         left_out |= {function.__name__ for function in CLAIMS.get(claim, ())} or {claim}
@@ -162,9 +157,6 @@ def checks(model: Model) -> Iterator[Check]:
         if function.__name__ not in left_out:
             yield _check(function.__name__, function, partial(shape.run, function))
     yield _check(exemptions_are_claims.__name__, exemptions_are_claims, exemptions_are_claims)
-    for name, way in ways.items():
-        if name not in left_out:
-            yield _check(name, way, partial(shape.run, way))
 
 
 def conformance(
@@ -235,14 +227,12 @@ class _Shape:
         self.of_shape = next((function for function in functions if function in OF_SHAPES), None)
 
     def run(self, function: Callable[..., None]) -> None:
-        """Run a check on a new instance of the model; a round trip has its own."""
+        """Run a check on a new instance of the model."""
         if function is self.of_shape and self.failure is not None:
             raise self.failure
         if self.failure is not None and not isinstance(self.failure, ModelRaisedError):
             raise NotRunError(f"not run, since the model returns a wrong shape: {self.failure}")
-        if inspect.ismethod(function):
-            function()
-        elif function is not self.of_shape:
+        if function is not self.of_shape:
             function(self.model.model_copy())
 
     @cached_property
@@ -279,16 +269,19 @@ def _of_rig(rig: Rig) -> tuple[list[CheckFunction], list[CheckFunction]]:
     # Several patches have creepages of their own, which are in proportion to no condition.
     one = rig.creepage in rig_checks.varied(rig) and not rig_checks.makes_several_patches(rig)
     idle = [] if one else [*rig_checks.OF_CREEPAGE]
-    return [*rig_checks.CHECKS, *rig_checks.OF_CREEPAGE, *COMMON], idle
+    functions = [*rig_checks.CHECKS, *rig_checks.OF_CREEPAGE, unit_checks.units_of_conditions_do_not_matter]
+    return [*functions, *COMMON], idle
 
 
 def _of_patch_law(law: Law) -> tuple[list[CheckFunction], list[CheckFunction]]:
-    idle = [law_shape.rate_is_never_negative] if law.outcome.signed else []
-    return [*patch_laws.CHECKS, *law_shape.OF_ANY_LAW, *COMMON], idle
+    idle: list[CheckFunction] = [law_shape.rate_is_never_negative] if law.outcome.signed else []
+    idle += law_checks.OF_NODES_OF_ANY_LAW if law.scale == "patch" else ()
+    functions = [*law_shape.OF_ANY_LAW, *law_checks.OF_ANY_LAW, *law_checks.OF_NODES_OF_ANY_LAW]
+    return [*functions, law_branches.precision_is_double, *COMMON], idle
 
 
 def _of_law(law: Law) -> tuple[list[CheckFunction], list[CheckFunction]]:
-    idle = [*(law_checks.OF_SEVERAL_NODES if law.scale == "patch" else law_checks.OF_THE_PATCH)]
+    idle: list[CheckFunction] = [*law_checks.OF_SEVERAL_NODES] if law.scale == "patch" else []
     if not isinstance(law, WearLaw):
         idle += [*law_shape.OF_WEAR, declarations.band_is_ordered]
         idle += [law_shape.no_slip_no_wear] * (not law.zero_in_stick)
@@ -315,7 +308,7 @@ def _of_contact_model(model: ContactModel) -> tuple[list[CheckFunction], list[Ch
     if type(model).on_strips is ContactModel.on_strips or "ellipse" not in model.geometries():
         idle += contact_energy.OF_STRIPS
     if not isinstance(model, LineContactModel):
-        idle += [*contact_energy.OF_FIELDS, *contact_fields.OF_FIELDS]
+        idle += contact_fields.OF_FIELDS
     else:
         if type(model).crossings is LineContactModel.crossings:
             idle += contact_fields.OF_CROSSINGS
