@@ -20,8 +20,7 @@ from wearlaw.errors import UNWRITABLE
 from wearlaw.figures.curves import FigureData
 from wearlaw.pipeline.notes import grouped
 from wearlaw.report.interactive import plotly_figure
-from wearlaw.report.main_result import main_figure, main_result
-from wearlaw.report.sentences import sentences
+from wearlaw.report.main_result import main_figure, main_result, main_table
 from wearlaw.report.tables import Cell, cell, models, parameters, profiles, summaries
 from wearlaw.study.sections import VERDICTS, CheckedClaim, Verdict
 from wearlaw.study.study import Study, used
@@ -47,8 +46,9 @@ def report(study: Study, case_text: str) -> str:
         case_text=case_text,
         claims=claims,
         counted=counted,
-        sentences=sentences(main),
         main_figure=first,
+        main_table=main_table(main),
+        main_sweep=main.name,
         figures=[figure for figure in study.figures if figure is not first],
         summaries=[*summaries(study), *profiles(study)],
         parameters=parameters(study),
