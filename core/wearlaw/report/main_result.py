@@ -1,4 +1,4 @@
-"""The main result of a study: the outcomes of its first sweep, with the figure and the table at the head of the report."""
+"""The main result of a study: outcomes of the first sweep, with the figure and the table that a report begins with."""
 
 from __future__ import annotations
 

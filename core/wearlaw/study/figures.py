@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray
 
-from wearlaw.figures.coinciding import united
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.models.law import WEAR
 from wearlaw.study.figure_kinds import (
@@ -31,7 +30,6 @@ from wearlaw.study.figure_kinds import (
     whole_maps,
 )
 from wearlaw.study.figure_spec import ACROSS, BY_PATCH, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
-from wearlaw.study.jumps import with_jumps
 from wearlaw.study.measured import known_variables, measured_points
 from wearlaw.study.results import (
     Patch,
@@ -166,9 +164,6 @@ def _figure(results: Results, name: str, spec: FigureSpec, title: str) -> Figure
     else:
         heads = [text for condition, text in fixed.items() if condition in grid.axes()]
         panels = [_panel(results, spec, window, axis, heads, units) for window in spec.windows()]
-        several = is_of_patches(results.sweeps[spec.sweep] if spec.sweep else results.profiles[spec.profile or ""])
-        if not several and all(len(window.shown) == 1 for window in spec.windows()):
-            panels = list(united(panels))  # lines of several variables or patches stay apart
     head, conditions = results.case.title, ", ".join(fixed.values())
     below = ", ".join(text for text in fixed.values() if text not in heads)
     return FigureData(
@@ -237,7 +232,7 @@ def _over_sweep(results: Results, spec: FigureSpec, window: Window, axis: str) -
     sweep = results.sweeps[spec.sweep or ""]
     curves: list[Curve] = []
     for patch, line in lines_of(sweep, spec, window, axis):
-        found = _of_patch(results, line, spec, window, axis)
+        found = _of_patch(results, line, spec, window)
         if spec.x == BY_PATCH:
             step = TOGETHER / len(found) if found else 0.0
             beside = step * (np.arange(len(found)) - 0.5 * (len(found) - 1))
@@ -262,7 +257,7 @@ def _coloured(curves: list[Curve], patch: Patch, dataset: xarray.Dataset) -> lis
     ]
 
 
-def _of_patch(results: Results, line: xarray.Dataset, spec: FigureSpec, window: Window, axis: str) -> list[Curve]:
+def _of_patch(results: Results, line: xarray.Dataset, spec: FigureSpec, window: Window) -> list[Curve]:
     """Return the curves of a line along an axis of a sweep."""
     shown = window.shown
     models = spec.contact_models or line.contact_model.values.tolist()
@@ -270,13 +265,7 @@ def _of_patch(results: Results, line: xarray.Dataset, spec: FigureSpec, window: 
     for y in shown:
         if "pair" in line[y].dims:
             pairs = predicting(results, y, spec.pairs or line.pair.values.tolist())
-            found = [_outcome(results, line, spec.x, shown, y, pair) for pair in pairs]
-            if spec.sweep and axes_of(line) and not is_of_patches(line):
-                found = [
-                    with_jumps(results, spec.sweep, axis, spec.x, y, pair, curve)
-                    for pair, curve in zip(pairs, found, strict=True)
-                ]
-            curves += found
+            curves += [_outcome(results, line, spec.x, shown, y, pair) for pair in pairs]
         else:
             alike = None if "contact_model" in line[y].dims or "contact_model" in line[spec.x].dims else 1
             curves += [_of_contact(results, line, spec.x, shown, y, model, alike) for model in models[:alike]]
