@@ -7,6 +7,7 @@ covers no curve.
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
@@ -19,7 +20,6 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from wearlaw.figures.curves import OUTSIDE, head_of_legend, in_parts, lone_points, shows_outside
-from wearlaw.figures.texts import drawable, warn_of_boxes, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,23 +72,17 @@ TICKS = 3
 """Fewest labelled ticks on a logarithmic axis."""
 
 
-def draw(figure: FigureData, warn: bool = False) -> Figure:
-    """Draw a figure: panels in rows of two, an odd first panel over a whole row.
-
-    Letters that no installed font has become boxes, and with `warn` a warning names them.
-    """
-    if warn:
-        warn_of_boxes([figure])
-    figure, families = drawable(figure)
+def draw(figure: FigureData) -> Figure:
+    """Draw a figure: panels in rows of two, an odd first panel over a whole row."""
     count = len(figure.panels)
     cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
     rows: Any = [cells[start : start + 2] for start in range(0, len(cells), 2)]
     heights = [max(_height(figure.panels[cell], WIDTH / len(set(row))) for cell in row) for row in rows]
-    title = wrapped(figure.title, TITLE_LETTERS)
-    conditions = wrapped(figure.conditions, LETTERS)
+    title = textwrap.wrap(figure.title, TITLE_LETTERS)
+    conditions = textwrap.wrap(figure.conditions, LETTERS)
     head = TITLE * len(title) + LINE * len(conditions) + 0.08
     height = 0.9 + head + sum(heights)
-    with mpl.rc_context(STYLE | {"font.family": families}):
+    with mpl.rc_context(STYLE):
         drawn = Figure(figsize=(WIDTH, height), layout="constrained")
         engine: Any = drawn.get_layout_engine()
         engine.set(rect=(0.0, 0.0, 1.0, 1.0 - head / height))
@@ -159,7 +153,7 @@ def _fill(axes: Axes, panel: Panel, styles: Styles, letters: int) -> None:
         else:
             _plot(axes, curve, style_of(curve, styles))
     axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label))
-    axes.set_title(_literal("\n".join(wrapped(panel.title, letters))))
+    axes.set_title(_literal("\n".join(textwrap.wrap(panel.title, letters))))
     axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
     if panel.map is not None:
         _borders(axes, panel.map)
