@@ -92,12 +92,12 @@ def test_axes_have_the_units_of_the_case(given: dict[str, Any], label: str, ends
         assert (line[:, 0].min(), line[:, 0].max()) == pytest.approx(ends, rel=1e-14)
 
 
-def test_shades_stand_where_the_limit_is_in_the_units_of_the_case() -> None:
+def test_the_strip_stands_where_the_limit_is_in_the_units_of_the_case() -> None:
     study = ran(normal_force=LOADS)
     axes = one(study, "own_wear_rate_over_normal_force")
-    first = next(patch for patch in axes.patches if patch.get_label() == "beyond first yield")
+    first = next(patch for patch in axes.patches if patch.get_label() == "beyond shakedown")
     sweep = study.sweeps["own"]
-    beyond = (sweep.max_pressure > sweep.first_yield).any("contact_model").values
+    beyond = (sweep.max_pressure > sweep.shakedown_limit).any("contact_model").values
     newtons = 1000.0 * sweep.normal_force.values
     assert newtons[~beyond].max() < first.get_x() < newtons[beyond].min()  # type: ignore[attr-defined]
 

@@ -4,7 +4,7 @@ Line styles stand for contact models. Colours stand for laws in figures of their
 or where several are shown, and otherwise for contact models too. If the rig makes several patches, colours stand for
 patches, line styles for what is shown of each, and values keep their signs. Bands show the published range of a law's
 parameters. Two long axes of a sweep also make a map, and a single operating point makes bars. Parts of curves outside
-the range of their law are thin and pale, and parts of panels beyond first yield or shakedown are shaded.
+the range of their law are thin and pale, and a strip along the x axis shows where the contact is beyond shakedown.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ from wearlaw.study.results import (
     possible_patches,
     predicting,
 )
-from wearlaw.study.shades import all_over, lines_of, over_limits, shade_in, values_of
+from wearlaw.study.shades import beyond_shakedown, beyond_shakedown_in_patch, lines_of, shade_in, values_of
 from wearlaw.units.variables import UNITS, label, name_of
 
 if TYPE_CHECKING:
@@ -170,7 +170,7 @@ def _figure(results: Results, name: str, spec: FigureSpec, title: str) -> Figure
         name=name,
         title=title,
         panels=tuple(panels),
-        caption=spec.caption or f"At {conditions}.{more}{_hint(results, spec, panels)}",
+        caption=spec.caption or f"At {conditions}.{more}{_hint(results, spec, panels)}{_of_strip(panels)}",
         conditions=f"{head}: {below}" if below else head,
     )
 
@@ -182,15 +182,15 @@ def _panel(
     units, x = results.case.result_units, spec.x
     if spec.sweep:
         curves = _over_sweep(results, spec, window, axis)
-        shades = over_limits(results, spec, window, axis)
+        shades = beyond_shakedown(results, spec, window, axis)
         if x != BY_PATCH and units[x] != shown_units[x]:
             curves = [replace(curve, x=converted(curve.x, units[x], shown_units[x])) for curve in curves]
-            shades = [shade_in(shade, units[x], shown_units[x]) for shade in shades]
+            shades = tuple(shade_in(shade, units[x], shown_units[x]) for shade in shades)
         units = {**units, x: shown_units.get(x, "")}
     else:
         profile = results.profiles[spec.profile or ""]
         curves = _of_profile(results, profile, spec, window)
-        shades = all_over(profile, spec, window, curves)
+        shades = beyond_shakedown_in_patch(profile, spec, window, curves)
         if "y" in profile:
             x, body = "y", _body(results, window)
             units = units | {name: profile[f"{body}_{name}"].attrs["units"] for name in window.shown}
@@ -201,6 +201,13 @@ def _panel(
     y_axis = _y_axis(x_axis, window, curves, units)
     title = ", ".join(filter(None, (window.title, *heads)))
     return Panel(x_axis, y_axis, curves=tuple(curves), title=title, shades=tuple(seen))
+
+
+def _of_strip(panels: list[Panel]) -> str:
+    """Return what a strip along the x axis means."""
+    if not any(panel.shades for panel in panels):
+        return ""
+    return " Above the grey strip the contact is beyond shakedown: see First yield and shakedown, theory.md."
 
 
 def _hint(results: Results, spec: FigureSpec, panels: list[Panel]) -> str:
