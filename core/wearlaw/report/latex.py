@@ -37,7 +37,7 @@ def latex_table(frame: pd.DataFrame, footnotes: Iterable[str] = ()) -> str:
     shown = pd.DataFrame([[cell(value) for value in row] for row in frame.itertuples(index=False, name=None)])
     shown = shown.reindex(columns=range(frame.shape[1]))
     heads = [_guarded(escaped(str(head))) for head in frame.columns]
-    style = shown.style.hide(axis="index").format_index(lambda number: heads[number], axis="columns")
+    style = shown.style.hide(axis="index").format_index(lambda number: heads[int(str(number))], axis="columns")
     tabular = style.to_latex(column_format=_columns(frame), hrules=True)
     below = (rf"\par{{\footnotesize {escaped(note)}}}" for note in footnotes)
     return "\n".join([r"% \usepackage{booktabs}", tabular.rstrip("\n"), *below]) + "\n"

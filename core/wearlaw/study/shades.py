@@ -74,7 +74,9 @@ def beyond_shakedown(results: Results, spec: FigureSpec, window: Window, axis: s
     spans: list[tuple[float, float]] = []
     for _, line in lines_of(sweep, spec, window, axis):
         beyond = beyond_limits(line).get(SHAKEDOWN)
-        for model in dict.fromkeys(models if beyond is not None else ()):
+        if beyond is None:
+            continue
+        for model in dict.fromkeys(models):
             x = values_of(line, spec.x, model)
             shown = (x > 0.0) | (window.x_scale != "log")
             spans += spans_of(x[shown], beyond.sel(contact_model=model).values[shown])
