@@ -23,9 +23,6 @@ VALUE, PATH, LINE, LINES = 100, 400, 1000, 50
 _CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
 """Characters that steer a terminal, break a line, reverse the direction of the text after them, or are none at all."""
 
-UNWRITABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
-"""Characters that no text of a user may have: they stand for no letter, and formats of files do without them."""
-
 
 def printable(text: str, kept: str = "") -> str:
     """Return a text with its control characters written as Python writes them in a repr, except those to be kept."""

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
 
 from tests.core.cases import case
-from wearlaw.figures.coinciding import SAME
 from wearlaw.figures.curves import Curve, FigureData, Panel
 from wearlaw.study.study import Study, run
 
@@ -32,20 +30,8 @@ def one_panel(figure: FigureData) -> Panel:
 
 
 def by_label(panel: Panel) -> dict[str, Curve]:
-    """Return the curves of a panel by each of the names in their labels: one line stands for all that coincide."""
-    return {name: curve for curve in panel.curves for name in re.split(" [=≈] ", curve.label)}
+    return {curve.label: curve for curve in panel.curves}
 
 
 def assert_shows(curve: Curve, x: Any, y: Any) -> None:
     np.testing.assert_array_equal((curve.x, curve.y), (x, y))
-
-
-def assert_passes(curve: Curve, x: Any, y: Any) -> None:
-    """Check that a curve passes through points in their order; it may have more of them at jumps.
-
-    Where one line stands for several, their values are the same to the rounding of their integrals.
-    """
-    x, y = np.asarray(x), np.asarray(y)
-    here = [int(abs(curve.x - value).argmin()) for value in x]
-    assert here == sorted(set(here))
-    np.testing.assert_allclose((curve.x[here], curve.y[here]), (x, y), rtol=SAME if "=" in curve.label else 0.0)

@@ -16,8 +16,8 @@ from tests.core import cases
 from tests.core.cases import case
 from tests.core.panels import by_label, by_name
 from wearlaw import Q
-from wearlaw.figures.curves import OUTSIDE, Curve, FigureData, Panel, PlotAxis, Shade, in_parts
-from wearlaw.figures.drawing import PALE, SHADES, THIN, draw
+from wearlaw.figures.curves import OUTSIDE, STRIP, Curve, FigureData, Panel, PlotAxis, Shade, in_parts
+from wearlaw.figures.drawing import PALE, THIN, draw
 from wearlaw.report.interactive import plotly_figure
 from wearlaw.report.latex import latex_table
 from wearlaw.report.page import report
@@ -154,25 +154,23 @@ def test_curves_are_marked_where_the_law_is_outside(study: Study) -> None:
 
 
 @pytest.mark.parametrize("name", ["load_wear_rate_over_max_pressure", "creepage_traction_over_creepage"])
-def test_panels_are_shaded_where_the_contact_of_any_model_is_beyond_a_limit(study: Study, name: str) -> None:
-    (panel,) = by_name(study)[name].panels
+def test_a_strip_shows_where_the_contact_of_any_model_is_beyond_shakedown(study: Study, name: str) -> None:
+    figure = by_name(study)[name]
+    (panel,) = figure.panels
     sweep = study.sweeps[name.partition("_")[0]]
-    assert [(shade.label, shade.level) for shade in panel.shades] == [
-        ("beyond first yield", 1),
-        ("beyond shakedown", 2),
-    ]
-    for shade, limit in zip(panel.shades, ("first_yield", "shakedown_limit"), strict=True):
-        beyond = (sweep.max_pressure > sweep[limit]).any("contact_model").values
-        x = panel.curves[0].x
-        shaded = [any(low <= value <= high for low, high in shade.spans) for value in x]
-        assert shaded == beyond.tolist()
-        assert 0 < beyond.sum() < beyond.size
+    (shade,) = panel.shades
+    assert (shade.label, shade.strip) == ("beyond shakedown", True)
+    beyond = (sweep.max_pressure > sweep.shakedown_limit).any("contact_model").values
+    shaded = [any(low <= value <= high for low, high in shade.spans) for value in panel.curves[0].x]
+    assert shaded == beyond.tolist()
+    assert 0 < beyond.sum() < beyond.size
+    assert figure.caption.endswith("beyond shakedown: see First yield and shakedown, theory.md.")
 
 
-def test_the_figure_of_one_operating_point_is_shaded_all_over(study: Study) -> None:
+def test_the_strip_of_one_operating_point_is_as_long_as_the_patch(study: Study) -> None:
     for panel in by_name(study)["partial_slip_along_the_patch"].panels:
         ends = min(curve.x.min() for curve in panel.curves), max(curve.x.max() for curve in panel.curves)
-        assert [shade.spans for shade in panel.shades] == [(ends,), (ends,)]
+        assert [shade.spans for shade in panel.shades] == [(ends,)]
 
 
 def test_an_elastic_case_is_not_shaded() -> None:
@@ -236,8 +234,8 @@ MARKED = FigureData(
             PlotAxis("y [-]"),
             (Curve("a", X, X, colour=1, outside=OUT), Curve("b", X, 2.0 * X)),
             shades=(
-                Shade("beyond first yield", 1, ((1.5, 2.0), (2.5, 4.0))),
-                Shade("beyond shakedown", 2, ((3.0, 4.0),)),
+                Shade("most of the samples", ((1.5, 2.0), (2.5, 4.0))),
+                Shade("beyond shakedown", ((3.0, 4.0),), strip=True),
             ),
         ),
     ),
@@ -266,9 +264,9 @@ def test_in_print_the_part_outside_is_thin_and_pale_and_shades_are_grey() -> Non
     spans = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in axes.patches]  # type: ignore[attr-defined]
     assert spans == [(1.5, 2.0), (2.5, 4.0), (3.0, 4.0)]
     assert all(patch.get_zorder() < line.get_zorder() for patch in axes.patches for line in axes.get_lines())
-    assert len(SHADES) == 2
+    assert [patch.get_height() for patch in axes.patches] == [1.0, 1.0, STRIP]  # type: ignore[attr-defined]
     names = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert names == ["a", "b", "beyond first yield", "beyond shakedown", OUTSIDE]
+    assert names == ["a", "b", "most of the samples", "beyond shakedown", OUTSIDE]
 
 
 def test_on_the_page_the_part_outside_is_thin_and_pale_and_shades_are_below() -> None:
@@ -280,11 +278,12 @@ def test_on_the_page_the_part_outside_is_thin_and_pale_and_shades_are_below() ->
     assert (outside["line"]["width"], outside["opacity"]) == (THIN, PALE)
     assert outside["legendgroup"] == inside["legendgroup"]
     assert [(trace["name"], trace["showlegend"]) for trace in (inside, outside, *others)] == [
-        ("a", True), ("a", False), ("beyond first yield", True), ("beyond shakedown", True), (OUTSIDE, True),
+        ("a", True), ("a", False), ("most of the samples", True), ("beyond shakedown", True), (OUTSIDE, True),
     ]  # fmt: skip
     shapes = drawn["layout"]["shapes"]
     assert [(shape["x0"], shape["x1"]) for shape in shapes] == [(1.5, 2.0), (2.5, 4.0), (3.0, 4.0)]
     assert {(shape["layer"], shape["yref"], shape["xref"]) for shape in shapes} == {("below", "y domain", "x")}
+    assert [shape["y1"] for shape in shapes] == [1, 1, STRIP]
 
 
 @pytest.mark.parametrize("ends", [(1.0, 2.0), None])

@@ -1,8 +1,7 @@
-"""Figures of a case of one's own, as they are drawn: units, words, jumps, lines that coincide, one point and maps."""
+"""Figures of a case of one's own, as they are drawn: units, words, one point and maps."""
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
 import numpy as np
@@ -10,17 +9,13 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import case
-from wearlaw import Q
 from wearlaw.errors import ConfigurationError
-from wearlaw.figures.coinciding import united
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.drawing import draw
 from wearlaw.report.interactive import plotly_figure
 from wearlaw.report.main_result import main_figure, main_result
-from wearlaw.study.jumps import jumps_of
 from wearlaw.study.study import Study, run
 
 ROLLERS: dict[str, Any] = {
@@ -97,12 +92,12 @@ def test_axes_have_the_units_of_the_case(given: dict[str, Any], label: str, ends
         assert (line[:, 0].min(), line[:, 0].max()) == pytest.approx(ends, rel=1e-14)
 
 
-def test_shades_stand_where_the_limit_is_in_the_units_of_the_case() -> None:
+def test_the_strip_stands_where_the_limit_is_in_the_units_of_the_case() -> None:
     study = ran(normal_force=LOADS)
     axes = one(study, "own_wear_rate_over_normal_force")
-    first = next(patch for patch in axes.patches if patch.get_label() == "beyond first yield")
+    first = next(patch for patch in axes.patches if patch.get_label() == "beyond shakedown")
     sweep = study.sweeps["own"]
-    beyond = (sweep.max_pressure > sweep.first_yield).any("contact_model").values
+    beyond = (sweep.max_pressure > sweep.shakedown_limit).any("contact_model").values
     newtons = 1000.0 * sweep.normal_force.values
     assert newtons[~beyond].max() < first.get_x() < newtons[beyond].min()  # type: ignore[attr-defined]
 
@@ -143,75 +138,6 @@ def test_titles_of_several_sweeps_name_the_sweep() -> None:
     sweeps = {"dry_run": {**AT, "creepage": ["1 %", "2 %"]}, "wet": {**AT, "creepage": ["1 %", "3 %"]}}
     found = [figure.get_suptitle() for figure in drawings(ran(sweeps=sweeps)).values()]
     assert found[:2] == ["Wear rate over wear index Tγ (dry run)", "Wear rate over creepage (dry run)"]
-
-
-# Jumps, and lines that coincide
-
-SLOW = {"from": "1 %", "to": "19 %", "points": 7}
-
-
-@pytest.mark.parametrize("x", ["creepage", "wear_index"])
-def test_a_jump_of_a_law_is_drawn_where_it_is_and_upright(x: str) -> None:
-    """KTH jumps at a slip speed of 0.2 m/s, 10 % creepage at 2 m/s; BRR at 200 N, 12.5 % of 1600 N."""
-    study = ran(creepage=SLOW)
-    axes = one(study, f"own_wear_rate_over_{x}")
-    width = np.ptp(axes.get_xlim())
-    for label, at in (("kth on global", 10.0), ("brr on global", 12.5)):
-        points = lines(axes)[label]
-        steps = np.diff(points, axis=0)
-        jump = int(abs(steps[:, 1]).argmax())
-        assert steps[jump, 0] < 1e-5 * width
-        assert points[jump, 0] == pytest.approx(at if x == "creepage" else 16.0 * at, rel=1e-5)
-        creepages = points[:, 0] if x == "creepage" else points[:, 0] / 16.0
-        assert (np.diff(creepages) > 0.0).all()
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", wl.WearlawWarning)
-            rates = study.pair(label).pipeline(**{**AT, "creepage": Q(creepages, "%")}).wear_rate
-        # Rounding decides on which side of the jump the law is at the jump itself.
-        far = np.abs(creepages - at) > 1e-4
-        np.testing.assert_allclose(points[far, 1], rates.to("ug/m/mm^2").magnitude[far], rtol=1e-12)
-
-
-def test_the_band_jumps_with_its_law() -> None:
-    axes = one(ran(creepage=SLOW), "own_wear_rate_over_creepage")
-    (band,) = axes.collections
-    corners = np.asarray(band.get_paths()[0].vertices)
-    there = abs(corners[:, 0] - 10.0) < 1e-4
-    assert len(np.unique(np.round(corners[there, 1], 3))) >= 4, "two ends before the jump, two behind it"
-
-
-def test_a_law_without_jumps_has_the_points_of_the_sweep_alone() -> None:
-    study = ran(creepage=SLOW)
-    points = lines(one(study, "own_wear_rate_over_creepage"))["usfd on global"]
-    np.testing.assert_array_equal(points[:, 0], study.sweeps["own"].creepage)
-
-
-def test_lines_that_coincide_are_one_line_with_the_names_of_all() -> None:
-    study = ran(("global", "exact"), wear_laws=["usfd", "kth"], creepage={"from": "2 %", "to": "5 %", "points": 4})
-    found = drawings(study)
-    traction = found["own_traction_over_creepage"].axes[0]
-    assert [*lines(traction)] == ["global = exact"]
-    (axes,) = found["own_wear_rate_over_creepage"].axes
-    names = [*lines(axes)]
-    assert sorted(" = ".join(names).replace(" ≈ ", " = ").split(" = ")) == sorted(study.sweeps["own"].pair.values)
-    shapes = list(lines(axes).values())
-    high = np.ptp(axes.get_ylim())
-    for number, first in enumerate(shapes):
-        for second in shapes[:number]:
-            assert np.abs(first[:, 1] - second[:, 1]).max() > 0.004 * high, "no line covers another"
-
-
-def test_lines_that_only_cover_each_other_are_not_called_equal() -> None:
-    x = np.linspace(0.0, 1.0, 11)
-    curves = tuple(
-        wl.Curve(label, x, x * factor) for label, factor in (("a", 1.0), ("b", 1.0 + 1e-9), ("c", 1.001), ("d", 1.1))
-    )
-    (panel,) = united([wl.Panel(wl.PlotAxis("x"), wl.PlotAxis("y"), curves)])
-    assert [curve.label for curve in panel.curves] == ["a ≈ b ≈ c", "d"]
-    (panel,) = united([wl.Panel(wl.PlotAxis("x"), wl.PlotAxis("y"), (*curves[:2], curves[3]))])
-    assert [curve.label for curve in panel.curves] == ["a = b", "d"]
-    apart = wl.Panel(wl.PlotAxis("x"), wl.PlotAxis("y"), (curves[0], wl.Curve("b", x, 2.0 * x)))
-    assert [len(one.curves) for one in united([panel, apart])] == [2, 2], "in one of two panels they differ"
 
 
 # Stresses at the edges of the patch
@@ -328,23 +254,6 @@ def test_the_main_figure_of_two_axes_is_a_map_that_the_first_screen_has_room_for
     assert figure.caption.endswith("Only the pairs with global are shown; the tables hold all.")
     small = ran(wear_laws=["usfd", "kth"], **both)
     assert any(main_figure(main_result(small)) is one for one in small.figures), "the study's own map, shown once"
-
-
-def test_jumps_are_looked_for_once_for_all_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    sought: list[int] = []
-
-    def counted(points: Any, *others: Any) -> Any:
-        sought.append(points.size)
-        return jumps_of(points, *others)
-
-    monkeypatch.setattr("wearlaw.study.jumps.jumps_of", counted)
-    study = ran(wear_laws=["kth"], creepage={"from": "1 %", "to": "60 %", "points": 7})
-    shown = [one for one in study.figures if "wear_rate" in one.name]
-    assert len(shown) == 2
-    assert sought == [7]
-    assert all(one.panels[0].curves[0].x.size > 7 for one in shown), "both have the jump"
-    main_figure(main_result(study))
-    assert sought == [7]
 
 
 def test_hollow_markers_are_explained_in_both_drawings() -> None:

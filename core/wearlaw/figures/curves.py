@@ -95,15 +95,19 @@ class Shade:
     ----------
     label : str
         Its name in the legend.
-    level : int
-        How dark it is, from 1.
     spans : tuple of (float, float)
         Ends of each span along the x axis.
+    strip : bool
+        Whether it is a thin strip along the x axis; otherwise it is as high as the panel.
     """
 
     label: str
-    level: int
     spans: tuple[tuple[float, float], ...]
+    strip: bool = False
+
+
+STRIP = 0.025
+"""Height of a strip along the x axis, as a share of the panel."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +142,7 @@ class PlotAxis:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """A pair of axes with its curves and shades; a darker shade lies over a lighter one.
+    """A pair of axes with its curves and shades.
 
     With `equal`, a length in x is as long as in y, as for the shape of a body. A map lies below the curves.
     """

@@ -7,6 +7,7 @@ covers no curve.
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
@@ -18,14 +19,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from wearlaw.figures.curves import OUTSIDE, head_of_legend, in_parts, lone_points, shows_outside
-from wearlaw.figures.texts import drawable, warn_of_boxes, wrapped
+from wearlaw.figures.curves import OUTSIDE, STRIP, head_of_legend, in_parts, lone_points, shows_outside
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
 
-    from wearlaw.figures.curves import Curve, FigureData, Map, Panel, PlotAxis
+    from wearlaw.figures.curves import Curve, FigureData, Map, Panel, PlotAxis, Shade
 
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 LINES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (9, 3)), (0, (6, 1.5, 1, 1.5, 1, 1.5)), (0, (3, 3, 1, 3, 1, 3)))
@@ -58,8 +58,8 @@ TITLE_LETTERS, LETTERS = 72, 105
 """Letters of the title, and of the conditions, that fit across a figure."""
 PANEL_LETTERS = 76
 """Letters of the title of a panel that fit across a figure."""
-SHADES = ("#f7f7f7", "#ececec")
-"""Greys of the levels of shades."""
+SHADE, STRIP_GREY = "#ececec", "#8c8c8c"
+"""Greys of a shade as high as a panel, and of a strip along its x axis."""
 BAND, EDGE = 0.07, 0.4
 """Opacity of a band and of its edges."""
 THIN, PALE = 0.8, 0.6
@@ -72,23 +72,17 @@ TICKS = 3
 """Fewest labelled ticks on a logarithmic axis."""
 
 
-def draw(figure: FigureData, warn: bool = False) -> Figure:
-    """Draw a figure: panels in rows of two, an odd first panel over a whole row.
-
-    Letters that no installed font has become boxes, and with `warn` a warning names them.
-    """
-    if warn:
-        warn_of_boxes([figure])
-    figure, families = drawable(figure)
+def draw(figure: FigureData) -> Figure:
+    """Draw a figure: panels in rows of two, an odd first panel over a whole row."""
     count = len(figure.panels)
     cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
     rows: Any = [cells[start : start + 2] for start in range(0, len(cells), 2)]
     heights = [max(_height(figure.panels[cell], WIDTH / len(set(row))) for cell in row) for row in rows]
-    title = wrapped(figure.title, TITLE_LETTERS)
-    conditions = wrapped(figure.conditions, LETTERS)
+    title = textwrap.wrap(figure.title, TITLE_LETTERS)
+    conditions = textwrap.wrap(figure.conditions, LETTERS)
     head = TITLE * len(title) + LINE * len(conditions) + 0.08
     height = 0.9 + head + sum(heights)
-    with mpl.rc_context(STYLE | {"font.family": families}):
+    with mpl.rc_context(STYLE):
         drawn = Figure(figsize=(WIDTH, height), layout="constrained")
         engine: Any = drawn.get_layout_engine()
         engine.set(rect=(0.0, 0.0, 1.0, 1.0 - head / height))
@@ -152,14 +146,14 @@ def _fill(axes: Axes, panel: Panel, styles: Styles, letters: int) -> None:
     for shade in panel.shades:
         for number, (low, high) in enumerate(shade.spans):
             label = "_" if number else _literal(shade.label)
-            axes.axvspan(low, high, color=SHADES[shade.level - 1], lw=0, zorder=0, label=label)
+            axes.axvspan(low, high, 0.0, STRIP if shade.strip else 1.0, color=_grey(shade), lw=0, zorder=0, label=label)
     for curve in panel.curves:
         if curve.bars:
             _bars(axes, curve, panel)
         else:
             _plot(axes, curve, style_of(curve, styles))
     axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label))
-    axes.set_title(_literal("\n".join(wrapped(panel.title, letters))))
+    axes.set_title(_literal("\n".join(textwrap.wrap(panel.title, letters))))
     axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
     if panel.map is not None:
         _borders(axes, panel.map)
@@ -174,6 +168,10 @@ def _fill(axes: Axes, panel: Panel, styles: Styles, letters: int) -> None:
             _label_ticks(drawn)
     if panel.equal:
         axes.set_aspect("equal", adjustable="box")
+
+
+def _grey(shade: Shade) -> str:
+    return STRIP_GREY if shade.strip else SHADE
 
 
 def _ends(axis: PlotAxis) -> Any:
@@ -326,8 +324,8 @@ def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
             label = str(artist.get_label())
             if not label.startswith("_") and label not in named_by_axis:
                 entries[label] = artist
-        for shade in panel.shades:  # the lightest grey needs an edge to be seen
-            entries[_literal(shade.label)] = Patch(facecolor=SHADES[shade.level - 1], edgecolor="0.6", linewidth=0.5)
+        for shade in panel.shades:
+            entries[_literal(shade.label)] = Patch(facecolor=_grey(shade), edgecolor="0.6", linewidth=0.5)
         for number, (label, region) in enumerate(panel.map.borders.items() if panel.map else ()):
             if region.any() and not region.all():
                 entries[label] = Line2D([], [], color="black", linewidth=1.2, linestyle=LINES[number % len(LINES)])

@@ -14,4 +14,4 @@ def plot(figure: FigureData) -> Figure:
     """Draw a figure with `wearlaw.figures.drawing.draw`."""
     from wearlaw.figures.drawing import draw
 
-    return draw(figure, warn=True)
+    return draw(figure)

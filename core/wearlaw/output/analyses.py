@@ -13,7 +13,6 @@ from typing import Any
 import pandas as pd
 
 from wearlaw.figures.curves import FigureData, FigureFormat
-from wearlaw.figures.texts import warn_of_boxes
 from wearlaw.fitting.comparison import Comparison
 from wearlaw.fitting.result import Fit
 from wearlaw.models.law import Law
@@ -147,7 +146,6 @@ def _write(
     with writing():
         names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
         if figure is not None:
-            warn_of_boxes([figure])
             names += save_figure(figure, folder, figure.name, figure_formats)
         text = json.dumps(record, indent=2, ensure_ascii=False)
         (folder / marker).write_text(text + "\n", encoding="utf-8")
@@ -185,7 +183,6 @@ def write_uncertainty(
             figure = one.uncertainty.figure_data()
             name = name_of(one.uncertainty.outcomes[0])
             figures.append(replace(figure, title=f"{name[:1].upper()}{name[1:]} by {one.pair.label}: {one.point}"))
-        warn_of_boxes(figures)
         for file, figure in zip(figure_files(found.pairs), figures, strict=True):
             names += save_figure(figure, folder, file, figure_formats)
         for name, text in files.items():

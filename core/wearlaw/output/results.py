@@ -18,7 +18,6 @@ import xarray
 from wearlaw.errors import OutputError, quoted
 from wearlaw.figures.curves import FigureData, FigureFormat
 from wearlaw.figures.drawing import draw
-from wearlaw.figures.texts import warn_of_boxes
 from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw.report.latex import latex_table
 from wearlaw.report.main_result import main_figure, main_result
@@ -214,7 +213,6 @@ def write_figures(
     first = main_figure(main_result(study))
     own = study.figures if any(one is first for one in study.figures) else (first, *study.figures)
     every = (*own, *(figure for section in study.sections for figure in section.figures))
-    warn_of_boxes(every)
     for name, figure in _by_name("figure", ((figure.name, figure) for figure in every)).items():
         on_stage(f"drawing {name}")
         names += save_figure(figure, folder, os.path.join(FIGURES, name), formats)

@@ -13,11 +13,13 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.figures.curves import (
     OUTSIDE,
+    STRIP,
     Curve,
     FigureData,
     Map,
     Panel,
     PlotAxis,
+    Shade,
     head_of_legend,
     in_parts,
     lone_points,
@@ -104,26 +106,30 @@ def plotly_figure(figure: FigureData) -> Json:
 
 
 def _shapes(panel: Panel, number: str) -> list[Json]:
-    """Return the shades of a panel as rectangles below its curves; where two lie over each other it is darker.
+    """Return the shades of a panel as rectangles below its curves.
 
     plotly.js takes the ends of a rectangle on a logarithmic axis as they are, unlike the ends of the axis.
     """
-    place = {"xref": f"x{number}", "yref": f"y{number} domain", "y0": 0, "y1": 1, "layer": "below"}
-    look = {"type": "rect", "line": {"width": 0}, "fillcolor": _grey(1)}
-    return [{**look, **place, "x0": low, "x1": high} for shade in panel.shades for low, high in shade.spans]
+    place = {"xref": f"x{number}", "yref": f"y{number} domain", "y0": 0, "layer": "below"}
+    look = {"type": "rect", "line": {"width": 0}}
+    return [
+        {**look, **place, "y1": STRIP if shade.strip else 1, "fillcolor": _grey(shade), "x0": low, "x1": high}
+        for shade in panel.shades
+        for low, high in shade.spans
+    ]
 
 
-def _grey(level: int) -> str:
+def _grey(shade: Shade) -> str:
     """Return a translucent grey, for pages on bright and on dark ground."""
-    return f"rgba(128, 128, 128, {0.13 * level:g})"
+    return f"rgba(128, 128, 128, {0.9 if shade.strip else 0.26:g})"
 
 
 def _explained(figure: FigureData) -> list[Json]:
     """Return traces without points that explain shades and thin lines in the legend."""
-    shades = {shade.label: shade.level for panel in figure.panels for shade in panel.shades}
+    shades = {shade.label: shade for panel in figure.panels for shade in panel.shades}
     looks: dict[str, Json] = {
-        label: {"mode": "markers", "marker": {"symbol": "square", "size": 12, "color": _grey(level), "line": EDGED}}
-        for label, level in shades.items()
+        label: {"mode": "markers", "marker": {"symbol": "square", "size": 12, "color": _grey(shade), "line": EDGED}}
+        for label, shade in shades.items()
     }
     if shows_outside(figure):
         looks[OUTSIDE] = {"mode": "lines", "line": {"color": "rgb(128, 128, 128)", "width": THIN}}

@@ -9,17 +9,16 @@ from typing import Any
 
 import pandas as pd
 
-from wearlaw.errors import printable
 from wearlaw.report import tables
 
-_GREEK = {
-    letter: unicodedata.name(letter).rsplit()[-1].replace("LAMDA", "LAMBDA")
-    for letter in "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΦΨΩ"
-}
 _MATHS = {
     "−": "-", "·": r"\cdot", "×": r"\times", "±": r"\pm", "≤": r"\le", "≥": r"\ge", "≠": r"\ne", "≈": r"\approx",
     "∞": r"\infty", "√": r"\surd", "∫": r"\int", "∂": r"\partial", "∝": r"\propto", "→": r"\to", "°": r"^{\circ}",
     "ṡ": r"\dot{s}", "<": "<", ">": ">", "|": "|",
+    **{letter: f"\\{unicodedata.name(letter).rsplit()[-1].lower().replace('lamda', 'lambda')}"
+       for letter in "αβγδεζηθικλμνξπρστυφχψω"},
+    **{letter: f"\\{unicodedata.name(letter).rsplit()[-1].capitalize().replace('Lamda', 'Lambda')}"
+       for letter in "ΓΔΘΛΞΠΣΦΨΩ"},
 }  # fmt: skip
 _TEXT = {
     **{character: f"\\{character}" for character in "&%$#_{}"},
@@ -27,43 +26,28 @@ _TEXT = {
     "–": r"\textendash{}", "—": r"\textemdash{}", "…": r"\dots{}",
     "†": r"\textdagger{}", "‡": r"\textdaggerdbl{}",
 }  # fmt: skip
-_SYMBOLS = str.maketrans(
-    {
-        **{letter: f"$\\{name.lower() if letter.islower() else name.capitalize()}$" for letter, name in _GREEK.items()},
-        **{character: f"${command}$" for character, command in _MATHS.items()},
-        **_TEXT,
-    }
-)
-_RAISED = str.maketrans("⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹", "-+0123456789")
-_LOWERED = str.maketrans("₀₁₂₃₄₅₆₇₈₉ᵢᵣ", "0123456789ir")
-_RAISED_TEXT = re.compile("[⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹]+")
-_LOWERED_TEXT = re.compile("[₀₁₂₃₄₅₆₇₈₉ᵢᵣ]+")
+_SYMBOLS = str.maketrans({**{character: f"${command}$" for character, command in _MATHS.items()}, **_TEXT})
+_SHIFTED = {"superscript": "⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹", "subscript": "₀₁₂₃₄₅₆₇₈₉ᵢᵣ"}
 LONG = 40
 """Letters beyond which a text column wraps."""
 
 
 def latex_table(frame: pd.DataFrame, footnotes: Iterable[str] = ()) -> str:
     """Return a table as a tabular, with the units in the heads of its columns, and footnotes below it."""
-    rows = [[cell(value) for value in row] for row in frame.itertuples(index=False, name=None)]
-    lines = [
-        r"% \usepackage{booktabs}",
-        rf"\begin{{tabular}}{{{_columns(frame)}}}",
-        r"\toprule",
-        _row([escaped(str(head)) for head in frame.columns]),
-        r"\midrule",
-        *(_row(row) for row in rows),
-        r"\bottomrule",
-        r"\end{tabular}",
-        *(rf"\par{{\footnotesize {escaped(note)}}}" for note in footnotes),
-    ]
-    return "\n".join(lines) + "\n"
+    shown = pd.DataFrame([[cell(value) for value in row] for row in frame.itertuples(index=False, name=None)])
+    shown = shown.reindex(columns=range(frame.shape[1]))
+    heads = [_guarded(escaped(str(head))) for head in frame.columns]
+    style = shown.style.hide(axis="index").format_index(lambda number: heads[int(str(number))], axis="columns")
+    tabular = style.to_latex(column_format=_columns(frame), hrules=True)
+    below = (rf"\par{{\footnotesize {escaped(note)}}}" for note in footnotes)
+    return "\n".join([r"% \usepackage{booktabs}", tabular.rstrip("\n"), *below]) + "\n"
 
 
 def cell(value: Any) -> str:
     """Return a value as LaTeX source."""
     shown = tables.cell(value)
     if not shown.number:
-        return escaped(shown.text)
+        return _guarded(escaped(shown.text))
     mantissa = shown.text.replace("inf", r"\infty")
     number = rf"${mantissa} \times 10^{{{shown.power}}}$" if shown.power else f"${mantissa}$"
     return number + escaped(shown.marks)
@@ -71,16 +55,17 @@ def cell(value: Any) -> str:
 
 def escaped(text: str) -> str:
     """Escape a text for LaTeX."""
-    plain = printable(" ".join(text.split()))
-    text = re.sub("-(?=-)", "-{}", plain.translate(_SYMBOLS))  # two hyphens would become a dash
-    text = _RAISED_TEXT.sub(lambda found: rf"\textsuperscript{{{found[0].translate(_RAISED)}}}", text)
-    return _LOWERED_TEXT.sub(lambda found: rf"\textsubscript{{{found[0].translate(_LOWERED)}}}", text)
+    # Two hyphens would become a dash.
+    source = re.sub("-(?=-)", "-{}", " ".join(text.split()).translate(_SYMBOLS))
+    for kind, digits in _SHIFTED.items():
+        plain = str.maketrans({digit: unicodedata.normalize("NFKC", digit).replace("−", "-") for digit in digits})
+        source = re.sub(f"[{digits}]+", lambda run: rf"\text{kind}{{{run[0].translate(plain)}}}", source)  # noqa: B023
+    return source
 
 
-def _row(cells: list[str]) -> str:
-    row = " & ".join(cells)
-    # After the \\ of the line above, LaTeX would read a bracket or star as an option of it.
-    return (r"{}" if row.startswith(("[", "*")) else "") + row + r" \\"
+def _guarded(source: str) -> str:
+    r"""Keep LaTeX from reading a bracket or star as an option of the \\ of the line above."""
+    return "{}" + source if source.startswith(("[", "*")) else source
 
 
 def _columns(frame: pd.DataFrame) -> str:

@@ -1,4 +1,4 @@
-"""The main result of a study: the outcomes of its first sweep, with the figure that the report shows first."""
+"""The main result of a study: outcomes of the first sweep, with the figure and the table that a report begins with."""
 
 from __future__ import annotations
 
@@ -6,11 +6,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray
+from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.figures.curves import FigureData
-from wearlaw.models.law import WEAR
+from wearlaw.models.contact_model import Blame
+from wearlaw.models.law import WEAR, Law
 from wearlaw.pipeline.variables import MASS
 from wearlaw.study.figure_kinds import axes_of_map
 from wearlaw.study.figure_spec import FigureSpec, Scale
@@ -19,15 +22,16 @@ from wearlaw.study.grid import Axis
 from wearlaw.study.results import (
     LIMITS,
     axes_of,
+    beyond_limits,
     main_axis,
     outcomes_of,
     patch_axes,
     predicting,
 )
 from wearlaw.study.study import Study
-from wearlaw.units.quantities import Q, parse
+from wearlaw.units.quantities import Q, from_si, parse
 from wearlaw.units.registry import symbol
-from wearlaw.units.variables import readable
+from wearlaw.units.variables import UNITS, label, name_of, readable
 
 MANY_CURVES = 6
 """Number of curves beyond which the figure shows the pairs of one contact model only."""
@@ -107,6 +111,61 @@ def main_figure(main: MainResult) -> FigureData:
     """Return the figure of the main result: one of the study if it shows the same curves, otherwise a new one."""
     wanted = _drawn(main)
     return next((one for one in main.study.figures if _contents(one) == _contents(wanted)), wanted)
+
+
+def main_table(main: MainResult) -> pd.DataFrame:
+    """Return the least and the most of the outcome of each pair, the borders of its law, and what lies outside."""
+    what = label(main.outcome, units={main.outcome: main.sweep[main.outcome].attrs["units"]})
+    limits = beyond_limits(main.sweep)
+    rows = []
+    for pair in main.pairs:
+        of_pair = main.sweep.sel(pair=pair)
+        values, model = of_pair[main.outcome], main.study.pair(pair).contact_model
+        (law,) = main.study.pair(pair).pipeline.laws
+        known = bool(values.notnull().any())
+        ends = [values.argmin(...), values.argmax(...)] if known else []
+        row: dict[str, Any] = {"pair": pair}
+        for word, end in zip(("least", "most"), ends, strict=False):
+            at = {str(axis): int(place) for axis, place in end.items()}
+            row[f"{word} {what}"] = values.isel(at).item()
+            if at:
+                row[f"{word} at"] = _at(main, at)
+        row["regimes change at"] = _borders(law)
+        row["outside the range"] = _count(of_pair.outside_range.values > 0.0) if law.valid_range else "not known"
+        for limit, words in LIMITS.items():
+            row[words] = _count(limits[limit].sel(contact_model=model).values) if limits else "not known"
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _at(main: MainResult, point: dict[str, int]) -> str:
+    """Return an operating point in words, such as "creepage 1 %"."""
+    shown = []
+    for axis, place in point.items():
+        values, unit = main.along(axis)
+        shown.append(f"{name_of(axis)} {values[place]:.4g} {unit}".rstrip())
+    return ", ".join(shown)
+
+
+def _borders(law: Law) -> str:
+    """Return the borders of the regimes of a law in words; a variable that only the law knows is in SI units."""
+    with Blame(law):
+        borders = law.breakpoints(law.numbers)
+    if borders is None:
+        return "not known"
+    shown = []
+    for name, values in borders.items():
+        unit = UNITS.get(name, "")
+        numbers = ", ".join(f"{from_si(value, unit).magnitude:.4g}" if unit else f"{value:.4g}" for value in values)
+        shown.append(f"{name_of(name)} {numbers} {readable(unit)}".rstrip())
+    return "; ".join(shown) or "none"
+
+
+def _count(mask: NDArray[np.bool_]) -> str:
+    """Return in how many points of a sweep something is so."""
+    if mask.all() or not mask.any():
+        return "everywhere" if mask.all() else "nowhere"
+    return f"{mask.sum()} of {mask.size} points"
 
 
 def _contents(figure: FigureData) -> list[Any]:

@@ -10,18 +10,15 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from plotly.offline import get_plotlyjs
 
-from wearlaw.errors import UNWRITABLE
 from wearlaw.figures.curves import FigureData
 from wearlaw.pipeline.notes import grouped
 from wearlaw.report.interactive import plotly_figure
-from wearlaw.report.main_result import main_figure, main_result
-from wearlaw.report.sentences import sentences
+from wearlaw.report.main_result import main_figure, main_result, main_table
 from wearlaw.report.tables import Cell, cell, models, parameters, profiles, summaries
 from wearlaw.study.sections import VERDICTS, CheckedClaim, Verdict
 from wearlaw.study.study import Study, used
@@ -47,8 +44,9 @@ def report(study: Study, case_text: str) -> str:
         case_text=case_text,
         claims=claims,
         counted=counted,
-        sentences=sentences(main),
         main_figure=first,
+        main_table=main_table(main),
+        main_sweep=main.name,
         figures=[figure for figure in study.figures if figure is not first],
         summaries=[*summaries(study), *profiles(study)],
         parameters=parameters(study),
@@ -64,7 +62,6 @@ def _template() -> Template:
     """Return the template of the page, compiled once: that takes longer than rendering."""
     environment = Environment(
         autoescape=True,
-        finalize=_writable,
         loader=PackageLoader("wearlaw.report"),
         lstrip_blocks=True,
         trim_blocks=True,
@@ -74,12 +71,6 @@ def _template() -> Template:
         cells=cells, heading=_heading, paragraphs=paragraphs, plotly=plotly_figure, spaced=spaced
     )
     return environment.get_template("report.html.j2")
-
-
-def _writable(value: Any) -> Any:
-    """Return a value of the template, without characters that no page has if it is a text from outside."""
-    outside = isinstance(value, str) and not hasattr(value, "__html__")
-    return UNWRITABLE.sub("\N{REPLACEMENT CHARACTER}", value) if outside else value
 
 
 def cells(frame: pd.DataFrame) -> tuple[list[Cell], list[list[Cell]]]:

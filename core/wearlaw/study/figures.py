@@ -4,7 +4,7 @@ Line styles stand for contact models. Colours stand for laws in figures of their
 or where several are shown, and otherwise for contact models too. If the rig makes several patches, colours stand for
 patches, line styles for what is shown of each, and values keep their signs. Bands show the published range of a law's
 parameters. Two long axes of a sweep also make a map, and a single operating point makes bars. Parts of curves outside
-the range of their law are thin and pale, and parts of panels beyond first yield or shakedown are shaded.
+the range of their law are thin and pale, and a strip along the x axis shows where the contact is beyond shakedown.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray
 
-from wearlaw.figures.coinciding import united
 from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.models.law import WEAR
 from wearlaw.study.figure_kinds import (
@@ -31,7 +30,6 @@ from wearlaw.study.figure_kinds import (
     whole_maps,
 )
 from wearlaw.study.figure_spec import ACROSS, BY_PATCH, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
-from wearlaw.study.jumps import with_jumps
 from wearlaw.study.measured import known_variables, measured_points
 from wearlaw.study.results import (
     Patch,
@@ -49,7 +47,7 @@ from wearlaw.study.results import (
     possible_patches,
     predicting,
 )
-from wearlaw.study.shades import all_over, lines_of, over_limits, shade_in, values_of
+from wearlaw.study.shades import beyond_shakedown, beyond_shakedown_in_patch, lines_of, shade_in, values_of
 from wearlaw.units.variables import UNITS, label, name_of
 
 if TYPE_CHECKING:
@@ -166,16 +164,13 @@ def _figure(results: Results, name: str, spec: FigureSpec, title: str) -> Figure
     else:
         heads = [text for condition, text in fixed.items() if condition in grid.axes()]
         panels = [_panel(results, spec, window, axis, heads, units) for window in spec.windows()]
-        several = is_of_patches(results.sweeps[spec.sweep] if spec.sweep else results.profiles[spec.profile or ""])
-        if not several and all(len(window.shown) == 1 for window in spec.windows()):
-            panels = list(united(panels))  # lines of several variables or patches stay apart
     head, conditions = results.case.title, ", ".join(fixed.values())
     below = ", ".join(text for text in fixed.values() if text not in heads)
     return FigureData(
         name=name,
         title=title,
         panels=tuple(panels),
-        caption=spec.caption or f"At {conditions}.{more}{_hint(results, spec, panels)}",
+        caption=spec.caption or f"At {conditions}.{more}{_hint(results, spec, panels)}{_of_strip(panels)}",
         conditions=f"{head}: {below}" if below else head,
     )
 
@@ -187,15 +182,15 @@ def _panel(
     units, x = results.case.result_units, spec.x
     if spec.sweep:
         curves = _over_sweep(results, spec, window, axis)
-        shades = over_limits(results, spec, window, axis)
+        shades = beyond_shakedown(results, spec, window, axis)
         if x != BY_PATCH and units[x] != shown_units[x]:
             curves = [replace(curve, x=converted(curve.x, units[x], shown_units[x])) for curve in curves]
-            shades = [shade_in(shade, units[x], shown_units[x]) for shade in shades]
+            shades = tuple(shade_in(shade, units[x], shown_units[x]) for shade in shades)
         units = {**units, x: shown_units.get(x, "")}
     else:
         profile = results.profiles[spec.profile or ""]
         curves = _of_profile(results, profile, spec, window)
-        shades = all_over(profile, spec, window, curves)
+        shades = beyond_shakedown_in_patch(profile, spec, window, curves)
         if "y" in profile:
             x, body = "y", _body(results, window)
             units = units | {name: profile[f"{body}_{name}"].attrs["units"] for name in window.shown}
@@ -206,6 +201,13 @@ def _panel(
     y_axis = _y_axis(x_axis, window, curves, units)
     title = ", ".join(filter(None, (window.title, *heads)))
     return Panel(x_axis, y_axis, curves=tuple(curves), title=title, shades=tuple(seen))
+
+
+def _of_strip(panels: list[Panel]) -> str:
+    """Return what a strip along the x axis means."""
+    if not any(panel.shades for panel in panels):
+        return ""
+    return " Above the grey strip the contact is beyond shakedown: see First yield and shakedown, theory.md."
 
 
 def _hint(results: Results, spec: FigureSpec, panels: list[Panel]) -> str:
@@ -237,7 +239,7 @@ def _over_sweep(results: Results, spec: FigureSpec, window: Window, axis: str) -
     sweep = results.sweeps[spec.sweep or ""]
     curves: list[Curve] = []
     for patch, line in lines_of(sweep, spec, window, axis):
-        found = _of_patch(results, line, spec, window, axis)
+        found = _of_patch(results, line, spec, window)
         if spec.x == BY_PATCH:
             step = TOGETHER / len(found) if found else 0.0
             beside = step * (np.arange(len(found)) - 0.5 * (len(found) - 1))
@@ -262,7 +264,7 @@ def _coloured(curves: list[Curve], patch: Patch, dataset: xarray.Dataset) -> lis
     ]
 
 
-def _of_patch(results: Results, line: xarray.Dataset, spec: FigureSpec, window: Window, axis: str) -> list[Curve]:
+def _of_patch(results: Results, line: xarray.Dataset, spec: FigureSpec, window: Window) -> list[Curve]:
     """Return the curves of a line along an axis of a sweep."""
     shown = window.shown
     models = spec.contact_models or line.contact_model.values.tolist()
@@ -270,13 +272,7 @@ def _of_patch(results: Results, line: xarray.Dataset, spec: FigureSpec, window: 
     for y in shown:
         if "pair" in line[y].dims:
             pairs = predicting(results, y, spec.pairs or line.pair.values.tolist())
-            found = [_outcome(results, line, spec.x, shown, y, pair) for pair in pairs]
-            if spec.sweep and axes_of(line) and not is_of_patches(line):
-                found = [
-                    with_jumps(results, spec.sweep, axis, spec.x, y, pair, curve)
-                    for pair, curve in zip(pairs, found, strict=True)
-                ]
-            curves += found
+            curves += [_outcome(results, line, spec.x, shown, y, pair) for pair in pairs]
         else:
             alike = None if "contact_model" in line[y].dims or "contact_model" in line[spec.x].dims else 1
             curves += [_of_contact(results, line, spec.x, shown, y, model, alike) for model in models[:alike]]

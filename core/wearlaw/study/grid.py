@@ -211,20 +211,6 @@ class Grid(Configuration, extra="allow"):
         axes = {name: axis.given(axis.values.reshape(shapes[name])) for name, axis in self._axes.items()}
         return {**self.given, **axes}
 
-    def values_along(self, axis: str) -> Array:
-        """Return the values of an axis, in the unit in which the grid gives them."""
-        return self._axes[axis].values
-
-    def conditions_along(self, axis: str, values: Array) -> dict[str, Any]:
-        """Return conditions along an axis at these values, as of `values_along`; other axes are at their middle."""
-        middle = {name: one.given(float(one.values[one.values.size // 2])) for name, one in self._axes.items()}
-        return {**self.given, **middle, axis: self._axes[axis].given(values)}
-
-    def in_units(self, axis: str, values: Array, units: Mapping[str, str]) -> Array:
-        """Return values of an axis, as `values_along`, in the unit of results."""
-        found: Array = _converted(axis, values, self._axes[axis].unit, units[axis])[0]
-        return found
-
     def level(self, name: str, units: Mapping[str, str]) -> float | str:
         """Return the value of a condition in the given unit, or its text; for an axis, its middle value."""
         if name in self._axes:

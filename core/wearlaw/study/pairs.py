@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 from wearlaw.errors import CompositionError, InputError
@@ -30,11 +29,6 @@ class Pair:
     def label(self) -> str:
         """Name of the pair in results."""
         return f"{self.law} on {self.contact_model}"
-
-    @cached_property
-    def jumps(self) -> dict[Any, Any]:
-        """Jumps of the law that were looked for; several figures show the same ones."""
-        return {}
 
     @property
     def outcome(self) -> Outcome:

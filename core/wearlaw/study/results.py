@@ -27,6 +27,9 @@ PATCH_AXES = "patch_axes"
 LIMITS = {"first_yield": "beyond first yield", "shakedown_limit": "beyond shakedown"}
 """The limits of the maximum pressure, with words for a contact beyond them."""
 
+SHAKEDOWN = "shakedown_limit"
+"""The limit beyond which panels have a strip along the x axis."""
+
 
 @dataclass(frozen=True)
 class Results:

@@ -1,4 +1,4 @@
-"""Shaded parts of panels: where the contact is beyond first yield or shakedown, and the lines that panels show."""
+"""Strips along the x axis of panels where the contact is beyond shakedown, and the lines that panels show."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from wearlaw.study.figure_kinds import converted
 from wearlaw.study.figure_spec import BY_PATCH, FigureSpec, Window
 from wearlaw.study.results import (
     LIMITS,
+    SHAKEDOWN,
     Patch,
     Results,
     along,
@@ -62,42 +63,37 @@ def shade_in(shade: Shade, unit: str, shown: str) -> Shade:
     return replace(shade, spans=tuple((float(low), float(high)) for low, high in spans))
 
 
-def over_limits(results: Results, spec: FigureSpec, window: Window, axis: str) -> list[Shade]:
-    """Return where the contact of any model of a panel is beyond its elastic limits, over a sweep."""
+def beyond_shakedown(results: Results, spec: FigureSpec, window: Window, axis: str) -> tuple[Shade, ...]:
+    """Return a strip where the contact of any model of a panel is beyond shakedown, over a sweep."""
     sweep = results.sweeps[spec.sweep or ""]
     models = spec.contact_models or sweep.contact_model.values.tolist()
     if all("pair" in sweep[y].dims for y in window.shown):
         every = sweep.pair.values.tolist()
         pairs = [pair for y in window.shown for pair in predicting(results, y, spec.pairs or every)]
         models = sweep.pair_contact_model.sel(pair=pairs).values.tolist()
-    tracks = [
-        (values_of(line, spec.x, model), {limit: one.sel(contact_model=model).values for limit, one in beyond.items()})
-        for _, line in lines_of(sweep, spec, window, axis)
-        for beyond in (beyond_limits(line),)
-        for model in dict.fromkeys(models)
-    ]
-    shades = []
-    for level, (limit, words) in enumerate(LIMITS.items(), start=1):
-        spans = [span for x, beyond in tracks if limit in beyond for span in spans_of(x, beyond[limit])]
-        if window.x_scale == "log" and spans:
-            positive = np.concatenate([x[x > 0.0] for x, _ in tracks])
-            spans = [(max(low, positive.min()), high) for low, high in spans if high > 0.0]
-        if spans:
-            shades.append(Shade(words, level, tuple(merged(spans))))
-    return shades
+    spans: list[tuple[float, float]] = []
+    for _, line in lines_of(sweep, spec, window, axis):
+        beyond = beyond_limits(line).get(SHAKEDOWN)
+        if beyond is None:
+            continue
+        for model in dict.fromkeys(models):
+            x = values_of(line, spec.x, model)
+            shown = (x > 0.0) | (window.x_scale != "log")
+            spans += spans_of(x[shown], beyond.sel(contact_model=model).values[shown])
+    return (Shade(LIMITS[SHAKEDOWN], tuple(merged(spans)), strip=True),) if spans else ()
 
 
-def all_over(profile: xarray.Dataset, spec: FigureSpec, window: Window, curves: list[Curve]) -> list[Shade]:
-    """Return shades over the whole patch if the contact of any model is beyond its elastic limits."""
-    if not curves:
-        return []
+def beyond_shakedown_in_patch(
+    profile: xarray.Dataset, spec: FigureSpec, window: Window, curves: list[Curve]
+) -> tuple[Shade, ...]:
+    """Return a strip over the whole patch if the contact of any model is beyond shakedown."""
+    beyond = beyond_limits(profile).get(SHAKEDOWN)
     models = list(spec.contact_models or profile.contact_model.values)
+    patches = patches_of(profile, window.patches)
+    if not curves or beyond is None or not any(beyond.sel({"contact_model": models, **one}).any() for one in patches):
+        return ()
     x = np.concatenate([curve.x for curve in curves])
-    return [
-        Shade(LIMITS[limit], level, ((float(x.min()), float(x.max())),))
-        for level, (limit, beyond) in enumerate(beyond_limits(profile).items(), start=1)
-        if any(beyond.sel({"contact_model": models, **patch}).any() for patch in patches_of(profile, window.patches))
-    ]
+    return (Shade(LIMITS[SHAKEDOWN], ((float(x.min()), float(x.max())),), strip=True),)
 
 
 def spans_of(x: Array, beyond: NDArray[np.bool_]) -> Iterator[tuple[float, float]]:

@@ -422,7 +422,7 @@ def _cumulative(uncertainty: Uncertainty) -> Panel:
         Curve(name_of(name), np.quantile(values, share), share),
         Curve("median", np.repeat(median, 2), np.array([0.0, 0.5]), colour=1, dash=1),
     )
-    inside = Shade(f"{CONFIDENCE:.0%} of the samples", 2, ((float(low[0]), float(high[0])),))
+    inside = Shade(f"{CONFIDENCE:.0%} of the samples", ((float(low[0]), float(high[0])),))
     y = PlotAxis("share of the samples below [-]", ends=(0.0, 1.0))
     return Panel(PlotAxis(_label(uncertainty)), y, curves, shades=(inside,))
 
