@@ -40,7 +40,10 @@ def order_of_nodes_does_not_matter(law: Law) -> None:
             count = contact.pressure.shape[axis]
             for order in (np.arange(count)[::-1], np.random.default_rng(count).permutation(count)):
                 listed = partial(np.take, indices=order, axis=axis)
-                found, due = law.rate(_nodes(contact, listed, axis), law.numbers), of_patch(law, _same, listed)(rate)
+                found, due = (
+                    law.rate(_nodes(contact, listed, axis), law.numbers),
+                    rate if law.outcome.of == "patch" else listed(rate),
+                )
                 message = f"the rate with the nodes in the order {order.tolist()}"
                 assert_close(found, due, message, of_patch(law, SUMS, SAME))
 
@@ -91,7 +94,7 @@ def splitting_a_node_does_not_matter(law: Law) -> None:
             parts, share = _nodes(contact, split, axis), np.array([0.25, 0.75, *[1.0] * (count - 1)])
             width = share * parts.strip_width if _of_strips(contact, axis) else parts.strip_width
             parts = parts.replaced(area=share.reshape(-1, *[1] * (-1 - axis)) * parts.area, strip_width=width)
-            found, due = law.rate(parts, law.numbers), of_patch(law, _same, split)(rate)
+            found, due = law.rate(parts, law.numbers), rate if law.outcome.of == "patch" else split(rate)
             assert_close(found, due, "the rate with a node in two parts", of_patch(law, SUMS, SAME))
 
     for_each_of_nodes(law, examine)
@@ -128,10 +131,6 @@ def strips_wear_as_lines_do(law: Law) -> None:
         assert_close(rate, law.rate(line, law.numbers), "the rate on strips, against a line")
 
     for_each_of_nodes(law, examine)
-
-
-def _same(rate: Array) -> Array:
-    return rate
 
 
 def _named(node: tuple[int, ...]) -> str:
