@@ -70,7 +70,7 @@ def test_the_table_of_a_single_point_names_no_place() -> None:
         **{**POINT, "max_pressure": "3 GPa"}
     ).wear_rate
     assert row["least wear rate [µg/m/mm²]"] == row["most wear rate [µg/m/mm²]"] == pytest.approx(rate.magnitude)
-    assert not any(head.endswith(" at") and head != "regimes change at" for head in row)
+    assert not any(str(head).endswith(" at") and head != "regimes change at" for head in row)
     assert row["outside the range"] == row["beyond shakedown"] == "everywhere"
 
 

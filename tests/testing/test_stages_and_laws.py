@@ -199,7 +199,8 @@ class PlainMean(Damage):
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         nodes = tuple(range(contact.rolling_speed.ndim, contact.pressure.ndim))
-        return contact.pressure.mean(axis=nodes) / (p["threshold"] * 1e6)
+        damage: Array = contact.pressure.mean(axis=nodes) / (p["threshold"] * 1e6)
+        return damage
 
 
 class FirstNode(Damage):

@@ -39,7 +39,7 @@ def order_of_nodes_does_not_matter(law: Law) -> None:
         for axis in _axes(contact):
             count = contact.pressure.shape[axis]
             for order in (np.arange(count)[::-1], np.random.default_rng(count).permutation(count)):
-                listed = partial(np.take, indices=order, axis=axis)
+                listed: Callable[[Array], Array] = partial(np.take, indices=order, axis=axis)
                 found, due = (
                     law.rate(_nodes(contact, listed, axis), law.numbers),
                     rate if law.outcome.of == "patch" else listed(rate),
@@ -90,7 +90,7 @@ def splitting_a_node_does_not_matter(law: Law) -> None:
         rate = law.rate(contact, law.numbers)
         for axis in _axes(contact):
             count = contact.pressure.shape[axis]
-            split = partial(np.repeat, repeats=[2, *[1] * (count - 1)], axis=axis)
+            split: Callable[[Array], Array] = partial(np.repeat, repeats=[2, *[1] * (count - 1)], axis=axis)
             parts, share = _nodes(contact, split, axis), np.array([0.25, 0.75, *[1.0] * (count - 1)])
             width = share * parts.strip_width if _of_strips(contact, axis) else parts.strip_width
             parts = parts.replaced(area=share.reshape(-1, *[1] * (-1 - axis)) * parts.area, strip_width=width)
