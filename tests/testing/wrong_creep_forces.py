@@ -48,6 +48,13 @@ class AsideOfTheCreepage(Means):
         return dataclasses.replace(forces, longitudinal=cos * along - sin * across, lateral=cos * across + sin * along)
 
 
+class StepsIntoFullSlipOnTheEllipse(Means):
+    """The force lacks a millionth just below full slip."""
+
+    def factor(self, problem: wl.Problem, reduced: Any) -> Any:
+        return np.where(reduced < 3.0, 1.0 - 1e-6 * (reduced / 3.0) ** 4, 1.0)
+
+
 class TooSoftForSpin(Means):
     """The lateral force of spin is too small by 2 per mille."""
 
@@ -77,6 +84,7 @@ CAUGHT: dict[Any, str] = {
     AboveFrictionOnTheEllipse: "force_stays_below_friction",
     NeverAllFriction: "full_slip_is_reached",
     AsideOfTheCreepage: "full_slip_is_reached",
+    StepsIntoFullSlipOnTheEllipse: "full_slip_is_met_from_both_sides",
     TooSoftForSpin: "initial_slopes_are_kalkers",
     TooStiffAtFirst: "initial_slopes_are_kalkers",
     KnowsMillimetres: "contacts_are_similar",

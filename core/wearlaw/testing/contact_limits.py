@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TypeAlias
+
 import numpy as np
 from hypothesis import strategies as st
 
 from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.testing.examples import SAME, SUM, assert_close, for_each
 from wearlaw.testing.problems import (
+    at_magnitude,
     at_reduced,
     friction_limit,
     random_ellipses,
@@ -17,6 +22,7 @@ from wearlaw.testing.problems import (
     sliding_power,
     translation,
     with_creepage,
+    without_spin,
 )
 from wearlaw.testing.shapes import LINE, Claims, Shape, on_each_shape
 from wearlaw.testing.strategies import log_uniform
@@ -29,6 +35,9 @@ FAR = 100.0
 
 SLOPE = 1e-3
 """Error of initial slopes on an ellipse: half of the last digit of Kalker's coefficients."""
+
+Solved: TypeAlias = Callable[[Array], Contact]
+"""From the reduced creepages of some problems to the contacts."""
 
 
 @on_each_shape
@@ -101,6 +110,51 @@ def full_slip_is_reached(model: ContactModel, shape: Shape) -> None:
 def _cross(first: Array, second: Array) -> Array:
     cross: Array = first[0] * second[1] - first[1] * second[0]
     return cross
+
+
+@on_each_shape
+def full_slip_is_met_from_both_sides(model: ContactModel, shape: Shape) -> None:
+    """Where full slip begins, force and mean slip over creepage have the same limit from both sides, without spin.
+
+    The difference between the sides falls with the distance from full slip at least as its square root, the steepest
+    onset in theories of contact: from 1e-4 to 1e-8 of it, to a hundredth, and on an ellipse hardly more.
+    """
+    problem = without_spin(shape.random(POINTS))
+
+    def solved(reduced: Array) -> Contact:
+        return model.solve(at_magnitude(problem, reduced))
+
+    full = _full_slip(solved, np.full(POINTS, FAR))
+    far, near = (_steps_into_full_slip(solved, full, gap) for gap in (1e-4, 1e-8))
+    error = max(shape.rounding, shape.error_of_sums(model))
+    for name, rounding in (("force", shape.rounding), ("mean slip", error)):
+        wrong = ~(near[name] <= shape.fall * far[name] + 2.0 * rounding)
+        assert not wrong.any(), (
+            f"the {name} jumps by {near[name][wrong].max():.2g} of its value into full slip, at {full[wrong][0]:g} of"
+            f" {shape.unit}"
+        )
+
+
+def _full_slip(solved: Solved, high: Array) -> Array:
+    """Return the least creepages, to rounding, with the same force as at `high` and no stick."""
+    low = np.zeros_like(high)
+    limit = solved(high).tangential_force * (1.0 - SAME)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        contact = solved(middle)
+        reached = (contact.tangential_force >= limit) & (contact.stick_ratio <= SUM)
+        low, high = np.where(reached, low, middle), np.where(reached, middle, high)
+    return high
+
+
+def _steps_into_full_slip(solved: Solved, full: Array, gap: float) -> dict[str, Array]:
+    """Return the relative differences of force and of mean slip over creepage a `gap` below and above full slip."""
+    below, above = (solved(full * (1.0 + side * gap)) for side in (-1.0, 1.0))
+    slip = below.mean_slip / above.mean_slip * (1.0 + gap) / (1.0 - gap)
+    return {
+        "force": np.abs(1.0 - below.tangential_force / above.tangential_force),
+        "mean slip": np.abs(1.0 - slip),
+    }
 
 
 AT_SMALL_CREEPAGES = st.tuples(LINE.problems, log_uniform(1e-9, 1e-4))
@@ -182,7 +236,7 @@ def contacts_are_similar(model: ContactModel, shape: Shape) -> None:
 CLAIMS: Claims = {
     "traction_bound": (traction_keeps_its_bound,),
     "stick": (what_sticks_does_not_slip,),
-    "saturation": (full_slip_is_reached,),
+    "saturation": (full_slip_is_reached, full_slip_is_met_from_both_sides),
     "initial_slope": (initial_slope_is_that_of_the_half_space, initial_slopes_are_kalkers),
     "similarity": (contacts_are_similar,),
 }
