@@ -19,7 +19,7 @@ DEFERRED = {
     ("wearlaw.sweeping.sweep", "wearlaw.sweeping.store"): "zarr takes as long to load as all else",
     ("wearlaw.sweeping.table_files", "pyarrow.parquet"): "is optional",
     ("wearlaw.sweeping.workers", "loky"): "is for several processes alone",
-    ("wearlaw.sweeping.workers", "wearlaw.sweeping.store"): "zarr takes as long to load as all else",
+    ("wearlaw.sweeping.workers", "zarr"): "takes as long to load as all else",
     ("wearlaw.testing.kit", "pytest"): "is not needed to run the checks of the kit",
     ("wearlaw.wear_tests.tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",
     ("wearlaw_wheelset", "wearlaw_wheelset._section"): "is needed for a report alone",

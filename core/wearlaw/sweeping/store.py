@@ -6,7 +6,6 @@ import json
 import shutil
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -24,9 +23,7 @@ from wearlaw.sweeping.points import ITEM, Block, Points, Varying
 from wearlaw.sweeping.provenance import check_same, provenance_of
 from wearlaw.sweeping.results import COMPLETE, INCOMPLETE, attributes, bytes_of, dataset
 from wearlaw.sweeping.room import check_disk
-
-RECORDS = "blocks/record"
-"""Array with the record of each finished block. It is in a group of its own, which xarray leaves alone."""
+from wearlaw.sweeping.workers import RECORDS
 
 CHECKED = Crc32cCodec()
 """Every chunk ends with its CRC-32C, so that a damaged one does not decode."""
@@ -200,14 +197,3 @@ class Store:
         with suppress(OSError):  # Windows keeps a file in use, and removes it afterwards
             Path(self._lock.lock_file).unlink()
         self._lock.release()
-
-
-def write_block(store: str, block: Block, outputs: Outputs, record: BlockRecord) -> None:
-    """Write a block; its record comes last, since it says that the block is finished."""
-    for name, values in outputs.items():
-        array: Any = zarr.open_array(store, path=name, mode="r+").with_config(
-            {"write_empty_chunks": True}
-        )  # NaN is a result
-        shape = tuple(part.stop - part.start for part in block.slices)
-        array[(*block.slices, ...)] = values.reshape(shape + values.shape[1:])
-    zarr.open_array(store, path=RECORDS, mode="r+")[block.number] = json.dumps(asdict(record))

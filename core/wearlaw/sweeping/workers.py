@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import json
 import pickle
 import signal
 import sys
@@ -12,6 +13,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import asdict
 from typing import Any, TypeAlias
 
 from wearlaw.errors import ModelError, SweepError, WorkerWarning, described
@@ -20,6 +22,9 @@ from wearlaw.sweeping.points import Block, Points
 
 Evaluated: TypeAlias = Generator[tuple[Block, Outputs, BlockRecord], None, None]
 """Finished blocks, in any order, with their outputs ({} if they are in a store) and records."""
+
+RECORDS = "blocks/record"
+"""Array with the record of each finished block. It is in a group of its own, which xarray leaves alone."""
 
 AHEAD = 4
 """Blocks submitted for each worker, so that none waits for work."""
@@ -46,10 +51,21 @@ def _evaluated(
     outputs, record = evaluate(job, part, on_block)
     if store is None:
         return outputs, record
-    from wearlaw.sweeping.store import write_block
-
-    write_block(store, block, outputs, record)
+    _write(store, block, outputs, record)
     return {}, record
+
+
+def _write(store: str, block: Block, outputs: Outputs, record: BlockRecord) -> None:
+    """Write a block; its record comes last, since it says that the block is finished."""
+    import zarr
+
+    for name, values in outputs.items():
+        array: Any = zarr.open_array(store, path=name, mode="r+").with_config(
+            {"write_empty_chunks": True}
+        )  # NaN is a result
+        shape = tuple(part.stop - part.start for part in block.slices)
+        array[(*block.slices, ...)] = values.reshape(shape + values.shape[1:])
+    zarr.open_array(store, path=RECORDS, mode="r+")[block.number] = json.dumps(asdict(record))
 
 
 def _evaluated_elsewhere(job: bytes, block: Block, part: Points, store: str | None) -> tuple[Outputs, BlockRecord]:
