@@ -297,8 +297,8 @@ class Balance:
             self.estimated[places.point[again]] = roll[np.searchsorted(rows, places.point[again])]
         kept = separated(places, saddle, self.whole[places.wheel], self.share[places.point])
         self.roll[rows], self.height[rows] = roll, touching.least
-        first = places.part(first)
-        place = Place(*(array.reshape(-1, 2) for array in placed(self.section, first.position, first.arc)))
+        own = places.part(first)
+        place = Place(*(array.reshape(-1, 2) for array in placed(self.section, own.position, own.arc)))
         self.lever[rows] = place.y + place.z * np.tan(place.angle)
         if task.free:
             self.roll_rate[rows] = roll_rate(place, task.lateral_velocity[rows], task.yaw_velocity[rows])
@@ -388,16 +388,16 @@ class Balance:
         rolls = self.task.free and forces is not None
         found._newton(forces, every, rolls)
         left = found.imbalance > ROUGH
-        if left.any() and rolls:
-            found._rolled(forces, left)
-            left &= found.imbalance > ROUGH
-            rows = np.flatnonzero(left)
-            # The level jumps where one of two humps of a patch takes over; as patches of their own they share the load.
-            found.share[rows] = 0.0
-            found.correction[rows] = 0.0
-            found._turn(rows, found.roll[rows])
-            found._newton(forces, left, rolls)
-            left &= found.imbalance > ROUGH
+        if rolls:
+            if left.any():
+                found._rolled(forces, left)
+                left &= found.imbalance > ROUGH
+            if left.any():  # one of two humps of a patch takes over from the other; let them share the load
+                rows = np.flatnonzero(left)
+                found.share[rows], found.correction[rows] = 0.0, 0.0
+                found._turn(rows, found.roll[rows])
+                found._newton(forces, left, rolls)
+                left &= found.imbalance > ROUGH
             if left.any():
                 found._rolled(forces, left)
         elif left.any():
@@ -486,6 +486,8 @@ class Balance:
             rows = np.flatnonzero(going)
             self._turn(rows, rolls.x[rows])
             going &= self.roll == rolls.x
+            if not going.any():
+                break
 
     def _lower(self) -> Array:
         """Return how much lower the left wheel carries the axle than the right one, over the mean of `whole`."""
