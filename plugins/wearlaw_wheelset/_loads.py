@@ -398,16 +398,16 @@ class Balance:
         rolls = self.task.free and forces is not None
         found._newton(forces, every, rolls)
         left = found.imbalance > ROUGH
-        if left.any() and rolls:
-            found._rolled(forces, left)
-            left &= found.imbalance > ROUGH
-            rows = np.flatnonzero(left)
-            # The level jumps where one of two humps of a patch takes over; as patches of their own they share the load.
-            found.share[rows] = 0.0
-            found.correction[rows] = 0.0
-            found._turn(rows, found.roll[rows])
-            found._newton(forces, left, rolls)
-            left &= found.imbalance > ROUGH
+        if rolls:
+            if left.any():
+                found._rolled(forces, left)
+                left &= found.imbalance > ROUGH
+            if left.any():  # one of two humps of a patch takes over from the other; let them share the load
+                rows = np.flatnonzero(left)
+                found.share[rows], found.correction[rows] = 0.0, 0.0
+                found._turn(rows, found.roll[rows])
+                found._newton(forces, left, rolls)
+                left &= found.imbalance > ROUGH
             if left.any():
                 found._rolled(forces, left)
         elif left.any():
@@ -496,6 +496,8 @@ class Balance:
             rows = np.flatnonzero(going)
             self._turn(rows, rolls.x[rows])
             going &= self.roll == rolls.x
+            if not going.any():
+                break
 
     def _lower(self) -> Array:
         """Return how much lower the left wheel carries the axle than the right one, over the mean of `whole`."""

@@ -129,9 +129,9 @@ class WheelsetProblem(wl.Problem):
 class Wheelset(wl.Rig):
     """Two wheels on an axle that roll on two rails, with the profiles of wheels and rails.
 
-    Each wheel touches its rail in one to three patches. The rig finds them, the roll at which both wheels touch, and
-    the creepages of each patch. The normal and lateral creep forces of its patches carry the vertical load of a wheel,
-    and the wheelset turns at the speed at which the creep forces balance the torque on the axle.
+    Each wheel touches its rail in one to three patches. The rig finds them, the roll at which both wheels bear their
+    load, and the creepages of each patch. The normal and lateral creep forces of its patches carry the vertical load of
+    a wheel, and the wheelset turns at the speed at which the creep forces balance the torque on the axle.
 
     Prefer this rig to `WheelRail` where you have profiles, or where a wheel touches in several places. It has no
     dynamics: lateral displacement, yaw and loads come from a program for vehicle dynamics. Both wheels have the same
@@ -365,7 +365,8 @@ class Wheelset(wl.Rig):
         yaw : Quantity or str
             Yaw, positive clockwise from above, ψ [rad].
         roll : Quantity or str, optional
-            Roll, positive if it lowers the right wheel, ρ [rad]. By default both wheels touch.
+            Roll, positive if it lowers the right wheel, ρ [rad]. By default the one at which both wheels sink
+            together under their loads: gap plus penetration are equal.
         flange_friction_coefficient : array_like of float, Quantity, str or FallingFriction, optional
             Friction coefficient where the contact angle exceeds `flange_angle`, as on a lubricated flange [-].
         axle_torque : Quantity or str, optional
@@ -480,12 +481,12 @@ class Wheelset(wl.Rig):
                 *shape, 2, PATCHES
             )
         fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES)}
-        stance: dict[str, Any] = {
+        fields |= {
             "roll": wide(balance.roll[found.point]),
             "penetration": wide(balance.penetration[found.wheel] - found.gap),
             "imbalance": wide(balance.imbalance[found.point]),
         }
-        return WheelsetProblem(**fields, **stance, balance=balance, shape=shape)
+        return WheelsetProblem(**fields, balance=balance, shape=shape)
 
     @staticmethod
     def _check_yaw(yaw: Array) -> None:
