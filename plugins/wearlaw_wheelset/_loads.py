@@ -60,7 +60,7 @@ FAR = 3.0
 MOST = 100.0
 """Greatest penetration that is tried, over that of the load without creep forces."""
 
-NEWTON_STEPS, STEPS = 12, 100
+NEWTON_STEPS, STEPS = 20, 100
 """Greatest number of steps by Newton's method, of which three or four are usual, and within bounds."""
 
 WIDEST_STEP, MOST_TURN, WIDEST_ROLL = 1.0, 0.01, 1e-3
