@@ -47,6 +47,9 @@ and those of FASTSIM jump by up to 1e-3 where a strip begins to stick once more.
 ROUGH = 2e-3
 """Imbalance that stays where creep forces jump."""
 
+STALLED = 1e-4
+"""Imbalance from which on each unknown is sought within bounds, after Newton's method."""
+
 FOLD = 2e-2
 """Imbalance of the torque that stays where two penetrations carry a load, and the creep forces jump from one to the
 other as the speed of rotation changes."""
@@ -387,7 +390,7 @@ class Balance:
         found.found = self.found.part(np.arange(self.found.point.size))
         rolls = self.task.free and forces is not None
         found._newton(forces, every, rolls)
-        left = found.imbalance > ROUGH
+        left = found.imbalance > STALLED
         if rolls:
             if left.any():
                 found._rolled(forces, left)
