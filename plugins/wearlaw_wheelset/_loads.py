@@ -47,6 +47,9 @@ and those of FASTSIM jump by up to 1e-3 where a strip begins to stick once more.
 ROUGH = 2e-3
 """Imbalance that stays where creep forces jump."""
 
+STALLED = 1e-4
+"""Imbalance from which on each unknown is sought within bounds, after Newton's method."""
+
 FOLD = 2e-2
 """Imbalance of the torque that stays where two penetrations carry a load, and the creep forces jump from one to the
 other as the speed of rotation changes."""
@@ -60,7 +63,7 @@ FAR = 3.0
 MOST = 100.0
 """Greatest penetration that is tried, over that of the load without creep forces."""
 
-NEWTON_STEPS, STEPS = 12, 100
+NEWTON_STEPS, STEPS = 20, 100
 """Greatest number of steps by Newton's method, of which three or four are usual, and within bounds."""
 
 WIDEST_STEP, MOST_TURN, WIDEST_ROLL = 1.0, 0.01, 1e-3
@@ -397,7 +400,7 @@ class Balance:
         found.found = self.found.part(np.arange(self.found.point.size))
         rolls = self.task.free and forces is not None
         found._newton(forces, every, rolls)
-        left = found.imbalance > ROUGH
+        left = found.imbalance > STALLED
         if rolls:
             if left.any():
                 found._rolled(forces, left)
