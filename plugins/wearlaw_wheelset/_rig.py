@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
@@ -118,11 +118,9 @@ class WheelsetProblem(wl.Problem):
     balance: Balance
     shape: tuple[int, ...]
 
-    def mapped(
-        self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None
-    ) -> WheelsetProblem:
+    def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
         """Return the problem with a function applied to each of its arrays; `of_strips` as in `Problem.mapped`."""
-        found = wl.Problem.mapped(self, function, of_strips)
+        found: Self = wl.Problem.mapped(self, function, of_strips)
         return found.replaced(**{name: function(getattr(self, name)) for name in ("roll", "penetration", "imbalance")})
 
 

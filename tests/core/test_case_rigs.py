@@ -269,7 +269,7 @@ WRONG_TO_THE_LOADER: list[tuple[str, Any, str]] = [
     ("sweeps.curve.spin", "0.5 %", "sweeps.curve.spin: got 0.5000 %, which does not have the dimension of '1/m'"),
     ("sweeps.braking.normal_force", ["50 kN", "-1 kN"], "sweeps.braking.normal_force: must be greater than zero"),
     ("sweeps.braking.longitudinal_creepage.to", "200 %", "longitudinal_creepage: must not exceed 1 in magnitude"),
-    ("profiles.curve.friction_coefficient", "0.3", "profiles.curve.friction_coefficient: '0.3' is not a real number"),
+    ("profiles.curve.friction_coefficient", "0.3", "profiles.curve.friction_coefficient: '0.3' is not a number"),
     (
         "uncertainty.one",
         {**RUNNING, "spin": {"uniform": ["2 1/m", "1 1/m"]}},

@@ -50,7 +50,7 @@ def test_a_wrong_case_is_one_clear_error_and_nothing_is_written(
         (["run", "c.toml", "-o", "/proc/out"], "output: cannot write to '/proc/out'"),
         (["run", "c.toml", "-o", "full"], "output: 'full' does not hold results of wearlaw"),
         (["run", "c.toml", "-o", "full", "--overwrite"], "output: 'full' does not hold results of wearlaw"),
-        (["run", "c.toml", "-o", "."], "output: '.' is the working folder"),
+        (["run", "c.toml", "-o", "."], "output: '.' does not hold results of wearlaw"),
         (["case", "tassini2011"], "there is no case file 'tassini2011'; did you mean 'tassini2010'?"),
         (["show", "usdf"], "no model, material, case, test set or section is called 'usdf'; did you mean 'usfd'?"),
         (

@@ -194,7 +194,7 @@ def test_a_law_that_declares_nothing_or_must_be_given_a_field_is_described(monke
     assert silent.endswith("branches: not declared")
     assert said(Bounded).endswith("scale: patch means or cells known range of mean pressure from 1.000 MPa to 2000 MPa")
     must = said(cases.Linear)
-    assert "slope (must be given) Wear rate over p s [m], of no meaning. body = None" in must
+    assert "slope (must be given) Wear rate over p s [m], of no meaning. " in must
     assert must.endswith("declares: what depends on its fields")
 
 

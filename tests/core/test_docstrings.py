@@ -162,4 +162,5 @@ def test_a_law_made_of_a_function_keeps_the_descriptions_that_it_was_given() -> 
 
     described = field_docstrings(type(made))
     assert described.pop("body").startswith("The body that the law is for")
+    assert described.pop("fitted_for").startswith("Record of the tests")
     assert described == {"k": "Parameter k of made [ug/m/N]."}

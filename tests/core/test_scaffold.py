@@ -51,7 +51,7 @@ def test_what_is_there_is_never_overwritten() -> None:
 
 
 def test_a_folder_that_cannot_be_written_is_one_clear_error() -> None:
-    assert_refused(new_plugin("zobory", "--wear-law", "-o", "/proc"), "output: cannot write the plugin: ")
+    assert_refused(new_plugin("zobory", "--wear-law", "-o", "/proc"), "output: cannot write to ")
 
 
 def test_without_a_kind_all_are_named() -> None:

@@ -92,7 +92,8 @@ def _partial(folder: Path, resume: bool) -> Path:
     OutputError
         If it exists and is not to be resumed.
     """
-    partial = folder.with_name(f"{folder.name}.partial")
+    named = folder if folder.name else folder.resolve()  # "." has no name
+    partial = named.with_name(f"{named.name}.partial")
     if partial.exists() and not resume:
         raise OutputError(
             f"output: {quoted(partial)} holds the finished blocks of an interrupted run; add --resume to go on with it,"

@@ -36,10 +36,12 @@ def results_folder(folder: Path, overwrite: bool, marker: str) -> Iterator[Path]
     OutputError
         If `folder` cannot be written or holds something that must not be overwritten.
     """
-    made = False
+    if folder.is_file():
+        raise OutputError(f"output: {quoted(folder)} is a file, not a folder; choose another with -o")
+    made: list[Path] = []
     try:
         _earlier(folder, overwrite, marker)
-        made = not folder.exists()
+        made = [path for path in (folder, *folder.parents) if not path.exists()]
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryDirectory(prefix=BESIDE, dir=folder) as temporary:
             yield Path(temporary)
@@ -51,9 +53,9 @@ def results_folder(folder: Path, overwrite: bool, marker: str) -> Iterator[Path]
             f"output: cannot write to {quoted(folder)}: {reason_of(error)}; choose another folder with -o"
         ) from None
     finally:
-        if made:
+        for path in made:
             with suppress(OSError):  # it holds the results
-                folder.rmdir()
+                path.rmdir()
 
 
 def _earlier(folder: Path, overwrite: bool, marker: str) -> list[str]:
