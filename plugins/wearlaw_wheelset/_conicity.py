@@ -49,8 +49,9 @@ def equivalent_conicity(
 
     Notes
     -----
-    Source: EN 15302, and J. Klingel, Organ für die Fortschritte des Eisenbahnwesens 20 (1883) 113-123. If more than one
-    wave has this amplitude, as with a Δr that has several zeros, it is the one nearest to y = 0.
+    Source: Klingel's equation integrated, as in Annex B of EN 15302; J. Klingel, Organ für die Fortschritte des
+    Eisenbahnwesens 20 (1883) 113-123. If more than one wave has this amplitude, as with a Δr that has several zeros, it
+    is the one nearest to y = 0.
     """
     y, difference = _table(lateral_displacement, rolling_radius_difference)
     if not 0.0 < amplitude < np.inf:

@@ -323,7 +323,7 @@ class Wheelset(wl.Rig):
 
     @steady
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
-        """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, by EN 15302."""
+        """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, after Klingel."""
         most = _one(wl.Unit("mm"), amplitude, "amplitude")
         displacement = np.linspace(-most - MARGIN, most + MARGIN, CONICITY_POINTS)
         rolls, found = searched(self._section, displacement, np.zeros_like(displacement))

@@ -92,7 +92,7 @@ def _geometry(rig: Wheelset) -> wl.FigureData:
             wl.Panel(x, wl.PlotAxis("contact angle [deg]"), tuple(angles)),
         ),
         caption="Rigid wheels and rails, no yaw. The equivalent conicity at 3 mm is"
-        f" {conicity.magnitude:.3f} (EN 15302).",
+        f" {conicity.magnitude:.3f}, after Klingel's equation.",
     )
 
 
