@@ -60,7 +60,7 @@ def test_what_wearlaw_did_not_write_is_refused_and_kept(overwrite: bool, tmp_pat
     for name, message in {
         "mine": f"does not hold results of wearlaw \\(no {FILES}\\)",
         "fit": "holds results of another command",
-        "file": "cannot write to '.*file': File exists; choose another folder with -o",
+        "file": "'.*file' is a file, not a folder; choose another with -o",
         "file/out": "cannot write to '.*out': (Not a directory|File exists)",
         "long" * 100: "File name too long",
     }.items():

@@ -328,7 +328,6 @@ def test_the_first_screen_holds_title_and_the_main_figure(browser: webdriver.Chr
 
 def test_nothing_is_wider_than_the_screen(browser: webdriver.Chrome, screen: tuple[int, int]) -> None:
     width, _ = screen
-    browser.execute_script("document.querySelectorAll('details').forEach(one => one.open = true)")
     assert browser.execute_script("return document.documentElement.scrollWidth") <= width
     everything = "h1, h2, h3, p, li, figcaption, summary, .wide, .plot, .legend, .xtitle, .ytitle, .annotation-text"
     cut = [box for box in boxes(browser, everything) if box[1] < 0.0 or box[3] > width]
@@ -358,7 +357,6 @@ def test_a_checker_of_accessibility_finds_no_fault(page_to_change: webdriver.Chr
     """The rules of axe-core: contrast, names, roles, headings, landmarks, focus."""
     page = page_to_change
     scheme(page, wanted)
-    page.execute_script("document.querySelectorAll('details').forEach(one => one.open = true)")
     found = Axe().run(page)
     faults = {fault["id"]: [node["html"][:200] for node in fault["nodes"]] for fault in found["violations"]}
     assert not faults
@@ -387,37 +385,20 @@ def test_all_controls_can_be_reached_with_the_tab_key_and_show_the_focus(page_to
     assert reached.count("g") == page.execute_script(count, ".legend .traces")
 
 
-def test_a_claim_opens_with_the_keyboard_and_all_with_the_button(page_to_change: webdriver.Chrome) -> None:
-    page = page_to_change
-    summaries, findings = (page.find_elements("css selector", one) for one in ("summary", ".finding"))
-    assert len(summaries) == len(findings) == 2
-    assert not any(finding.is_displayed() for finding in findings)
-    summaries[0].send_keys(Keys.ENTER)
-    assert [finding.is_displayed() for finding in findings] == [True, False]
-    button = page.find_element("id", "open")
-    for text, shown in (("Close all", True), ("Open all", False)):
-        button.send_keys(Keys.SPACE)
-        assert button.text == text
-        assert {finding.is_displayed() for finding in findings} == {shown}
-
-
-def test_a_print_shows_every_claim_on_a_bright_page(page_to_change: webdriver.Chrome) -> None:
+def test_a_print_has_a_bright_page_without_navigation(page_to_change: webdriver.Chrome) -> None:
     page = page_to_change
     scheme(page, "dark")
     record = """
         window.seen = [];
         window.addEventListener("beforeprint", () => {
           const background = getComputedStyle(document.body).backgroundColor;
-          window.seen.push([[...document.querySelectorAll("details")].every(one => one.open), background]);
+          window.seen.push(background);
         });
     """
     page.execute_script(record)
     assert page.print_page()
-    ((opened, background),) = page.execute_script("return window.seen")
-    assert opened
+    (background,) = page.execute_script("return window.seen")
     assert luminance(background) > 0.9
-    wait(page, lambda: not page.execute_script("return document.querySelectorAll('details[open]').length"))
     page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
     assert not page.find_element("tag name", "nav").is_displayed()
-    assert not page.find_element("id", "open").is_displayed()
     page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
