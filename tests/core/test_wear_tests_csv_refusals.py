@@ -270,5 +270,5 @@ def test_what_cannot_be_opened_is_refused(name: str) -> None:
 
 
 def test_a_folder_is_refused_as_one() -> None:
-    with pytest.raises(wl.DataError, match=r"cannot read the tests '\.': it is a folder; give a file"):
+    with pytest.raises(wl.DataError, match=r"cannot read the tests '\.': Is a directory"):
         wl.read_tests(".")

