@@ -120,8 +120,8 @@ class WheelsetProblem(wl.Problem):
 
     def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
         """Return the problem with a function applied to each of its arrays; `of_strips` as in `Problem.mapped`."""
-        found: Self = wl.Problem.mapped(self, function, of_strips)
-        return found.replaced(**{name: function(getattr(self, name)) for name in ("roll", "penetration", "imbalance")})
+        mapped = super(WheelsetProblem, self).mapped(function, of_strips)  # a class with slots has no plain super()
+        return mapped.replaced(**{name: function(getattr(self, name)) for name in ("roll", "penetration", "imbalance")})
 
 
 class Wheelset(wl.Rig):

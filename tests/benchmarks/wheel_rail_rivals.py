@@ -94,7 +94,7 @@ class Compiled:
 
     def march(self, patches: Ellipses, cells: Cells) -> None:
         """Fill cells in C order."""
-        arrays = [np.ctypeslib.as_ctypes(array.reshape(-1)) for array in (*patches.arrays, *cells.arrays)]
+        arrays = [np.ctypeslib.as_ctypes(array.flatten()) for array in (*patches.arrays, *cells.arrays)]
         self._library.march(*map(ctypes.c_size_t, cells.x.shape), ctypes.c_int(patches.elliptic), *arrays)
 
 
