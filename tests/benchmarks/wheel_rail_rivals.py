@@ -94,7 +94,8 @@ class Compiled:
 
     def march(self, patches: Ellipses, cells: Cells) -> None:
         """Fill cells in C order."""
-        arrays = [np.ctypeslib.as_ctypes(array.flatten()) for array in (*patches.arrays, *cells.arrays)]
+        given = [array.flatten() for array in patches.arrays]  # read-only ones have no ctypes
+        arrays = [np.ctypeslib.as_ctypes(array.reshape(-1)) for array in (*given, *cells.arrays)]
         self._library.march(*map(ctypes.c_size_t, cells.x.shape), ctypes.c_int(patches.elliptic), *arrays)
 
 
