@@ -165,6 +165,7 @@ def bound_sums_to_friction(model: ContactModel, shape: Shape) -> None:
         found = contact.integral(bound)
         assert_close(found, friction_limit(problem), "the sum of the traction bound", shape.error_of_sums(model))
 
+    examine(shape.random(POINTS))  # most of which stick somewhere; of the drawn ones few may
     for_each(shape.problems, examine)
 
 
